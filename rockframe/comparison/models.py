@@ -65,14 +65,14 @@ def check_system(value: object, owner: str) -> None:
 
 @hinted()
 def model_ladder(system: System) -> dict[str, System]:
-    """Give the models of a scene, from the simplest to the scene itself.
+    """Return the models of a scene, from the simplest to the scene itself.
 
     The bases lead from rigid ground to pads, and to pads, cap and soil, first by cascade, then
     coupled. In a scene without pads they lead from rigid ground to soil, first without the cap,
-    then with it. A base of a user's own comes after the bases that its method ``simpler`` gives.
-    On each base small rotations come first, then finite ones, then the model with the
-    restrainers, tendons, loads and elastic walls of the scene. A block that slides is first held
-    against sliding; the model that slides comes last.
+    then with it. A user-defined base comes after the bases that its method ``simpler`` returns. On
+    each base small rotations come first, then finite ones, then the model with the restrainers,
+    tendons, loads and elastic walls of the scene. A block that slides is first held against
+    sliding; the model that slides comes last.
 
     Parameters
     ----------

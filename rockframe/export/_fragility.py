@@ -57,7 +57,7 @@ def to_pelicun(
     offset: int = 0,
     directional: bool = True,
 ) -> pd.DataFrame:
-    """Give the row of a component in pelicun's library of damage models.
+    """Return the row of a component in pelicun's library of damage models.
 
     Parameters
     ----------
@@ -67,13 +67,13 @@ def to_pelicun(
     component : str
         Identifier of the component, such as ``"E.20.22.106a"``.
     demand : str, optional
-        Type of the demand, such as ``"Peak Floor Velocity"`` for motions of a floor; that of the
-        ground unless given.
+        Type of the demand, such as ``"Peak Floor Velocity"`` for motions of a floor. The default is
+        that of the ground.
     offset : int, optional
         Storeys between the component's location and its demand.
     directional : bool, optional
-        Whether the demand has a direction, as that of a planar block has. Otherwise pelicun takes
-        1.2 times the larger demand of two directions.
+        Whether the demand has a direction, like that of a planar block. Otherwise pelicun takes 1.2
+        times the larger demand of two directions.
 
     Returns
     -------
@@ -84,15 +84,15 @@ def to_pelicun(
     Raises
     ------
     SchemaError
-        Not a fragility over one such measure.
+        The dataset is not a fragility over one such measure.
     ComponentError
         A limit state has no fit, or dispersion zero; there are several structures; or the
         demand is of another quantity than the fragility.
 
     Notes
     -----
-    As of pelicun 3: limit states in columns ``LS1-Family``, ``LS1-Theta_0`` (median) and
-    ``LS1-Theta_1`` (dispersion), and so on.
+    The format is that of pelicun 3: limit states in columns ``LS1-Family``, ``LS1-Theta_0``
+    (median) and ``LS1-Theta_1`` (dispersion), and so on.
 
     Examples
     --------
@@ -172,8 +172,8 @@ def to_openquake(
     category : str, optional
         Category of the assets.
     no_damage_limit : float, optional
-        Intensity up to which no limit state is exceeded, in g or cm/s; the least intensity of the
-        fragility unless given.
+        Intensity up to which no limit state is exceeded, in g or cm/s. The default is the least
+        intensity of the fragility.
     overwrite : bool, optional
         Whether to replace an existing file that this function did not write.
 
@@ -185,7 +185,7 @@ def to_openquake(
     Raises
     ------
     SchemaError
-        Not fragilities over one such measure.
+        The datasets are not fragilities over one such measure.
     ComponentError
         A limit state has no fit, or dispersion zero; limit states differ; or a name has characters
         that OpenQuake does not allow.
@@ -195,10 +195,10 @@ def to_openquake(
 
     Notes
     -----
-    OpenQuake takes the mean and the standard deviation of the capacity itself, not of its
-    logarithm. With median theta and dispersion beta the mean is theta exp(beta^2/2), and the
-    standard deviation is the mean times sqrt(exp(beta^2) - 1). OpenQuake replaces intensities
-    above the greatest one of the fragility by this one.
+    OpenQuake uses the mean and the standard deviation of the capacity itself, not of its logarithm.
+    With median theta and dispersion beta the mean is theta exp(beta^2/2), and the standard
+    deviation is the mean times sqrt(exp(beta^2) - 1). OpenQuake replaces intensities above the
+    greatest one of the fragility by that one.
 
     Examples
     --------

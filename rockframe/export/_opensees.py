@@ -101,7 +101,7 @@ def to_opensees(
         Not a system or a motion, parts or options without a counterpart in OpenSees, or another
         argument that cannot be read.
     FileError
-        Another ending, or a file that cannot be written or is not replaced.
+        The name has another ending, or the file cannot be written or is not replaced.
 
     Notes
     -----

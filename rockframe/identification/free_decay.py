@@ -41,7 +41,7 @@ def fit_free_decay(
     confidence: RatioLike = 0.95,
     accuracy: AccuracyLike = AccuracyLevel.STANDARD,
 ) -> xr.Dataset:
-    """Find parameters of a system from a free-decay test: it was tilted and released.
+    """Find parameters of a system from a free-decay test, in which it was tilted and released.
 
     Parameters
     ----------
@@ -75,10 +75,10 @@ def fit_free_decay(
         - Over ``parameter``: ``fitted_value``, ``standard_error``, ``lower_confidence_bound``,
           ``upper_confidence_bound`` and ``start_value`` [1].
         - ``initial_rotation`` [rad], ``release_time`` [s] and ``gauge_offset`` [rad] with their
-          standard errors, which are NaN for those that were not to be found.
+          standard errors, which are NaN for those that were not fitted.
         - ``correlation`` of all unknowns [1].
         - Over ``time``: ``measured_rotation``, ``fitted_rotation`` and ``rotation_residual``
-          [rad]; of peaks the same over ``peak``.
+          [rad]; for peaks the same over ``peak``.
         - Root mean squares of the residuals, and their ``residual_autocorrelation`` [1].
         - ``fit_status`` and ``trial_count``.
 
@@ -102,10 +102,10 @@ def fit_free_decay(
 
     Notes
     -----
-    The fit is one of least squares, by :func:`scipy.optimize.least_squares`. A history is fitted
-    twice: from the given start values, and from those of a fit to its peaks, the n-th of the run
-    to the n-th that was measured. The better fit is kept. On pads the sum of squares has several
-    minima, some 15 % of the frequency ratio apart, so that a start value should be within 10 %.
+    The fit is by least squares (:func:`scipy.optimize.least_squares`). A history is fitted twice:
+    from the given start values, and from those of a fit to its peaks, the n-th of the run to the
+    n-th that was measured. The better fit is kept. On pads the sum of squares has several minima,
+    some 15 % of the frequency ratio apart, so that a start value should be within 10 %.
 
     Standard errors follow from the derivatives at the solution and from the residuals,
     :eq:`eq-fit-covariance`. They assume that the model is right except for the unknowns, and

@@ -49,17 +49,17 @@ def average_spectral_acceleration(
     Returns
     -------
     xarray.Dataset
-        Scalars, of several over ``motion`` [m s^-2]: of motions
-        ``average_spectral_acceleration``, :eq:`eq-average-acceleration`; of pairs
-        ``average_geometric_mean_acceleration`` and ``average_median_rotated_acceleration``, these
-        averages of the spectra of :func:`rockframe.rotated_spectrum`.
+        Scalars, over ``motion`` if there are several [m s^-2]. For motions:
+        ``average_spectral_acceleration``, :eq:`eq-average-acceleration`. For pairs:
+        ``average_geometric_mean_acceleration`` and ``average_median_rotated_acceleration``, the
+        averages of these spectra of :func:`rockframe.rotated_spectrum`.
 
     Raises
     ------
     UnitsError
         Periods without a unit, or with one of another kind.
     ComponentError
-        Neither motions nor pairs, or an argument out of range.
+        The input is neither motions nor pairs, or an argument is out of range.
 
     Examples
     --------
@@ -108,7 +108,7 @@ def average_spectral_acceleration(
 
 
 def _not_none(periods: object) -> object:
-    """Refuse None, for which spectra have periods of their own."""
+    """Refuse None, for which spectra have default periods."""
     if periods is None:
         msg = f"{_OWNER}: periods must be given, for example (np.linspace(0.2, 3, 57), 's')"
         raise ComponentError(msg)

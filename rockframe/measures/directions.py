@@ -61,18 +61,18 @@ def rotated_spectrum(
     periods, damping_ratios : optional
         As for :func:`rockframe.response_spectrum` [s], [1].
     directions : int, optional
-        Number of directions, even, evenly spaced over half a circle.
+        Even number of directions, evenly spaced over half a circle.
 
     Returns
     -------
     xarray.Dataset
-        Pseudo-spectral accelerations over ``damping_ratio`` and ``period``, of several records
-        over ``motion`` before these [m s^-2]: ``median_rotated_acceleration``, the median over
-        all directions (RotD50), and ``greatest_rotated_acceleration`` (RotD100),
-        :eq:`eq-rotated-percentiles`; ``geometric_mean_acceleration`` of the components as
-        recorded, :eq:`eq-geometric-mean`. ``direction_of_greatest`` is the direction of the
-        greatest, from the first component towards the second [rad]. Where there is a vertical
-        component, ``vertical_spectral_acceleration`` and ``vertical_to_horizontal_ratio`` [1],
+        Pseudo-spectral accelerations over ``damping_ratio`` and ``period``, and first over
+        ``motion`` if there are several records [m s^-2]: ``median_rotated_acceleration``, the
+        median over all directions (RotD50), and ``greatest_rotated_acceleration`` (RotD100),
+        :eq:`eq-rotated-percentiles`; ``geometric_mean_acceleration`` of the components as recorded,
+        :eq:`eq-geometric-mean`. ``direction_of_greatest`` is the direction of the greatest, from
+        the first component towards the second [rad]. If there is a vertical component:
+        ``vertical_spectral_acceleration`` and ``vertical_to_horizontal_ratio`` [1],
         :eq:`eq-vertical-to-horizontal`.
 
     Raises
@@ -90,8 +90,9 @@ def rotated_spectrum(
 
     Notes
     -----
-    As exact as :func:`rockframe.response_spectrum`: in the direction of a component it gives
-    that component's spectrum. Of several records vertical spectra are given if all have them.
+    The spectra are as exact as those of :func:`rockframe.response_spectrum`: in the direction of a
+    component the spectrum is that of the component. For several records, vertical spectra are
+    returned only if all have vertical components.
 
     Examples
     --------
@@ -155,10 +156,9 @@ def principal_axes(pair: HorizontalPair | Mapping[str, HorizontalPair]) -> xr.Da
     Returns
     -------
     xarray.Dataset
-        Scalars, of several records over ``motion``: ``major_axis_angle``, from the first
-        component towards the second, above -90 and up to 90 degrees [rad]; the Arias
-        intensities along the axes, ``major_arias_intensity`` and ``minor_arias_intensity``
-        [m s^-1].
+        Scalars, over ``motion`` if there are several records: ``major_axis_angle``, from the first
+        component towards the second, above -90 and up to 90 degrees [rad]; the Arias intensities
+        along the axes, ``major_arias_intensity`` and ``minor_arias_intensity`` [m s^-1].
 
     Raises
     ------
@@ -168,7 +168,7 @@ def principal_axes(pair: HorizontalPair | Mapping[str, HorizontalPair]) -> xr.Da
     Notes
     -----
     :eq:`eq-principal-axes`, after Penzien and Watabe (1975), over the whole motion. If both
-    components are uncorrelated and of equal intensity any axes are principal ones.
+    components are uncorrelated and of equal intensity, any axes are principal axes.
 
     Examples
     --------

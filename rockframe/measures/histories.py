@@ -36,9 +36,9 @@ def velocity_and_displacement(motion: GroundMotion, *, component: str = "horizon
     Returns
     -------
     xarray.Dataset
-        ``ground_acceleration`` [m s^-2], ``ground_velocity`` [m s^-1] and
-        ``ground_displacement`` [m] over ``time`` [s], at the samples; of the vertical
-        component ``vertical_ground_acceleration`` and so on.
+        ``ground_acceleration`` [m s^-2], ``ground_velocity`` [m s^-1] and ``ground_displacement``
+        [m] over ``time`` [s], at the samples; for the vertical component
+        ``vertical_ground_acceleration`` and so on.
 
     Raises
     ------
@@ -47,11 +47,10 @@ def velocity_and_displacement(motion: GroundMotion, *, component: str = "horizon
 
     Notes
     -----
-    Exact for the motion that a simulation sees, :eq:`eq-ground-velocity` and
-    :eq:`eq-ground-displacement`: straight lines between the samples of a record, the
-    polynomials of an analytic pulse. Nothing is corrected: a record whose acceleration
-    has an offset drifts. See :meth:`GroundMotion.baseline_corrected` and
-    :meth:`GroundMotion.filtered`.
+    Exact for the motion that a simulation uses, :eq:`eq-ground-velocity` and
+    :eq:`eq-ground-displacement`: straight lines between the samples of a record, the polynomials of
+    an analytic pulse. Nothing is corrected: a record whose acceleration has an offset drifts. See
+    :meth:`GroundMotion.baseline_corrected` and :meth:`GroundMotion.filtered`.
 
     Examples
     --------
@@ -97,8 +96,8 @@ def fourier_spectrum(
     motion : GroundMotion
         The motion.
     resolution : str or Quantity, optional
-        Greatest distance between frequencies, reached by appending zeros; by default one over
-        the motion's duration [Hz].
+        Maximum frequency spacing, achieved by appending zeros; by default one over the motion's
+        duration [Hz].
     component : {"horizontal", "vertical"}, optional
         Component of the motion.
 
@@ -117,9 +116,9 @@ def fourier_spectrum(
 
     Notes
     -----
-    One-sided: the other half is the conjugate complex one, and amplitudes are not
-    doubled. Of a record it is the discrete Fourier transform times the time step, of an
-    analytic pulse the transform of its polynomials.
+    The spectrum is one-sided: the other half is its complex conjugate, and amplitudes are not
+    doubled. For a record it is the discrete Fourier transform times the time step, for an analytic
+    pulse the transform of its polynomials.
 
     Examples
     --------

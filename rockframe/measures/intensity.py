@@ -62,20 +62,19 @@ def intensity_measures(
     threshold : str or Quantity, optional
         Threshold of the bracketed duration [m s^-2].
     damping_ratio : float, optional
-        Damping ratio of the velocity spectrum behind the Housner intensity and its predominant
-        period [1].
+        Damping ratio of the velocity spectrum of the Housner intensity and its predominant period
+        [1].
     gravity : str or Quantity, optional
-        Acceleration of gravity, the standard one unless given [m s^-2].
+        Acceleration of gravity; standard gravity by default [m s^-2].
 
     Returns
     -------
     xarray.Dataset
-        Scalars, of several motions over ``motion``: ``peak_ground_acceleration`` [m s^-2],
+        Scalars, over ``motion`` if there are several: ``peak_ground_acceleration`` [m s^-2],
         ``peak_ground_velocity`` [m s^-1], ``peak_ground_displacement`` [m]; ``arias_intensity``,
-        ``cumulative_absolute_velocity`` and ``standardized_cumulative_absolute_velocity``
-        [m s^-1]; ``significant_duration_5_75``, ``significant_duration_5_95``,
-        ``bracketed_duration`` [s]; ``housner_spectrum_intensity`` [m]; ``mean_period``,
-        ``predominant_velocity_period`` [s].
+        ``cumulative_absolute_velocity`` and ``standardized_cumulative_absolute_velocity`` [m s^-1];
+        ``significant_duration_5_75``, ``significant_duration_5_95``, ``bracketed_duration`` [s];
+        ``housner_spectrum_intensity`` [m]; ``mean_period``, ``predominant_velocity_period`` [s].
         With a block ``overturning_angle`` [rad], ``uplift_acceleration`` [m s^-2],
         ``uplift_duration`` [s], ``relative_peak_ground_acceleration``,
         ``relative_peak_ground_velocity`` and ``relative_predominant_frequency`` [1].
@@ -90,11 +89,11 @@ def intensity_measures(
 
     Notes
     -----
-    Peaks and durations are those of the motion that a simulation sees, between the samples
-    too. Squares and absolute values of a record are summed over its samples by the
-    trapezoidal rule. The ground starts from rest and nothing is corrected: an offset of the
-    acceleration distorts ``peak_ground_velocity``, and ``peak_ground_displacement`` even more.
-    The measures of the block hold on rigid ground, :eq:`eq-rocking-measures`.
+    Peaks and durations are those of the motion that a simulation uses, also between the samples.
+    Squares and absolute values of a record are summed over its samples by the trapezoidal rule. The
+    ground starts from rest and nothing is corrected: an offset of the acceleration distorts
+    ``peak_ground_velocity``, and ``peak_ground_displacement`` even more. The measures of the block
+    are valid on rigid ground, :eq:`eq-rocking-measures`.
 
     Examples
     --------

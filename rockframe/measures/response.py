@@ -46,34 +46,33 @@ def response_spectrum(
         The motion, or several by their labels, such as a suite. The ground stands still before
         and after it.
     periods : (sequence, unit), Quantity or sequence of str, optional
-        Undamped natural periods, increasing; 0 stands for a rigid oscillator. 100 per
-        decade from 0.01 s to 10 s unless given [s].
+        Undamped natural periods, increasing; 0 stands for a rigid oscillator. The default is 100
+        per decade from 0.01 s to 10 s [s].
     damping_ratios : sequence of float, or float, optional
         Damping over critical damping, from 0 to 1 [1].
     component : {"horizontal", "vertical"}, optional
         Component of the motion.
     interpolation : {"linear", "band-limited"}, optional
-        A record between its samples: straight lines, as in simulations, or the band-limited
-        motion with these samples and no content above their Nyquist frequency. The lines lower
-        the ordinates at periods shorter than about ten time steps.
+        Interpolation of a record between its samples: straight lines, as in simulations, or the
+        band-limited motion with these samples and no content above their Nyquist frequency.
+        Straight lines lower the ordinates at periods shorter than about ten time steps.
 
     Returns
     -------
     xarray.Dataset
         Over ``damping_ratio`` and ``period``: the greatest absolute relative displacement
-        ``spectral_displacement`` [m], relative velocity ``spectral_velocity`` [m s^-1] and
-        absolute acceleration ``absolute_spectral_acceleration`` [m s^-2]; and, from the
-        first, ``pseudo_spectral_velocity`` [m s^-1] and ``pseudo_spectral_acceleration``
-        [m s^-2], :eq:`eq-pseudo-spectra`. Of several motions, over ``motion`` before these.
+        ``spectral_displacement`` [m], relative velocity ``spectral_velocity`` [m s^-1] and absolute
+        acceleration ``absolute_spectral_acceleration`` [m s^-2]; and, from the first,
+        ``pseudo_spectral_velocity`` [m s^-1] and ``pseudo_spectral_acceleration`` [m s^-2],
+        :eq:`eq-pseudo-spectra`. If there are several motions, ``motion`` is the first dimension.
 
     Raises
     ------
     UnitsError
         Periods without a unit, or with one of another kind.
     ComponentError
-        The motion lacks the component, periods do not increase or are so short that they
-        need too many steps, a damping ratio is out of range or given twice, or another
-        `interpolation`.
+        The motion lacks the component, periods do not increase or are so short that they need too
+        many steps, a damping ratio is out of range or given twice, or `interpolation` is unknown.
 
     Warns
     -----
@@ -83,10 +82,10 @@ def response_spectrum(
 
     Notes
     -----
-    The recurrence of Nigam and Jennings (1969), exact for a motion of straight lines, and
-    as exact for the polynomials of an analytic pulse; an interval is split until a period
-    has twelve steps. Peaks are those of the solution between the steps too, and include
-    the free vibration after the motion.
+    The method is the recurrence of Nigam and Jennings (1969), which is exact for a piecewise linear
+    motion, and here also for the polynomials of an analytic pulse; an interval is split until a
+    period has twelve steps. Peaks include those of the solution between the steps and of the free
+    vibration after the motion.
 
     Examples
     --------

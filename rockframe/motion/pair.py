@@ -181,7 +181,7 @@ class HorizontalPair(metaclass=Proposing):
     def rotated(
         self, angle: QuantityLike | None = None, *, azimuth: QuantityLike | None = None
     ) -> GroundMotion:
-        """Give the horizontal component in another direction.
+        """Compute the horizontal component in another direction.
 
         Parameters
         ----------
@@ -249,7 +249,7 @@ class HorizontalPair(metaclass=Proposing):
         return replace(pulse, angle=with_quantity(direction, ANGLE))
 
     def in_axes(self, angle: QuantityLike) -> HorizontalPair:
-        """Give the components along rotated axes.
+        """Compute the components along rotated axes.
 
         Parameters
         ----------

@@ -195,18 +195,18 @@ def cloud_analysis(
     response : str, optional
         The scalar of the runs that is the response.
     label : str, optional
-        Which point, body or restrainer, where the response is of one of several.
+        Point, body or restrainer whose response is used, if there are several.
     limits : iterable, optional
-        Levels of the response, with a unit where it has one: limit states beside overturning.
+        Levels of the response, with a unit if it has one: limit states in addition to overturning.
     least : float, str or Quantity, optional
-        Response below which a run counts as one in which nothing moved, with a unit where it has
-        one; zero unless given.
+        Response below which a run counts as one in which nothing moved, with a unit if it has one.
+        The default is zero.
     period : str or Quantity, or several, optional
         Period of a spectral intensity [s].
     motions : GroundMotion, or sequence or mapping of them, optional
-        The records, where neither the dataset nor this process has them.
+        The records; required if neither the dataset nor this process has them.
     pooled : iterable of str, optional
-        Axes whose values all count as one structure, as for :func:`rockframe.fragility`.
+        Axes whose values are treated as one structure, as for :func:`rockframe.fragility`.
     confidence : float, optional
         Confidence level of all bounds [1].
     seed : int, optional
@@ -215,37 +215,38 @@ def cloud_analysis(
     Returns
     -------
     xarray.Dataset
-        ``regression_intercept``, ``regression_slope``, ``residual_dispersion``,
-        ``determination`` of the runs that moved and did not overturn; ``logistic_intercept`` and
-        ``logistic_slope`` of overturning; over ``limit_state`` what a fragility has:
-        ``median_intensity``, ``dispersion``, ``exceedance_probability``, with bounds; and over
-        ``run`` ``cloud_intensity`` and ``cloud_response``, infinite where a run overturned. The
-        attribute ``verdict`` says it in words.
+        ``regression_intercept``, ``regression_slope``, ``residual_dispersion``, ``determination``
+        of the runs that moved and did not overturn; ``logistic_intercept`` and ``logistic_slope``
+        of overturning. Over ``limit_state``: ``median_intensity``, ``dispersion`` and
+        ``exceedance_probability``, with bounds, as for a fragility. Over ``run``:
+        ``cloud_intensity`` and ``cloud_response``, infinite where a run overturned. The attribute
+        ``verdict`` is a summary in words.
 
     Raises
     ------
     ComponentError, UnitsError
-        An argument is out of range, has a wrong unit, or names no such measure or scalar.
+        An argument is out of range, has a wrong unit, or names an unknown measure or scalar.
     SchemaError
         Not the result of a sweep.
     StudyError
-        The runs are of several structures that are not `pooled`, or have no verdicts.
+        The runs are of several structures that are not `pooled`, or they have no verdicts.
 
     Notes
     -----
-    The modified cloud analysis of Jalayer et al. (2017): the logarithm of the response is normal
-    about a straight line in that of the intensity, :eq:`eq-cloud-line`, for runs that do not
-    overturn, and overturning is logistic, :eq:`eq-cloud-fragility`. Blocks on rigid ground that
-    stay at rest have no logarithm, and the logarithm of those that hardly rise says nothing of
-    the others, so that `least` had best be given; the probability that a standing block has moved
-    is logistic too. Where the intensity separates both kinds of runs without overlap, the
-    probability is a step in the middle of the gap. The median is where the probability is one
-    half, the dispersion half the logarithm of the ratio of the intensities at 84 and 16 %; if no
-    run overturns or rests the curve is lognormal, and both are its parameters.
+    This is the modified cloud analysis of Jalayer et al. (2017). For runs that do not overturn, the
+    logarithm of the response is normally distributed about a straight line in the logarithm of the
+    intensity, :eq:`eq-cloud-line`; overturning is logistic, :eq:`eq-cloud-fragility`. The response
+    of a block that stays at rest on rigid ground has no logarithm, and that of a block that hardly
+    rises is not informative, so `least` should be given; the probability that a standing block has
+    moved is logistic too. If the intensity separates the two kinds of runs without overlap, the
+    probability is a step in the middle of the gap. The median is the intensity at which the
+    probability is one half, and the dispersion is half the logarithm of the ratio of the
+    intensities at 84 and 16 %. If no run overturns or rests, the curve is lognormal, and both are
+    its parameters.
 
     Bounds are quantiles of curves whose coefficients are drawn from their posterior distribution
-    (the robust fragility of Jalayer et al., 2015), :eq:`eq-cloud-posterior`. Where
-    motions were run more than once the runs depend on one another, and there are none.
+    (the robust fragility of Jalayer et al., 2015), :eq:`eq-cloud-posterior`. If motions were run
+    more than once, the runs are dependent and there are no bounds.
 
     Examples
     --------

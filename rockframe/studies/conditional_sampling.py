@@ -66,8 +66,9 @@ def subset_levels(
     """Sample level by level, until a sufficient share of the samples exceeds the limit.
 
     Each level has chains, :eq:`eq-conditional-candidate`, that start at the samples beyond the last
-    threshold. The last level has the limit for its threshold, exceeded or not: it is the one in
-    which the share is reached, the last that is allowed, or one whose samples all have one demand.
+    threshold. The threshold of the last level is the limit, exceeded or not. The last level is the
+    one in which the share is reached, the last that is allowed, or one whose samples all have the
+    same demand.
     """
     scores = rng.standard_normal((count, size))
     demands = demand("level 01", scores)
@@ -84,7 +85,7 @@ def subset_levels(
         (seeds,) = np.nonzero(level.exceeds)
         chains, length = len(seeds), max(2, round(count / len(seeds)))
         runs, left_out = chains * (length - 1), 0
-        # all chains make a step together, so that their runs are made in parallel
+        # all chains make a step together, so that their runs can be parallel
         states = [(scores[seeds], demands[seeds], origins[seeds])]
         accepted: list[float] = []
         for place in range(1, length):
@@ -110,8 +111,8 @@ def subset_levels(
 def _threshold(demands: Array, share: float, limit: float) -> float:
     """Give the demand that a share of the samples reaches, halfway between two of them.
 
-    Equal demands are not separated, so that the share nearest by its logarithm is taken. Where all
-    demands are equal the limit is given.
+    Equal demands are not separated; the possible share with the nearest logarithm is used. If all
+    demands are equal, the limit is returned.
     """
     values, counts = np.unique(demands[~np.isnan(demands)], return_counts=True)
     if len(values) < 2:

@@ -62,74 +62,74 @@ def critical_scale(
     system : System
         The scene.
     motion : GroundMotion, optional
-        The motion to be scaled, both components alike; the one among the parts unless given.
+        The motion to be scaled, both components alike. By default the motion among the parts.
     largest : float, optional
         Largest scale [1].
     scales : int, optional
         Number of equally spaced scales that are tried first.
     runs : int, optional
-        Most runs of the scan, beside those that narrow brackets: what `scales` leaves goes
-        to intervals in which flips may hide.
+        Maximum number of runs of the scan, not counting those that narrow brackets. Runs beyond
+        `scales` are spent on intervals in which flips may hide.
     resolution : float, optional
-        Width of a gap between runs below the least scale that overturns, over its upper scale,
-        down to which gaps are halved as far as `runs` suffice [1].
+        Relative width, over the upper scale, down to which gaps between runs below the least scale
+        that overturns are halved, as far as `runs` suffice [1].
     bracket_width : float, optional
-        Width of a bracket, over its upper scale [1].
+        Width of a bracket, relative to its upper scale [1].
     intensity : str, optional
-        Intensity measure whose value at the critical scale is given: ``"PGA"`` and other
+        Intensity measure whose value at the critical scale is returned: ``"PGA"`` and other
         abbreviations of :func:`rockframe.fragility`, or a name of
         :func:`rockframe.intensity_measures`, such as ``"peak_ground_acceleration"``, or of
         :func:`rockframe.response_spectrum`, such as ``"pseudo_spectral_acceleration"``.
     period : str or Quantity, optional
         Period of the oscillator of a spectral value [s].
     damping_ratio : float, optional
-        Damping ratio of that oscillator, or of the spectra behind a measure [1].
+        Damping ratio of that oscillator, or of the spectra from which a measure is computed [1].
     progress : bool, optional
-        Whether a bar counts the runs (needs tqdm); by default where it can be seen. Its
-        total grows beyond `scales` with the intervals that are halved.
+        Whether to show a progress bar (needs tqdm); by default only where it is visible. Its total
+        grows beyond `scales` as intervals are halved.
 
     Returns
     -------
     xarray.Dataset
         Scalars: ``critical_scale``, the least scale found to overturn, NaN if none did;
         ``followed_scale``, up to which no gap between runs is wider than `resolution`;
-        ``largest_gap``, the largest distance between neighbouring scales;
-        ``uplift_scale``, up to which nothing happens on rigid ground [1]; and the
-        intensity measure, by its name. Over ``flip``, for each change of the verdict:
-        ``scale_below``, ``scale_above`` [1], and ``overturns_above``. Over ``scale``, for
-        each run: ``outcome``, ``peak_rotation`` [rad] and ``status``. The attribute
-        ``verdict`` says it in words.
+        ``largest_gap``, the largest distance between neighbouring scales; ``uplift_scale``, up to
+        which nothing happens on rigid ground [1]; and the intensity measure, by its name. Over
+        ``flip``, for each change of the verdict: ``scale_below``, ``scale_above`` [1], and
+        ``overturns_above``. Over ``scale``, for each run: ``outcome``, ``peak_rotation`` [rad] and
+        ``status``. The attribute ``verdict`` is a summary in words.
 
     Raises
     ------
     UnitsError
         An argument has the wrong unit, or none.
     ComponentError
-        Not a System, no motion to scale, an unknown measure, or an argument out of range.
+        The argument is no System, there is no motion to scale, a measure is unknown, or an argument
+        is out of range.
     AssemblyError, SolverError
         As for :meth:`rockframe.System.simulate`.
 
     Warns
     -----
     SolverWarning
-        Runs could not be finished. They have no verdict, and are neither counted as
-        standing nor as overturned. Warnings of the run at the critical scale are repeated; where
-        a base has a coefficient of friction and nothing overturns, those of the run at the
-        largest scale. Or it was interrupted (Ctrl-C): then the result is that of the runs until
-        then, up to ``followed_scale``.
+        Some runs could not be finished. They have no verdict, and count neither as standing nor as
+        overturned. Warnings of the run at the critical scale are repeated; if a base has a
+        coefficient of friction and nothing overturns, those of the run at the largest scale. Also
+        warns after an interrupt (Ctrl-C): the result then covers the completed runs, up to
+        ``followed_scale``.
 
     Notes
     -----
-    Rocking is not monotone in the scale: above the critical one the verdict may flip back,
-    many times. Between two scales of the same verdict an even number of flips may hide, and
-    with them a lesser critical scale. Up to ``followed_scale`` all ranges of scales that
-    overturn have been found, except ranges narrower than `resolution` times their upper end, and
-    those that end below `resolution` times `largest`. Then the indications by which certificates
-    look for flips (``rf.Certification``) decide which intervals are halved, first below the least
-    scale that overturns, down to 0.2 % of the scale.
+    Rocking is not monotone in the scale: above the critical scale the verdict may flip back many
+    times. An even number of flips, and with them a smaller critical scale, may hide between two
+    scales of the same verdict. Up to ``followed_scale`` all ranges of scales that overturn have
+    been found, except ranges narrower than `resolution` times their upper end, and those that end
+    below `resolution` times `largest`. After that, the criteria by which certificates search for
+    flips (``rf.Certification``) select the intervals to be halved, first below the least scale that
+    overturns, down to 0.2 % of the scale.
 
-    A block at rest on rigid ground, without vertical motion, does not move before the peak
-    ground acceleration exceeds g tan(theta): the scan begins there.
+    A block at rest on rigid ground, without vertical motion, does not move before the peak ground
+    acceleration exceeds g tan(theta), where the scan begins.
 
     Examples
     --------
@@ -169,7 +169,7 @@ def critical_scale(
     def plan_at(scale: float) -> Plan:
         return replace(plan, motion=motion.scaled(scale))
 
-    # of all that is needed here only warnings of friction need samples
+    # samples are needed here only for warnings of friction
     rubs = has_limit(system.assembly)
     step = plan.output_step if rubs else None
 

@@ -70,54 +70,55 @@ def incremental_dynamic_analysis(
     Parameters
     ----------
     system : System or callable
-        The scene; or a function that takes the axes by their names and returns a System.
+        The scene; or a function that takes the axes by name and returns a System.
     motions : GroundMotion, or sequence or mapping of them, optional
-        Motions; the one among the parts of the system unless given.
+        Motions. By default the motion among the parts of the system.
     scale : sequence of float, optional
-        Factors of the motions at which all of them are run first, above zero; 0.1 to 4 in steps
-        of 0.1 unless given [1].
+        Positive factors at which all motions are run first. The default is 0.1 to 4 in steps of 0.1
+        [1].
     limits : iterable, optional
-        Limit states before overturning, in their order: ``"uplift"``, and peak rotations over the
-        overturning angle, such as 0.5; or variables of runs, as for
-        :func:`rockframe.fragility` [1].
+        Limit states before overturning, in order: ``"uplift"``, and peak rotations relative to the
+        overturning angle, such as 0.5; or variables of runs, as for :func:`rockframe.fragility`
+        [1].
     intensity : str, optional
-        An intensity measure that the result has beside the scale, such as ``"PGA"``; see
+        An intensity measure that is added to the result, such as ``"PGA"``; see
         :func:`rockframe.fragility`.
     period : str or Quantity, optional
         Period of the oscillator of a spectral intensity [s].
     resolution : float, optional
-        Width of a gap between runs below a capacity, over its upper scale, down to which gaps are
-        halved, under all motions at once; 1 leaves the scales as they are [1].
+        Relative width, over the upper scale, down to which gaps between runs below a capacity are
+        halved, for all motions together; 1 leaves the scales as they are [1].
     bracket_width : float, optional
-        Width of a bracket, over its upper scale [1].
+        Width of a bracket, relative to its upper scale [1].
     axes : mapping of str to values, optional
-        What else varies, as for :func:`rockframe.sweep`: each combination of values is a
-        structure, with capacities of its own.
+        Further axes, as for :func:`rockframe.sweep`. Each combination of their values is a
+        structure with its own capacities.
     **more_axes : values
-        Axes whose names a keyword can have. A `width` is that of a block.
+        Axes whose names are valid keywords. `width` is the width of a block.
     output_step : str or Quantity, optional
         Spacing of the histories, as for :func:`rockframe.sweep` [s].
     outputs : sequence of str, optional
         Histories of the runs at `scale`, as for :func:`rockframe.sweep`; None keeps none.
     points : mapping of str to (str or Quantity, str or Quantity), optional
-        Points of the body, for whose peaks there may be limit states, as for
-        :func:`rockframe.sweep` [m].
+        Points of the body, whose peaks can be used as limit states, as for :func:`rockframe.sweep`
+        [m].
 
     Returns
     -------
     xarray.Dataset
-        The sweep over the axes, ``scale`` and ``motion``, with the intensity measure; and over
+        The sweep over the axes, ``scale`` and ``motion``, with the intensity measure. Over
         ``limit_state``, the axes and ``motion``: ``capacity_scale``, the least scale found to
-        exceed the limit state, infinite if none, and an upper bound where it is the least of
-        the scan; ``capacity_resolution``; ``flip_count``; over ``flip`` too ``scale_below``,
-        ``scale_above`` [1] and ``exceeds_above``, NaN beyond the last one. Over ``limit_state``
-        and the axes: ``censored_count``, of motions that did not exceed it. The attribute
-        ``verdict`` says it in words.
+        exceed the limit state, infinite if none, and an upper bound if it is the least scale of the
+        scan; ``capacity_resolution``; ``flip_count``. Also over ``flip``: ``scale_below``,
+        ``scale_above`` [1] and ``exceeds_above``, NaN beyond the last flip. Over ``limit_state``
+        and the axes: ``censored_count``, the number of motions that did not exceed it. The
+        attribute ``verdict`` is a summary in words.
 
     Raises
     ------
     UnitsError, ComponentError
-        An argument is out of range, has a wrong unit or none, or names no intensity measure.
+        An argument is out of range, has a wrong unit or none, or names an unknown intensity
+        measure.
     StudyError
         As for :func:`rockframe.sweep`.
 
@@ -126,16 +127,17 @@ def incremental_dynamic_analysis(
     SolverWarning, ModelWarning
         As :func:`rockframe.sweep` does.
     ModelWarning
-        Motions overturn at the least scale already: the scan starts too high for them.
+        Some motions overturn the block at the least scale already: the scan starts too high for
+        them.
 
     Notes
     -----
-    Vamvatsikos and Cornell (2002). Rocking is not monotone in the scale: above the first
-    exceedance a block may stand again, many times, and each change that the runs show is narrowed.
-    A capacity is the least scale that was found to exceed. Below it, down to the least
-    scale of the scan, only ranges of scales narrower than ``capacity_resolution`` times their
-    upper end may exceed. The share of runs that exceed does not depend on such a resolution:
-    :func:`rockframe.fragility` is fitted to all runs of the scan unless it is to use capacities.
+    Vamvatsikos and Cornell (2002). Rocking is not monotone in the scale: above the first exceedance
+    a block may stand again, many times. Each change that the runs show is bracketed. A capacity is
+    the least scale found to exceed the limit state. Below it, down to the least scale of the scan,
+    only ranges of scales narrower than ``capacity_resolution`` times their upper end may exceed.
+    The share of runs that exceed does not depend on such a resolution: :func:`rockframe.fragility`
+    is fitted to all runs of the scan unless capacities are requested.
 
     Examples
     --------
@@ -201,7 +203,7 @@ def incremental_dynamic_analysis(
 
 
 def _at_the_least(found: xr.Dataset) -> Array:
-    """Give which motions overturned at the least scale: their capacities may lie below it."""
+    """Find the motions that overturned at the least scale: their capacities may lie below it."""
     capacity = found["capacity_scale"].isel(limit_state=-1).to_numpy()
     return capacity == float(found[SCALE].min())
 

@@ -28,48 +28,47 @@ def ensemble_statistics(
     pooled: Iterable[str] = (),
     confidence: RatioLike = 0.95,
 ) -> xr.Dataset:
-    """Give the empirical distribution of a result, with bands.
+    """Compute the empirical distribution of a result, with bands.
 
     Parameters
     ----------
     runs : xarray.Dataset or DataArray
-        Result of a sweep over motions, or of drawn cases; select a value of further axes before,
-        or name them in `pooled`. Or values, such as measured ones, which are all one ensemble.
+        Result of a sweep over motions, or of drawn cases; first select a value along each further
+        axis, or name the axes in `pooled`. Or values, such as measured ones, that form one
+        ensemble.
     name : str, optional
-        The variable whose distribution is given.
+        The variable whose distribution is computed.
     quantiles : sequence of float, optional
         Probabilities of the quantiles [1].
     pooled : iterable of str, optional
-        Dimensions of a sweep beside its motions whose runs are members of the one ensemble too.
+        Dimensions of a sweep other than its motions whose runs also belong to the ensemble.
     confidence : float, optional
         Confidence level of all bounds [1].
 
     Returns
     -------
     xarray.Dataset
-        Over ``rank``: ``ordered_value``, ``cumulative_probability`` with bounds that hold at each
-        value (Clopper and Pearson), and bounds that hold everywhere at once (``simultaneous``,
-        Kolmogorov). Over ``quantile``: ``quantile_value``, with bounds by order
-        statistics, infinite where the ensemble is too small. Bounds are NaN where several
-        members are of one motion. The attribute ``verdict`` counts members and
-        what was left out.
+        Over ``rank``: ``ordered_value``, ``cumulative_probability`` with pointwise bounds (Clopper
+        and Pearson) and simultaneous bounds (``simultaneous``, Kolmogorov). Over ``quantile``:
+        ``quantile_value``, with bounds by order statistics, infinite if the ensemble is too small.
+        Bounds are NaN if several members are of one motion. The attribute ``verdict`` gives the
+        numbers of members and of cases left out.
 
     Raises
     ------
     SchemaError
-        No dataset, or no such variable.
+        The input is no dataset, or has no such variable.
     ComponentError
-        An argument is out of range, there are no values, or the sweep goes over more than
-        motions.
+        An argument is out of range, there are no values, or the sweep has axes other than motions.
 
     Notes
     -----
-    All bounds hold whatever the distribution, for independent members. Cases without a
-    result are left out, and counted. Runs that stop at the overturning angle have a
-    ``peak_relative_rotation`` of 1, whatever it might have become.
+    All bounds hold for any distribution if the members are independent. Cases without a result are
+    left out and counted. Runs that stop at the overturning angle have a ``peak_relative_rotation``
+    of 1, however large it would have become.
 
-    A model that misses single tests may still give their distribution (Bachmann et al., 2018):
-    compare the bands of both.
+    A model that does not reproduce single tests may still reproduce their distribution (Bachmann et
+    al., 2018); compare the bands of both.
 
     Examples
     --------

@@ -48,7 +48,7 @@ class Followed:
 
     @property
     def largest_gap(self) -> float:
-        """Largest distance between neighbouring scales with a verdict; NaN of fewer than two [1].
+        """Largest distance between neighbouring scales with a verdict; NaN if fewer than two [1].
 
         Pairs of flips closer together than this gap may be missed.
         """
@@ -68,9 +68,9 @@ def follow(
     """Scan scales, halve doubtful intervals, and narrow every change of the verdict.
 
     Between two runs of the same verdict an even number of flips may hide. Below the least scale
-    that overturns every interval is halved down to the resolution, the widest first, except where
-    the base does not lift: at lower scales it does not either, unless it may slide. Then those are
-    halved where flips are to be expected, below that scale and above it,
+    that overturns, every interval is halved down to the resolution, the widest first, except where
+    the base does not lift: it does not lift at lower scales either, unless it may slide. Then the
+    intervals in which flips are likely are halved, below that scale and above it,
     :func:`rockframe.simulation.certify.scan.may_change_between`.
     """
     least, *others = row
@@ -103,7 +103,7 @@ def _wide(
 ) -> Iterator[tuple[float, float]]:
     """Give the intervals that are wider than the resolution, where the base lifts.
 
-    Those below the least scale that overturns, or beyond it, too.
+    Those below the least scale that overturns, or also those beyond it.
     """
     for near, far in side.intervals():
         if side.shown[near].overturned and not beyond:
@@ -137,8 +137,8 @@ def _halve(side: Side, look: Look, most: int, *, up_to_first: bool) -> bool:
 def _suspects(side: Side, *, up_to_first: bool) -> Iterator[tuple[float, float]]:
     """Give the intervals in which flips may hide, from low to high.
 
-    Up to the first scale that overturns, the interval before it is one of them: flips may
-    hide on both sides of the one that is known.
+    With `up_to_first`, the interval before the first scale that overturns is included too: flips
+    may hide on both sides of the known flip.
     """
     for number, (near, far) in enumerate(side.intervals()):
         before, after = side.shown[near].overturned, side.shown[far].overturned
@@ -156,7 +156,7 @@ def _suspects(side: Side, *, up_to_first: bool) -> Iterator[tuple[float, float]]
 
 
 def _clearance(side: Side, near: float, far: float) -> float:
-    """Give the least clearance of both runs to the overturning angle; 0 where it was passed."""
+    """Give the smaller clearance of both runs to the overturning angle; 0 if it was passed."""
     ends = side.shown[near], side.shown[far]
     return min(one.clearances[0] if one.within_the_angle else 0.0 for one in ends)
 

@@ -51,49 +51,49 @@ def fractile_curves(
         Result of :func:`rockframe.incremental_dynamic_analysis`, or of a sweep over the scale and
         motions.
     intensity : str or DataArray, optional
-        Measure, as for :func:`rockframe.fragility`; the scale of the motion unless given.
+        Measure, as for :func:`rockframe.fragility`. The default is the scale of the motion.
     response : str, optional
         The scalar of the runs that is the response.
     label : str, optional
-        Which point, body or restrainer, where the response is of one of several.
+        Point, body or restrainer whose response is used, if there are several.
     period : str or Quantity, or several, optional
         Period of a spectral intensity [s].
     motions : GroundMotion, or sequence or mapping of them, optional
-        The records, where neither the dataset nor this process has them.
+        The records; required if neither the dataset nor this process has them.
     fractiles : sequence of float, optional
         Shares of the motions [1].
     levels : (sequence, unit), Quantity or sequence of float, optional
-        Levels of the response, increasing; from the least response to the greatest unless given.
+        Increasing levels of the response. By default from the least response to the greatest.
 
     Returns
     -------
     xarray.Dataset
         Over the intensity: ``motion_response`` of each motion, ``response_fractile`` over
         ``quantile``, and ``overturned_count``. Over ``response_level``: ``intensity_fractile``, the
-        intensity at which that share of the motions has first reached the level, and
-        ``unreached_count``, of motions that did not. The response of a block that overturned is
-        infinite, and so is the intensity of a motion that never reached the level. The attribute
-        ``verdict`` says it in words.
+        intensity at which that share of the motions first reaches the level, and
+        ``unreached_count``, the number of motions that do not. The response of a block that
+        overturned is infinite, and so is the intensity of a motion that never reaches the level.
+        The attribute ``verdict`` is a summary in words.
 
     Raises
     ------
     ComponentError, UnitsError
-        An argument is out of range, has a wrong unit, or names no such measure or scalar.
+        An argument is out of range, has a wrong unit, or names an unknown measure or scalar.
     SchemaError
-        Not the result of a sweep.
+        The dataset is not the result of a sweep.
     StudyError
-        The runs go over more than the scale and motions, or their intensities have no range in
-        common.
+        The runs have axes other than the scale and motions, or their intensities have no common
+        range.
 
     Notes
     -----
-    Vamvatsikos and Cornell (2004), :eq:`eq-fractiles`. Between runs of a motion its response is
-    a straight line; between one that stands and one that overturns it is level up to the scale
-    at which the verdict changes, by the bracket of a dynamic analysis, by the run that overturned
-    in a sweep. Curves begin at the greatest of the motions' least intensities, and end at the least
-    of their greatest ones. A fractile is the least value up to which at least that
-    share of the motions lies, so that infinite values count like any other. A motion
-    whose first run already reaches a level has the intensity of that run there, an upper bound.
+    Vamvatsikos and Cornell (2004), :eq:`eq-fractiles`. The response to a motion is interpolated
+    linearly between its runs. Between a run that stands and one that overturns it is constant up to
+    the scale at which the verdict changes: the bracket of a dynamic analysis, or the run that
+    overturned in a sweep. Curves begin at the greatest of the motions' least intensities, and end
+    at the least of their greatest intensities. A fractile is the least value that at least that
+    share of the motions does not exceed, so that infinite values count like any other. If the first
+    run of a motion already reaches a level, its intensity is used there as an upper bound.
 
     Examples
     --------
@@ -278,7 +278,7 @@ def _line(
 def fractiles_of(rows: Array, shares: Array) -> Array:
     """Give the least values up to which at least these shares of the rows lie, :eq:`eq-fractiles`.
 
-    By sorting, so that infinite values need no arithmetic.
+    Sorting avoids arithmetic with infinite values.
     """
     place = np.ceil(len(rows) * shares - 1e-9).astype(int) - 1
     return np.sort(rows, axis=0)[np.clip(place, 0, len(rows) - 1)]

@@ -70,7 +70,7 @@ def annual_rate(
     *,
     between: Any = None,
 ) -> xr.Dataset:
-    """Give the mean annual rate of exceeding limit states, and the contributing intensities.
+    """Compute the mean annual rate of exceeding limit states, and the contributing intensities.
 
     Parameters
     ----------
@@ -78,41 +78,40 @@ def annual_rate(
         Result of :func:`rockframe.fragility` or :func:`rockframe.cloud_analysis`, over one
         measure.
     hazard : mapping, DataArray or callable
-        Mean annual rate at which the site exceeds values of that measure. A table:
-        ``{"intensity": ([0.1, 0.2, 0.5], "g_0"), "rate": [1e-2, 3e-3, 2e-4]}``, or with
-        ``"probability"`` and ``"years"`` instead of ``"rate"``, of exceeding each at least once in
-        so many years. A DataArray of rates whose only dimension has the intensities, with their
+        Mean annual rate at which the site exceeds values of that measure. A table: ``{"intensity":
+        ([0.1, 0.2, 0.5], "g_0"), "rate": [1e-2, 3e-3, 2e-4]}``, or with ``"probability"`` and
+        ``"years"`` instead of ``"rate"``, for the probability of at least one exceedance in that
+        many years. Or a DataArray of rates whose only dimension has the intensities, with their
         unit. Or a function of an array of intensities in SI units.
     between : (sequence, unit), Quantity or sequence of str, optional
-        Range of intensities in which a hazard given as a function holds.
+        Range of intensities in which a hazard given as a function is valid.
 
     Returns
     -------
     xarray.Dataset
-        Over structures and ``limit_state``: ``annual_rate``, with the rates by the upper and
-        lower bounds of the curve; ``unreached_rate_below`` and ``unreached_rate_above``, the rates
-        beyond the ends of the hazard curve if it is extrapolated; ``outside_trials_share``. Over
-        ``contributing_intensity`` too ``rate_share``; over ``quantile``
-        ``quantile_intensity``, below which that share of the rate arises. The attribute
-        ``verdict`` says it in words.
+        Over structures and ``limit_state``: ``annual_rate``, with the rates by the upper and lower
+        bounds of the curve; ``unreached_rate_below`` and ``unreached_rate_above``, the rates beyond
+        the ends of the hazard curve if it is extrapolated; ``outside_trials_share``. Over
+        ``contributing_intensity`` too: ``rate_share``. Over ``quantile``: ``quantile_intensity``,
+        below which that share of the rate arises. The attribute ``verdict`` is a summary in words.
 
     Raises
     ------
     SchemaError
-        Not a fragility over one measure.
+        The dataset is not a fragility over one measure.
     UnitsError, ComponentError
-        The hazard has another unit or none, does not fall, or is no such thing.
+        The hazard has another unit or none, does not decrease, or is of an unsupported type.
 
     Warns
     -----
     ModelWarning
-        More than a hundredth of the rate lies beyond the hazard curve.
+        More than 1 % of the rate lies beyond the hazard curve.
 
     Notes
     -----
-    :eq:`eq-annual-rate`, Cornell (1996). Between the points of a table the hazard is a power law,
-    as a straight line on logarithmic axes, and the integral over each part exact for a lognormal
-    capacity, :eq:`eq-rate-of-part`. The rates of both bounds take each curve of a band as a whole,
+    :eq:`eq-annual-rate`, Cornell (1996). Between the points of a table the hazard is a power law, a
+    straight line on logarithmic axes, and the integral over each part is exact for a lognormal
+    capacity, :eq:`eq-rate-of-part`. The rates of both bounds use each bounding curve as a whole,
     and so lie farther apart than bounds of the rate of the same confidence.
 
     Examples
@@ -277,8 +276,8 @@ def _of_one(one: xr.Dataset, curve: HazardCurve, measure: str) -> dict[str, Any]
 def _of_trials(one: xr.Dataset, measure: str) -> tuple[float, float]:
     """Give the least and the greatest intensity of trials.
 
-    The curve is drawn from the least to the greatest of all structures; a stripe may be a group of
-    intensities about its own.
+    The curve is drawn over the range of all structures; a stripe may be a group of intensities
+    around its own.
     """
     along, stripes = one[measure].to_numpy(), one["stripe_intensity"].to_numpy()
     (tried,) = np.nonzero(one["stripe_trials"].to_numpy() > 0)
@@ -314,8 +313,8 @@ def of_lognormal(median: float, spread: float, edges: Array, rates: Array, slope
             if spread > 0.0
             else np.where(edges < median, -np.inf, np.inf)
         )
-    # the hazard at the median, by the power law of each part, is large where that is steep, and the
-    # share of capacities within it small: their logarithms are added
+    # where the power law of a part is steep, the hazard at the median is large and the share of
+    # capacities within the part is small: their logarithms are added
     shift = slopes * spread
     at_median = np.log(rates[:-1]) + slopes * np.log(edges[:-1] / median)
     with np.errstate(invalid="ignore"):  # without a spread eta is infinite

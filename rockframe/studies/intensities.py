@@ -85,7 +85,7 @@ def spelled(value: object) -> object:
 
 
 def measure_words(name: str, period: Any) -> str:
-    """Write the name of a measure in words, of a spectral value with its period or periods [s]."""
+    """Write the name of a measure in words, for a spectral value with its period or periods [s]."""
     words = name.replace("_", " ")
     if period is None or name not in _SPECTRAL:
         return words
@@ -185,7 +185,7 @@ def measure_in(
 
 
 def _of_these_runs(runs: xr.Dataset, array: xr.DataArray, owner: str) -> xr.DataArray:
-    """Give numbers of the user's in the order of the runs' labels; NaN where one is missing."""
+    """Give the user's numbers in the order of the runs' labels; NaN where one is missing."""
     for dim in array.dims:
         twice = dim in array.indexes and not array.indexes[dim].is_unique
         if twice and dim in runs.indexes and array.indexes[dim].equals(runs.indexes[dim]):

@@ -154,7 +154,7 @@ def states_of(analysis: xr.Dataset) -> tuple[LimitState, ...]:
 
 
 def check_runs(value: object, *, owner: str) -> xr.Dataset:
-    """Refuse what is not the result of a sweep; give its variables in the units of the schema."""
+    """Refuse anything but the result of a sweep; give its variables in the units of the schema."""
     runs = checked_dataset(value, owner=owner)
     missing = [name for name in _NEEDED if name not in runs]
     if missing or not set(_TOLD) <= set(runs.attrs):
@@ -195,10 +195,10 @@ def exceeds(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
 
 
 def _beyond_all(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
-    """Give which runs exceed a limit state whatever the value of its variable is.
+    """Give which runs exceed a limit state for any value of its variable.
 
     A block that passed the overturning angle and stands in the end has not overturned; but scalars
-    up to the overturning angle say nothing of what followed.
+    up to the overturning angle say nothing about later motion.
     """
     followed = state.variable and state.variable not in _UP_TO_OVERTURNING
     return (overturns(runs) if followed else runs["overturned"]) == 1
@@ -219,7 +219,7 @@ def demands(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
 
 
 def scalar_of(runs: xr.Dataset, name: str, label: object = None, *, owner: str) -> xr.DataArray:
-    """Give a scalar of runs, of one point, body or restrainer where it is of several."""
+    """Give a scalar of runs, for one point, body or restrainer if it has several."""
     known = isinstance(cast("Any", name), str)
     if not known or name not in runs or runs[name].dtype.kind not in "biuf":
         msg = f"{owner}: the runs have no {shown(name)}{_instead(runs, name) if known else ''}"
@@ -239,7 +239,7 @@ def scalar_of(runs: xr.Dataset, name: str, label: object = None, *, owner: str) 
 
 
 def _instead(runs: xr.Dataset, name: str) -> str:
-    """Say which sweep has a scalar; or which there are."""
+    """Say which sweep has a scalar; or list the scalars."""
     if name in _AT_POINTS:
         return "; a sweep has it with points={...}"
     if name in _OF_SAMPLES:

@@ -20,7 +20,7 @@ from rockframe.units import Unit
 
 @dataclass(frozen=True, eq=False)
 class LineAxes:
-    """Axes beside the scale of the motions."""
+    """Axes other than the scale of the motions."""
 
     axes: tuple[Axis, ...] = ()
 

@@ -74,9 +74,9 @@ class Rounds:
         further: bool = False,
         **more: Any,
     ) -> tuple[xr.Dataset, bool]:
-        """Run the cases of a part, which names a folder and stands on the bar.
+        """Run the cases of a part, whose name is used for its folder and on the bar.
 
-        Tell, too, whether this was not interrupted. Parts after the first are not recorded for
+        Also return whether this was not interrupted. Parts after the first are not recorded for
         :func:`rockframe.case`, as no result has them.
         """
         arguments = {**self.run, **more}
@@ -156,9 +156,9 @@ def brackets_of(scales: Array, verdicts: Array) -> list[Bracket]:
 def narrowed(
     brackets: Sequence[Bracket], look: Callable[[str, Wanted], tuple[Array, bool]], *, width: float
 ) -> tuple[list[Bracket], bool]:
-    """Halve brackets in rounds until they are narrow; tell if all of them are.
+    """Halve brackets in rounds until they are narrow; return whether all of them are.
 
-    By the verdicts that the runs of a part, which has a name, show, and whether all were made.
+    This uses the verdicts of the runs of a named part, and whether all were made.
     """
     done: list[Bracket] = []
     waiting = list(brackets)
@@ -263,7 +263,7 @@ class Seen:
 
     @property
     def first(self) -> Array:
-        """The least scale that exceeds; infinite where none does, NaN without any verdict."""
+        """The least scale that exceeds; infinite if none does, NaN without any verdict."""
         least = np.where(self.verdicts == 1.0, self.scales, np.inf).min(axis=-1)
         return np.where(np.isnan(self.verdicts).all(axis=-1), np.nan, least)
 
@@ -356,7 +356,7 @@ class Lines:
         return Seen(runs[SCALE].to_numpy(), shown, moves)
 
     def _finer(self, rounds: Rounds, seen: Seen, resolution: float) -> tuple[Seen, bool]:
-        """Run the gaps below the first exceedance; tell, too, whether this was not interrupted."""
+        """Run the gaps below the first exceedance; also return whether this was not interrupted."""
         tried = set[tuple[int, float]]()
         for number in range(1, MOST_ROUNDS + 1):
             # where a middle has no verdict the gap stays

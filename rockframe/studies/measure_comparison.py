@@ -59,15 +59,15 @@ def compare_intensities(
     response : str, optional
         The scalar of the runs that is the response.
     label : str, optional
-        Which point, body or restrainer, where the response is of one of several.
+        Point, body or restrainer whose response is used, if there are several.
     against : sequence of str, or mapping of str to values, optional
-        What the response should not depend on beside the measure: names of coordinates of the
-        runs; or, by their names, numbers of the motions, in their order, by their labels, such as
-        columns of the table of a suite, or a DataArray over ``motion``.
+        Covariates on which the response should not depend for a given measure: names of coordinates
+        of the runs; or a mapping of names to values for the motions, in the order of the motions,
+        by their labels, such as columns of the table of a suite, or as a DataArray over ``motion``.
     least : float, str or Quantity, optional
-        Response below which a run counts as one in which nothing moved; zero unless given.
+        Response below which a run counts as one in which nothing moved. The default is zero.
     motions : GroundMotion, or sequence or mapping of them, optional
-        The records, where neither the dataset nor this process has them.
+        The records; required if neither the dataset nor this process has them.
     pooled : iterable of str, optional
         As for :func:`rockframe.cloud_analysis`.
 
@@ -76,30 +76,30 @@ def compare_intensities(
     xarray.Dataset
         Over ``measure``: ``regression_slope``, ``residual_dispersion``, ``efficiency_ratio``,
         ``determination``, ``relative_sufficiency`` and its standard error; over ``covariate`` too
-        ``sufficiency_slope`` and ``sufficiency_p_value``; how many runs there were of each kind.
-        :func:`rockframe.table` makes a table of it.
+        ``sufficiency_slope`` and ``sufficiency_p_value``. Also the number of runs of each kind.
+        :func:`rockframe.table` converts it to a table.
 
     Raises
     ------
     ComponentError, UnitsError
-        An argument is out of range, or names no such measure, scalar or coordinate.
+        An argument is out of range, or names an unknown measure, scalar or coordinate.
     SchemaError
-        Not the result of a sweep.
+        The dataset is not the result of a sweep.
     StudyError
-        Too few runs are between rest and overturning for a line, or they are of several
+        Too few runs lie between rest and overturning to fit a line, or they are of several
         structures that are not `pooled`.
 
     Notes
     -----
     Luco and Cornell (2007). The line is that of :func:`rockframe.cloud_analysis`. A measure is
-    *efficient* where the ``residual_dispersion`` is small; of measures with different powers the
-    ``efficiency_ratio`` is comparable, the dispersion of the intensity at a response (Padgett et
-    al., 2008). It is *sufficient* where the residuals do not depend on magnitude or distance: the
+    *efficient* if the ``residual_dispersion`` is small; to compare measures with different powers,
+    use the ``efficiency_ratio``, the dispersion of the intensity at a response (Padgett et al.,
+    2008). It is *sufficient* if the residuals do not depend on magnitude or distance: the
     ``sufficiency_p_value`` is that of the slope of a straight line through the residuals over the
-    covariate, as it is given; give the logarithm of a distance. A small one is evidence against the
-    measure; a large one means little where runs are few. The relative sufficiency (Jalayer et al.,
-    2012), :eq:`eq-relative-sufficiency`, is the mean information in bits on the response of a run,
-    overturning and rest included, that a measure has beyond the first one.
+    covariate as given (for a distance, give its logarithm). A small value is evidence against the
+    measure; a large one means little if there are few runs. The relative sufficiency (Jalayer et
+    al., 2012), :eq:`eq-relative-sufficiency`, is the mean information in bits about the response of
+    a run, overturning and rest included, that a measure provides beyond the first measure.
 
     Examples
     --------

@@ -42,7 +42,7 @@ def overturning_map(
     bracket_width: RatioLike = 1e-3,
     **run: Unpack[SweepArguments],
 ) -> xr.Dataset:
-    """Run pulses of all amplitudes and frequencies, and find the boundaries of overturning.
+    """Run pulses at a grid of amplitudes and frequencies, and find the boundaries of overturning.
 
     Parameters
     ----------
@@ -51,27 +51,26 @@ def overturning_map(
     pulse : GroundMotion or callable
         An analytic pulse with an amplitude and a frequency, both of which are replaced; or a
         function of both, as Quantities, that returns a motion, such as
-        ``rf.GroundMotion.sine_pulse``. Its amplitude must only scale it.
+        ``rf.GroundMotion.sine_pulse``. The motion must be proportional to the amplitude.
     amplitude : values with a unit
-        Amplitudes that are run first, above zero: ``([1, 2, 3], "m/s^2")`` [m s^-2].
+        Positive amplitudes that are run first: ``([1, 2, 3], "m/s^2")`` [m s^-2].
     frequency : values with a unit
         Cyclic frequencies: ``([0.5, 1, 2], "Hz")`` [Hz].
     impacts : int, optional
-        Number of impacts from which on modes of overturning are no longer distinguished.
+        Number of impacts from which modes of overturning are no longer distinguished.
     bracket_width : float, optional
-        Width of the brackets about boundaries, over their upper end [1].
+        Width of the brackets of boundaries, relative to their upper end [1].
 
     Returns
     -------
     xarray.Dataset
         The sweep over ``amplitude`` and ``frequency``, with ``impacts_before_overturning``, NaN
-        where the block stands, or where the run has no verdict (``status``). Over
-        ``frequency``: ``boundary_count``, and over ``boundary``
-        too ``amplitude_below`` and ``amplitude_above`` [m s^-2], ``impacts_below`` and
-        ``impacts_above``, NaN beyond the last one. On rigid ground also the coordinates
-        ``relative_pulse_frequency`` and, where all pulses of an amplitude have one peak,
-        ``relative_peak_ground_acceleration`` [1].
-        :func:`rockframe.case` gives any case back.
+        where the block stands, or where the run has no verdict (``status``). Over ``frequency``:
+        ``boundary_count``. Also over ``boundary``: ``amplitude_below`` and ``amplitude_above`` [m
+        s^-2], ``impacts_below`` and ``impacts_above``, NaN beyond the last boundary. On rigid
+        ground also the coordinates ``relative_pulse_frequency`` and, where all pulses of an
+        amplitude have one peak, ``relative_peak_ground_acceleration`` [1]. :func:`rockframe.case`
+        returns any case.
 
     Raises
     ------
@@ -84,10 +83,10 @@ def overturning_map(
     Notes
     -----
     Blocks overturn without an impact, or after one or more (Zhang and Makris, 2001); between the
-    two a range of amplitudes may stand. So a boundary is where the number of impacts before
-    overturning changes. A bracket whose middle stands becomes two: between neighbouring amplitudes
-    of the first runs that overturn in different modes a standing range is found if a middle of the
-    halving lies in it.
+    two there may be a range of amplitudes at which the block stands. A boundary is therefore where
+    the number of impacts before overturning changes. A bracket at whose middle the block stands is
+    split into two. Between neighbouring amplitudes of the first runs that overturn in different
+    modes, a standing range is found only if a midpoint of the bisection lies in it.
 
     Examples
     --------

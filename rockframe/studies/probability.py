@@ -93,7 +93,7 @@ def read_correlation(argument: object, names: Sequence[str], *, owner: str) -> A
     else:
         try:
             matrix = np.asarray(argument, dtype=np.float64)
-        except (TypeError, ValueError, OverflowError):  # no matrix of numbers
+        except (TypeError, ValueError, OverflowError):  # not a matrix of numbers
             matrix = np.empty(0)
     alike = matrix.shape == (size, size) and np.array_equal(matrix, matrix.T)
     if not alike or not np.allclose(np.diag(matrix), 1.0, rtol=0.0, atol=1e-12):
@@ -209,7 +209,7 @@ class Matters(NamedTuple):
     # first-order index: variance of the share that overturns given the parameter, over that of the
     # verdict, less its expectation without any dependence [1]
     first_order: float = np.nan
-    # greatest difference of the parameter's distributions in cases of either verdict; NaN where
+    # greatest difference between the parameter's distributions for the two verdicts; NaN where
     # values are words [1]
     distance: float = np.nan
     chance: float = np.nan  # p-value of the uneven shares if the parameter had no influence [1]
@@ -218,9 +218,9 @@ class Matters(NamedTuple):
 def ranked(columns: Mapping[str, Generic], verdict: Array) -> dict[str, Matters]:
     """Give the sensitivity of the verdict to each parameter, the greatest first.
 
-    The index is the correlation ratio of groups of equal size, less its expectation if there
-    were no dependence (the adjusted ratio, Kelley 1935): a first-order Sobol index from given
-    data, within the width of the groups. The distance is that of Hornberger and Spear (1981).
+    The index is the correlation ratio of groups of equal size, minus its expectation without
+    dependence (the adjusted ratio, Kelley 1935): a first-order Sobol index from given data, within
+    the width of the groups. The distance is that of Hornberger and Spear (1981).
     """
     found = {name: _matters(values, verdict) for name, values in columns.items()}
     return dict(sorted(found.items(), key=lambda one: -one[1].first_order))
@@ -280,23 +280,22 @@ def probability_of_overturning(
     system : System or callable
         The scene, as for :func:`rockframe.sweep`.
     motions : GroundMotion, or sequence or mapping of them, optional
-        Each case has one of them, all equally probable; the one among the parts of the system
-        unless given.
+        Each case has one of them, all equally probable. By default the motion among the parts of
+        the system.
     spread : mapping of str to distribution
         Distributions by names of axes (:func:`rockframe.sweep`), ``scale`` among them:
         ``("normal", mean, standard deviation)``, ``("lognormal", median, standard deviation of
         the logarithm)``, ``("uniform", least, greatest)``, with units; or a frozen distribution
         of ``scipy.stats`` in SI units, and the unit: ``(scipy.stats.triang(0.5), "m")``.
     correlation : mapping of (str, str) to float, or array, optional
-        Correlation of the normal scores of parameters, by pairs,
-        ``{("width", "height"): 0.7}``, or a matrix in the order of `spread`; for normal
-        distributions it is that of the parameters, for lognormal ones that of their logarithms.
-        None are correlated unless given [1].
+        Correlation of the normal scores of parameters, by pairs, ``{("width", "height"): 0.7}``, or
+        a matrix in the order of `spread`; for normal distributions it is that of the parameters,
+        for lognormal ones that of their logarithms. By default the parameters are uncorrelated [1].
     cases : int, optional
         Number of cases that are drawn.
     sampling : {"latin", "random", "sobol"}, optional
-        A Latin hypercube, independent numbers, or a scrambled Sobol sequence, for which
-        `cases` had best be a power of two.
+        A Latin hypercube, independent numbers, or a scrambled Sobol sequence, for which `cases`
+        should be a power of two.
     seed : int, optional
         Seed of the random numbers: equal seeds draw equal cases.
     confidence : float, optional
@@ -314,19 +313,19 @@ def probability_of_overturning(
     UnitsError, ComponentError
         An argument is out of range, or has a wrong unit or none.
     StudyError
-        No such parameter, with every fault found; or as for :func:`rockframe.sweep`.
+        A parameter is unknown, with all faults listed; or as for :func:`rockframe.sweep`.
 
     Notes
     -----
-    The bounds are those of Clopper and Pearson for independent cases. Latin hypercubes
-    and Sobol sequences vary less, so that the bounds are wide for them: of a Latin hypercube
-    the variance is at most n/(n-1) times that of independent cases (Owen, 1997). They do
-    not cover the question whether the motions represent those to come. Correlated parameters have
-    a Gaussian copula, :eq:`eq-gaussian-copula`: each keeps its distribution; the order of a Latin
-    hypercube is changed, not its strata. The index of a parameter then includes the influence of
-    those correlated with it. The first-order index is the share of the variance of the verdict
-    that would vanish if the parameter were known; interactions of several parameters are in none
-    of them. Cases without a verdict are left out.
+    The bounds are those of Clopper and Pearson for independent cases. Latin hypercubes and Sobol
+    sequences vary less, so the bounds are wide for them: the variance of a Latin hypercube is at
+    most n/(n-1) times that of independent cases (Owen, 1997). The bounds do not account for whether
+    the motions represent future ones. Correlated parameters have a Gaussian copula,
+    :eq:`eq-gaussian-copula`: each keeps its distribution; the order of a Latin hypercube changes,
+    but not its strata. The index of a parameter then includes the influence of those correlated
+    with it. The first-order index is the share of the variance of the verdict that would vanish if
+    the parameter were known; interactions of several parameters are in none of them. Cases without
+    a verdict are left out.
 
     Examples
     --------

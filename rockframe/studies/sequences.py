@@ -46,41 +46,41 @@ def earthquake_sequences(
     pause: QuantityLike = "20 s",
     **run: Unpack[SequenceArguments],
 ) -> xr.Dataset:
-    """Run earthquakes one after the other, each from where the one before has left the system.
+    """Run earthquakes in sequence, each from the state in which the previous one left the system.
 
     Parameters
     ----------
     system : System
         The scene.
     sequences : mapping of str to sequence of GroundMotion, or sequence of sequences
-        Earthquakes in their order, such as a main shock and its aftershocks. Where their time
-        steps differ, intervals are divided, down to a 64th; the motions do not change by it.
+        Earthquakes in order, such as a main shock and its aftershocks. If their time steps differ,
+        intervals are divided, down to a 64th; this does not change the motions.
     pause : str or Quantity, optional
-        Still ground after each of them [s], in whole time steps of its sequence, and at least one
-        between two motions; the pause that results is given.
+        Duration of still ground after each earthquake [s], in whole time steps of its sequence, and
+        at least one between two motions. The actual pause is in the result.
 
     Returns
     -------
     xarray.Dataset
-        The scalars of runs over ``sequence`` and ``earthquake``: what has happened from the
-        start of the sequence until the pause after that earthquake is over, NaN beyond the last
-        one; and over ``sequence`` ``overturning_earthquake``, the number of the one that
-        overturned the block, 0 if none did, and ``pause`` [s].
+        Over ``sequence`` and ``earthquake``: the scalars of the run from the start of the sequence
+        to the end of the pause after that earthquake, NaN beyond the last earthquake. Over
+        ``sequence``: ``overturning_earthquake``, the number of the earthquake that overturned the
+        block, 0 if none did, and ``pause`` [s].
 
     Raises
     ------
     UnitsError, ComponentError
-        No motions, or time steps in a sequence without a common part; `pause` has a wrong
-        unit or none.
+        There are no motions, the time steps of a sequence have no common part, or `pause` has a
+        wrong unit or none.
     StudyError
         As for :func:`rockframe.sweep`.
 
     Notes
     -----
-    The motions are joined, with their polynomials, and zeros between them; each row of the
-    result is a run from the start of its sequence, so that nothing is lost in between. On rigid
-    ground, on pads and on soil a block that has come to rest keeps no memory but its slip, and the
-    yielding and breaking of its ties; a user's own base may keep more.
+    The motions are joined, with their polynomials and zeros between them. Each row of the result is
+    a run from the start of its sequence, so that no state is lost in between. On rigid ground, on
+    pads and on soil, a block that has come to rest retains only its slip and the yielding and
+    breaking of its ties; a user-defined base may retain more.
 
     Examples
     --------

@@ -105,7 +105,7 @@ def _by_shape_factor(system: System, owner: str) -> System:
         raise ComponentError(msg)
     if block.given.inertia is None and block.given.centre_height is None:
         return system
-    with collected_warnings():  # block and system have warned when they were made
+    with collected_warnings():  # block and system already gave their warnings when they were made
         scaling = block.replace(shape_factor=block.shape_factor, centre_height=None)
         others = [part for part in system.parts.structural() if part is not block]
         options: dict[str, Any] = system.options.to_dict()
@@ -126,19 +126,19 @@ def rocking_spectrum(
     axes: Mapping[str, Any] | None = None,
     **run: Unpack[SweepArguments],
 ) -> xr.Dataset:
-    """Run blocks of all sizes under motions: what a response spectrum is to oscillators.
+    """Run blocks of many sizes under motions: the counterpart of a response spectrum.
 
     Parameters
     ----------
     system : System
-        A block on its base. Its size is changed, and its slenderness if that is given;
-        its shape factor, its mass and the parameters of the base stay as they are.
+        A block on its base. Its size is varied, and its slenderness if given; its shape factor, its
+        mass and the parameters of the base stay unchanged.
     motions : GroundMotion, or sequence or mapping of them, optional
-        Motions; the one among the parts of the system unless given.
+        Motions. By default the motion among the parts of the system.
     periods : values with a unit
         2 pi over the frequency parameter p of the block: ``([2, 4, 8], "s")`` [s].
     slenderness : values, optional
-        Height over width; that of the block unless given [1].
+        Height over width [1]. The default is that of the block.
     axes : mapping of str to values, optional
         What else varies, as for :func:`rockframe.incremental_dynamic_analysis`.
     **more_axes : values
@@ -148,9 +148,9 @@ def rocking_spectrum(
     -------
     xarray.Dataset
         The sweep over ``slenderness``, ``rocking_period`` [s], the axes and ``motion``, whose
-        ``peak_relative_rotation`` is the rocking spectrum; with ``width`` and ``height`` [m] of
-        the blocks, ``Block.height`` beside a wall, which has one too. :func:`rockframe.case`
-        gives any case back.
+        ``peak_relative_rotation`` is the rocking spectrum; with ``width`` and ``height`` [m] of the
+        blocks (``Block.height`` if there is a wall, which also has a height).
+        :func:`rockframe.case` returns any case.
 
     Raises
     ------
@@ -162,8 +162,8 @@ def rocking_spectrum(
 
     Notes
     -----
-    Makris and Konstantinidis (2003). The period 2 pi / p grows with the square root of the size:
-    it is no period of free rocking, which depends on the amplitude.
+    Makris and Konstantinidis (2003). The period 2 pi / p grows with the square root of the size. It
+    is not a period of free rocking, which depends on the amplitude.
 
     Examples
     --------
@@ -196,22 +196,22 @@ def overturning_spectrum(
     axes: Mapping[str, Any] | None = None,
     **run: Unpack[SweepArguments],
 ) -> xr.Dataset:
-    """Find the least intensity of motions that overturns blocks of all sizes.
+    """Find the least intensity of motions that overturns blocks of many sizes.
 
     Parameters
     ----------
     system, motions, periods, slenderness : optional
         As for :func:`rockframe.rocking_spectrum`.
     scale : sequence of float
-        Factors of the motions at which all blocks are run first, above zero [1].
+        Positive factors of the motions at which all blocks are run first [1].
     intensity : str, optional
         An intensity measure, see :func:`rockframe.fragility`.
     period : str or Quantity, optional
-        Of the oscillator of a spectral intensity [s].
+        Period of the oscillator of a spectral intensity [s].
     resolution : float, optional
         As for :func:`rockframe.incremental_dynamic_analysis` [1].
     bracket_width : float, optional
-        Width of a bracket, over its upper scale [1].
+        Width of a bracket, relative to its upper scale [1].
     axes : mapping of str to values, optional
         What else varies, as for :func:`rockframe.incremental_dynamic_analysis`.
     **more_axes : values
@@ -220,11 +220,10 @@ def overturning_spectrum(
     Returns
     -------
     xarray.Dataset
-        Over ``slenderness``, ``rocking_period`` [s], the axes and ``motion``:
-        ``capacity_scale`` [1] and ``capacity_intensity``, the least found to overturn, infinite if
-        none did, and ``capacity_resolution``;
-        ``left_out_count``, the number of runs of the scan without a verdict;
-        ``flip_count``, and over ``flip`` too ``scale_below``, ``scale_above`` and
+        Over ``slenderness``, ``rocking_period`` [s], the axes and ``motion``: ``capacity_scale``
+        [1] and ``capacity_intensity``, the least found to overturn, infinite if none did, and
+        ``capacity_resolution``; ``left_out_count``, the number of runs of the scan without a
+        verdict; ``flip_count``. Also over ``flip``: ``scale_below``, ``scale_above`` and
         ``exceeds_above``.
 
     Raises
@@ -237,7 +236,7 @@ def overturning_spectrum(
 
     Notes
     -----
-    As :func:`rockframe.incremental_dynamic_analysis`, for blocks of all sizes.
+    The analysis is :func:`rockframe.incremental_dynamic_analysis` for blocks of many sizes.
 
     Examples
     --------

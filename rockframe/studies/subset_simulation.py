@@ -86,22 +86,22 @@ def subset_simulation(
     system : System or callable
         The scene, as for :func:`rockframe.sweep`.
     motions : GroundMotion, or sequence or mapping of them, optional
-        Each case has one of them, all equally probable; the one among the parts of the system
-        unless given.
+        Each case has one of them, all equally probable. By default the motion among the parts of
+        the system.
     spread : mapping of str to distribution
         Distributions of the random parameters, as for :func:`rockframe.probability_of_overturning`.
     correlation : mapping of (str, str) to float, or array, optional
-        Correlation of the normal scores of parameters, as there [1].
+        Correlation of the normal scores of parameters, as for that function [1].
     limit : str, float or tuple, optional
-        The limit state: ``"overturning"``, a peak rotation over the overturning angle, or a
+        The limit state: ``"overturning"``, a peak rotation relative to the overturning angle, or a
         variable of runs and its limit, ``("peak_slip", "5 cm")``, as for
         :func:`rockframe.fragility`.
     cases : int, optional
-        Number of samples of each level.
+        Number of samples in each level.
     share : float, optional
         Share of the samples of a level from which the chains of the next one start [1].
     levels : int, optional
-        Most levels.
+        Maximum number of levels.
     seed : int, optional
         Seed of the random numbers: equal seeds draw equal cases.
     confidence : float, optional
@@ -114,41 +114,40 @@ def subset_simulation(
     xarray.Dataset
         ``exceedance_probability``, its bounds and ``coefficient_of_variation``; ``run_count``,
         ``left_out_count`` of runs without a verdict, and ``family_count``. Over ``sampling_level``:
-        ``demand_threshold``, ``conditional_probability``, ``acceptance_rate`` and
-        ``chain_count``. Over ``case``, of all samples: the sweep that they are of,
-        ``demand``, ``sample_level``, and ``sample_weight``, with which they stand for the whole
-        distribution [1].
+        ``demand_threshold``, ``conditional_probability``, ``acceptance_rate`` and ``chain_count``.
+        Over ``case``, for all samples: the results of the sweep, ``demand``, ``sample_level``, and
+        ``sample_weight``, with which the samples represent the whole distribution [1].
 
     Raises
     ------
     UnitsError, ComponentError
-        An argument is out of range, or has a wrong unit or none; or responses cannot be
-        nearer to the limit state or farther from it, as with uplift.
+        An argument is out of range, or has a wrong unit or none; or the response does not tell how
+        near a run is to the limit state, as with uplift.
     StudyError
-        No such parameter, with every fault found; or as for :func:`rockframe.sweep`.
+        A parameter is unknown, with all faults listed; or as for :func:`rockframe.sweep`.
 
     Warns
     -----
     SolverWarning, ModelWarning
         As :func:`rockframe.sweep` does.
     ModelWarning
-        No sample exceeds the limit state, so that there is only an upper bound; or those
-        that do descend from fewer than five samples of the first level.
+        No sample exceeds the limit state, so that there is only an upper bound; or the samples that
+        exceed it descend from fewer than five samples of the first level.
 
     Notes
     -----
     Au and Beck (2001), with the conditional sampling of Papaioannou et al. (2015),
-    :eq:`eq-conditional-candidate`. A level's samples are those of chains that begin at the samples
-    of the level before with the greatest demand; all chains make a step at once, in one sweep.
-    The demand is the response over its limit, infinite where the block has overturned. Where many
-    samples have the same demand, as blocks that stay at rest do, a threshold lies above or below
-    all of them, and the share of the level differs from `share`.
+    :eq:`eq-conditional-candidate`. The samples of a level are those of chains that begin at the
+    samples of the previous level with the greatest demand; all chains advance together, in one
+    sweep. The demand is the response over its limit, infinite where the block has overturned. If
+    many samples have the same demand, such as blocks that stay at rest, a threshold lies above or
+    below all of them, and the share of the level differs from `share`.
 
-    The coefficient of variation counts how unequally the samples of the first level are
-    represented at the end, :eq:`eq-subset-variation`: so it includes the correlation of samples in
-    a chain, of chains of one origin, and of levels. It cannot account for a region of failure that
-    no sample of the first levels has come near; rocking may have several, and the way to
-    overturning may lead over motions of lesser rotation. Another `seed` or more `cases` show
+    The coefficient of variation measures how unequally the samples of the first level are
+    represented at the end, :eq:`eq-subset-variation`. It thus includes the correlation of samples
+    in a chain, of chains of one origin, and of levels. It cannot account for a region of failure
+    that no sample of the first levels comes near; rocking may have several, and the path to
+    overturning may pass through motions of smaller rotation. Another `seed` or more `cases` show
     whether this is so. Cases without a verdict are left out, and never accepted.
 
     Examples
@@ -260,7 +259,7 @@ class _Sampler:
         self.said += warned
         if not whole:
             raise KeyboardInterrupt
-        # of a function that makes the motion the sweep has a dimension for it
+        # if a function makes the motion, the sweep has a dimension for it
         self.runs.append(runs.isel({MOTION: 0}) if MOTION in runs.dims else runs)
         return demands(self.runs[-1], self._state).to_numpy()
 
@@ -270,7 +269,7 @@ class _Sampler:
 
         count = len(self._spreads)
         normal = scores[:, :count] @ self._root.T
-        # each by the probability of its own tail, which loses no digits
+        # each from the probability of its own tail, which loses no digits
         beyond = ndtr(-np.abs(normal))
         table: dict[str, Any] = {
             head(one.name, one.unit): np.where(
@@ -287,7 +286,7 @@ class _Sampler:
 
 
 def _collected(every: Iterator[Level], *, kept: bool) -> tuple[list[Level], bool]:
-    """Give the levels, and whether sampling went to its end."""
+    """Give the levels, and whether sampling was completed."""
     found: list[Level] = []
     try:
         found.extend(every)

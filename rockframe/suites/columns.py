@@ -26,7 +26,7 @@ COLUMNS: Final = (*(row.name for row in RECORDS), "peak_ground_acceleration")
 
 
 def column(name: str, motion: GroundMotion) -> Any:
-    """Give what is known of a motion."""
+    """Give the metadata of a motion."""
     if name in _COMPUTED:
         return _computed(name, motion)
     value = motion.metadata.get(name)

@@ -26,11 +26,10 @@ def matched(suite: Suite, target: Target, **arguments: Any) -> Suite:
     Returns
     -------
     MotionSuite
-        Without vertical components, unless :meth:`with_verticals` has set them beside their
-        motions, which leaves them as they are. `table` tells ``largest_spectral_misfit``,
-        ``mean_spectral_misfit``, ``spectral_misfit`` and ``scale_factor`` [1] of each motion, and
-        what else has changed: its peaks and pulse indicator before and after, and the growth
-        of the spectrum beyond the range.
+        Without vertical components, unless :meth:`with_verticals` has added them to their motions;
+        these are not changed. `table` has ``largest_spectral_misfit``, ``mean_spectral_misfit``,
+        ``spectral_misfit`` and ``scale_factor`` [1] of each motion, and other changes: its peaks
+        and pulse indicator before and after, and the growth of the spectrum beyond the range.
 
     Raises
     ------

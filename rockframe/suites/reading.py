@@ -44,27 +44,27 @@ def read_suite(
     Parameters
     ----------
     path : str, path-like, bytes or file object, or iterable of these
-        A folder with all that is below it, a zip or tar archive (``.tar.gz`` too), such as a
-        download of the PEER database as it comes, one file, or several of these. ``~`` is the
-        user's folder. Also a netCDF file of :meth:`MotionSuite.to_dataset`.
+        A folder, read with its subfolders; a zip or tar archive (also ``.tar.gz``), such as an
+        unmodified download of the PEER database; one file; or several of these. ``~`` is the user's
+        home folder. Also a netCDF file of :meth:`MotionSuite.to_dataset`.
     format : str, optional
         A name of :func:`rockframe.motion.formats` for all files; by default it is recognised.
     unit : str, optional
-        Unit of the samples, where files do not say, as for :meth:`GroundMotion.read`.
+        Unit of the samples, if files do not state it, as for :meth:`GroundMotion.read`.
     time_step : str or Quantity, optional
         Time step, for columns of samples without times [s].
 
     Returns
     -------
     MotionSuite
-        All components that could be read, in the order of the files; horizontal ones as
-        motions, vertical ones beside them. Files that could not be read are in ``unread``.
+        All components that could be read, in the order of the files; horizontal ones as motions,
+        vertical ones in `verticals`. Files that could not be read are in ``unread``.
 
     Raises
     ------
     RecordError
-        There is no such file or folder, an archive is damaged or made to harm, or there is no
-        horizontal component at all; the message says why the first files were not read.
+        There is no such file or folder, an archive is damaged or malicious, or there is no
+        horizontal component; the message says why the first files were not read.
     UnitsError
         `unit` is not an acceleration, or `time_step` not a time.
     ComponentError
@@ -73,15 +73,15 @@ def read_suite(
     Warns
     -----
     RecordWarning
-        Files were not read, or what was read is unusual; once for all of them.
+        Files were not read, or their content is unusual; one warning for all files.
 
     Notes
     -----
-    Components are put together by the record sequence number of PEER, in names of files or in
-    the table ``_SearchResults.csv``, else by station and earthquake, else by their file. Of files
-    of the same content the first is read. What the table tells is added to the metadata. Nothing
-    is unpacked to the disk; an archive may expand to a hundred times its size, archives in
-    archives in it are not opened, and links and names that lead out of it are not followed.
+    Components are grouped by the record sequence number of PEER, in file names or in the table
+    ``_SearchResults.csv``, else by station and earthquake, else by file. Of files with the same
+    content only the first is read. The content of the table is added to the metadata. Nothing is
+    unpacked to disk. An archive may expand to a hundred times its size; archives in archives in it
+    are not opened, and links and names that lead out of it are not followed.
 
     Examples
     --------
@@ -174,7 +174,7 @@ class _Found:
             self.components.append(component)
 
     def complete(self) -> None:
-        """Add what tables tell, and put components together."""
+        """Add the metadata of tables, and group components."""
         tables = {name.casefold(): metadata for name, metadata in self._tables.items()}
         there: set[str] = set()
         for component in self.components:

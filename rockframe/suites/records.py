@@ -34,7 +34,7 @@ class RecordedComponent:
     vertical: bool  # whether it is vertical
     file: str  # path of its file
     number: int  # of its file, among those that were read: paths of files in memory are alike
-    # what is known of it besides; added to
+    # other metadata; added to
     known: dict[str, str | float | int] = field(default_factory=dict)
 
     @property
@@ -44,7 +44,7 @@ class RecordedComponent:
         return {**self.known, **self.motion.metadata, **own}
 
     def finished(self) -> GroundMotion:
-        """Give the motion with its label and all that is known."""
+        """Give the motion with its label and all metadata."""
         one = self.motion
         return GroundMotion(
             one.si, name=self.label, metadata=self.metadata, history=one.history, recipe=one.recipe
@@ -58,12 +58,13 @@ def number_in_name(file: str) -> int | None:
 
 
 def assign_records(components: Iterable[RecordedComponent]) -> list[str]:
-    """Say of each component with which others it was recorded, and along which axis.
+    """Find for each component with which others it was recorded, and along which axis.
 
-    Components belong together if they have the same record sequence number, or the same station
-    and earthquake (or times that overlap), or come from one file. Then there may be two horizontal
-    ones, at a right angle, and a vertical one; where there are more, those of one instrument and
-    one processing. H1 and H2 are in the order in which they were read, unless a table tells.
+    Components belong together if they have the same record sequence number, or the same station and
+    earthquake (or times that overlap), or come from one file. Then there may be two horizontal
+    ones, at a right angle, and a vertical one; if there are more, those of one instrument and one
+    processing are used. H1 and H2 are in the order in which they were read, unless a table states
+    it.
     """
     held = list(components)
     remarks: list[str] = []
@@ -146,7 +147,7 @@ def _named_by_station(metadata: Mapping[str, Any]) -> bool:
 
 
 def _group_of(component: RecordedComponent) -> tuple[str, ...]:
-    """Give what components that belong together share."""
+    """Give the metadata common to components that belong together."""
     metadata = component.metadata
     if "record_sequence_number" in metadata or _named_by_station(metadata):
         return _record_of(component)

@@ -37,30 +37,30 @@ def scaling_to(
     bounds: tuple[RatioLike, RatioLike] | None = USUAL_BOUNDS,
     combination: str = Combination.EACH,
 ) -> xr.Dataset:
-    """Find the factor that brings each motion's spectrum to a target, and the misfit left.
+    """Find the factor that scales each motion's spectrum to a target, and the remaining misfit.
 
     Parameters
     ----------
     target : TargetSpectrum
         The target spectrum; its damping ratio is that of the spectra.
     periods : (sequence, unit), Quantity or sequence of str, optional
-        Periods at which spectra are compared, all of equal weight; unless given 40 from 0.1 s to
-        4 s, evenly spaced by their logarithms [s].
+        Periods at which spectra are compared, all of equal weight. The default is 40 periods from
+        0.1 s to 4 s, logarithmically spaced [s].
     conditioned_on : (sequence, unit), Quantity or sequence of str, optional
-        One period, at which every scaled spectrum is to equal the target, or several, over
-        which the average spectral acceleration is to equal the target's [s].
+        One period, at which every scaled spectrum equals the target, or several, over which the
+        average spectral acceleration equals that of the target [s].
     bounds : tuple of two float, or None
         Least and greatest factor; factors beyond are set to the bound [1].
     combination : {"each", "geometric mean", "RotD50", "RotD100"}, optional
-        Whether each motion has a factor of its own, or both components of a record a common
-        one, by this spectrum of both.
+        Whether each motion has its own factor, or both components of a record have a common factor,
+        computed from this spectrum of the pair.
 
     Returns
     -------
     xarray.Dataset
-        Over ``motion``, which are records where components are combined: ``scale_factor`` [1],
+        Over ``motion`` (records, if components are combined): ``scale_factor`` [1],
         :eq:`eq-scale-factor`; ``spectral_misfit`` [1], :eq:`eq-spectral-misfit`;
-        ``scaled_spectral_acceleration`` over ``period`` too [m s^-2]. Of all together over
+        ``scaled_spectral_acceleration`` over ``period`` too [m s^-2]. For the whole set, over
         ``period``: ``target_spectral_acceleration``, ``set_median_acceleration`` [m s^-2],
         ``target_standard_deviation``, ``set_standard_deviation`` [1].
 
@@ -69,8 +69,8 @@ def scaling_to(
     UnitsError
         Periods without a unit, or with one of another kind.
     ComponentError
-        Not a target; periods at which the target is not known; a motion without
-        acceleration; no pairs to combine; an argument out of range.
+        The target is no TargetSpectrum or undefined at some periods, a motion has no acceleration,
+        there are no pairs to combine, or an argument is out of range.
 
     Warns
     -----

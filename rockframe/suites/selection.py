@@ -45,14 +45,14 @@ def selection_for(
     spread_weight: RatioLike | None = None,
     per_event: int | None = None,
 ) -> xr.Dataset:
-    """Choose motions, each scaled, so that median and spread of their spectra fit a target.
+    """Select and scale motions so that the median and spread of their spectra fit a target.
 
     Parameters
     ----------
     target : TargetSpectrum
         Target for the median, and for the spread if it has one.
     count : int
-        Number of motions, or of records where components are combined.
+        Number of motions, or of records if components are combined.
     periods, conditioned_on, combination : optional
         As for :meth:`scaling_to` [s].
     bounds : tuple of two float, or None
@@ -61,28 +61,27 @@ def selection_for(
         Weight of the spread relative to the median; by default 1 if the target has a spread,
         else 0, so that only the median counts [1].
     per_event : int, optional
-        Most motions of one earthquake, as far as earthquakes are known.
+        Maximum number of motions of one earthquake, as far as earthquakes are known.
 
     Returns
     -------
     xarray.Dataset
-        As of :meth:`scaling_to` for the motions that were chosen, in the order
-        of their misfits; and ``set_misfit`` [1], :eq:`eq-set-misfit`.
+        As for :meth:`scaling_to`, for the selected motions in the order of their misfits; and
+        ``set_misfit`` [1], :eq:`eq-set-misfit`.
 
     Raises
     ------
     UnitsError
         Periods without a unit, or with one of another kind.
     ComponentError
-        As for :meth:`scaling_to`; or fewer motions within the bounds than are to
-        be chosen.
+        As for :meth:`scaling_to`; or fewer than `count` motions are within the bounds.
 
     Notes
     -----
-    Greedy, after Jayaram, Lin and Baker (2011) and Baker and Lee (2018): a set grows by the
-    motion that makes it fit best, then each motion in turn is replaced by one that fits better,
-    until there is none. The search starts from several first motions, and the best set is kept. A
-    better one may exist, which no method of this kind can exclude.
+    The search is greedy, after Jayaram, Lin and Baker (2011) and Baker and Lee (2018): the motion
+    that gives the best fit is added to the set repeatedly, then each motion in turn is replaced by
+    one that fits better, until there is none. The search starts from several first motions, and the
+    best set is kept. As with any method of this kind, a better set may exist.
 
     Examples
     --------

@@ -25,17 +25,17 @@ from rockframe.units import QuantityLike, RatioLike
 
 @proposing
 class MotionSuite(LabelledMotions):
-    """Labelled ground motions in an order; immutable.
+    """An immutable ordered collection of labelled ground motions.
 
-    A mapping of labels to motions, accepted wherever several motions are. It holds the
-    horizontal components; vertical ones are in `verticals`, and are added to the motions by
-    :meth:`with_verticals`. A motion's metadata describe it. Made by :func:`rockframe.read_suite` or
-    from motions.
+    A mapping of labels to motions, accepted wherever several motions are. It holds the horizontal
+    components; vertical ones are in `verticals`, and :meth:`with_verticals` adds them to the
+    motions. The metadata of a motion describe it. Create a suite with :func:`rockframe.read_suite`
+    or from motions.
 
     Parameters
     ----------
     motions : mapping of str to GroundMotion, or iterable of GroundMotion
-        The motions, by their labels; those of an iterable have their names as labels.
+        The motions by label; motions of an iterable are labelled by their names.
     verticals : mapping of str to GroundMotion, optional
         Vertical components, upwards; they belong to the motions whose metadata have the same
         ``record``.
@@ -44,12 +44,12 @@ class MotionSuite(LabelledMotions):
     remarks : iterable of str, optional
         Remarks on the records, such as contradictions in a file.
     target : TargetSpectrum, optional
-        The spectrum that they were scaled to, known where they were compared with it.
+        The spectrum to which the motions were scaled, defined in the range of the comparison.
 
     Raises
     ------
     ComponentError
-        No motions, something else than motions, or two of one name.
+        There are no motions, an item is no motion, or two have the same name.
 
     Examples
     --------
@@ -186,15 +186,15 @@ class MotionSuite(LabelledMotions):
         Parameters
         ----------
         target : TargetSpectrum or xarray.Dataset
-            The target, or what :meth:`scaling_to` or :meth:`selection_for` found for it.
+            The target, or the result of :meth:`scaling_to` or :meth:`selection_for` for it.
         **arguments
             As for :meth:`scaling_to`.
 
         Returns
         -------
         MotionSuite
-            The scaled motions, all or those chosen; their metadata have ``scale_factor`` and
-            ``spectral_misfit``, and its `target` is the spectrum they were compared with.
+            The scaled motions, all or those selected. Their metadata have ``scale_factor`` and
+            ``spectral_misfit``; `target` is the spectrum with which they were compared.
 
         Raises
         ------
@@ -265,8 +265,8 @@ class MotionSuite(LabelledMotions):
         Returns
         -------
         xarray.Dataset
-            Over ``motion``, the vertical components last, the metadata of each; over ``sample``
-            the samples of all, one after the other, with ``sample_count`` (CF 9.3.3).
+            Over ``motion``: the metadata of each, vertical components last. Over ``sample``: the
+            samples of all motions, concatenated, with ``sample_count`` (CF 9.3.3).
 
         Examples
         --------
@@ -295,7 +295,7 @@ class MotionSuite(LabelledMotions):
         Raises
         ------
         SchemaError
-            Not such a dataset, or its samples were changed since.
+            The dataset is not one of :meth:`to_dataset`, or its samples were changed.
 
         Examples
         --------

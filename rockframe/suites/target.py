@@ -36,9 +36,9 @@ _ROUNDING: Final = 1e-9
 @proposing
 @dataclass(frozen=True)
 class TargetSpectrum(metaclass=Proposing):
-    """A pseudo-spectral acceleration that motions are to fit, perhaps with its spread.
+    """A target pseudo-spectral acceleration for motions, optionally with its spread.
 
-    Made by :meth:`from_table`, :meth:`from_spectrum`, :meth:`eurocode_8` or :meth:`asce_7`.
+    Created by :meth:`from_table`, :meth:`from_spectrum`, :meth:`eurocode_8` or :meth:`asce_7`.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ class TargetSpectrum(metaclass=Proposing):
     damping_ratio : float
         Of the oscillators [1].
     limits : tuple of float
-        Periods between which it is known [s].
+        Periods between which the target is defined [s].
 
     Examples
     --------
@@ -97,11 +97,11 @@ class TargetSpectrum(metaclass=Proposing):
         Parameters
         ----------
         periods : (sequence, unit), Quantity or sequence of str, k values
-            Increasing, above zero [s].
+            Increasing positive periods [s].
         accelerations : (sequence, unit), Quantity or sequence of str, k values
-            Pseudo-spectral accelerations, of a set their median [m s^-2].
+            Pseudo-spectral accelerations; for a set of motions, their median [m s^-2].
         standard_deviations : sequence of float, k values, optional
-            Of the natural logarithm; the spread that a set is to have [1].
+            Standard deviations of the natural logarithm: the target spread of a set [1].
         damping_ratio : float, optional
             Of the oscillators [1].
         name : str, optional
@@ -110,8 +110,8 @@ class TargetSpectrum(metaclass=Proposing):
         Returns
         -------
         TargetSpectrum
-            Straight between the periods of the table, where both axes are logarithmic;
-            unknown outside.
+            Interpolated linearly on logarithmic axes between the periods of the table; undefined
+            outside.
 
         Raises
         ------
@@ -161,13 +161,13 @@ class TargetSpectrum(metaclass=Proposing):
 
     @classmethod
     def from_spectrum(cls, dataset: xr.Dataset, *, name: str = "spectrum") -> Self:
-        """Take a target from response spectra: of one motion, or the median of several.
+        """Create a target from the response spectrum of one motion, or the median of several.
 
         Parameters
         ----------
         dataset : xarray.Dataset
-            Of :func:`rockframe.response_spectrum`, of one damping ratio; of several motions the
-            standard deviation of the logarithm becomes the spread.
+            Result of :func:`rockframe.response_spectrum` for one damping ratio; for several motions
+            the standard deviation of the logarithm becomes the spread.
         name : str, optional
             For titles and messages.
 
@@ -178,7 +178,7 @@ class TargetSpectrum(metaclass=Proposing):
         Raises
         ------
         SchemaError
-            No such dataset.
+            The dataset is not a result of :func:`rockframe.response_spectrum`.
 
         Examples
         --------
@@ -226,13 +226,13 @@ class TargetSpectrum(metaclass=Proposing):
         ground_acceleration : str or Quantity
             Design ground acceleration on rock, a_g [m s^-2].
         ground_type : {"A", "B", "C", "D", "E"}, optional
-            Gives soil factor and corner periods.
+            Ground type, which determines the soil factor and corner periods.
         spectrum_type : {1, 2}, optional
-            1 for strong and distant earthquakes, 2 where no magnitude above 5.5 contributes.
+            1 for strong and distant earthquakes, 2 if no magnitude above 5.5 contributes.
         soil_factor : float, optional
-            S, where a national annex has another one [1].
+            Soil factor S, if a national annex specifies another value [1].
         corner_periods : sequence of three str or Quantity, optional
-            T_B, T_C and T_D, likewise [s].
+            T_B, T_C and T_D, if a national annex specifies other values [s].
         damping_ratio : float, optional
             Of the oscillators [1].
 
@@ -488,7 +488,7 @@ def _check_array(seconds: object, owner: str) -> None:
 
 
 def check_target(value: object, *, owner: str) -> TargetSpectrum:
-    """Refuse what is no target."""
+    """Refuse anything but a target."""
     if isinstance(value, TargetSpectrum):
         return value
     msg = (

@@ -134,19 +134,19 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         Parameters
         ----------
         **criteria
-            By column of `table`, without its unit: a range ``(lowest, highest)``, both
-            included, either of them None; a list of values; a function of the value, which is
-            in SI units; or one value. Values have units where columns have them.
+            By name of a column of `table`, without its unit: a range ``(lowest, highest)``,
+            inclusive, where either may be None; a list of values; a function of the value in SI
+            units; or one value. Values need units if the column has a unit.
 
         Returns
         -------
         MotionSuite
-            With the vertical components of these.
+            The selected motions, with their vertical components.
 
         Raises
         ------
         UnitsError
-            A value has no unit where it needs one, or one of another kind.
+            A value lacks a required unit, or has one of another kind.
         ComponentError
             No such column, or nothing is left.
 
@@ -166,7 +166,7 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         return self.only(labels)
 
     def only(self, labels: Sequence[str]) -> Self:
-        """Keep the motions of some labels, in their order.
+        """Keep the motions with the given labels, in that order.
 
         Parameters
         ----------
@@ -180,7 +180,7 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         Raises
         ------
         ComponentError
-            None of them, or one that is not there.
+            There are no labels, or a label is unknown.
 
         Examples
         --------
@@ -240,7 +240,8 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         Parameters
         ----------
         step : callable
-            New motion from old one, such as ``lambda motion: motion.filtered(low="0.1 Hz")``.
+            Function that returns a new motion from the old one, such as ``lambda motion:
+            motion.filtered(low="0.1 Hz")``.
 
         Returns
         -------
@@ -249,7 +250,7 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         Raises
         ------
         ComponentError
-            What it gives is no motion.
+            The function does not return a motion.
 
         Examples
         --------
@@ -281,8 +282,8 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         Warns
         -----
         RecordWarning
-            No motion has one, so that there is no vertical motion: scaling each motion by itself,
-            and matching, leave vertical components out.
+            No motion has a vertical component: scaling each motion by itself, and matching, leave
+            vertical components out.
 
         Examples
         --------

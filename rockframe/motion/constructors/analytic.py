@@ -145,7 +145,7 @@ class AnalyticMotion(MotionValue):
         duration : str or Quantity
             Duration [s].
         phase : str or Quantity, optional
-            Phase at the start; zero unless given [rad].
+            Phase at the start; zero by default [rad].
 
         Returns
         -------
@@ -335,7 +335,7 @@ class AnalyticMotion(MotionValue):
         cycles : float
             gamma, the duration over the prevailing period; at least 1 [1].
         phase : str or Quantity, optional
-            Phase nu of the velocity in the middle; zero unless given [rad].
+            Phase nu of the velocity in the middle; zero by default [rad].
 
         Returns
         -------
@@ -382,8 +382,8 @@ class AnalyticMotion(MotionValue):
         interval : str or Quantity
             Time t_0 from impulse to impulse [s].
         pulse_duration : str or Quantity, optional
-            Longest duration of an impulse; it is reduced until `interval` is a whole multiple
-            of it. A hundredth of `interval` unless given [s].
+            Longest duration of an impulse; it is reduced until `interval` is a whole multiple of
+            it. By default a hundredth of `interval` [s].
 
         Returns
         -------

@@ -49,7 +49,7 @@ def read(
         by gzip, or be the only file of a zip or tar archive; :func:`rockframe.read_suite` reads
         archives of several.
     format : str, optional
-        Name of one of :func:`rockframe.motion.formats`; recognised from the file unless given.
+        Name of one of :func:`rockframe.motion.formats`; recognised from the file by default.
     component : str or pair of str, optional
         Component by its name in the file (``"HNE"``, ``"S16W"``), its direction (``"N"``,
         ``"090"``, ``"U"``) or its number (``"channel 3"``); a pair is a horizontal component
@@ -62,8 +62,8 @@ def read(
     time_step : str or Quantity, optional
         Time step of a column of samples without times [s].
     response : str or path-like, optional
-        StationXML file with the response of the instrument, for counts (miniSEED, SAC, ASDF);
-        searched in the folder of the file unless given.
+        StationXML file with the response of the instrument, for counts (miniSEED, SAC, ASDF); by
+        default searched in the folder of the file.
 
     Returns
     -------
@@ -223,7 +223,7 @@ def example(
         0.11 g; or Waipawa in a small earthquake near Waipukurau, New Zealand, in 2018, 0.02 g.
     component : str or pair of str, optional
         As for :meth:`read`, if the file has several: ``"S16W"``, ``"S74E"`` and ``"Up"`` of
-        Waipukurau, of which the second is read unless given.
+        Waipukurau, of which the second is the default.
 
     Returns
     -------
@@ -234,7 +234,7 @@ def example(
     Raises
     ------
     ComponentError
-        No such record; the message lists them.
+        There is no such record; the message lists the records.
     RecordError
         The record has no such component.
 

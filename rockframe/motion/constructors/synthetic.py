@@ -116,8 +116,8 @@ def stochastic(
         from magnitude 6 on: the spectrum of a large fault, which corrects most of this (Atkinson
         and Silva 2000, Boore et al. 2014).
     vertical : float, optional
-        Ratio of vertical to horizontal spectrum, the same at all frequencies; no vertical
-        component unless given [1].
+        Ratio of vertical to horizontal spectrum, the same at all frequencies; by default there is
+        no vertical component [1].
     time_step : str or Quantity, optional
         Time between samples [s].
 

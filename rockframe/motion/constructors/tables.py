@@ -186,8 +186,8 @@ def from_frame(
         Column with the vertical acceleration; the sign of one called ``"DWN"`` or ``"down"`` is
         reversed.
     time : str, optional
-        Column with the times, in seconds or as dates; unless given, the index has the times if
-        it consists of dates or real numbers.
+        Column with the times, in seconds or as dates; by default the index is used if it consists
+        of dates or real numbers.
     time_step : str or Quantity, optional
         Time step, needed without times [s].
     name : str, optional
@@ -335,7 +335,7 @@ def from_trace(
     component : str or pair of str, optional
         As for :meth:`read`; needed for a stream with more than one horizontal component.
     name : str, optional
-        Name for titles and messages; the codes of the channel unless given.
+        Name for titles and messages; by default the codes of the channel.
 
     Returns
     -------

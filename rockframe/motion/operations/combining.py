@@ -122,7 +122,7 @@ def rotated(
     *,
     azimuth: QuantityLike | None = None,
 ) -> Made:
-    """Give the horizontal acceleration in another direction.
+    """Compute the horizontal acceleration in another direction.
 
     Parameters
     ----------

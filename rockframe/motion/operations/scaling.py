@@ -73,7 +73,7 @@ def scaled(
     period : str or Quantity, optional
         Period of the oscillator for `spectral_acceleration` [s].
     damping_ratio : float, optional
-        Damping ratio of this oscillator; 0.05 unless given [1].
+        Damping ratio of this oscillator; 0.05 by default [1].
 
     Returns
     -------
@@ -84,9 +84,9 @@ def scaled(
     UnitsError
         Not a ratio, an acceleration, a velocity or a time.
     ComponentError
-        None or several given; `period` or `damping_ratio` without `spectral_acceleration`, or
-        that without `period`; a value out of range; or a motion without acceleration, which
-        cannot be scaled to a target.
+        None or several of the targets are given; `period` or `damping_ratio` is given without
+        `spectral_acceleration`, or that without `period`; a value out of range; or a motion without
+        acceleration, which cannot be scaled to a target.
 
     Warns
     -----

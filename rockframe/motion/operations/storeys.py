@@ -212,7 +212,7 @@ def through_storeys(
     time_step: QuantityLike | None = None,
     vertical: VerticalComponent | str = VerticalComponent.UNCHANGED,
 ) -> Made:
-    """Give the motion of a floor of an elastic building on the ground.
+    """Compute the motion of a floor of an elastic building on the ground.
 
     Describe the building by `periods` (one for a single oscillator, several with
     `floor_participations`), by `storeys`, `period` and `floor` for equal storeys, or by
@@ -225,8 +225,8 @@ def through_storeys(
     damping_ratio : float, or sequence of float, optional
         Damping ratio, from 0 to 1, of all modes or of each [1].
     floor_participations : sequence of float, optional
-        Participation factor times the displacement of the floor in the mode shape, for each
-        mode; 1 for a single period unless given [1].
+        Participation factor times the displacement of the floor in the mode shape, for each mode;
+        by default 1 for a single period [1].
     storeys : int, optional
         Number of equal storeys.
     period : str or Quantity, optional
@@ -239,13 +239,13 @@ def through_storeys(
         Floor on which the object stands: 1 is on top of the lowest storey, the number of storeys
         is the roof.
     modes : int, optional
-        Number of modes of the storeys to keep, those of the longest periods; all unless given.
+        Number of modes of the storeys to keep, those of the longest periods; by default all.
     free_vibration : str or Quantity, optional
-        Duration of free vibration after the ground motion; unless given, until every mode has
-        decayed to a hundredth of its amplitude [s].
+        Duration of free vibration after the ground motion; by default until every mode has decayed
+        to a hundredth of its amplitude [s].
     time_step : str or Quantity, optional
         Greatest time step of the floor motion: that of the ground motion is divided into equal
-        parts. That of the ground motion unless given [s].
+        parts. The default is that of the ground motion [s].
     vertical : {"unchanged", "omitted"}, optional
         Treatment of the vertical component. Columns and walls are axially stiff, so the floor has
         that of the ground.
@@ -260,9 +260,9 @@ def through_storeys(
     UnitsError
         A value without a unit, or of another kind.
     ComponentError
-        No building, or several; a value out of range; a number of values other than that of
-        modes; no `free_vibration` for an undamped mode; periods too short or a motion too long to
-        be sampled.
+        No building or several are described; a value is out of range; the number of values differs
+        from that of modes; no `free_vibration` for an undamped mode; periods too short or a motion
+        too long to be sampled.
 
     Warns
     -----

@@ -1,4 +1,4 @@
-"""Fragility of runs, of dynamic analyses and of counts: what users call."""
+"""Fragility of runs, of dynamic analyses and of counts: the public function."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import repeat
@@ -55,7 +55,7 @@ _COMMON: Final = "common"
 _DISPERSIONS: Final = ("each", _COMMON)
 _MOST_MEASURES: Final = 2
 _MOST_LEFT_OUT: Final = 80
-"""Motions up to which each is left out in turn; of more the sandwich holds as often."""
+"""Motions up to which each is left out in turn; with more the sandwich has equal coverage."""
 
 
 @hinted()
@@ -72,93 +72,93 @@ def fragility(
     bands: str | None = None,
     confidence: RatioLike = 0.95,
 ) -> xr.Dataset:
-    """Fit lognormal capacities to runs, by maximum likelihood: one for each structure.
+    """Fit lognormal capacities to runs by maximum likelihood, one for each structure.
 
     Parameters
     ----------
     runs : xarray.Dataset or dict
-        Of :func:`rockframe.sweep`, or of :func:`rockframe.incremental_dynamic_analysis`.
-        Or counts, such as those of tests:
-        ``"intensity"``, values with a unit such as ``([0.2, 0.3], "g_0")``, ``"exceeded"``, how
-        many trials exceeded the limit state at each, and ``"trials"``, of how many.
+        Result of :func:`rockframe.sweep` or :func:`rockframe.incremental_dynamic_analysis`. Or
+        counts, such as those of tests: ``"intensity"``, values with a unit such as ``([0.2, 0.3],
+        "g_0")``; ``"exceeded"``, the number of trials that exceeded the limit state at each; and
+        ``"trials"``, the number of trials at each.
     intensity : str, DataArray, or two of them
         Intensity measure: ``"PGA"``, ``"PGV"``, ``"PGD"``, ``"CAV"``, ``"SA"``, ``"Sa_avg"``,
         ``"PGV/PGA"``, or a name of :func:`rockframe.intensity_measures` or
-        :func:`rockframe.response_spectrum`; the name of a coordinate or variable of the runs; or
-        numbers of one's own along dimensions of the runs, with a name and ``units``. Two
-        give a fragility over both.
+        :func:`rockframe.response_spectrum`; the name of a coordinate or variable of the runs; or a
+        DataArray of other values along dimensions of the runs, with a name and ``units``. Two
+        measures give a fragility over both.
     limits : iterable, optional
-        Limit states before overturning, in their order: ``"uplift"``, and peak rotations over the
-        overturning angle; uplift unless given, and of a dynamic analysis those that it has [1].
-        Or on any scalar of the runs whose size tells: its name and a value with a unit, such
-        as ``("peak_slip", "5 cm")`` or ``("broken_restrainer_count", 1)``; and third, of points,
-        bodies or restrainers, which one. Overturning exceeds each of them.
+        Limit states before overturning, in order: ``"uplift"``, and peak rotations relative to the
+        overturning angle. The default is uplift, or the limit states of a dynamic analysis [1]. Or
+        a limit on any scalar of the runs that grows with severity: its name and a value with a
+        unit, such as ``("peak_slip", "5 cm")`` or ``("broken_restrainer_count", 1)``, and third, if
+        the scalar has several points, bodies or restrainers, the label of one. Overturning exceeds
+        each of them.
     period : str or Quantity, or several, optional
-        Of the oscillator of a spectral intensity; of ``"Sa_avg"`` those over which the spectrum is
-        averaged, such as ``(numpy.linspace(0.2, 3, 57), "s")`` [s].
+        Period of the oscillator of a spectral intensity; for ``"Sa_avg"`` the periods over which
+        the spectrum is averaged, such as ``(numpy.linspace(0.2, 3, 57), "s")`` [s].
     motions : GroundMotion, or sequence or mapping of them, optional
-        The records of the sweep, where neither the dataset nor this process has them.
+        The records of the sweep; required if neither the dataset nor this process has them.
     pooled : iterable of str, optional
-        Axes of the sweep, or columns of its table (all of them by ``"case"``), of which all
-        values are taken for one structure, whose dispersion then holds their differences too.
+        Axes of the sweep, or columns of its table (``"case"`` for all), whose values are treated as
+        one structure. Its dispersion then includes their differences.
     trials : {"runs", "capacities"}, optional
-        What is fitted: all runs, each as it went; or, of a dynamic analysis, the least scale
-        that was found to exceed under each motion, above which a block may stand again. The
-        former does not hang on how closely scales were looked at.
+        Data of the fit: the verdicts of all runs; or the capacities of a dynamic analysis, the
+        least scales found to exceed under each motion, above which a block may stand again. The
+        former does not depend on the spacing of the scales.
     dispersion : {"each", "common"}, optional
-        Whether each limit state has a dispersion of its own, so that curves may cross where they
-        are extrapolated; or all have one, by the likelihood of ordered verdicts of runs,
-        :eq:`eq-fragility-ordered`, so that they cannot. Then limit states must include one another.
+        Whether each limit state has its own dispersion, so that extrapolated curves may cross, or
+        all share one, by the likelihood of ordered verdicts of runs, :eq:`eq-fragility-ordered`, so
+        that they cannot cross. A common dispersion requires limit states that include one another.
     bands : {"profile", "jackknife", "sandwich"}, optional
-        Where confidence bounds come from: the profile of the likelihood, which takes all runs
-        for independent; fits that leave out each motion in turn; or the sandwich covariance with
-        clusters of runs under one motion. Where motions were run more than once, unless given,
-        the second, and the third of more than 80 motions.
+        Source of the confidence bounds: the profile of the likelihood, which assumes independent
+        runs; fits that leave out each motion in turn; or the sandwich covariance with the runs of
+        one motion as a cluster. If motions were run more than once, the default is ``"jackknife"``,
+        or ``"sandwich"`` for more than 80 motions.
     confidence : float, optional
-        Of all bounds [1]. It is nominal: how often such bounds hold the true value with few
-        motions was measured, :ref:`coverage of bounds <coverage>`; the verdict tells where it
-        is less often.
+        Nominal confidence level of all bounds [1]. The measured coverage with few motions is in
+        :ref:`coverage of bounds <coverage>`; the verdict says when it is lower than nominal.
 
     Returns
     -------
     xarray.Dataset
-        Over the axes of the sweep that change neither motion nor intensity, each with a
-        curve of its own, and over ``limit_state``: ``median_intensity``, ``dispersion``, their
-        bounds and standard
-        errors, ``fragility_status``; over the intensity too ``exceedance_probability`` and
-        its bounds; and over ``stripe`` what was counted, with bounds of Clopper and Pearson. Of
-        two measures the coefficients of the fit instead of median and dispersion; of counts all
-        this without ``limit_state``. The attribute ``verdict`` says it in words.
+        Over ``limit_state`` and the axes of the sweep that change neither motion nor intensity,
+        with one curve for each combination: ``median_intensity``, ``dispersion``, their bounds and
+        standard errors, and ``fragility_status``. Also over the intensity:
+        ``exceedance_probability`` and its bounds. Over ``stripe``: the counts, with bounds of
+        Clopper and Pearson. Two measures give the coefficients of the fit instead of median and
+        dispersion; counts give the same variables without ``limit_state``. The attribute
+        ``verdict`` is a summary in words.
 
     Raises
     ------
     ComponentError
-        An argument is out of range or names no such measure, or each run has a structure of
-        its own.
+        An argument is out of range or names an unknown measure, or each run has a different
+        structure.
     SchemaError
-        Not the result of a sweep.
+        The dataset is not the result of a sweep.
     StudyError
         The motions must be given, or are not those of the sweep.
 
     Notes
     -----
-    A capacity C is lognormal with median theta and dispersion beta, and a run of intensity x
-    exceeds where C < x, with probability Phi(ln(x / theta) / beta), :eq:`eq-fragility-curve`,
-    Baker (2015). The fit is
-    the greatest likelihood, :eq:`eq-fragility-likelihood`. A fit that does not exist is told of
-    by ``fragility_status``, with NaN in its place: no run exceeded, all did, those that did
-    are separated from those that did not, so that beta would be zero, or
-    exceedances grow rarer with the intensity. Where they are separated, the median is in the middle
-    of the gap, the dispersion 0, at which the likelihood is greatest, and only counts, and motions
-    that were run once each, have bounds. With fewer than five motions there are none.
-    Runs without a verdict are left out, ``left_out_count``.
+    A capacity C is lognormal with median theta and dispersion beta. A run of intensity x exceeds
+    the limit state if C < x, with probability Phi(ln(x / theta) / beta), :eq:`eq-fragility-curve`,
+    Baker (2015). The fit maximizes the likelihood, :eq:`eq-fragility-likelihood`. If no fit exists,
+    ``fragility_status`` gives the reason and the values are NaN: no run exceeded, all did, those
+    that did are separated from those that did not, so that beta would be zero, or exceedances
+    become rarer with the intensity. If they are separated, the median is in the middle of the gap
+    and the dispersion is 0, which maximizes the likelihood; bounds are then given only for counts
+    and for motions that were run once each. With fewer than five motions there are no bounds. Runs
+    without a verdict are left out, ``left_out_count``.
 
-    Rows of a table of cases that differ in motion and scale alone are of one structure, which
-    ``case`` calls by the first of them.
+    Rows of a table of cases that differ only in motion and scale are of one structure, which
+    ``case`` labels by the first of them.
 
-    Of capacities of a dynamic analysis one may be known from one side only: from above, where the
-    least scale exceeded already, or from below, where none did. Such capacities count with the
-    probability of lying there; where all lie on one side, there are neither fit nor bounds.
+    Capacities of a dynamic analysis may be censored: only an upper bound is known if the least
+    scale already exceeded, only a lower bound if none did. Censored capacities enter the likelihood
+    with the probability of their range. If all are censored on the same side, there are neither fit
+    nor bounds.
 
     Examples
     --------
@@ -288,7 +288,7 @@ def _of_counts(
         raise ComponentError(msg)
     means = Means(_bands(bands, Bands.PROFILE, 1), read_level(confidence, owner=_OWNER))
     made = Trials.of_verdicts(np.log(values)[:, None], over, count)
-    # the runs: of each intensity those that exceeded, and then the others
+    # the runs: at each intensity first those that exceeded, then the others
     times = np.column_stack([over, count - over]).astype(int).ravel()
     verdicts = np.repeat(np.tile([1.0, 0.0], len(values)), times)
     runs = np.repeat(np.repeat(values, 2), times)[:, None], verdicts
@@ -322,7 +322,7 @@ def _states(runs: xr.Dataset, limits: Iterable[object] | None) -> tuple[LimitSta
 def _of_capacities(
     analysis: xr.Dataset, state: LimitState, verdict: xr.DataArray, measures: Sequence[xr.DataArray]
 ) -> StructureTrials:
-    """Give what a dynamic analysis tells of a limit state."""
+    """Give the capacities that a dynamic analysis found for a limit state."""
     if SCALE not in analysis.dims:
         msg = f"{_OWNER}: found a dynamic analysis at one scale; expected one with all its scales"
         raise SchemaError(msg)
@@ -346,7 +346,7 @@ def _ordered(
 
 
 def _sliding(runs: xr.Dataset, *, of_capacities: bool) -> str:
-    """Say in how many runs friction would not hold the block; nothing where none was given."""
+    """Say in how many runs friction would not hold the block; nothing if no friction was given."""
     if "would_slide" not in runs:
         return ""
     which = "runs of the scan" if of_capacities else "runs"

@@ -1,4 +1,4 @@
-"""The dataset of fragilities: fits, curves and what was counted."""
+"""The dataset of fragilities: fits, curves and counts."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -22,7 +22,7 @@ _POINTS: Final = 101
 _SIDE: Final = 41
 """Intensities of each of two measures."""
 _NO_DISPERSION: Final = 1e6
-"""Slopes beyond which a dispersion is none: rays of a region without an end go far beyond."""
+"""Slopes beyond which a dispersion counts as zero: rays of an unbounded region go far beyond."""
 _MOST_STRIPES: Final = 30
 _BINS: Final = 10
 """Groups into which intensities are sorted that differ from run to run."""
@@ -58,18 +58,18 @@ class _Fitted:
     fit: Fit
     edge: Array | None
     bounded: bool
-    # of one measure whose trials are separated, the logarithms between which its median lies
+    # if the trials of one measure are separated: the logarithms between which the median lies
     gap: tuple[float, float] | None
 
     @classmethod
     def of(cls, found: StructureTrials, means: Means, given: Fit | None = None) -> "_Fitted":
-        """Fit, unless a fit is given, and look for the region where bounds come from it."""
+        """Fit, unless a fit is given, and find the region if it determines the bounds."""
         trials, made = found.trials, given or fit(found.trials, means.bands)
         parted = None
         if made.status is FragilityStatus.SEPARATED and trials.measures == 1:
             parted = gap(trials) or (math.nan, math.nan)
-        # capacities that an intensity parts lie together by chance: bounds from how close they
-        # are would hold in few samples
+        # capacities separated by an intensity are close by chance: bounds based on their closeness
+        # would hold in few samples
         counted = trials.cluster is None and not np.any(trials.has_lower & trials.has_upper)
         bands = means.bands if parted is None else Bands.PROFILE
         bounds = (parted is not None and counted) or made.status is FragilityStatus.FITTED
@@ -88,9 +88,9 @@ def fragility_dataset(
     attributes: Mapping[str, Any],
     fits: Sequence[Fit] | None = None,
 ) -> xr.Dataset:
-    """Fit capacities, unless fits are given, and label what is found.
+    """Fit capacities, unless fits are given, and label the results.
 
-    For each structure and limit state, whose numbers `over` tells, the last one fastest.
+    For each structure and limit state, with the sizes `over`, the last one varying fastest.
     """
     items = [None] * len(found) if fits is None else fits
     every = [_Fitted.of(one, means, each) for one, each in zip(found, items, strict=True)]
@@ -138,7 +138,8 @@ def _parameters(each: _Fitted, means: Means) -> dict[str, float]:
     ends = (math.nan, math.nan)
     errors, log_errors, bounds = np.full(2, np.nan), np.full(2, np.nan), np.full((2, 2), np.nan)
     if each.gap is not None:
-        # the likelihood rises as the dispersion falls; every median between the ends is as likely
+        # the likelihood increases as the dispersion decreases; all medians between the ends are
+        # equally likely
         ends = each.gap
         log_median, spread = 0.5 * sum(ends), 0.0
     else:
@@ -149,7 +150,7 @@ def _parameters(each: _Fitted, means: Means) -> dict[str, float]:
         bounds = _extremes(each.edge)
     elif each.bounded:
         clusters = each.fit.clusters
-        # a dispersion is above zero: its logarithm has the interval
+        # a dispersion is positive: the interval is that of its logarithm
         middle = np.array([log_median, math.log(spread) + _lacking(clusters)])
         reach: Array = means.deviations(clusters) * log_errors
         bounds = middle[:, None] + reach[:, None] * np.array([-1.0, 1.0])
@@ -169,7 +170,7 @@ def _parameters(each: _Fitted, means: Means) -> dict[str, float]:
 
 
 def _exp(log: float) -> float:
-    """Give what a logarithm is of: infinite where the intensity hardly matters."""
+    """Give the exponential of a logarithm: infinite where the intensity hardly matters."""
     with np.errstate(over="ignore"):
         return float(np.exp(log))
 
@@ -192,7 +193,7 @@ def _logs_of(coefficients: Array) -> Array:
 
 
 def _lacking(clusters: float) -> float:
-    """Give what the logarithm of a dispersion lacks on average, :eq:`eq-fragility-lacking` [1]."""
+    """Give the mean deficit of the logarithm of a dispersion, :eq:`eq-fragility-lacking` [1]."""
     from scipy.special import digamma
 
     if math.isinf(clusters):
@@ -204,7 +205,7 @@ def _extremes(edge: Array) -> Array:
     """Give the ranges of log-median and dispersion in a region of the coefficients."""
     intercept, slope = edge
     least = 0.0 if slope.max() > _NO_DISPERSION else 1.0 / slope.max()
-    if slope.min() <= 0.0:  # also what does not rise is likely enough
+    if slope.min() <= 0.0:  # a curve that does not rise is likely enough, too
         return np.array([[-np.inf, np.inf], [least, np.inf]])
     medians = -intercept / slope
     return np.array([[medians.min(), medians.max()], [least, 1.0 / slope.min()]])
@@ -254,7 +255,7 @@ def with_stripes(
     over: Mapping[str, int],
     confidence: float,
 ) -> xr.Dataset:
-    """Add how many exceeded, by groups of intensities, with the bounds of Clopper and Pearson."""
+    """Add the number of exceedances by groups of intensities, with Clopper-Pearson bounds."""
     every = np.concatenate([columns[:, 0] for columns, _ in counted])
     every = np.unique(np.round(np.log(every[np.isfinite(every) & (every > 0.0)]), 9))
     if len(every) > _MOST_STRIPES:
@@ -286,7 +287,7 @@ def with_stripes(
 
 
 def _decided(trials: Sequence[Trials]) -> list[tuple[Array, Array]]:
-    """Give verdicts on capacities at some intensities, which part them into equal groups."""
+    """Give verdicts on capacities at intensities that divide them into equal groups."""
     every = [np.where(each.has_upper, each.upper[:, 0], each.lower[:, 0]) for each in trials]
     ends = np.concatenate(every)
     if not len(ends):

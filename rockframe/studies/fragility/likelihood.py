@@ -46,17 +46,17 @@ class Fit:
 
     @property
     def complete(self) -> bool:
-        """Whether there is a fit without each cluster too, where those were asked for."""
+        """Whether there is also a fit without each cluster, if those were requested."""
         return self.without is None or bool(np.isfinite(self.without[0]).all())
 
     @property
     def clusters(self) -> float:
-        """Number of clusters of a jackknife; infinite of other fits."""
+        """Number of clusters of a jackknife; infinite for other fits."""
         return math.inf if self.without is None else float(self.without[1].sum())
 
     @classmethod
     def none(cls, status: FragilityStatus, measures: int) -> "Fit":
-        """Give the fit of trials that no coefficients fit best."""
+        """Give the fit of trials for which no maximum-likelihood fit exists."""
         square = np.full((1 + measures,) * 2, np.nan)
         return cls(status, square[0], square, square)
 
@@ -81,7 +81,7 @@ def fit(trials: Trials, bands: Bands) -> Fit:
 
 
 def jackknife(best: Array, rows: Array, alike: Array) -> Array:
-    """Give the covariance of estimates, of which `rows` lack a cluster each.
+    """Give the covariance of estimates; each of the `rows` omits one cluster.
 
     By :eq:`eq-fragility-jackknife`.
     """
@@ -103,7 +103,7 @@ def _without_each(trials: Trials) -> Iterator[tuple[Trials, float]]:
 
 
 def _near(trials: Trials, start: Array) -> Array:
-    """Give the most likely coefficients, by Newton's method where they lie near others."""
+    """Give the most likely coefficients, by Newton's method if they are near known ones."""
     at = start
     for _ in range(20):
         step = np.linalg.lstsq(information(trials, at), scores(trials, at).sum(axis=0))[0]
@@ -129,7 +129,7 @@ def _fit(trials: Trials) -> Fit:
     ends = np.concatenate([upper[trials.has_upper], lower[trials.has_lower]])
     middle, spread = ends[:, 1:].mean(axis=0), ends[:, 1:].std(axis=0)
     size = 1 + trials.measures
-    # coefficients of measures that are centred, and of spread one, are all of one size
+    # coefficients of measures that are centred and have unit spread are of similar size
     back = np.eye(size)
     back[0, 1:] = -middle / spread
     back[np.arange(1, size), np.arange(1, size)] = 1.0 / spread
@@ -174,9 +174,10 @@ def information(trials: Trials, coefficients: Array) -> Array:
 
 
 def slopes_of_shares(upper: Array, lower: Array, eta_upper: Array, eta_lower: Array) -> Array:
-    """Give the slopes of the logarithms of shares between two ends by the coefficients.
+    """Give the derivatives of the log shares between two ends by the coefficients.
 
-    From what these multiply at the ends, and eta there; an open end has zeros, and eta is infinite.
+    From the factors of the coefficients at the ends, and eta there; an open end has zeros and an
+    infinite eta.
     """
     at_upper, at_lower = _densities(eta_upper, eta_lower)
     return at_upper[:, None] * upper - at_lower[:, None] * lower
@@ -204,8 +205,9 @@ def boundary(trials: Trials, found: Fit, level: float) -> Array:
     """Give the boundary of the region :eq:`eq-fragility-region`, for a fit of one measure.
 
     The range of any function of the coefficients in this region is its interval by profile
-    likelihood. Of separated trials the likelihood has a bound and no maximum, and the region no end
-    towards small dispersions: there its boundary stands where the dispersion is all but zero.
+    likelihood. The likelihood of separated trials has a bound but no maximum, and the region is
+    unbounded towards small dispersions: its boundary is set there where the dispersion is almost
+    zero.
     """
     from scipy import linalg
     from scipy.special import chdtri
@@ -232,7 +234,7 @@ def boundary(trials: Trials, found: Fit, level: float) -> Array:
         inner, outer = np.zeros(reach.shape), np.full(reach.shape, np.inf)
         for _ in range(_DOUBLINGS):  # the end of each ray comes to lie outside, if there is one
             beyond = excess(reach)
-            # where an upper end of a bracket falls below its lower one there is no likelihood
+            # there is no likelihood where the upper end of a bracket is below its lower end
             nowhere, within = ~np.isfinite(beyond), beyond < 0.0
             if not (nowhere | within).any():
                 break
@@ -257,8 +259,8 @@ def boundary(trials: Trials, found: Fit, level: float) -> Array:
 def _within(trials: Trials, drop: float) -> tuple[Array, Array, float]:
     """Give coefficients of separated trials near their likelihood's bound, with that bound.
 
-    With the information at these coefficients. Where the gap is one intensity, at
-    which some trials exceed, their share is the most likely probability there.
+    With the information at these coefficients. If the gap is a single intensity at which some
+    trials exceed, their share is the most likely probability there.
     """
     from scipy.special import ndtri
 
@@ -292,7 +294,7 @@ def _slopes_along(trials: Trials, coefficients: Array, rays: Array) -> Array:
 
 
 def _without_maximum(trials: Trials) -> FragilityStatus | None:
-    """Tell why the likelihood has no maximum: some way of changing coefficients never lowers it."""
+    """Say why the likelihood has no maximum: some change of the coefficients never lowers it."""
     from scipy import optimize
 
     if not len(trials.weight):
@@ -330,7 +332,7 @@ def _etas(trials: Trials, coefficients: Array) -> tuple[Array, Array]:
 
 
 def _ends(trials: Trials, coefficients: Array) -> tuple[Array, Array, Array, Array]:
-    """Give what coefficients multiply at both ends, and eta there."""
+    """Give the factors of the coefficients at both ends, and eta there."""
     eta_upper, eta_lower = _etas(trials, coefficients[:, None])
     return *_design(trials), eta_upper[:, 0], eta_lower[:, 0]
 
@@ -345,7 +347,7 @@ def log_shares(upper: Array, lower: Array) -> Array:
     """Give ln(Phi(upper) - Phi(lower)), to the last digits in both tails."""
     from scipy.special import log_ndtr
 
-    # in the upper tail the distribution seen from above has the digits
+    # in the upper tail the complementary distribution keeps the digits
     turned = lower + upper > 0.0
     high = log_ndtr(np.where(turned, -lower, upper))
     low = log_ndtr(np.where(turned, -upper, lower))
@@ -359,7 +361,7 @@ def _log_density(eta: Array) -> Array:
 
 
 def _filling(trials: Trials, best: Array) -> Array:
-    """Give the scores' products, summed over clusters, with the usual factor for few clusters."""
+    """Give the products of the scores, summed over clusters, with the usual small-sample factor."""
     of_trial = scores(trials, best)
     if trials.cluster is None:
         weight = trials.weight

@@ -44,7 +44,7 @@ def ordered_fits(
     ]
     if not some.any():
         return found
-    # states that the same runs exceed have one capacity
+    # limit states exceeded by the same runs have the same capacity
     _, places = np.unique(shares[some], return_inverse=True)
     places = places.max() - places
     first = [int(np.flatnonzero(places == k)[0]) for k in range(places.max() + 1)]
@@ -66,7 +66,7 @@ def ordered_fits(
 
 
 def _ends(logs: Array, count: Generic, at: Array) -> tuple[Array, Array, Array, Array]:
-    """Give what coefficients multiply at both ends of each verdict, and eta there.
+    """Give the factors of the coefficients at both ends of each verdict, and eta there.
 
     As :func:`rockframe.studies.fragility.likelihood.slopes_of_shares` takes them.
     """
@@ -83,7 +83,7 @@ def _ends(logs: Array, count: Generic, at: Array) -> tuple[Array, Array, Array, 
 
 
 def _value(logs: Array, count: Generic, at: Array) -> float:
-    """Give the log-likelihood, :eq:`eq-fragility-ordered`; minus infinity out of order."""
+    """Give the log-likelihood, :eq:`eq-fragility-ordered`; minus infinity if out of order."""
     *_, upper, lower = _ends(logs, count, at)
     if np.any(upper <= lower):
         return -math.inf
@@ -96,7 +96,7 @@ _STEEPEST = 1e4
 
 
 def _greatest(logs: Array, count: Generic, states: int, start: Array | None = None) -> Array | None:
-    """Find the greatest likelihood by Newton's method; None of separated trials."""
+    """Find the greatest likelihood by Newton's method; None for separated trials."""
     from scipy.special import ndtri
 
     middle, spread = float(logs.mean()), float(logs.std())

@@ -1,8 +1,8 @@
-"""What runs and dynamic analyses tell of the capacities of structures: trials.
+"""Trials: the data on capacities of structures from runs and dynamic analyses.
 
-The structures of a sweep are fitted apart. A trial tells between which intensities the capacity of
-one lies: of a run that exceeds a limit state it lies below the intensity of the run, of one that
-does not above it, and a dynamic analysis encloses it in a bracket.
+The structures of a sweep are fitted separately. A trial gives the intensities between which a
+capacity lies: below the intensity of a run that exceeds a limit state, above that of a run that
+does not, and within a bracket of a dynamic analysis.
 """
 
 import json
@@ -27,11 +27,11 @@ Values = TypeVar("Values", xr.DataArray, xr.Dataset)
 
 @dataclass(frozen=True, eq=False)
 class Structures:
-    """The structures of a sweep: what differs beside motion and intensity tells them apart."""
+    """The structures of a sweep, distinguished by everything except motion and intensity."""
 
     # for each dimension over which structures differ, the number of the structure at each place
     groups: Mapping[str, Generic]
-    coordinates: Mapping[str, xr.Variable]  # what they are told apart by
+    coordinates: Mapping[str, xr.Variable]  # what distinguishes them
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -86,7 +86,7 @@ def structures_of(
 def check_one_structure(
     runs: xr.Dataset, pooled: Sequence[str], values: Sequence[object], *, owner: str
 ) -> None:
-    """Refuse runs of several structures, but for those that are taken for one."""
+    """Refuse runs of several structures, except those that are treated as one."""
     changed = _changed(_axes(runs), _own(runs, values))
     several = [
         name
@@ -107,7 +107,7 @@ def check_one_structure(
 
 
 def attributes_of_system(runs: xr.Dataset) -> dict[str, Any]:
-    """Give the attributes that tell of the system of runs, which a sweep may have changed."""
+    """Give the attributes that describe the system of runs, which a sweep may have changed."""
     changed = any(name in runs.coords for name in _changed(_axes(runs), ()))
     names = ("model",) if changed else ("model", "system_json")
     return {name: runs.attrs[name] for name in names if name in runs.attrs}
@@ -116,7 +116,7 @@ def attributes_of_system(runs: xr.Dataset) -> dict[str, Any]:
 def _check_pooled(
     pooled: Sequence[str], known: Sequence[str], differing: Sequence[str], owner: str
 ) -> None:
-    """Refuse axes to pool that are none."""
+    """Refuse to pool names that are not axes."""
     wrong = [one for one in pooled if one not in known]
     if wrong:
         msg = (
@@ -146,7 +146,7 @@ def _changed(axes: Mapping[str, str], own: Sequence[str]) -> list[str]:
 
 
 def _check_motions(runs: xr.Dataset, foreign: Sequence[str], owner: str, *, named: bool) -> None:
-    """Refuse datasets that were put together so that nobody knows which motions were run."""
+    """Refuse combined datasets of which the motions cannot be known."""
     if foreign and named:
         msg = (
             f"{owner}: the sweep had no dimension {', '.join(map(repr, foreign))}; datasets that "
@@ -178,7 +178,7 @@ def _grouped(
             continue
         first, group = _alike([runs[name].to_numpy() for name in columns], runs.sizes[dim], shared)
         groups[dim] = group
-        # a dimension of several levels has no labels that a file can keep
+        # labels of a dimension with several levels cannot be stored in a file
         plain = dim in runs.coords and runs.indexes[dim].nlevels == 1
         for name in (*columns, *([dim] if plain else [])):
             values = runs[name]
@@ -187,7 +187,7 @@ def _grouped(
 
 
 def _alike(columns: Sequence[Generic], size: int, apart: bool) -> tuple[Generic, Generic]:
-    """Give the first place of each group of like rows, and the group of each place."""
+    """Give the first place of each group of equal rows, and the group of each place."""
     if apart:
         return np.arange(size), np.arange(size)
     table = pd.DataFrame(dict(enumerate(columns)))
@@ -237,7 +237,7 @@ class Trials:
 
 @dataclass(frozen=True, eq=False)
 class StructureTrials:
-    """What was found out of one structure against one limit state."""
+    """The data on one structure and one limit state."""
 
     trials: Trials  # what is known of its capacity
     # intensities, and whether they were exceeded, of each run; None of capacities
@@ -315,7 +315,7 @@ def _first_brackets(
 
 
 def _in_lines(values: xr.DataArray, sizes: Mapping[str, int], along: str = "") -> Generic:
-    """Lay values out in a row for each line, along a dimension; of one value each without it."""
+    """Arrange values in a row for each line, along a dimension; one value each without it."""
     lacking = {dim: size for dim, size in sizes.items() if dim not in values.dims}
     own = [along] if along in values.dims else []
     laid = values.variable.set_dims({**lacking, **values.sizes}).transpose(*sizes, *own)
@@ -324,7 +324,7 @@ def _in_lines(values: xr.DataArray, sizes: Mapping[str, int], along: str = "") -
 
 
 def laid_out(values: xr.DataArray, like: xr.DataArray) -> Generic:
-    """Lay values out in a row, in the order of others, whose dimensions are theirs or more."""
+    """Arrange values in a row, in the order of others that have at least their dimensions."""
     return values.broadcast_like(like).transpose(*like.dims).to_numpy().ravel()
 
 

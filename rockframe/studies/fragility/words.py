@@ -17,7 +17,7 @@ from rockframe.studies.intensities import PERIOD_OF, measure_words
 from rockframe.studies.sweeps.axes import in_unit
 
 POOLED: Final = "pooled"
-"""Attribute that tells which structures were taken for one."""
+"""Attribute that names the structures that were treated as one."""
 _DIGITS: Final = (4, 3)
 """Of medians and of dispersions."""
 
@@ -40,7 +40,7 @@ COVERAGE: Final = {
     },
 }
 """By numbers of independent trials or motions; with fewer than the least there are no bounds, with
-the greatest they are what they are called. Measured, :ref:`coverage of bounds <coverage>`."""
+the greatest they have nominal coverage. Measured, :ref:`coverage of bounds <coverage>`."""
 
 
 def bounded(bands: Bands, independent: int) -> bool:
@@ -49,9 +49,9 @@ def bounded(bands: Bands, independent: int) -> bool:
 
 
 def sentences(fragility: xr.Dataset) -> str:
-    """Tell what was fitted to the last limit state, what was left out, and what bounds are.
+    """Say what was fitted to the last limit state, what was left out, and what bounds are.
 
-    Where nothing fits that one, as where no run overturns, also of the last one that a fit is of.
+    If it has no fit, as when no run overturns, also describe the last limit state with a fit.
     """
     last = fragility.isel({dim: -1 for dim in LIMIT_STATE if dim in fragility.dims})
     status = last["fragility_status"].to_numpy().ravel()
@@ -73,7 +73,7 @@ def sentences(fragility: xr.Dataset) -> str:
         messages.append("One dispersion is common to all limit states.")
     known, lacking = (int(last[f"{name}_count"].sum()) for name in ("trial", "left_out"))
     below = int(last["below_scan_count"].sum()) if "below_scan_count" in last else 0
-    if below:  # a scan that starts too high does not part them from zero
+    if below:  # a scan that starts too high does not separate them from zero
         messages.append(
             f"{below} of {known} capacities are only known to lie at or below the least scale."
         )
@@ -86,7 +86,7 @@ def sentences(fragility: xr.Dataset) -> str:
 
 
 def verdict_of_fragility(dataset: xr.Dataset) -> str:
-    """Say what was fitted, of a part of a fragility what was fitted of that; else nothing new."""
+    """Say what was fitted; for a part of a fragility, what was fitted of that part."""
     text = str(dataset.attrs.get("verdict", ""))
     if "independent_count" not in dataset:  # as of a cloud
         return text
@@ -95,7 +95,7 @@ def verdict_of_fragility(dataset: xr.Dataset) -> str:
 
 
 def _of_another(fragility: xr.Dataset) -> list[str]:
-    """Tell of the last limit state, besides the last of all, of which intensities tell."""
+    """Describe the last limit state with a fit, if it is not the last of all."""
     for number in reversed(range(fragility.sizes.get(*LIMIT_STATE, 1) - 1)):
         one = fragility.isel({LIMIT_STATE[0]: number})
         status = one["fragility_status"].to_numpy().ravel()
@@ -159,7 +159,7 @@ def _range(values: Array, digits: int) -> str:
 
 
 def _separation(last: xr.Dataset) -> str:
-    """Tell what is known of one structure whose trials an intensity parts."""
+    """Say what is known of one structure whose trials are separated by an intensity."""
     status = last["fragility_status"].to_numpy().ravel()
     if list(status) != [FragilityStatus.SEPARATED] or "separation_lower_intensity" not in last:
         return ""
@@ -182,7 +182,7 @@ def _separation(last: xr.Dataset) -> str:
 
 
 def _near_separation(last: xr.Dataset, fitted: Generic) -> Iterator[str]:
-    """Tell of how many fits a single motion keeps the trials from being separated."""
+    """Say in how many fits a single motion keeps the trials from being separated."""
     if last.attrs["bands"] != Bands.JACKKNIFE or "dispersion" not in last:
         return
     lacking = np.isnan(last["dispersion_upper_bound"].to_numpy().ravel()[fitted])
@@ -205,7 +205,7 @@ def words_of_bounds(
     kind: str,
     measures: int = 1,
 ) -> list[str]:
-    """Tell what is wrong with bounds."""
+    """Say what is wrong with bounds."""
     known = COVERAGE[bands]
     least, fewest = int(independent.min()), min(known)
     if least < fewest:

@@ -1,4 +1,4 @@
-"""The arguments that sweeps and the analyses made of them share."""
+"""The arguments shared by sweeps and the analyses based on them."""
 
 from concurrent.futures import Executor
 from os import PathLike
@@ -29,7 +29,7 @@ class CourseArguments(TypedDict, total=False):
 
 
 class ExecutionArguments(TypedDict, total=False):
-    """Who makes the runs, and where they are kept."""
+    """How the runs are executed, and where they are kept."""
 
     store: Annotated[
         str | PathLike[str] | None,
@@ -69,11 +69,11 @@ class ExecutionArguments(TypedDict, total=False):
 
 
 class SequenceArguments(CourseArguments, ExecutionArguments, total=False):
-    """Of sweeps whose motions have a length of their own."""
+    """Options of sweeps whose motions have individual lengths."""
 
 
 class SweepArguments(LengthArguments, SequenceArguments, total=False):
-    """Of sweeps, and of all analyses that pass them on."""
+    """Options of sweeps, and of all analyses that pass them on."""
 
 
 OF_A_SWEEP: Final = (

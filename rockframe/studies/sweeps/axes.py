@@ -1,4 +1,4 @@
-"""Axes of a sweep, what varies and through which values; and the cases that they make."""
+"""Axes of a sweep, their values, and the resulting cases."""
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -85,7 +85,7 @@ def numbers_of(value: object, measure: Measure, name: str, *, owner: str = OWNER
 def _with_own_unit(value: object) -> object:
     """Give an array with an attribute ``units`` beside it, as values and their unit are given.
 
-    What can be gone through only once is given as a list.
+    An iterator is converted to a list.
     """
     if isinstance(value, Iterator):
         return list(cast("Iterator[object]", value))
@@ -94,7 +94,7 @@ def _with_own_unit(value: object) -> object:
 
 
 def _refuse_bare(value: object, measure: Measure, name: str, owner: str) -> None:
-    """Refuse numbers without a unit, and say how several are given one."""
+    """Refuse numbers without a unit, and say how to give several numbers a unit."""
     first = next(iter(items_of(value)), None)
     if isinstance(value, tuple) or not isinstance(first, Real | np.number):
         return
@@ -113,9 +113,9 @@ def words_of(value: object, read: Callable[[object], object]) -> Generic:
 def free_values(
     value: object, name: str, *, owner: str = OWNER, expected: str = ""
 ) -> tuple[Generic, str | None]:
-    """Read values for an argument of which only the user knows what it is.
+    """Read values for an argument whose meaning only the user knows.
 
-    A unit of several quantities, such as ``g``, is of that which is `expected`.
+    A unit of several quantities, such as ``g``, is taken as the `expected` one.
     """
     value = _with_own_unit(value)
     unit = _unit_in(value)
@@ -139,7 +139,7 @@ def free_values(
 
 
 def _with_unit(value: object) -> tuple[Any, str] | None:
-    """Give values and their unit, where it was given for all of them."""
+    """Give values and their unit, if one unit was given for all of them."""
     pair = cast("tuple[Any, ...]", value) if isinstance(value, tuple) else ()
     if len(pair) == 2 and isinstance(pair[1], str) and not isinstance(pair[0], str):
         return pair
@@ -147,7 +147,7 @@ def _with_unit(value: object) -> tuple[Any, str] | None:
 
 
 def _unit_in(value: object) -> str | None:
-    """Give the unit that values were given with; None of bare numbers and of words."""
+    """Give the unit of the given values; None for bare numbers and words."""
     if (pair := _with_unit(value)) is not None:
         return pair[1]
     first = next(iter(items_of(value)), None)
@@ -181,7 +181,7 @@ def _measure_of(unit: str, name: str, owner: str, expected: str) -> Measure:
 
 
 def items_of(value: object) -> list[Any]:
-    """Give values one by one; one alone is a row of one."""
+    """Give values as a sequence; a single value becomes a sequence of one."""
     if isinstance(value, str | bytes) or not isinstance(value, Iterable):
         return [value]
     if getattr(value, "ndim", 1) == 0:  # arrays and quantities of one value only seem to be a row
@@ -190,7 +190,7 @@ def items_of(value: object) -> list[Any]:
 
 
 def _as_python(value: Any) -> Any:
-    """Give numbers of numpy and pandas as Python's."""
+    """Convert numbers of numpy and pandas to Python numbers."""
     if hasattr(value, "to_numpy"):
         value = value.to_numpy()
     if isinstance(value, np.ndarray):
@@ -202,7 +202,7 @@ def _as_python(value: Any) -> Any:
 
 
 def in_unit(labels: xr.DataArray, unit: str | None, *, owner: str) -> xr.DataArray:
-    """Give the labels of an axis in its unit, where a user has put them into another one."""
+    """Give the labels of an axis in its unit, if a user has converted them to another one."""
     own = labels.attrs.get("units")
     if unit is None or own in (None, unit):
         return labels
@@ -218,7 +218,7 @@ def in_unit(labels: xr.DataArray, unit: str | None, *, owner: str) -> xr.DataArr
 
 
 def in_units_of_schema(dataset: xr.Dataset, *, owner: str) -> xr.Dataset:
-    """Give variables in their units, where a user has put them into others, for a figure say."""
+    """Give variables in their units, if a user has converted them, for example for a figure."""
     other = {
         name: SCHEMA[str(name)].unit for name, values in dataset.data_vars.items()
         if name in SCHEMA and values.attrs.get("units") not in (None, SCHEMA[str(name)].unit)
@@ -270,7 +270,7 @@ class Grid:
     def order(self) -> tuple[str, ...]:
         """Dimensions in the order in which cases run, the last one varying fastest.
 
-        Neighbours share their motion, and its scale, as long as may be: each is then prepared
+        Neighbours share their motion and its scale as far as possible, so that each is prepared
         once.
         """
         scales = [axis.name for axis in self.axes if axis.changes is Changes.MOTION]
@@ -290,7 +290,7 @@ class Grid:
     def numbers(self, key: Sequence[Any]) -> Generic:
         """Give the numbers, in the order of running, of the cases at places along all dimensions.
 
-        Of each dimension, in that of `sizes`, a place, a slice or a row of places.
+        For each dimension, in the order of `sizes`: a place, a slice or a sequence of places.
         """
         found = np.zeros((), dtype=np.int64)
         for (name, size), one in zip(self.sizes.items(), key, strict=True):
@@ -301,7 +301,7 @@ class Grid:
         return found
 
     def arranged(self, values: Generic) -> Generic:
-        """Bring values from the order of running into that of the dimensions."""
+        """Rearrange values from the order of running to that of the dimensions."""
         apart = values.reshape([*self.shape, *values.shape[1:]])
         moved = [self.order.index(name) for name in self.sizes]
         rest = range(len(moved), apart.ndim)

@@ -1,4 +1,4 @@
-"""A case of a sweep, to be looked at alone."""
+"""A single case of a sweep."""
 
 import json
 import math
@@ -40,7 +40,7 @@ _studies: Final[OrderedDict[str, Study]] = OrderedDict()
 @proposing
 @dataclass(frozen=True)
 class SweepCase:
-    """A case: its system, its motion, and what its run was asked for.
+    """A case of a sweep: its system, its motion, and the arguments of its run.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def case(
     motions: object = None,
     **labels: Any,
 ) -> SweepCase:
-    """Give a case of a sweep back, to be run alone.
+    """Return a case of a sweep, to be run alone.
 
     Parameters
     ----------
@@ -97,13 +97,13 @@ def case(
         Result of :func:`rockframe.sweep`, also one read from a file, or the folder in which
         a sweep is kept.
     scene : callable, optional
-        The function of the sweep, where its scene was one and this process does not have it
-        from the sweep itself.
+        The scene of the sweep if that was a function; required if this process did not run the
+        sweep.
     motions : GroundMotion, or iterable or mapping of them, optional
-        The records of the sweep, where neither the dataset nor this process has them.
+        The records of the sweep; required if neither the dataset nor this process has them.
     **labels
-        A value along each axis, as in the result or with a unit; ``motion`` by its name or
-        its number. An axis of one value, or of which one was picked, needs none.
+        A value along each axis, as in the result or with a unit; ``motion`` by its name or its
+        number. An axis with a single or already selected value may be omitted.
 
     Returns
     -------
@@ -112,9 +112,9 @@ def case(
     Raises
     ------
     SchemaError
-        Not the result of a sweep.
+        The dataset is not the result of a sweep.
     StudyError
-        No such case; or the function or the motion must be given.
+        There is no such case; or the function or the motion must be given.
     AssemblyError
         The case cannot be assembled, which is why it has no result.
 
@@ -172,7 +172,7 @@ def case(
 
 
 def system_of_case(dataset: xr.Dataset, *, owner: str) -> System:
-    """Give the system of a sweep, with the values of those axes of which one was picked."""
+    """Give the system of a sweep, with the values of those axes along which one was selected."""
     values: dict[Axis, Any] = {}
     for described in json.loads(dataset.attrs["axes_json"]):
         if described["changes"] not in OF_SCENES:
@@ -185,7 +185,7 @@ def system_of_case(dataset: xr.Dataset, *, owner: str) -> System:
 
 
 def remembered(attributes: Mapping[str, Any]) -> Study | None:
-    """Give the study that a dataset is of, if this process has made it."""
+    """Give the study of a dataset, if this process has made it."""
     return _studies.get(str(attributes.get("study_sha256")))
 
 
@@ -256,7 +256,7 @@ def _position_of(labels: xr.DataArray, name: str, wanted: Any, unit: str | None)
 def _value(
     dataset: xr.Dataset, name: str, place: Mapping[str, int], unit: str | None = None
 ) -> Any:
-    """Give the value of a coordinate in the case, also of one that has been picked out."""
+    """Give the value of a coordinate in the case, also if it was selected before."""
     return _value_of(in_unit(_along(dataset, name, _OWNER), unit, owner=_OWNER), place)
 
 
@@ -303,7 +303,7 @@ def unscaled_motions(
     needed: bool = True,
     owner: str = _OWNER,
 ) -> dict[str, GroundMotion | None]:
-    """Give motions of a sweep as they were before they were scaled; those that can be had."""
+    """Give the available motions of a sweep as they were before scaling."""
     every = json.loads(attributes["motion_names"]), json.loads(attributes["motions_json"])
     described = dict(zip(*every, strict=True))
     study = remembered(attributes)
@@ -340,7 +340,7 @@ def store_of(runs: xr.Dataset) -> Store | None:
 
 
 def known_motions(runs: xr.Dataset, motions: object = None) -> dict[str, GroundMotion]:
-    """Give those motions of a sweep that can be had, by their names, before they were scaled."""
+    """Give the available motions of a sweep by name, before they were scaled."""
     names: list[str] = json.loads(runs.attrs["motion_names"])
     if MOTION in runs:
         used = set(runs[MOTION].to_numpy().astype(str).ravel().tolist())

@@ -1,4 +1,4 @@
-"""The cases of a job: scene, motion and plan of each, made when first asked for."""
+"""The cases of a job: scene, motion and plan of each, made when first requested."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -37,7 +37,7 @@ class CasesOfJob:
         self._motion: tuple[object, GroundMotion | None] = (None, None)
 
     def changed(self, change: Change) -> "CasesOfJob":
-        """Give the same cases with other plans; what they are made of is shared."""
+        """Give the same cases with other plans; their parts are shared."""
         other = CasesOfJob(self.job, change)
         other._scenes = self._scenes
         return other
@@ -51,16 +51,16 @@ class CasesOfJob:
         return tuple(each[case] for _, each in self._of_scene)
 
     def start_key(self, case: int) -> tuple[float, ...]:
-        """Give what cases of one start have in common, where it is not that of all."""
+        """Give what cases of one start have in common, if starts differ."""
         return tuple(each[case] for _, each in self._start)
 
     def motion_key(self, case: int) -> tuple[int, float | None]:
-        """Give what cases of one motion have in common, where it is not the scene's."""
+        """Give what cases of one motion have in common, if it is not that of the scene."""
         number = int(self.job.motion_of_case[case])
         return number, (self._scale[0][1][case] if self._scale else None)
 
     def scene(self, case: int) -> tuple[Assembly, list[str]]:
-        """Give the scene of a case, and what is warned of when it is assembled."""
+        """Give the scene of a case, and the warnings of its assembly."""
         key = self.scene_key(case)
         found = self._scenes.get(key)
         if found is None:
@@ -75,7 +75,7 @@ class CasesOfJob:
         return isinstance(self.job.scene, SystemScene)
 
     def word_key(self, case: int) -> tuple[Any, ...]:
-        """Give what differs between cases that is no number, but a word or a count."""
+        """Give the differences between cases that are words or counts."""
         return tuple(each[case] for axis, each in self._of_scene if axis.name not in self._numbers)
 
     def _of(self, axis: Axis, values: list[Any], which: Places) -> Any:
@@ -84,7 +84,7 @@ class CasesOfJob:
         return values[which[0]] if numbers is None else Many(numbers[which])
 
     def scene_of_many(self, which: Places) -> tuple[Assembly, list[str]]:
-        """Give the scene of many cases; what is warned of is the same in all."""
+        """Give the scene of many cases; the warnings are the same for all."""
         values = {axis: self._of(axis, each, which) for axis, each in self._of_scene}
         with collected_warnings() as warned:
             return self.job.scene.assembled(values), warned
@@ -92,7 +92,7 @@ class CasesOfJob:
     def unscaled(self, case: int) -> GroundMotion | None:
         """Give the motion of a case before it is scaled; the scene's unless there are others."""
         motion = self.job.motions[self.job.motion_of_case[case]]
-        if motion is None and not self.can_run_in_lanes:  # a function puts it into its systems
+        if motion is None and not self.can_run_in_lanes:  # a function adds it to its systems
             motion = self.scene(case)[0].parts.motion
         return motion
 
@@ -104,7 +104,7 @@ class CasesOfJob:
         return motion.si.time_step, motion.si.duration, motion.si.vertical is not None
 
     def ground(self, case: int) -> Motion | None:
-        """Give the motion of a case as numbers alone, which takes less."""
+        """Give the motion of a case only as numbers, which is cheaper."""
         motion = self.unscaled(case)
         if motion is None or [axis.name for axis, _ in self._scale] != [FACTOR]:
             found = self.motion(case)
@@ -126,7 +126,7 @@ class CasesOfJob:
         return self._motion[1]
 
     def planned(self, case: int) -> tuple[Assembly, list[str], Plan]:
-        """Give the scene of a case, what is warned of when it is assembled, and the plan."""
+        """Give the scene of a case, the warnings of its assembly, and the plan."""
         system, messages = self.scene(case)
         start = {axis.parameter: each[case] for axis, each in self._start}
         return system, messages, self._plan(system, start, self.motion(case))

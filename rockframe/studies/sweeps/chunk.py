@@ -36,15 +36,15 @@ from rockframe.studies.sweeps.lanes import (
 from rockframe.studies.sweeps.study import FEWEST_IN_LANES, Histories, SweepJob
 
 SCREEN: Final = "screen"
-"""What stands for the accuracy of screened sweeps."""
+"""The accuracy argument of screened sweeps."""
 FIRST: Final = AccuracyLevel.FAST
 """Level at which all cases run."""
 AGAIN: Final = AccuracyLevel.STANDARD
-"""Level at which cases run again whose verdict is in doubt."""
+"""Level at which cases with a doubtful verdict run again."""
 NO_TEXT: Final = 0
-"""Place of the text that says nothing, in the texts of a chunk."""
+"""Place of the empty text in the texts of a chunk."""
 DRIVER: Final = "driver"
-"""Column that tells how cases were run; no result, and in no dataset."""
+"""Column that records how cases were run; it is not a result and in no dataset."""
 
 
 class Driver(IntEnum):
@@ -57,7 +57,7 @@ class Driver(IntEnum):
 
 @dataclass(frozen=True, eq=False)
 class CaseResults:
-    """What the cases of a chunk showed, in their order."""
+    """The results of the cases of a chunk, in order."""
 
     status: Generic  # how each run ended, or why there is none
     # by their names in the schema, and `DRIVER`; NaN where a case has no result
@@ -70,10 +70,10 @@ class CaseResults:
 def _put_into(
     columns: dict[str, Generic], count: int, name: str, where: Any, values: Generic | float
 ) -> None:
-    """Put what some of a number of cases have, or one, into a column.
+    """Put values of some cases, or of one, into a column.
 
-    Cases may have unlike numbers of bodies or restrainers: a column has room for the most, with
-    NaN where a case has fewer.
+    Cases may have different numbers of bodies or restrainers: a column has room for the largest
+    number, with NaN where a case has fewer.
     """
     beside = np.shape(values)[np.ndim(where) if not isinstance(where, slice) else 1 :]
     there = columns[name].shape[1:] if name in columns else beside
@@ -87,7 +87,7 @@ def _put_into(
 
 
 class CollectedResults:
-    """What cases show, put together; NaN, and no text, where nothing has been put."""
+    """Collected results of cases; NaN and no text where there is none yet."""
 
     def __init__(self, count: int) -> None:
         self._count = count
@@ -111,7 +111,7 @@ class CollectedResults:
                 _put_into(kept, self._count, name, here, values[which])
 
     def rows(self) -> CaseResults:
-        """Give what has been put together."""
+        """Give the collected results."""
         texts = tuple(self._texts)
         return CaseResults(self._status, self._scalars, self._histories, self._message, texts)
 
@@ -146,14 +146,14 @@ def each_run(
                 words = f"its run beside others failed ({type(fault).__name__}: {fault})"
                 messages = [*messages, f"{words}, and it ran alone: {PLEASE_REPORT}"]
             yield Finished(case, system, response.trajectory, messages, response)
-        except Exception as problem:  # whatever it is, it is this case's alone
+        except Exception as problem:  # any error affects only this case
             yield Failed(case, problem)
 
 
 def looks_of(
     cases: CasesOfJob, run: Finished | FinishedTogether | Failed
 ) -> list[tuple[int, Look]]:
-    """Take from runs what tells of the verdict of each case."""
+    """Take the indications of each case's verdict from runs."""
     if isinstance(run, FinishedTogether):
         return run.looks()
     if isinstance(run, Failed):
@@ -177,8 +177,8 @@ def in_doubt(
 def run_chunk(job: SweepJob, stopped: Callable[[], bool] = lambda: False) -> CaseResults | None:
     """Run the cases of a job: side by side where they can, else one after the other.
 
-    What a case shows depends on that case alone, and is what
-    :meth:`rockframe.System.simulate` gives.
+    The result of a case depends on that case alone, and equals that of
+    :meth:`rockframe.System.simulate`.
     """
     cases = CasesOfJob(job)
     collected = _Collector(len(cases), job)
@@ -201,7 +201,7 @@ def run_chunk(job: SweepJob, stopped: Callable[[], bool] = lambda: False) -> Cas
 
 
 def _told(run: Finished) -> tuple[list[str], Mapping[str, Generic | float]]:
-    """Give what is to be warned of in a run, and its scalars, with how it was run."""
+    """Give the warnings of a run, its scalars, and how it was run."""
     if run.response is not None:
         driver = Driver.AS_PYTHON if run.response.trajectory.as_python else Driver.ALONE
         cautions = [text for _, text in run.response.cautions()]
@@ -213,14 +213,14 @@ def _told(run: Finished) -> tuple[list[str], Mapping[str, Generic | float]]:
 
 
 class _Collector(CollectedResults):
-    """Collects what cases show as they are run."""
+    """Collects the results of cases as they are run."""
 
     def __init__(self, count: int, job: SweepJob) -> None:
         super().__init__(count)
         self._kept, self._restrainers = job.histories, job.restrainers
 
     def put(self, run: Finished | FinishedTogether | Failed) -> None:
-        """Note runs; of one without a verdict only what is said of it."""
+        """Note runs; for one without a verdict only its message."""
         if isinstance(run, Failed):
             self._refuse(run.case, run.problem)
             return
@@ -265,7 +265,7 @@ class _Collector(CollectedResults):
             self._put_scalars(case, {REPEATED: 1.0})
 
     def compare(self, first: Mapping[int, Look], again: Iterable[tuple[int, Look]]) -> None:
-        """Note whether the verdicts of cases are others than at first."""
+        """Note whether the verdicts of cases differ from the first ones."""
         for case, look in again:
             verdict = look.overturned
             changed = verdict is not None and verdict is not first[case].overturned
@@ -275,7 +275,7 @@ class _Collector(CollectedResults):
         for name, value in values.items():
             if name == "status":  # which has a place of its own
                 continue
-            # what is the same in all of several cases has no row for each
+            # a value that is equal in several cases has no row for each
             row = value if np.ndim(value) else np.broadcast_to(value, np.shape(case))
             _put_into(self._scalars, self._count, name, case, row)
 

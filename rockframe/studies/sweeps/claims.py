@@ -1,8 +1,8 @@
 """Which chunks of a kept study are being run, and by which job: several jobs share the work.
 
-A claim is a file that only one job can make. It says who has made it, and its time of change is set
-anew while that job lives. Claims save work, and prove nothing: a chunk appears whole, and is the
-same whoever runs it, so that a claim that is lost or damaged costs time and no result.
+A claim is a file that only one job can make. It names its job, which renews the modification time
+while it is alive. Claims only save work: a chunk appears whole and is the same whichever job runs
+it, so that a lost or damaged claim costs time but no result.
 """
 
 import json
@@ -18,7 +18,7 @@ from rockframe.errors import StudyError
 _CLAIMS: Final = "claims"
 """Folder of claims, in that of a study."""
 _BEAT: Final = 10.0
-"""Time after which a living job says again that it lives [s]."""
+"""Time after which a running job renews its claims [s]."""
 _SILENCE: Final = 150.0
 """Time of silence after which a job is dead; longer than shared file systems keep what they told
 before [s]."""
@@ -42,7 +42,7 @@ class Claims:
         last = max(claims, key=_heir, default=None)
         if last is not None and not self._is_dead(last):
             return False
-        # that of a dead job stays: what is never removed cannot be removed by two
+        # the claim of a dead job stays: a file that is never removed cannot be removed twice
         path = self._folder / f"{number:06d}-{0 if last is None else _heir(last) + 1:03d}"
         try:
             self._folder.mkdir(exist_ok=True)
@@ -77,7 +77,7 @@ class Claims:
             self.let_go(number)
 
     def live(self) -> None:
-        """Say that this job lives, if it has not done so for a while."""
+        """Signal that this job is alive, if it has not done so for a while."""
         now = time.monotonic()
         if now - self._said < _BEAT:
             return
@@ -94,10 +94,10 @@ class Claims:
             self._folder.rmdir()
 
     def _is_dead(self, claim: Path) -> bool:
-        """Whether the job that made a claim is there no more."""
+        """Whether the job that made a claim no longer exists."""
         try:
             changed, content = claim.stat().st_mtime_ns, claim.read_bytes()
-        except OSError:  # given up in this moment
+        except OSError:  # given up at this moment
             return False
         if _is_gone(content):
             return True
@@ -138,7 +138,7 @@ def _is_gone(said: bytes) -> bool:
     try:
         job = json.loads(said)
         machine, process, begun = job["machine"], int(job["process"]), job["begun"]
-    except (ValueError, TypeError, KeyError):  # damaged, or not yet written: its age will tell
+    except (ValueError, TypeError, KeyError):  # damaged, or not yet written: its age decides
         return False
     return begun is not None and machine == _machine() and _begun(process) != begun
 
@@ -154,7 +154,7 @@ def _machine() -> list[str]:
 
 
 def _begun(process: int) -> str | None:
-    """Give when a process of this machine was begun; None where there is none, or no telling."""
+    """Give the start of a process of this machine; None if there is none or it is unknown."""
     with suppress(OSError, IndexError):
         status = (_PROCESSES / str(process) / "stat").read_text()
         state, *rest = status.rpartition(")")[2].split()  # numbered from the third field on

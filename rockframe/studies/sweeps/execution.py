@@ -1,4 +1,4 @@
-"""Running the chunks of a sweep, several at a time, and how far that has come."""
+"""Running the chunks of a sweep, several at a time, with progress."""
 
 import sys
 import time
@@ -23,9 +23,9 @@ from rockframe.studies.sweeps.chunk import CaseResults, run_chunk
 from rockframe.studies.sweeps.study import SweepJob, worker_count
 
 _DELAY: Final = 1.0
-"""What takes no longer shows no bar, unless one is asked for [s]."""
+"""Work that takes no longer shows no bar, unless one is requested [s]."""
 _GROWS: Final = "total grows"
-"""What is said where more cases are to come than are known by now."""
+"""Text of a bar when further cases are to come whose number is not known yet."""
 
 
 @runtime_checkable
@@ -33,7 +33,7 @@ class ProgressBar(Protocol):
     """A bar over the cases of one sweep, or of several that follow one another."""
 
     def name(self, part: str) -> None:
-        """Say which part of the whole comes next; how many there will be is not known."""
+        """Say which part of the whole comes next; the number of parts is unknown."""
 
     def expect(self, count: int, done: int = 0) -> None:
         """Add cases to the total, of which some were done before."""
@@ -42,7 +42,7 @@ class ProgressBar(Protocol):
         """Add cases that are done."""
 
     def close(self) -> None:
-        """Show the whole, which grows no longer."""
+        """Show the total, which no longer grows."""
 
 
 class _Silent(ProgressBar):
@@ -70,7 +70,7 @@ class _Bar(ProgressBar):
             )
             return
         self._bar.total += count
-        # what was there before does not count for the rate
+        # cases done before do not count for the rate
         self._bar.initial += done
         self._bar.n += done
         widgets = getattr(self._bar, "container", None)
@@ -88,7 +88,7 @@ class _Bar(ProgressBar):
 
 @contextmanager
 def bar_of(value: object, *, owner: str, unit: str = "case") -> Generator[ProgressBar]:
-    """Show a bar while something is done."""
+    """Show a bar during some work."""
     if isinstance(value, ProgressBar):  # of the caller, who closes it
         yield value
         return
@@ -117,15 +117,15 @@ def _made(value: object, owner: str, unit: str) -> ProgressBar:
 
 
 _PER_WORKER: Final = 2
-"""Chunks that are handed out at once, so that no worker waits for its next one."""
+"""Chunks submitted at once for each worker, so that no worker waits for its next one."""
 _MANY: Final = 128
-"""Workers of an executor that does not tell how many it has."""
+"""Assumed number of workers of an executor that does not state it."""
 _GLANCE: Final = 0.2
-"""Longest wait in which an interrupt might go unheard [s]."""
+"""Longest wait during which an interrupt may be delayed [s]."""
 
 
 _END: Final = Chunk(-1, range(0))
-"""What follows the last chunk."""
+"""Marks the end of the chunks."""
 
 
 def workers_of(executor: Executor | None) -> int:
@@ -149,10 +149,10 @@ def run_chunks(
     executor: Executor | None,
     glance: Callable[[], None] = lambda: None,
 ) -> bool:
-    """Run chunks, and hand on what they showed as they are done.
+    """Run chunks, and yield their results as they are completed.
 
-    None among the chunks says that all others are run elsewhere by now; then it is asked again.
-    `glance` is called from time to time meanwhile.
+    None among the chunks means that all others are being run elsewhere; it is asked again later.
+    `glance` is called periodically.
     """
     if executor is not None and not hasattr(executor, "submit"):
         msg = f"{OWNER}: executor must be a concurrent.futures.Executor, got {shown(executor)}"
@@ -197,7 +197,7 @@ def run_chunks(
 def _submitted(
     pool: Executor, run: Callable[..., CaseResults | None], job: SweepJob
 ) -> Future[CaseResults | None]:
-    """Hand a job out, also to a pool whose workers may have died meanwhile."""
+    """Submit a job, also to a pool whose workers may have died in the meantime."""
     try:
         return pool.submit(run, job)
     except BrokenExecutor as problem:
@@ -231,10 +231,10 @@ def _take_all(
 
 
 class _Caller(Executor):
-    """Runs what is handed to it at once, where no threads can be started."""
+    """Runs submitted work immediately, for platforms without threads."""
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Run it, and give what it gave; an interrupt goes up to the caller."""
+        """Run it, and give its result; an interrupt is raised to the caller."""
         done: Future[Any] = Future()
         try:
             done.set_result(fn(*args, **kwargs))

@@ -1,4 +1,4 @@
-"""What a study is made of, field by field: two that differ in anything have other digests."""
+"""Identity of a study, field by field: studies that differ in anything have different digests."""
 
 import hashlib
 import inspect
@@ -20,7 +20,7 @@ _OWN: Final = __name__.partition(".")[0]
 
 
 def description_of(value: object) -> Any:
-    """Describe a value, fit for JSON, so that two that differ have other descriptions."""
+    """Describe a value for JSON, so that different values have different descriptions."""
     if value is None or isinstance(value, str | bool | int | float):
         return value
     if isinstance(value, np.generic):
@@ -62,7 +62,7 @@ def digest_of(described: object) -> str:
 
 
 def difference(one: object, other: object) -> list[str]:
-    """Name the entries in which two descriptions differ, those inside them in brackets."""
+    """Name the entries in which two descriptions differ, with nested ones in brackets."""
     a, b = _entries(one), _entries(other)
     found: list[str] = []
     for name in dict.fromkeys([*a, *b]):
@@ -76,7 +76,7 @@ def difference(one: object, other: object) -> list[str]:
 
 
 def _entries(described: object) -> dict[str, Any]:
-    """Give what has names in a description: of a dataclass, of a mapping, of a row of named."""
+    """Give the named entries of a description: a dataclass, a mapping, or a list of named items."""
     if isinstance(described, dict):
         return cast("dict[str, Any]", described)
     rows = cast("list[Any]", described) if isinstance(described, list) else []
@@ -121,7 +121,7 @@ def name_of(function: Callable[..., object]) -> str:
 
 @cache
 def _written(kind: type) -> dict[str, str]:
-    """Tell how a class is written that is not rockframe's, with all that stands beside it.
+    """Describe the source of a class from outside rockframe, with everything defined beside it.
 
     The equations of a user's base are the classes, functions and constants beside its component.
     """
@@ -134,7 +134,7 @@ def _written(kind: type) -> dict[str, str]:
         for name, each in sorted(vars(module).items()):
             if callable(each) and getattr(each, "__module__", None) == module.__name__:
                 texts.append(_of_function(each))
-            # those of a script or a notebook are many, and most of them not of the base
+            # those of a script or a notebook are many, and most do not belong to the base
             elif isinstance(each, int | float | str) and module.__name__ != "__main__":
                 texts += [] if name.startswith("__") else [[name, each]]
     return {"written": digest_of(texts)} if texts else {}

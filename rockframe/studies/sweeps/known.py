@@ -1,4 +1,4 @@
-"""Cases that other studies have run: how a study is extended, and how several are combined."""
+"""Cases that other studies have run, by which a study is extended or several are combined."""
 
 import json
 from collections.abc import Iterable, Mapping
@@ -18,12 +18,12 @@ from rockframe.studies.sweeps.store import Store
 from rockframe.studies.sweeps.study import Study
 
 _OWN: Final = ("grid", "motions")
-"""In what studies may differ of which one takes cases of the other."""
+"""Fields in which studies may differ when one takes cases of the other."""
 _NOBODY: Final = -1
 
 
 class KnownCases:
-    """The cases of a study that others have run; of several that have one the first counts."""
+    """The cases of a study that others have run; if several have a case, the first is used."""
 
     def __init__(self, study: Study, folders: Iterable[Path]) -> None:
         self._grid = study.grid
@@ -37,7 +37,7 @@ class KnownCases:
         return np.asarray(chunk.cases)[source == _NOBODY]
 
     def filled(self, chunk: Chunk, run: CaseResults | None) -> CaseResults:
-        """Give what a chunk shows: what was run of it, and what others know."""
+        """Give the results of a chunk: those just run, and those known from others."""
         if run is not None and len(run.status) == len(chunk.cases):
             return run
         source, number = self._found(chunk)
@@ -114,6 +114,6 @@ class _Source:
 
 
 def _places(wanted: list[Any], there: list[Any]) -> Generic:
-    """Give where values are among others."""
+    """Give the positions of values among others."""
     place = {one: k for k, one in enumerate(there)}
     return np.array([place.get(one, _NOBODY) for one in wanted])

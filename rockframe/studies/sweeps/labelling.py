@@ -38,7 +38,7 @@ SIDE_BY_SIDE: Final = (
 
 @dataclass(frozen=True, eq=False)
 class Labels:
-    """All that is said of a sweep beside its results."""
+    """All that describes a sweep except its results."""
 
     grid: Grid  # the cases
     motions: tuple[str, ...]  # names
@@ -74,7 +74,7 @@ def sweep_labels(study: Study) -> Labels:
 
 
 def sweep_dataset(labels: Labels, found: Iterable[tuple[range, CaseResults]]) -> xr.Dataset:
-    """Label what has been found."""
+    """Label the results."""
     grid = labels.grid
     collected = CollectedResults(grid.count)  # in the order of running, with gaps
     for cases, each in found:
@@ -89,10 +89,10 @@ def sweep_dataset(labels: Labels, found: Iterable[tuple[range, CaseResults]]) ->
     driver = _driver(rows.scalars.get(DRIVER, np.empty(0)))
     scalars |= rows.scalars
     # what cannot be counted before it has run stays a flag, also where nothing has
-    rows.scalars.clear()  # what has been arranged need not be there twice
+    rows.scalars.clear()  # arranged values need not be in memory twice
     values = {name: grid.arranged(scalars.pop(name)) for name in SCHEMA if name in scalars}
     values["status"] = grid.arranged(rows.status)
-    # as objects, each text is there once
+    # as objects, each text is stored once
     texts = np.array(few, dtype=object)[grid.arranged(message)]
     messages = xr.Variable(tuple(grid.sizes), texts, SCHEMA[MESSAGE].attributes())
     runs = build_dataset(values, {}, over=tuple(grid.sizes))
@@ -136,7 +136,7 @@ def around_cases(labels: Labels, attributes: Mapping[str, str | float | int]) ->
 
 
 def with_coordinates(dataset: xr.Dataset, labels: Labels, message: xr.Variable) -> xr.Dataset:
-    """Add the axes, and what is said of the cases."""
+    """Add the axes, and the messages of the cases."""
     dataset = dataset.assign_coords({**_coordinates(labels), MESSAGE: message})
     # the numbers of bodies, and the names of restrainers, that results are of
     found: dict[str, Any] = {}

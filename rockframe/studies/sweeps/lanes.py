@@ -1,7 +1,7 @@
 """Cases whose runs go side by side in lanes, of scenes assembled one by one, or many at once.
 
-What is worked out for many cases at once stands in arrays over the cases; it is worked out by the
-code of a single case, :mod:`rockframe.many`.
+Values of many cases are in arrays over the cases, computed by the code of a single case,
+:mod:`rockframe.many`.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -81,14 +81,14 @@ class _Group:
     def add(
         self, case: int, scene: LaneScene, key: Any, ground: Callable[[int], Motion | None]
     ) -> None:
-        """Take a case up."""
+        """Add a case."""
         if key not in self.motions:
             self.motions[key] = ground(case)  # which may fail
         self.scenes.setdefault(id(scene), scene)
         self.cases.append((case, id(scene), key))
 
     def run(self) -> Iterator[Finished]:
-        """Run them, and give those of which there is nothing to be warned."""
+        """Run them, and give those without warnings."""
         scene_of, motion_of = (
             np.array([places[one[k]] for one in self.cases])
             for k, places in ((1, _places(self.scenes)), (2, _places(self.motions)))
@@ -109,7 +109,7 @@ def _places(keys: Iterable[Any]) -> dict[Any, int]:
 
 
 def when_compiled(patience: float) -> Callable[[LaneScene], bool]:
-    """Tell of scenes whether there is machine code for them, compiled within some time [s]."""
+    """Say whether there is machine code for scenes, compiled within some time [s]."""
     kinds: dict[Any, bool] = {}
 
     def ready(scene: LaneScene) -> bool:
@@ -143,7 +143,7 @@ def run_side_by_side(
                     moved = (id(cases.unscaled(case)), cases.motion_key(case)[1])
                     group = groups.setdefault(scene.kind, _Group())
                     group.add(case, scene, moved, cases.ground)
-            except RockframeError:  # which is told of where the case runs alone
+            except RockframeError:  # which is reported when the case runs alone
                 continue
             except Exception as problem:
                 yield Failed(case, problem)
@@ -158,10 +158,10 @@ def prepared(system: Assembly, said: list[str], plan: Plan) -> LaneScene | None:
     if plan.output_step is not None:
         return None  # samples are looked at, for friction
     if not system.options.slope.level or (plan.has_vertical_motion and not system.setting.flies):
-        return None  # the ground is another one for each scene; or a block may leave it
+        return None  # the ground differs for each scene, or a block may leave it
     model = system.model
     if model.shows_bodies or model.links or is_called(model.system):
-        return None  # its equations work in lists, for which there are no lanes
+        return None  # its equations use lists, for which there are no lanes
     begin = begun(
         system.model, start_of(plan.initial), plan.accuracy, interval=plan.interval,
         duration=plan.duration, output_step=None, stop_at_overturning=plan.stop_at_overturning,
@@ -178,10 +178,10 @@ class FinishedTogether:
     status: Status
     said: list[str]  # what was warned of when their scenes were assembled, and of their runs
     scalars: dict[str, Generic | float]  # of each, or of all
-    look: Look  # what tells of their verdicts, with arrays in the places of numbers
+    look: Look  # indications of their verdicts, with arrays instead of numbers
 
     def looks(self) -> list[tuple[int, Look]]:
-        """Give what tells of the verdict of each."""
+        """Give the indications of each verdict."""
         count = len(self.cases)
         columns = (
             [each] * count if isinstance(each, bool) else in_each(each, count).tolist()
@@ -193,7 +193,7 @@ class FinishedTogether:
 
 @dataclass(frozen=True)
 class _Batch:
-    """Cases whose scenes have gone the same way."""
+    """Cases whose scenes were assembled in the same way."""
 
     one: LaneScene  # that of the first
     cases: Places
@@ -252,7 +252,7 @@ def _assembled(cases: CasesOfJob, some: Places) -> _Batch:
 def _integrated(
     cases: CasesOfJob, one: LaneScene, some: Places, rows: Any
 ) -> tuple[Places, Outcomes]:
-    """Run cases whose motions can be had; give which these are."""
+    """Run cases whose motions are available; give which these are."""
     motions: list[Motion | None] = []
     places: dict[Any, int] = {}
     ran: list[int] = []
@@ -275,7 +275,7 @@ def _integrated(
 def _told(
     cases: CasesOfJob, groups: Sequence[_Batch], group_of: Places, ran: Places, outcomes: Outcomes
 ) -> Iterator[Finished | FinishedTogether]:
-    """Tell what became of runs: of those together that ended in the same way."""
+    """Give the outcomes of runs, together for those that ended in the same way."""
     status, modes = outcomes.status, outcomes.modes
     # the mode tells whether those that stand may overturn later, and which slips are over
     with_modes = (status == Status.COMPLETED) | groups[0].one.system.setting.slides
@@ -294,7 +294,7 @@ def _told(
     for k in np.flatnonzero(alone).tolist():
         try:
             system, messages = cases.scene(int(ran[k]))
-        except Exception:  # noqa: S112 - the case tells of it where it runs alone
+        except Exception:  # noqa: S112 - reported when the case runs alone
             continue
         summary = outcomes.summary(k, groups[group_of[k]].one.run.begun.substeps)
         if has_no_cautions(system, summary):

@@ -1,4 +1,4 @@
-"""A study that is kept, as a dataset of which only that is read from the chunks which is used."""
+"""A kept study as a dataset that reads from the chunks only the values that are used."""
 
 from collections.abc import Mapping
 from functools import lru_cache
@@ -27,11 +27,11 @@ _AT_HAND: Final = 8
 _BLOCK: Final = 1_000_000
 """Numbers of a block of dask, or those of a chunk where these are more."""
 _Key: TypeAlias = tuple[Any, ...]
-"""For each dimension a whole number, a slice, or a row of whole numbers."""
+"""For each dimension a whole number, a slice, or a sequence of whole numbers."""
 
 
 def lazy_dataset(kept: Store) -> xr.Dataset:
-    """Give what a folder holds as a dataset that is read when it is used.
+    """Give the content of a folder as a dataset that is read when it is used.
 
     With dask its variables are dask arrays, whose blocks lie along the chunks.
     """
@@ -81,7 +81,7 @@ class _Column(BackendArray):
         self.dtype = np.dtype(kind)
 
     def __getitem__(self, key: indexing.ExplicitIndexer) -> Any:
-        """Read what is asked for."""
+        """Read the requested values."""
         support = indexing.IndexingSupport.OUTER
         return indexing.explicit_indexing_adapter(key, self.shape, support, self._picked)
 
@@ -110,7 +110,7 @@ class _Column(BackendArray):
 
 
 _GAPS: Final[Mapping[str, Any]] = {_STATUS: RunStatus.NOT_RUN, MESSAGE: NONE}
-"""What stands where nothing has been run; NaN otherwise."""
+"""Values of cases that have not been run; NaN for other variables."""
 
 
 @lru_cache(maxsize=_AT_HAND)

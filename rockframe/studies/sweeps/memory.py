@@ -1,4 +1,4 @@
-"""The memory that a study needs, and what there is."""
+"""The memory that a study needs, and the available memory."""
 
 import math
 import os
@@ -19,10 +19,10 @@ from rockframe.studies.sweeps.study import Histories
 _FLOAT: Final = 8.0
 """Size of a number [bytes]."""
 _COPIES: Final = 2.5
-"""How often a number is there at once: of its chunk, of all, some in the order of the axes too."""
+"""Copies of a number in memory at once: in its chunk, in all, and partly in axis order."""
 LAZILY: Final = "they are read from the store as they are used (rf.open_study, lazy=True)"
 _TOLD: Final = 0.5
-"""Share of what there is from which on it is told what a study needs."""
+"""Share of the available memory above which the memory that a study needs is reported."""
 _MEMORY: Final = Path("/proc/meminfo")
 _GROUPS: Final = (
     # most, and now, of a container or a job: control groups of both versions
@@ -37,7 +37,7 @@ _GROUPS: Final = (
 def check_memory(
     numbers: Mapping[str, float], cases: int, remedies: str, *, owner: str
 ) -> list[str]:
-    """Tell what cases need, and whether it is there."""
+    """Say how much memory cases need, and whether it is available."""
     sizes = {what: _FLOAT * _COPIES * each * cases for what, each in numbers.items()}
     needed, there = sum(sizes.values()), available()
     parts = ", ".join(f"{what} {_shown(size)}" for what, size in sizes.items())
@@ -68,7 +68,7 @@ def available() -> float:
 
 
 def _shown(size: float) -> str:
-    """Show a size as people do."""
+    """Write a size in a readable unit."""
     for unit, large in (("TB", 1e12), ("GB", 1e9)):
         if size >= large:
             return f"{size / large:.3g} {unit}"
@@ -78,7 +78,7 @@ def _shown(size: float) -> str:
 def numbers_of_case(
     arguments: RunRequest, kept: Histories | None, *, screened: bool
 ) -> dict[str, float]:
-    """Tell how many numbers are kept of a case, by what they are."""
+    """Give how many numbers of each kind are kept for a case."""
     points = len(arguments.points)
     every = [*EVENTS_AND_SCALARS, *FORCE_SCALARS, *(SWEEP if screened else ())]
     numbers = {"scalars": float(sum(not row.dims for row in every))}

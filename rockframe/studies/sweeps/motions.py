@@ -93,7 +93,7 @@ def named_motions(value: object) -> dict[str, GroundMotion]:
 
 
 def _each_component(named: Mapping[str, Any]) -> dict[str, Any]:
-    """Give motions by their names, of a pair each component by its own beside that of the pair."""
+    """Give motions by name; the name of a component follows that of its pair."""
     found: dict[str, Any] = {}
     for name, one in named.items():
         if not isinstance(one, HorizontalPair):
@@ -110,7 +110,7 @@ def _each_component(named: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def motion_number(wanted: object, names: Sequence[str], *, owner: str) -> int:
-    """Give the number of the motion that a name, or a number, also typed, stands for."""
+    """Give the number of the motion for a name or a number, also one given as text."""
     if isinstance(wanted, str) and wanted in names:
         return names.index(wanted)
     typed = isinstance(wanted, str) and wanted in {str(place) for place in range(len(names))}

@@ -1,4 +1,4 @@
-"""From the arguments of a sweep to the study that they describe; all faults are told at once.
+"""From the arguments of a sweep to the study that they describe; reports all faults at once.
 
 Also which histories are kept.
 """
@@ -111,7 +111,7 @@ _TAKEN: Final = {
 
 
 class Faults:
-    """What is wrong with the arguments of a sweep, all of which is told at once."""
+    """The faults in the arguments of a sweep, all of which are reported at once."""
 
     def __init__(self) -> None:
         self.found: list[str] = []
@@ -223,7 +223,7 @@ def _grid(
 
 
 def _pays_to_screen(system: Assembly, motions: Iterable[GroundMotion | None]) -> bool:
-    """Tell whether two runs by fixed steps cost less than one by tolerance.
+    """Say whether two runs by fixed steps cost less than one by tolerance.
 
     On rigid ground there are no more steps by tolerance. Under pulses in closed form there are
     few of either kind, so that a second run costs what surrounds the steps; those of several

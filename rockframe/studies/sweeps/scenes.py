@@ -45,7 +45,7 @@ BY_FUNCTION: Final = "instead of the system give a function of the axis that ret
 
 
 Values: TypeAlias = Mapping[Axis, Any]
-"""Of one case, by the axes that change the scene."""
+"""Values of one case, by the axes that change the scene."""
 
 _CHOICES: Final[dict[str, tuple[type[StrEnum], str]]] = {
     "restraint": (Restraint, "point of the base that the ground holds horizontally"),
@@ -96,7 +96,7 @@ class SystemScene:
         return Axis(name, values, unit, long_name, Changes.PART, parameter, slot)
 
     def faults(self, axes: Iterable[Axis]) -> list[str]:
-        """Tell which axes change the same, or stand for one another."""
+        """Say which axes change the same parameter, or are alternatives to one another."""
         found: list[str] = []
         seen: dict[tuple[str, str, str], str] = {}
         for axis in axes:
@@ -289,14 +289,14 @@ def scene_of(value: object) -> SweptScene:
 
 
 def motions_of_study(value: object, scene: SweptScene) -> dict[str, GroundMotion] | None:
-    """Read the argument ``motions``: unless given, the one of the scene; None where it has none."""
+    """Read the argument ``motions``; by default that of the scene, None if it has none."""
     if value is None and isinstance(scene, SystemScene):
         value = scene.assembly.parts.motion
     return None if value is None else named_motions(value)
 
 
 def needed_motions(value: object, scene: SweptScene, *, owner: str) -> dict[str, GroundMotion]:
-    """Read the same, and refuse a scene that has none where there are none."""
+    """Read the same, and refuse a scene without a motion if no motion is given."""
     named = motions_of_study(value, scene)
     if named is None:
         msg = f"{owner}: there is no motion; give one"
@@ -305,7 +305,7 @@ def needed_motions(value: object, scene: SweptScene, *, owner: str) -> dict[str,
 
 
 def _left_behind(part: Component, behind: tuple[str, ...], values: Mapping[str, str]) -> str:
-    """Say which axes would leave a parameter as it is that goes with theirs."""
+    """Say which axes would leave unchanged a parameter that depends on theirs."""
     names = [name for parameter, name in values.items() if part.left_behind([parameter])]
     axes = f"{'axis' if len(names) == 1 else 'axes'} {' and '.join(map(repr, names))}"
     kind = type(part).__name__

@@ -34,7 +34,7 @@ _DIGEST: Final = 64
 _AGAIN: Final = "remove the file, and the same sweep makes it again"
 """What to do about a damaged file."""
 _BLOCK: Final = 4096
-"""What file systems usually give out at once [bytes]."""
+"""Usual allocation unit of file systems [bytes]."""
 
 
 def write_arrays(path: Path, described: Mapping[str, Any], arrays: Mapping[str, Generic]) -> None:
@@ -92,7 +92,7 @@ def read_shapes(path: Path) -> dict[str, tuple[int, ...]]:
 
 
 def write_whole(path: Path, content: bytes, *, replace: bool = True) -> None:
-    """Write a file so that others see all of it or nothing, even if this process is killed."""
+    """Write a file atomically, even if this process is killed."""
     part = path.with_name(f".{path.name}.{os.getpid()}.{os.urandom(4).hex()}.part")
     try:
         with part.open("xb") as file:
@@ -104,7 +104,7 @@ def write_whole(path: Path, content: bytes, *, replace: bool = True) -> None:
             return
         try:
             path.hardlink_to(part)
-        except (OSError, NotImplementedError):  # there is one, or file systems have no links
+        except (OSError, NotImplementedError):  # there is one, or the file system has no links
             if not path.exists():
                 part.replace(path)
     finally:
@@ -116,9 +116,9 @@ FORMAT: Final = 3
 IN_FOLDERS: Final = 4
 """Format of studies whose chunks stand in folders of their own, since they are many."""
 FILES_OF_A_FOLDER: Final = 1000
-"""Most chunks of a folder; file systems, and what lists folders, are slow with far more."""
+"""Most chunks of a folder; file systems, and tools that list folders, are slow with many more."""
 _WITHOUT_ORDER: Final = (1, 2)
-"""Formats that read motions in another order, and whose digests left out what functions use."""
+"""Formats with motions in another order, whose digests left out what functions use."""
 _STUDY: Final = "study.json"
 _LABELS: Final = "labels.arrays"
 _FOLDERS: Final = "chunks-*/"
@@ -127,7 +127,7 @@ _LEFT_OVER: Final = 3600.0
 _COLUMN: Final = "motion of case"
 _SCALAR, _HISTORY, _MOTION = "scalar ", "history ", "motion "
 _OF_CHUNKS: Final = ("status", "message")
-"""What every chunk has beside scalars and histories."""
+"""Arrays of every chunk besides scalars and histories."""
 _SAMPLED: Final = ("horizontal", "vertical")
 
 
@@ -167,7 +167,7 @@ class Store:
                 "the one that is asked for: give another folder"
             )
             raise StudyError(msg)
-        if not (path / _LABELS).exists():  # removed, as a damaged one is to be
+        if not (path / _LABELS).exists():  # removed, as damaged files should be
             try:
                 _make(path, study, kept["cases_of_a_chunk"])
             except OSError as problem:
@@ -195,7 +195,7 @@ class Store:
         }
 
     def described(self) -> dict[str, Any]:
-        """Give what the study is made of, as it was described when it was begun."""
+        """Give the description of the study made when it was begun."""
         return _read_head(self.folder)["study"]
 
     def chunks(self) -> list[Chunk]:
@@ -211,7 +211,7 @@ class Store:
         return self._file(chunk).exists()
 
     def put(self, chunk: Chunk, rows: CaseResults) -> None:
-        """Keep what a chunk showed."""
+        """Store the results of a chunk."""
         arrays = {
             **dict(zip(_OF_CHUNKS, (rows.status, rows.message), strict=True)),
             **{f"{_SCALAR}{name}": each for name, each in sorted(rows.scalars.items())},
@@ -228,7 +228,7 @@ class Store:
             raise StudyError(msg) from problem
 
     def check(self) -> None:
-        """Try whether anything can be kept, before hours of work."""
+        """Check that results can be stored, before hours of work."""
         part = self.folder / f".{os.getpid()}.{os.urandom(4).hex()}.part"
         try:
             part.write_bytes(bytes(_BLOCK))
@@ -239,7 +239,7 @@ class Store:
                 part.unlink(missing_ok=True)
 
     def get(self, chunk: Chunk) -> CaseResults:
-        """Read what a chunk showed."""
+        """Read the results of a chunk."""
         file = self._file(chunk)
         described, arrays = _read(file)
         texts = described.pop("texts")
@@ -262,13 +262,13 @@ class Store:
         return CaseResults(status, scalars, histories, message, tuple(texts))
 
     def found(self) -> Iterator[tuple[range, CaseResults]]:
-        """Give all that is there."""
+        """Give all stored results."""
         for chunk in self.chunks():
             if self.has(chunk):
                 yield chunk.cases, self.get(chunk)
 
     def contents(self) -> tuple[dict[str, tuple[int, ...]], int]:
-        """Give the scalars and histories that are there, with shapes beside cases; count chunks."""
+        """Give the stored scalars and histories, with their shapes per case; count chunks."""
         files = [*self.folder.glob(f"{_FOLDERS if self.in_folders else ''}chunk-*.arrays")]
         found: dict[str, tuple[int, ...]] = {}
         for file in files:

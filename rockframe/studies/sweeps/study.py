@@ -19,28 +19,28 @@ from rockframe.system.assembly import Assembly
 from rockframe.version import __version__
 
 LONG_ENOUGH: Final = 1.0
-"""What a chunk should take, so that handing it out costs little [s]."""
+"""Target time of a chunk, so that submitting it costs little [s]."""
 LARGEST_CHUNK: Final = 10_000
 FEWEST_IN_LANES: Final = 16
-"""Cases below which lanes stand empty, and save next to nothing."""
+"""Number of cases below which lanes are partly empty and save almost nothing."""
 FEWEST_OF_LANES: Final = 64
-"""Cases of a chunk below which lanes stand empty."""
+"""Number of cases of a chunk below which lanes are partly empty."""
 COMPILING_SHARE: Final = 1.0
 """Longest time to compile what lanes need, over the time that they save in the sweep."""
 IN_LANES: Final = 0.25
-"""Of the time of a run alone."""
+"""Time of a run in lanes, over that of a run alone [1]."""
 _OVERHEAD: Final = 5e-4
-"""Of a run, beside its integration [s]."""
+"""Time for a run, without its integration [s]."""
 _FIXED: Final = 4e-7
-"""Of an interval of the motion, with fixed sub-steps [s]."""
+"""Time for an interval of the motion, with fixed sub-steps [s]."""
 _BY_TOLERANCE: Final = 2e-6
 """The same at the tolerance of the level standard [s]."""
 _SCREENED: Final = 2.5
-"""Time of a run and of one with half as many steps again, over that of the first."""
+"""Time of a run and of one with 1.5 times as many steps, over that of the first."""
 _SLOWER: Final = 300.0
 """Without compilation."""
 _SCENES_TOLD: Final = 16
-"""Cases at which it is looked what a function makes of them."""
+"""Number of cases at which the result of a function is inspected."""
 _GOLDEN: Final = 0.6180339887498949
 """The golden section, by whose multiples these cases are spread evenly, whatever their number."""
 
@@ -79,7 +79,7 @@ class SweepJob:
 
 @dataclass(frozen=True, eq=False)
 class Study:
-    """A scene, what varies, the motions, and what every run is asked for."""
+    """A scene, its axes, the motions, and the options of every run."""
 
     scene: SweptScene  # what is simulated
     grid: Grid  # the cases
@@ -89,7 +89,7 @@ class Study:
     histories: Histories | None = None  # what is kept beside scalars
     # whether each case is run twice, and again by tolerance where its verdict is in doubt
     screened: bool = False
-    # whether that was asked for where a run by tolerance costs less, which each then is
+    # whether that was requested but each is run by tolerance, which costs less
     handed_over: bool = field(default=False, compare=False)
     # whether the result is larger than the memory, which is no part of what it is
     lazy: bool = field(default=False, compare=False)
@@ -120,7 +120,7 @@ class Study:
 
     def to_dict(self) -> dict[str, Any]:
         """Tell all that the results depend on: every field, and what a function makes of cases."""
-        # a function's source need not tell what its scenes are
+        # the source of a function need not determine its scenes
         scenes = [
             digest_of(description_of(one)) if isinstance(one, Assembly) else type(one).__name__
             for one in self._some_scenes
@@ -159,14 +159,14 @@ class Study:
         return digest_of(self.to_dict())
 
     def time_of_case(self, *, as_python: bool) -> float:
-        """Give about how long a case takes among others [s]."""
+        """Estimate the time of a case among others [s]."""
         one = self._time_of_case()
         if as_python:
             return one * _SLOWER
         return one if self.patience is None else one * IN_LANES
 
     def chunk_size(self, workers: int, *, as_python: bool) -> int:
-        """Give a number of cases that takes long enough, and leaves work for all workers."""
+        """Give a chunk size that takes long enough and leaves work for all workers."""
         size = LONG_ENOUGH / self.time_of_case(as_python=as_python)
         fair = -(-self.grid.count // (4 * workers))
         if self.patience is not None and not as_python:
@@ -174,7 +174,7 @@ class Study:
         return int(max(1, min(size, fair, LARGEST_CHUNK)))
 
     def _time_of_case(self) -> float:
-        """Give about how long a case takes alone, by machine code [s]."""
+        """Estimate the time of a case alone, in machine code [s]."""
         intervals = max(
             run_length(self.arguments, motion) / usual_output_step(motion)
             for motion in self.motions.values()

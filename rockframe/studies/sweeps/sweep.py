@@ -1,4 +1,4 @@
-"""Many runs at once: what users call, and a planned sweep from its chunks to the dataset."""
+"""Many runs at once: the public functions, and a planned sweep from its chunks to the dataset."""
 
 import math
 import time
@@ -45,9 +45,9 @@ _LARGEST_CHUNK: Final = 1_000_000
 _DAY: Final = 86_400.0
 """A day [s]."""
 _GLIMPSE: Final = 1e-3
-"""Share of a run that tells whether its law can be compiled."""
+"""Share of a run that shows whether its law can be compiled."""
 _LOOK: Final = 1.0
-"""Time between two looks at what other jobs have run [s]."""
+"""Time between two checks of the chunks run by other jobs [s]."""
 
 
 @hinted()
@@ -79,75 +79,72 @@ def sweep(
     Parameters
     ----------
     scene : System or callable
-        A system with parts whose parameters the axes name; or a function that takes the axes
-        by their names and returns a System.
+        A system whose parts have the parameters named by the axes; or a function that takes the
+        axes by name and returns a System.
     motions : GroundMotion, or sequence or mapping of them, optional
-        Each is combined with all cases; of a HorizontalPair each of its two components. The
-        one among the parts of the system, or of the systems that the function returns, unless
-        given.
+        Each motion is combined with all cases; a HorizontalPair counts as its two components. By
+        default the motion among the parts of the system, or of the systems that the function
+        returns.
     axes : mapping of str to values, optional
-        Axes whose names no keyword can have, such as ``"Block.mass"``, or that are also
-        arguments here.
+        Axes whose names are not valid keywords, such as ``"Block.mass"``, or coincide with
+        arguments of this function.
     cases : pandas.DataFrame or mapping of str to values, optional
-        A table with a row for each case, and columns like axes, with units in their heads
-        (``width [m]``) or in their values. A column ``motion`` picks motions by name or
-        number.
+        A table with a row for each case and a column for each axis, with units in the headers
+        (``width [m]``) or in the values. A column ``motion`` selects motions by name or number.
     period : str or Quantity, optional
-        Of the oscillator of ``pseudo_spectral_acceleration`` [s].
+        Period of the oscillator of ``pseudo_spectral_acceleration`` [s].
     output_step : str or Quantity, optional
-        Spacing of the histories; the time step of the motions, of unlike ones the shortest,
-        unless given [s].
+        Spacing of the histories [s]. The default is the time step of the motions, the shortest one
+        if they differ.
     outputs : sequence of str, optional
-        Histories that are kept: names and groups, or, of an empty sequence, those that every
-        run has, those of points among them. None keeps none.
+        Histories that are kept: names and groups. An empty sequence keeps those that every run has,
+        including those of points. None keeps none.
     points : mapping of str to (str or Quantity, str or Quantity), optional
-        Points of the body, as for :meth:`rockframe.System.simulate`. Peaks of their
-        displacements and absolute accelerations are given over ``point``, and their histories
-        as far as `outputs` keeps them [m].
+        Points of the body, as for :meth:`rockframe.System.simulate`. Peaks of their displacements
+        and absolute accelerations are returned over ``point``, and their histories if `outputs`
+        keeps them [m].
     overturning : {"stop", "continue"}, optional
-        Whether a run ends when the rotation reaches the overturning angle, or goes on until
-        the block lies flat.
+        Whether a run ends when the rotation reaches the overturning angle, or continues until the
+        block lies flat.
     known : str or path, or sequence of them, optional
-        Stores of other sweeps, which differ in motions and in values of the axes alone: cases that
-        they have are copied into `store`, and not run again.
+        Stores of other sweeps that differ only in motions and in values of the axes. Their cases
+        are copied into `store` and not run again.
     **more_axes : values
-        Axes, by the name of a parameter of one part (``frequency_ratio``) or of an option of
-        the system (``gravity``), by an argument of the function, by where runs start
-        (``initial_rotation``), or by what scales the
+        Axes: a parameter of one part (``frequency_ratio``), an option of the system (``gravity``),
+        an argument of the function, an initial value (``initial_rotation``), or a scaling of the
         motion: ``scale``, ``peak_ground_acceleration`` (or ``PGA``), ``peak_ground_velocity``
-        (``PGV``) or ``pseudo_spectral_acceleration`` (``SA``). Values with a unit are
-        ``([1, 2], "m")``, a Quantity, or ``["1 m", "2 m"]``.
+        (``PGV``) or ``pseudo_spectral_acceleration`` (``SA``). Values with a unit are ``([1, 2],
+        "m")``, a Quantity, or ``["1 m", "2 m"]``.
 
     Returns
     -------
     xarray.Dataset
-        All scalars of a run, over ``case`` if there is a table, the axes in the order given,
-        and ``motion``; histories over ``time`` too. Of a case that could not be
-        assembled or finished ``status`` tells, the coordinate ``message`` says why, and its
-        scalars are NaN. Truth values, flags and counts are
-        floats where that leaves gaps. Screened sweeps have ``repeated`` and ``verdict_changed``.
+        All scalars of a run, over ``case`` if there is a table, the axes in the order given, and
+        ``motion``; histories also over ``time``. If a case could not be assembled or finished, its
+        scalars are NaN, ``status`` marks it, and the coordinate ``message`` says why. Truth values,
+        flags and counts are floats if there are such gaps. Screened sweeps have ``repeated`` and
+        ``verdict_changed``.
 
     Raises
     ------
     StudyError
-        The sweep cannot be planned, with every fault found; its store is another's, damaged
-        or cannot be written; or the executor failed.
+        The sweep cannot be planned, with all faults listed; its store belongs to another sweep, is
+        damaged or cannot be written; or the executor failed.
     ComponentError
-        `executor`, `chunk` or `progress` is no such thing.
+        `executor`, `chunk` or `progress` is invalid.
 
     Warns
     -----
     SolverWarning
-        Cases have no result, or have not been run after an interrupt (Ctrl-C). It will take more
-        than a day. The result does not fit into memory: then it is opened lazily from the store.
+        Cases have no result, or were not run because of an interrupt (Ctrl-C). The sweep will take
+        more than a day. The result does not fit into memory and is opened lazily from the store.
     ModelWarning
-        Values are unusual, or runs are to be used with care.
+        Values are unusual, or results must be used with care.
 
     Notes
     -----
-    What a case gives depends on that case alone: not on the chunk it is in, on who runs it,
-    or on how many do. It is what ``simulate`` gives, to the last bit; :func:`rockframe.case`
-    gives any case back.
+    The result of a case depends on that case alone, not on its chunk or on the number of workers.
+    It equals the result of ``simulate`` to the last bit; :func:`rockframe.case` returns any case.
 
     Examples
     --------
@@ -197,31 +194,31 @@ def sweep(
 
 @hinted()
 def open_study(path: str | PathLike[str], *, lazy: bool = False) -> xr.Dataset:
-    """Read what a sweep has kept so far, also while it runs.
+    """Read the stored results of a sweep, even while it runs.
 
     Parameters
     ----------
     path : str or path
         The `store` of a :func:`rockframe.sweep`.
     lazy : bool, optional
-        Whether numbers are read from the folder when they are used, and not before: for studies
-        that are larger than the memory. Truth values, flags and counts are floats then. Where
-        dask is installed the variables are arrays of dask.
+        Whether numbers are read from the folder only when they are used, for studies larger than
+        memory. Truth values, flags and counts are then floats. If dask is installed the variables
+        are dask arrays.
 
     Returns
     -------
     xarray.Dataset
-        As of the sweep itself; the status of cases that are still to come is ``not_run``.
+        As returned by the sweep; the status of cases that have not run yet is ``not_run``.
 
     Raises
     ------
     StudyError
-        There is no study, it is damaged, or of a format that cannot be read.
+        There is no study, it is damaged, or its format cannot be read.
 
     Warns
     -----
     ModelWarning
-        Another version of rockframe has run it, whose numbers may be others.
+        The study was run by another version of rockframe, whose numbers may differ.
 
     Examples
     --------
@@ -251,7 +248,7 @@ def run_study(
 ) -> tuple[xr.Dataset, bool]:
     """Run the cases of a study that are not kept yet, and label all of them.
 
-    Tell, too, whether it went to its end. An interrupt may come when all cases have been run.
+    Also return whether it was completed. An interrupt may come when all cases have been run.
     """
     workers = workers_of(executor)
     as_python = not COMPILED
@@ -278,7 +275,7 @@ def run_study(
 
 
 def _warn_of_long_study(study: Study, workers: int, *, as_python: bool, kept: bool) -> None:
-    """Warn of what takes more than a day."""
+    """Warn of sweeps that take more than a day."""
     days = study.grid.count * study.time_of_case(as_python=as_python) / workers / _DAY
     if days > 1.0:
         ways = "several jobs on it share the work" if kept else "with one a kill would not lose it"
@@ -370,7 +367,7 @@ def _free(
 ) -> Iterator[Chunk | None]:
     """Give the chunks that no other job has, as they are claimed; None while others have them.
 
-    Chunks of which all is known from other studies are kept here, and given to nobody.
+    Chunks that are fully known from other studies are stored here, and not returned.
     """
     looked = -math.inf
     while missing:

@@ -1,4 +1,4 @@
-"""What is said of a sweep in words: its verdict, its warnings, and texts that are alike."""
+"""A sweep in words: its verdict, its warnings, and the grouping of similar texts."""
 
 import re
 from collections import Counter
@@ -20,36 +20,36 @@ from rockframe.simulation.soundness import counts_of_slides
 from rockframe.studies.sweeps.axes import OWNER
 
 SCREENED: Final = (REPEATED, VERDICT_CHANGED)
-"""What every case of a screened sweep has beside."""
+"""Additional variables of the cases of a screened sweep."""
 _BROKEN: Final = "broken_restrainer_count"
 MOST_ALIKE: Final = 16
-"""Texts that differ in their numbers alone and are still told one by one."""
+"""Most texts differing only in their numbers that are reported one by one."""
 _NUMBER: Final = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.]*\w)")
 
 
 def cases_verdict(dataset: xr.Dataset) -> str:
-    """Say what became of the cases of a dataset: of a whole result as its attribute does."""
+    """Describe the outcomes of the cases of a dataset; for a whole result as in its attribute."""
     text, whole = str(dataset.attrs.get("verdict", "")), dataset.attrs.get(CASE_COUNT)
     if whole is None or "status" not in dataset:
         return text
     status = dataset["status"]
     if status.dtype.kind not in "iu":  # such as a mean
         return text
-    if status.size == whole:  # one that is read when it is used has no verdict before
+    if status.size == whole:  # a lazily read dataset has no verdict before
         return text or whole_verdict(dataset)
     some = f"{status.size} of the {whole} cases of the sweep"
     return cases_sentence(dataset, f"Of {some if status.size < whole else f'{status.size} cases'}")
 
 
 def whole_verdict(dataset: xr.Dataset) -> str:
-    """Say what became of all cases of a sweep, in words that stay true of a part of it."""
+    """Describe the outcomes of all cases of a sweep, in words that stay true for a part of it."""
     count = dataset["status"].size
     these = "Of 1 case" if count == 1 else f"Of all {count} cases"
     return cases_sentence(dataset, f"{these} of the sweep")
 
 
 def cases_sentence(runs: xr.Dataset, these: str) -> str:
-    """Say in one sentence what became of cases, counted in parts that memory holds."""
+    """Describe the outcomes of cases in one sentence, counted in parts that fit in memory."""
     found, farthest = Counter[str](), 0.0
     for part in _parts_of(runs):
         slips = slips_of_cases(part)
@@ -74,7 +74,7 @@ def cases_sentence(runs: xr.Dataset, these: str) -> str:
 
 
 def _counts(runs: xr.Dataset, slips: Generic) -> dict[str, int]:
-    """Count cases by what became of them."""
+    """Count cases by outcome."""
     status = runs["status"].to_numpy()
     overturned = overturned_by(status)
     which: dict[str, Any] = {
@@ -95,7 +95,7 @@ def _counts(runs: xr.Dataset, slips: Generic) -> dict[str, int]:
 
 
 def _parts_of(runs: xr.Dataset) -> Iterator[xr.Dataset]:
-    """Cut a dataset into those parts that its store has together."""
+    """Cut a dataset into the parts that are stored together."""
     status = runs["status"]
     lengths = status.encoding.get("preferred_chunks", {})
     cuts = [
@@ -116,7 +116,7 @@ def slips_of_cases(runs: xr.Dataset) -> Generic:
 
 
 def not_screened(runs: xr.Dataset) -> xr.Dataset:
-    """Tell of a sweep that was to be screened that it was run by tolerance, which costs less."""
+    """Report that a sweep to be screened was run by tolerance, which costs less."""
     lacking = np.isnan(runs["peak_rotation"].to_numpy())
     none = np.where(lacking, np.nan, 0.0) if lacking.any() else np.zeros(lacking.shape)
     dims = tuple(map(str, runs["peak_rotation"].dims))
@@ -159,7 +159,7 @@ def _most_frequent(texts: Sequence[str]) -> tuple[str, int]:
 
 
 def summed_up(texts: Sequence[str], message: Generic) -> tuple[tuple[str, ...], Generic]:
-    """Tell texts that differ in their numbers alone as one, if they are more than a few."""
+    """Report texts that differ only in their numbers as one, if there are more than a few."""
     alike: dict[tuple[str, ...], list[int]] = {}
     for place, text in enumerate(texts):
         alike.setdefault(tuple(_NUMBER.split(text)), []).append(place)
