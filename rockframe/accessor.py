@@ -70,7 +70,7 @@ class RockframeAccessor:
         Raises
         ------
         SchemaError
-            No function draws such a dataset.
+            There is no function that draws such a dataset.
         """
         from rockframe import plot
         from rockframe.plot._checks import drawn_by
@@ -156,7 +156,7 @@ class RockframeAccessor:
 
     @property
     def verdict(self) -> str:
-        """The outcome in one sentence; of a selection of cases, their outcome."""
+        """The outcome in one sentence, of a run or of a selection of cases."""
         from rockframe.studies.dynamic_analysis import verdict_of_analysis
         from rockframe.studies.fragility.words import verdict_of_fragility
         from rockframe.studies.sweeps.words import cases_verdict

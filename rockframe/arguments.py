@@ -59,7 +59,7 @@ def iterates(value: object) -> TypeGuard[Iterable[Any]]:
 
 
 def several(value: object, *, owner: str, name: str, of: str) -> list[Any]:
-    """Read an argument that is a sequence; a single text counts as one of one element."""
+    """Read an argument that is a sequence; a single text counts as a sequence of one element."""
     if isinstance(value, str):
         return [value]
     if iterates(value) and not isinstance(value, Mapping | bytes):

@@ -1,7 +1,7 @@
 """Errors and warnings raised by rockframe.
 
-Every error derives from :class:`RockframeError`, so that a script can tell an input that
-rockframe refused from a fault of its own.
+Every error derives from :class:`RockframeError`, so that a script can distinguish an input that
+rockframe refused from its own faults.
 """
 
 import sys
@@ -109,7 +109,7 @@ def _rebuild_record_error(path: str, found: str, expected: str, line: int | None
 
 
 class FileError(RockframeError, ValueError):
-    """A file of a scene, study or result cannot be read, or must not be written.
+    """A file of a scene, study or result cannot be read or must not be written.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ class SchemaError(RockframeError, ValueError):
 
 
 class ArgumentError(RockframeError, TypeError):
-    """A function does not take an argument, or one that it needs is missing."""
+    """A function does not accept an argument, or a required argument is missing."""
 
 
 class AccessError(RockframeError, AttributeError):
@@ -181,7 +181,7 @@ class ModelWarning(RockframeWarning):
 
 
 class SolverWarning(RockframeWarning):
-    """A run could not be finished, or its energy balance shows that it is no solution."""
+    """A run could not be finished, or its energy balance shows that it is not a solution."""
 
 
 class RecordWarning(RockframeWarning):

@@ -1,7 +1,7 @@
-"""Names for files with components or equations of your own: declarations, supports, laws, columns.
+"""Names for user-defined components and equations: declarations, supports, laws, columns.
 
-A base of your own needs a class derived from :class:`OwnBase`, a :class:`Support` that defines
-how it carries a body, and a contact law at a point, :func:`point_law`. A scene of your own needs
+A user-defined base needs a class derived from :class:`OwnBase`, a :class:`Support` that defines
+how it carries a body, and a contact law at a point, :func:`point_law`. A user-defined scene needs
 a class derived from :class:`OwnScene` and a :class:`System`: a named tuple of numbers with the
 methods of :class:`~rockframe.dynamics.protocol.Equations`, in a :class:`ContactModel`.
 :func:`rockframe.register` registers either.

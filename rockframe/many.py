@@ -1,4 +1,4 @@
-"""Vectors of numbers, one of each case, that pass through code written for a single case.
+"""Vectors of numbers, one for each case, that pass through code written for a single case.
 
 The parameters of a scene are computed by code for one scene. With :class:`Many` in place of a
 number the same code computes all cases at once: each sum, product and elementary function is
@@ -38,7 +38,7 @@ class Differ(BaseException):
 
 
 class OnlyAlone(BaseException):
-    """An operation is possible for one case only."""
+    """An operation is possible only for a single case."""
 
 
 def _value(other: Any) -> Any:

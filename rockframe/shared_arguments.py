@@ -121,7 +121,7 @@ def _unknown(function: str, name: str, known: Iterable[str]) -> str:
 
 
 def suggestion(name: str, known: Iterable[str]) -> str:
-    """Give the question whether a similar name was meant; else a full stop."""
+    """Ask whether a similar name was meant; a full stop if there is none."""
     return nearest(name, known) or "."
 
 

@@ -1,4 +1,4 @@
-"""Writing of files: completely or not at all, and never over a file of another program."""
+"""Atomic writing of files, which never replaces a file of another program."""
 
 import os
 import shutil

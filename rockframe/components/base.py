@@ -267,8 +267,8 @@ class Component(metaclass=Proposing):
         Parameters
         ----------
         **changes
-            Arguments of the constructor. An alternative replaces the argument that it stands
-            for, such as a stiffness a frequency ratio; None means not given.
+            Arguments of the constructor. An argument replaces its alternative: a stiffness,
+            for example, replaces a frequency ratio. None means not given.
 
         Returns
         -------
@@ -318,7 +318,7 @@ class Component(metaclass=Proposing):
         return ()
 
     def left_behind(self, changed: Collection[str]) -> tuple[str, ...]:
-        """Name given parameters that depend on changed ones, but would keep their values.
+        """Name given parameters that depend on changed ones but would keep their values.
 
         Parameters
         ----------
@@ -340,8 +340,8 @@ class Component(metaclass=Proposing):
         Parameters
         ----------
         values : mapping of str to float or str
-            Numbers in SI units, and words, by the names of parameters. An alternative replaces
-            the parameter that it stands for, as in :meth:`replace`.
+            Numbers in SI units, and words, by the names of parameters. A value replaces its
+            alternative, as in :meth:`replace`.
 
         Returns
         -------
@@ -408,7 +408,7 @@ class Component(metaclass=Proposing):
         return self.with_si({name: ratio * vars(self.given)[name]})
 
     def _check_name(self, name: object, known: Iterable[str]) -> None:
-        """Refuse the name of an unknown parameter."""
+        """Raise an error for the name of an unknown parameter."""
         listed = list(known)
         if isinstance(name, str) and name in listed:
             return

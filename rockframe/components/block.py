@@ -68,8 +68,8 @@ class Block(Component):
     Warns
     -----
     ModelWarning
-        The given `shape_factor` or `inertia` is that of no body within the
-        rectangle of width and height, :eq:`eq-greatest-inertia`; it is used as given.
+        No body within the rectangle of width and height can have the given `shape_factor`
+        or `inertia`, :eq:`eq-greatest-inertia`; it is used as given.
 
     Notes
     -----
@@ -77,8 +77,8 @@ class Block(Component):
     a solid rectangle that is H/B > sqrt(2)/2, Eq. (5).
 
     ``centre_of_mass=("0.7 m", "0.05 m")`` gives `centre_height` and `eccentricity` together. The
-    moment of inertia about the centre of mass is that of the solid rectangle wherever this
-    centre is, unless `inertia` or `shape_factor` is given. :meth:`from_outline`,
+    moment of inertia about the centre of mass is that of the solid rectangle, wherever the
+    centre of mass is, unless `inertia` or `shape_factor` is given. :meth:`from_outline`,
     :meth:`from_parts` and :meth:`cylinder` compute both.
 
     Examples
@@ -172,7 +172,7 @@ class Block(Component):
         Warns
         -----
         ModelWarning
-            The block has a given `inertia`, as have blocks from shapes, and either `width`,
+            The block has a given `inertia`, as blocks from shapes do, and either `width`,
             `height` or `mass` is changed without `inertia` or `shape_factor`, or `height` is
             changed without a given `centre_height`.
 
@@ -247,7 +247,8 @@ class Block(Component):
         ----------
         values : mapping of str to float
             Numbers in SI units by the names of parameters. A `slenderness` leaves the `radius`
-            unchanged, or the side that is given with it; a `radius` leaves the slenderness.
+            unchanged, or the side that is given with it. A `radius` leaves the slenderness
+            unchanged.
 
         Returns
         -------
@@ -346,7 +347,7 @@ class Block(Component):
         return [*super()._cautions(), *self._unphysical()]
 
     def _unphysical(self) -> list[str]:
-        """Warn of a given inertia that no body within the rectangle has."""
+        """Warn of a given inertia that no body within the rectangle can have."""
         stated = self.given.shape_factor is not None or self.given.inertia is not None
         return unphysical_inertia(self.si) if stated else []
 

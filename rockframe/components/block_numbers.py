@@ -119,7 +119,7 @@ def check_representable(si: BlockSI, owner: str) -> None:
 
 
 def squat(si: BlockSI, owner: str) -> list[str]:
-    """Warn of a body so squat that it does not continue to rock after an impact, Eq. (5)."""
+    """Warn of a body too squat to continue rocking after an impact, Eq. (5)."""
     if si.maximum_restitution > 0.0:
         return []
     return [
@@ -131,7 +131,7 @@ def squat(si: BlockSI, owner: str) -> list[str]:
 
 
 def unphysical_inertia(si: BlockSI) -> list[str]:
-    """Warn of an inertia that no body within the rectangle has, :eq:`eq-greatest-inertia`."""
+    """Warn of an inertia that no body within the rectangle can have, :eq:`eq-greatest-inertia`."""
     radius = si.radius  # lengths are divided by it, so that squares do not overflow
     beside = (si.left / radius) * (si.right / radius)
     above = (si.centre_height / radius) * ((si.height - si.centre_height) / radius)

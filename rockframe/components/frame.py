@@ -141,9 +141,9 @@ class FrameEquivalent(Block):
         inertia about O, the middle of the outline at half the height. The centre of mass of a
         building with heavy floors lies higher (:attr:`centre_of_mass_height`): by 2.5 to 5.7 % of
         H in the frames of the paper, and by up to 12 % without their walls. If it is 10 % of H
-        higher, the tangent of the real overturning angle is a sixth below tan(theta); beyond this
-        a warning is issued. With ``"members"`` the shape factor is :eq:`eq-frame-about-centre`.
-        The space proportion is :eq:`eq-frame-space-proportion`.
+        higher, the tangent of the real overturning angle is one sixth less than tan(theta); above
+        10 % a warning is issued. With ``"members"`` the shape factor is
+        :eq:`eq-frame-about-centre`. The space proportion is :eq:`eq-frame-space-proportion`.
 
         Examples
         --------
@@ -271,8 +271,8 @@ class FrameEquivalent(Block):
         Returns
         -------
         tuple of str
-            A frame built from members has them, too; scaling one of them gives a frame with
-            equivalent parameters, without members.
+            A frame built from members has these numbers, too. Scaling one of them gives a frame
+            with equivalent parameters, without members.
 
         Examples
         --------

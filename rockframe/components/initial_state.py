@@ -32,7 +32,7 @@ _TILTED: Final = Condition(
 
 @dataclass(frozen=True)
 class InitialStateSI:
-    """Initial state in SI units; ``None`` means that at rest, or vertical equilibrium."""
+    """Initial state in SI units; ``None`` means at rest, or in vertical equilibrium."""
 
     rotation: float | None
     angular_velocity: float
@@ -41,7 +41,7 @@ class InitialStateSI:
 
 
 class InitialState(Component):
-    """Rotation, displacement and velocities at the start of a run; those at rest unless given.
+    """Rotation, displacement and velocities at the start of a run; at rest unless given.
 
     Raises
     ------

@@ -39,7 +39,7 @@ BODY: Final = 1
 
 
 class Link(Component):
-    """A part that acts on a point of a body; bodies are counted from the top down.
+    """A part that acts on a point of a body; bodies are numbered from the top down.
 
     Examples
     --------
@@ -80,10 +80,10 @@ def _name() -> Text[None]:
 class PointLink(Link):
     """A link between two points; a class derived from it defines its force.
 
-    Coordinates of points are those with all bodies upright and at rest under their weight: to the
-    right of the middle of the base of the body, and above it. Those of a point of the ground, or
-    of a wall that moves with it, are from the middle of the lowest base. Bodies are counted from
-    the top down.
+    Coordinates of points refer to all bodies upright and at rest under their weight, and are
+    measured to the right of the middle of the base of the body and upwards from it. Those of a
+    point of the ground, or of a wall that moves with it, are measured from the middle of the
+    lowest base. Bodies are numbered from the top down.
 
     Examples
     --------
@@ -106,10 +106,10 @@ class Restrainer(PointLink):
     The spring takes tension only, unless `compression` is set. Its force grows linearly from the
     elongation at which it becomes taut. It yields or breaks at its strength. A tie that has
     yielded keeps its plastic elongation, and becomes slack earlier. The dashpot acts in both
-    directions, taut or slack, until the tie breaks. Coordinates of points are those with all
-    bodies upright and at rest under their weight: to the right of the middle of the base of the
-    body, and above it. Those of a point of the ground, or of a wall that moves with it, are from
-    the middle of the lowest base.
+    directions, taut or slack, until the tie breaks. Coordinates of points refer to all bodies
+    upright and at rest under their weight, and are measured to the right of the middle of the
+    base of the body and upwards from it. Those of a point of the ground, or of a wall that moves
+    with it, are measured from the middle of the lowest base.
 
     Raises
     ------
@@ -276,8 +276,8 @@ class Load(Link):
     """Constant forces at a point that moves with a body, or a mass at this point.
 
     Examples are a floor that rests on a façade, and the thrust of a vault. Coordinates of the
-    point are those with all bodies upright and at rest under their weight: to the right of the
-    middle of the base of the body, and above it.
+    point refer to all bodies upright and at rest under their weight, and are measured to the
+    right of the middle of the base of the body and upwards from it.
 
     Raises
     ------
@@ -382,7 +382,7 @@ class _Impact(Declared[Any, Any]):
         )  # fmt: skip
 
     def write(self, value: WallImpact | float) -> float | str | None:
-        """Write the law or the number; None for the default, which elastic walls do not have."""
+        """Write the law or the number; None for the default, which elastic walls lack."""
         if value is self.default:
             return None
         return str(value) if isinstance(value, WallImpact) else value
@@ -394,8 +394,8 @@ class RearWall(Link):
     A rigid wall needs rigid ground, and touches the upright body along its whole height. The body
     rocks away from it about its front corner. When it returns, it strikes base and wall, and
     rebounds with a fraction of its angular velocity, :eq:`eq-wall-impact`. With a `stiffness` the
-    wall is elastic, and the base may be any: behind a gap, a spring and a dashpot act on the rear
-    face at a height while there is contact, which ends when the spring is unloaded.
+    wall is elastic, on any base: behind a gap, a spring and a dashpot act on the rear face at a
+    given height during contact, which ends when the spring is unloaded.
 
     Raises
     ------

@@ -345,7 +345,7 @@ _TRUTHS: Final = {"true": True, "false": False}
 
 
 class Count(Declared[int, Usual]):
-    """A parameter that is a whole number from 1 on."""
+    """A parameter that is a positive whole number."""
 
     written_as = "int"
     annotation = int
@@ -462,7 +462,7 @@ class DampingRatio(Ratio[None]):
         super().__init__(NOT_NEGATIVE, doc=doc, default=None)
 
     def caution(self, value: float) -> str | None:
-        """Ask whether per cent was meant by a value above 1."""
+        """Ask whether a value above 1 was meant in per cent."""
         if value <= CRITICAL:
             return None
         return (

@@ -139,7 +139,7 @@ class RockingFrame(Component):
         return self.given.column.cautions()
 
     def parameters(self) -> tuple[str, ...]:
-        """Name the numbers other than zero on which the motion depends.
+        """Name the nonzero numbers on which the motion depends.
 
         Returns
         -------
@@ -188,7 +188,7 @@ class RockingFrame(Component):
 
 
 def frame_outlines(si: RockingFrameSI) -> list[list[tuple[float, float]]]:
-    """Give the corners of all columns and of the beam; the origin is amid their bases [m]."""
+    """Give the corners of all columns and of the beam, from the middle of the bases [m]."""
     half, height = si.column.half_width, si.column.height
     places = column_places(si)
     reach, top = places[-1] + 2.0 * half, height + si.beam_height

@@ -1,4 +1,4 @@
-"""A stack of bodies, one upon another."""
+"""A stack of bodies, one on top of another."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -36,13 +36,13 @@ class Stack(Component):
     *bodies : Block
         At least two bodies, from the top down, such as statue and plinth or drums of a column.
     interfaces : sequence of Component
-        The bases between the bodies, from the top down, one less than bodies: each a
+        The bases between the bodies, from the top down, one fewer than the bodies: each is a
         :class:`TwoSpringSupport`, a :class:`WinklerSoil` or a :class:`RigidGround`. The base of
         the lowest body is a part of the system. Frequency ratio and damping ratio of a base refer
         to all bodies above it as one body.
     offsets : sequence of str or pint.Quantity, optional
-        Distance of the middle of the base of each body but the lowest to the right of that of the
-        body below [m]; zero unless given.
+        Horizontal distance from the middle of the base of the body below to that of each body but
+        the lowest, positive to the right [m]; zero unless given.
 
     Raises
     ------

@@ -51,7 +51,7 @@ class LinkEvent(NamedTuple):
 
 
 class LinkLaw:
-    """The methods of a law; the first two are to be given, the others where they differ.
+    """The methods of a law; the first two are required, the others override defaults.
 
     `state` is the state of the law, `own` its variables, by their indices.
     """
@@ -284,8 +284,8 @@ class Tie(NamedTuple):
     damping: float  # c/m
     free: float  # elongation at which it becomes taut
     most: float  # elongation of the spring at its strength
-    brittle: float  # 1 where it breaks then, 0 where it yields
-    pushes: float  # 1 where it also resists compression
+    brittle: float  # 1 if it breaks then, 0 if it yields
+    pushes: float  # 1 if it also resists compression
 
     def force(self, state: int, stretch: Stretch, own: Vector) -> float:
         """Give k x + c l'; k x is the strength while it yields, and zero while it is slack."""

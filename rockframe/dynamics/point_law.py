@@ -50,7 +50,7 @@ def point_at(line: BaseLine, place: float, settlement: float) -> Point:
 
 
 class PointLaw:
-    """The methods of a law; the first three are to be given, the others where they differ.
+    """The methods of a law; the first three are required, the others override defaults.
 
     `state` is the state of the law, `own` its variables at the point, by their indices.
     """
@@ -106,7 +106,7 @@ class PointLaw:
 
     @inlined
     def guard(self, state: int, point: Point, own: Any) -> tuple[float, float]:
-        """Give a function that falls through zero where the law goes on to its next state.
+        """Give a function that falls through zero where the law changes to its next state.
 
         And its rate. It is evaluated for points that touch; any other event of a point sets the
         law to state 0.

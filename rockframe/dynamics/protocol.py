@@ -288,7 +288,7 @@ class Start:
 
 @dataclass(frozen=True)
 class Ending:
-    """Where a run ended, so that another can go on from there."""
+    """Where a run ended, so that another can continue from there."""
 
     mode: int  # of the model
     state: Vector  # as the system has it

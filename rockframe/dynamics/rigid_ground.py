@@ -187,7 +187,7 @@ class BlockOnRigidGround(RockingNumbers, OnRigidGround):
         before = state[1]
         new = ON_LEFT if mode == ON_RIGHT else ON_RIGHT
         after = self.corner(new).restitution * before
-        if self.wall != 0.0:  # it goes on rocking about the same corner, away from the wall
+        if self.wall != 0.0:  # it continues to rock about the same corner, away from the wall
             new, after = mode, self.rebound * before
         state[0] = 0.0
         restoring = held - self.side(new) * self.angular_acceleration(new, 0.0, ground)

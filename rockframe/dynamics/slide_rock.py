@@ -208,7 +208,7 @@ class SlideSwitches(SlideMotion):
 
     @kernel
     def lie_flat(self, state: Vector, across: float, up: float) -> None:
-        """Stop a block that lands on its whole base; the slip that friction leaves goes on."""
+        """Stop a block that lands on its whole base; the slip that friction leaves continues."""
         left = abs(across) - self.impulsive * -up if self.impulsive < math.inf else 0.0
         lasts = left > 0.0 and not self.creeps(left)
         state[SIZE + SLIP] = math.copysign(left, across) if lasts else 0.0
@@ -216,7 +216,7 @@ class SlideSwitches(SlideMotion):
 
     @kernel
     def roll_over(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Strike the ground with the other corner; go on rocking about it, or on the whole base.
+        """Strike the ground with the other corner; continue rocking about it, or on the whole base.
 
         From rocking about a held corner the corner that strikes slips as in :eq:`eq-slide-through`.
         """

@@ -1,4 +1,4 @@
-"""Bodies upon one another with their bases: bounds of natural frequencies and damping rates."""
+"""Stacked bodies with their bases: bounds of natural frequencies and damping rates."""
 
 import math
 from collections.abc import Sequence

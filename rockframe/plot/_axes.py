@@ -83,7 +83,7 @@ def key(axes: "Axes", named: tuple[Any, Any] | None = None, **style: Any) -> Non
 
 
 def apart(words: list[str]) -> tuple[str, list[str]]:
-    """Give the parts between commas that labels have in common, and their remaining parts."""
+    """Split labels at commas into the parts that they have in common, and the other parts."""
     parts = [one.split(", ") for one in words]
     common = [one for one in parts[0] if all(one in other for other in parts)]
     rest = [", ".join(one for one in other if one not in common) for other in parts]

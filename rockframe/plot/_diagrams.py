@@ -65,7 +65,7 @@ def phase(
     Returns
     -------
     matplotlib.axes.Axes
-        A dot marks the start of each run; crosses mark the rotations of unstable equilibrium, where
+        A dot marks the start of each run; crosses mark the rotations of unstable equilibrium if
         the runs come near them.
 
     Raises
@@ -215,7 +215,7 @@ def energies(
     -------
     matplotlib.axes.Axes
         Stacked areas are the changes of energies since the start, and the losses; a line is the
-        input. The balance holds where the areas above zero less those below it reach the line.
+        input. The balance holds if the areas above zero minus those below it reach the line.
 
     Raises
     ------
@@ -289,7 +289,7 @@ def _held(system: System, largest: float) -> xr.Dataset:
     left, right = system.setting.overturning_angles
     largest = above_zero(largest, "moment_rotation", "largest")
     wall = system.parts.wall
-    if wall is not None and not wall.elastic:  # the body is held to the other side alone
+    if wall is not None and not wall.elastic:  # the body is held to the other side only
         left, right = (left, 0.0) if wall.direction > 0.0 else (0.0, right)
     angles = np.linspace(-largest * left, largest * right, _ANGLES)
     return system.moment_rotation((angles, str(ANGLE.unit)))

@@ -68,9 +68,9 @@ def dynamic_analysis(
     """Draw the intensity over the peak rotation, and over the share of motions that overturned.
 
     The left panel has a grey line for each motion. A filled marker shows where the motion first
-    overturns, hollow markers show where the verdict changes again. Of four motions or more the
+    overturns, hollow markers show where the verdict changes again. For four motions or more the
     fractiles are drawn too: the peaks below which 16, 50 and 84 % of the motions stay at an
-    intensity; where one becomes horizontal, only that share still stands. Fewer motions have a
+    intensity. Where one becomes horizontal, only that share still stands. Fewer motions have one
     colour each. The right panel shows the share of motions whose capacity is below an intensity,
     for each limit state.
 

@@ -160,7 +160,7 @@ def subset_simulation(
     demand, level = demand[order], data["sample_level"].to_numpy()[known][order]
     reached = np.cumsum(data["sample_weight"].to_numpy()[known][order])
     finite = np.isfinite(demand)
-    # of samples with equal demand the last one has the weight of all
+    # the last of several samples with equal demand has the weight of all of them
     last = np.flatnonzero(finite & np.append(demand[1:] != demand[:-1], True))
     for number in data["sampling_level"].to_numpy():
         those = last[level[last] == number]

@@ -47,7 +47,7 @@ class Drawn:
 
 
 def motions_title(values: list[Drawn]) -> str:
-    """Give the title of a figure: the name of a single motion, else none."""
+    """Give the title of a figure: the name of a single motion, otherwise none."""
     if len(values) != 1:
         return ""
     (one,) = values
@@ -101,7 +101,7 @@ def motion(
     ----------
     motion : GroundMotion, or sequence or mapping of them
         The motion, or several to compare. The vertical component of a single motion is drawn
-        behind the horizontal one; of several only the horizontal components are drawn. The ground
+        behind the horizontal one; for several only the horizontal components are drawn. The ground
         starts from rest, and nothing is corrected.
     window : (str or Quantity or None, str or Quantity or None), optional
         Start and end of what is drawn; the whole motion unless given [s].
@@ -111,7 +111,7 @@ def motion(
     Returns
     -------
     Panels
-        Three panels. Of a single motion the peaks of what is drawn are marked.
+        Three panels. For a single motion the peaks of the drawn histories are marked.
 
     Raises
     ------
@@ -211,7 +211,7 @@ def velocity_pulse(
     Returns
     -------
     Panels
-        Time is that of the motion; ground at rest before it is at negative times.
+        The time axis is that of the motion; the ground at rest before it has negative times.
 
     Raises
     ------

@@ -47,8 +47,9 @@ def overturning_map(
     Returns
     -------
     matplotlib.axes.Axes
-        On rigid ground the axes are the amplitude over that of uplift and the frequency over the
-        frequency parameter of the block, unless `units` has a unit of accelerations.
+        On rigid ground the axes are the amplitude divided by that of uplift, and the frequency
+        divided by the frequency parameter of the block, unless `units` has a unit of
+        accelerations.
 
     Examples
     --------

@@ -106,7 +106,7 @@ class Sheet:
         return self.panels[0]
 
     def entitle(self, usual: str, title: str | None) -> None:
-        """Write the title above a new figure; above given panels only a title of the caller."""
+        """Write the title above a new figure; above given panels only if the caller set one."""
         if title is not None:
             text(title, owner="rf.plot", name="title")
         if self.own is not None:
@@ -118,9 +118,9 @@ class Sheet:
     def legend(
         self, handles: Sequence[Any], labels: Sequence[str], *, columns: int = 12, **style: Any
     ) -> None:
-        """Write a legend below a new figure; of given panels, above the data of the last one.
+        """Write a legend below a new figure, or above the data of the last given panel.
 
-        It has as many columns as there is room for, and `columns` at most.
+        It has as many columns as there is room for, at most `columns`.
         """
         if self.own is None or not labels:
             key(self.panels[-1], (handles, labels))

@@ -425,7 +425,7 @@ def _rotation(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
 
 
 def _uplift(axes: Axes, dataset: xr.Dataset, unit: Shown | None) -> None:
-    """Draw the rotations at which contact is first lost, where the run comes near them."""
+    """Draw the rotations at which contact is first lost, if the run comes near them."""
     uplift, peak = float(dataset["uplift_angle"]), float(np.abs(dataset["rotation"]).max())
     if not (np.isfinite(uplift) and 0.0 < uplift < _NEAR * peak):
         return

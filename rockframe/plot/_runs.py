@@ -77,7 +77,7 @@ def window_of(window: object, function: str, name: str = "window") -> tuple[floa
 
 
 def runs_title(runs: list[Run], units: ReaderUnits) -> str:
-    """Give the title of a figure: the verdict of a run; of several, their common motion."""
+    """Give the title of a figure: the verdict of one run, or the common motion of several."""
     if len(runs) == 1:
         return verdict_of_case(runs[0].dataset, units)
     motions = {str(run.dataset.attrs.get("motion", "")) for run in runs}
@@ -85,7 +85,7 @@ def runs_title(runs: list[Run], units: ReaderUnits) -> str:
 
 
 def verdict_of_case(run: xr.Dataset, units: ReaderUnits) -> str:
-    """Give the verdict of a run; of a case of a sweep, whose verdict is that of all, its own."""
+    """Give the verdict of a run, also of one case of a sweep, whose attribute covers all cases."""
     if "axes_json" not in run.attrs:
         return units.of_sentence(str(run.attrs.get("verdict", "")))
     fell = verdict_of(run)

@@ -66,8 +66,8 @@ def scene(
     -------
     matplotlib.axes.Axes
         To scale, in metres or in the unit of lengths in `units`, with the middle of the lowest
-        base at the origin. A block is drawn as the rectangle of its width and height, whatever it
-        was made from, and a frame with its members. Pads, which have no thickness in the
+        base at the origin. A block is always drawn as the rectangle of its width and height, and a
+        frame with its members. Pads, which have no thickness in the
         equations, are drawn with one.
 
     Raises
@@ -134,7 +134,7 @@ def state(
     Returns
     -------
     matplotlib.axes.Axes
-        As of :func:`scene`, relative to the ground, :eq:`eq-scene-places`; the bodies at rest are
+        As for :func:`scene`, relative to the ground, :eq:`eq-scene-places`; the bodies at rest are
         dashed. Contact has its own colour: points and lines of bases in contact, and compressed
         pads. A broken restrainer is not drawn.
 

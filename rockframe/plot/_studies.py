@@ -110,8 +110,8 @@ def sweep(
     ----------
     runs : xarray.Dataset
         Result of :func:`rockframe.sweep`, :func:`rockframe.concat` or
-        :func:`rockframe.earthquake_sequences`, with two dimensions at most; of more dimensions
-        choose two, for example with ``runs.isel(motion=0)``.
+        :func:`rockframe.earthquake_sequences`, with two dimensions at most. Select two of more
+        dimensions, for example with ``runs.isel(motion=0)``.
     variable : str, optional
         Name of the scalar, such as ``"peak_rotation"`` or ``"overturned"``.
 

@@ -1,7 +1,7 @@
 """Small bounces at the end of rocking: bounds of all members of a set, whatever their order.
 
-Where excursions are smaller than the width of a set of states, its members strike at different
-times and single impacts cannot be enclosed. Their speeds and heights can: :eq:`eq-proof-bounces`.
+If excursions are smaller than the width of a set of states, its members strike at different times
+and single impacts cannot be enclosed. Their speeds and heights can: :eq:`eq-proof-bounces`.
 """
 
 from dataclasses import dataclass, replace
@@ -74,7 +74,7 @@ def settle(
 ) -> "Instant | Lifted | None":
     """Follow bounces from bounds of rotation and rate until all members rest, or all have lifted.
 
-    Gives the instant from which on all are at rest, or their state after lifting, or None if
+    Returns the instant after which all are at rest, or their state after lifting, or None if
     neither is proved.
     """
     ground = problem.ground(instant.number).at(instant.after)
@@ -148,8 +148,8 @@ class _Bounds:
     def over(self, ground: GroundPiece, window: Ball) -> "_Bounds | Ball | None":
         """Follow the members over a window, :eq:`eq-proof-bounces`.
 
-        Gives the bounds at its end, or the time after which all are at rest [s], or None if the
-        window is too long.
+        Returns the bounds at its end, or the time after which all are at rest [s], or None if
+        the window is too long.
         """
         e = self.restitution
         reach = upper(self.height + 2 * self.speed * window)

@@ -81,9 +81,9 @@ class Course:
         self.states = SetOfStates.about([ball(rotation), ball(rate)], self.uncertain)
 
     def overturns(self) -> bool:
-        """Follow the set until it is proved whether it overturns; `beyond` tells when.
+        """Follow the set until it is proved whether it overturns; `beyond` holds the time.
 
-        Raises `Undecided` where that cannot be proved.
+        Raises `Undecided` if that cannot be proved.
         """
         while True:
             verdict = self._stands() if self.sign == 0 else self._rocks()
@@ -315,7 +315,7 @@ class Course:
             return False
         try:
             found = settle(problem, Instant(self.number, self.after), height, speed)
-        except Undecided:  # by the motion of the ground; the course may go on without this proof
+        except Undecided:  # by the motion of the ground; the course may continue without this proof
             return False
         if found is None or (isinstance(found, Lifted) and not lift):
             return False

@@ -243,7 +243,7 @@ def advance(
 
 
 class ShortFlow(NamedTuple):
-    """Derivatives of a flow so short that they are near those of the identity."""
+    """Derivatives of a flow that is short enough for them to be near the identity."""
 
     matrix: Matrix  # by the state
     angle: Ball  # of either component by theta

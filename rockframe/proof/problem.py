@@ -1,4 +1,4 @@
-"""The problem that a proof is about: a block and its ground, in balls about the floats of a run."""
+"""The problem of a proof: a block and its ground, in balls around the floats of a run."""
 
 from dataclasses import dataclass, field
 from itertools import zip_longest
@@ -166,7 +166,7 @@ class Shaking:
         return moving * ball(self.motion.time_step) + still * ball(self.still_step) + after
 
     def joins(self, number: int) -> bool:
-        """Whether the ground acceleration surely does not jump at the end of an interval."""
+        """Whether the ground acceleration is proved continuous at the end of an interval."""
         components = [one for one in (self.motion.horizontal, self.motion.vertical) if one]
         lines = all(one.polynomials is None for one in components)
         ends = number == self.count - 1 and any(one.samples[-1] != 0.0 for one in components)

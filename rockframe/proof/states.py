@@ -35,7 +35,7 @@ class SetOfStates(NamedTuple):
         ]
 
     def influences(self) -> list[float]:
-        """Give how much each uncertain input changes the first component at most."""
+        """Give the largest change of the first component by each uncertain input."""
         pairs = zip(self.inputs[0], self.uncertain, strict=True)
         return [float((row * one).abs_upper()) for row, one in pairs]
 

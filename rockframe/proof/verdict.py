@@ -29,7 +29,7 @@ EXACT: Final = Tolerances()
 
 @dataclass(frozen=True)
 class Proof:
-    """A proved verdict, or why none was reached; :func:`rockframe.prove` gives it.
+    """A proved verdict, or why none was reached; returned by :func:`rockframe.prove`.
 
     Parameters
     ----------
@@ -38,8 +38,8 @@ class Proof:
     reason : str
         Why nothing is proved; empty for a proof.
     earliest, latest : float
-        Times between which the rotation reaches the overturning angle; where nothing is proved,
-        the time at which the proof ended; NaN for a block that is safe [s].
+        Times between which the rotation reaches the overturning angle; the time at which the
+        proof ended if nothing is proved; NaN for a block that is safe [s].
     width : float
         Greatest radius of the rotations enclosed at the samples [rad].
     impacts : int
@@ -49,9 +49,9 @@ class Proof:
     scale : float
         Scale of the motion [1].
     law : str
-        Law of impacts or pads that the proof is about, in words.
+        Law of impacts or pads to which the proof applies, in words.
     restitution_tolerance, scale_tolerance : float
-        Largest deviations of restitutions and scale in the set that the proof is about [1].
+        Largest deviations of restitutions and scale in the set that the proof covers [1].
     angle_tolerance : float
         Largest deviation of theta in that set [rad].
     parts : int
@@ -92,11 +92,11 @@ class Proof:
 
     @property
     def overturns(self) -> bool | None:
-        """Whether the block overturns; None where that is undecided."""
+        """Whether the block overturns; None if that is undecided."""
         return self.verdict == OVERTURNS if self.decided else None
 
     def agrees(self, overturned: bool | None, end: float) -> bool:
-        """Whether the proved verdict is that of a run up to a time [s]."""
+        """Whether the proved verdict agrees with that of a run up to a time [s]."""
         if overturned is None or not self.decided:
             return False
         if overturned:

@@ -94,7 +94,7 @@ def _sheets(columns: Iterable[_Column]) -> list[list[_Column]]:
 
 
 def _verdict(dataset: xr.Dataset, place: int) -> str:
-    """Give the verdict on a case; of a run that was not completed its status."""
+    """Give the verdict on a case, or the status of an unfinished run."""
     status = dataset["status"]
     one = status.isel(dict.fromkeys(status.dims, 0)).copy()
     one.values = status.to_numpy().ravel()[place]
@@ -138,7 +138,7 @@ def _over_cases(over: Callable[..., Any], column: _Column, units: ReaderUnits) -
 
 
 def _columns(dataset: xr.Dataset, names: Sequence[str], units: ReaderUnits) -> Iterator[_Column]:
-    """Give the columns of the variables that any case has; of several bodies one each."""
+    """Give the columns of the variables that any case has; one for each of several bodies."""
     status = dataset["status"]
     for name in names:
         if name not in dataset or not set(status.dims) & set(dataset[name].dims):

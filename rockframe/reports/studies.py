@@ -86,7 +86,7 @@ def varied_in_words(dataset: xr.Dataset) -> str:
 
 
 def run_of_case(dataset: xr.Dataset, motions: Any) -> xr.Dataset:
-    """Simulate a case that was picked out of a sweep; without its motion give it as it is."""
+    """Simulate a case selected from a sweep; return it unchanged without its motion."""
     try:
         return case(dataset, motions=motions).simulate(outputs=())
     except (SchemaError, StudyError):

@@ -95,10 +95,10 @@ def report(
     Returns
     -------
     Path
-        The file. Of a run it shows the verdict with its certificate, the scene, the motion and its
-        measures, all scalars, all histories, limits of validity, and provenance. Of a sweep it
+        The file. For a run it shows the verdict with its certificate, the scene, the motion and its
+        measures, all scalars, all histories, limits of validity, and provenance. For a sweep it
         shows all cases in a table with mean and largest values, a figure, and the worst case as a
-        run; of other analyses their figure and numbers. Of a study it also shows the available
+        run; for other analyses the figure and numbers. For a study it also shows the available
         records, with their spectra and the target.
 
     Raises
@@ -106,9 +106,9 @@ def report(
     SchemaError
         Not a dataset, or not one of rockframe.
     ComponentError
-        An argument that cannot be read: a title that is not text, an unknown entry of the project,
+        An argument is invalid: a title that is not text, an unknown entry of the project,
         motions that are not those of the study, units, a target or checks of another type, or
-        `certify` or `overwrite` neither True nor False.
+        `certify` or `overwrite` that is not True or False.
     UnitsError
         A unit of another kind.
     FileError

@@ -1,4 +1,4 @@
-"""Joining of runs into one dataset, whose attributes are those that all runs share."""
+"""Joining of runs into one dataset, which keeps the attributes that all runs share."""
 
 import hashlib
 import json
@@ -82,21 +82,21 @@ def concat(
     Raises
     ------
     SchemaError
-        No runs, something other than datasets, a different number of labels than of runs, or
-        runs that do not fit one another.
+        No runs, something other than datasets, different numbers of labels and runs, or runs
+        that do not fit one another.
 
     Notes
     -----
     An attribute is kept if every run has it with the same value. Attributes that describe the
-    outcome of one run are left out even so: `verdict`, `overturned`, `overturning_time`,
+    outcome of one run are always left out: `verdict`, `overturned`, `overturning_time`,
     `overturning_direction`, `cautions`, `certificate`, `certificate_runs`, `proof`,
     `proof_verdict`, `proof_bits`, `solver_substeps`, `solver_steps`, `solver_rejected_steps`,
     `solver_end_time`, `end_state`, `impacts_of_several_modes`, `impacts_of_no_mode` and
     `corners_held_without_pressing`; and `case_count` of a sweep. Sweeps that differ only along one
-    axis, or only in their motions, become one sweep. So the order in which runs are joined does
-    not matter. `xarray.concat` with ``combine_attrs="drop_conflicts"`` keeps attributes that only
-    some datasets have: joining runs of which some overturned with runs of which none did, it
-    would say that none did.
+    axis, or only in their motions, become one sweep. The order in which runs are joined therefore
+    does not matter. `xarray.concat` with ``combine_attrs="drop_conflicts"`` keeps attributes that
+    only some datasets have: if only some of the joined datasets contain runs that overturned, the
+    result would state that none did.
 
     Examples
     --------
@@ -201,7 +201,7 @@ def _type_flags(joined: xr.Dataset) -> None:
 
 
 def _with_motions(rows: Sequence[xr.Dataset], dim: str) -> list[xr.Dataset]:
-    """Add the names of motions to rows as a coordinate, where they are no shared attribute."""
+    """Add the names of motions to rows as a coordinate, unless they are a shared attribute."""
     lacking = [row for row in rows if MOTION not in row.variables]
     names = {row.attrs.get(MOTION) for row in lacking}
     known = all(isinstance(name, str) for name in names)

@@ -200,7 +200,7 @@ def scalars(
 ) -> dict[str, Generic | float | int | bool]:
     """Give the scalars of a run by their names in the schema, also those of each body."""
     angles = setting.overturning_angles
-    # peaks of a body that did not move go without the sign that zero may have
+    # peaks of a body that did not move have no negative zeros
     sides: dict[str, Generic | float] = {}
     if setting.leans:
         sides = {
@@ -241,7 +241,7 @@ def overturns(runs: xr.Dataset) -> xr.DataArray:
 
 
 def verdict_of(run: xr.Dataset) -> bool | None:
-    """Give the verdict of one run, see :func:`overturns`; None where it has none."""
+    """Give the verdict of one run, see :func:`overturns`; None if it has none."""
     found = float(overturns(run))
     return None if math.isnan(found) else bool(found)
 
@@ -263,7 +263,7 @@ _ENDINGS = {
 
 
 def verdict(run: Summary, setting: Setting, model: ContactModel) -> str:
-    """Say in one sentence what became of the block."""
+    """Describe the outcome for the block in one sentence."""
     of = " of body 1" if model.shows_bodies else ""
     broken = [setting.link_names[i] for i in broken_links(model, run.ending)]
     impacts = f"{run.impact_count} impact{'' if run.impact_count == 1 else 's'}"
@@ -346,7 +346,7 @@ OF_WHAT_IT_STANDS_ON = ("cap_acceleration",)
 
 
 def slope_attributes(slope: Slope) -> dict[str, str]:
-    """Give the attributes of a result that say what its axes are."""
+    """Give the attributes of a result that describe its axes."""
     axes = "horizontal and vertical"
     if not slope.level:
         side = "right" if slope.inclination > 0.0 else "left"

@@ -47,7 +47,7 @@ def table(
     *,
     units: UnitsLike = None,
 ) -> pd.DataFrame:
-    """Give results as a pandas DataFrame, with units in the heads of its columns.
+    """Convert results to a pandas DataFrame with units in the column headings.
 
     Parameters
     ----------
@@ -63,23 +63,23 @@ def table(
     Returns
     -------
     pandas.DataFrame
-        A column is headed by name and unit, such as ``peak_rotation [rad]``, and by the name
-        alone where there is no unit or it is 1. Flags are words, such as ``right``; truth
-        values are True and False. A variable of runs over points, bodies or restrainers has a
-        column for each of these, such as ``peak_body_slip 1 [m]``.
+        Column headings are the name and unit, such as ``peak_rotation [rad]``, or only the
+        name if there is no unit or it is 1. Flags are words, such as ``right``; truth values
+        are True and False. A variable over points, bodies or restrainers has a column for each
+        of these, such as ``peak_body_slip 1 [m]``.
 
         The index of joined runs has their dimensions, with one row for each combination. Variables
         of different dimensions, such as responses over the intensity and intensities over the
-        response, have rows of their own, one below the other, in which the other dimensions are
-        missing; for some variables alone give ``dataset[["name"]]``. The index of a single run, or
-        of several, has the name of the motion, where all runs have one, and coordinates without
-        dimension; then the number of the run in the list, where these do not tell the runs
-        apart. Histories add ``time [s]``, events their number.
+        response, have separate rows, one below the other, in which the other dimensions are
+        missing; pass ``dataset[["name"]]`` to convert only some variables. The index of a single
+        run, or of several, has the name of the motion, if all runs have one, and coordinates
+        without dimension; then the number of the run in the list, if these do not distinguish
+        the runs. Histories add ``time [s]``, events their number.
 
     Raises
     ------
     SchemaError
-        No dataset, or one without such contents.
+        Not a dataset, or one without such contents.
     ComponentError
         Unknown contents, or a unit for an unknown kind of quantity.
     UnitsError
@@ -176,7 +176,7 @@ def _labels(runs: Sequence[xr.Dataset]) -> pd.Index:
 
 
 def _rows(run: xr.Dataset, kind: Contents) -> pd.DataFrame:
-    """Give a dataset's own rows, without the labels that all of them share."""
+    """Give the rows of a dataset, without the labels that all of them share."""
     names = _names(run, kind)
     if not names:
         msg = f"{_OWNER}: the dataset holds no {kind}; {_MISSING[kind]}"

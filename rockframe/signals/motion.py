@@ -139,8 +139,8 @@ class Signal:
         Returns
         -------
         ndarray
-            Accelerations, in the shape of `time`: a sample itself where the time is its own but
-            for rounding; zero before the start and after the end [m s^-2].
+            Accelerations, in the shape of `time`: exactly a sample if the time is that of the
+            sample up to rounding; zero before the start and after the end [m s^-2].
         """
         place = np.asarray(time, dtype=np.float64) / self.time_step
         if np.isnan(place).any():

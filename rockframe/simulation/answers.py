@@ -134,7 +134,7 @@ class _Observed:
 
     def __init__(self, system: Assembly, plan: Plan, run: Trajectory) -> None:
         self.system, self.plan, self.run = system, plan, run
-        # whether all columns are needed along the steps, or those alone whose peaks are results
+        # whether all columns are needed along the steps, or only those whose peaks are results
         self.whole = bool(plan.points or plan.diagnostics)
         events, slope, count = run.events, system.options.slope, len(run.time)
         ground = ground_at(plan.motion, np.concatenate([run.time, events.time, events.time]))
@@ -186,8 +186,8 @@ class _Observed:
     def along(self, until: float) -> AlongSteps:
         """Give the quantities along the steps up to a time, from the columns along all steps.
 
-        Steps are left out in which friction stops the small slip that an impact or a change of the
-        held point has left: a base that holds takes an impulse there instead, which is no force.
+        Steps in which friction stops the small slip left by an impact or a change of the held
+        point are left out: there a base that holds takes an impulse instead of a force.
         """
         run, slope, load = self.run, self.system.options.slope, self.system.setting.load
         memory, steps = memory_at_outputs(run)[0], run.kept_steps.until(until)
@@ -235,7 +235,7 @@ def _of_users(
     along: AlongSteps,
     missing: list[str],
 ) -> dict[str, Any]:
-    """Give what users' own bases, scenes and diagnostics tell of a run."""
+    """Give the results of user-defined bases, scenes and diagnostics for a run."""
     plan, system, found = seen.plan, seen.system, dict[str, Any]()
     for own in (system.setting, *system.parts.structural()) if plan.histories else ():
         if isinstance(own, OwnAnswers):
@@ -306,7 +306,7 @@ def _level(moved: Array, slope: Slope) -> Array:
 
 
 def or_missing(work: Callable[[], Found], instead: Found, what: str, missing: list[str]) -> Found:
-    """Compute something that goes with a finished run; if it fails, note it and give `instead`."""
+    """Compute a further result of a finished run; if that fails, note it and return `instead`."""
     try:
         return work()
     except Warning:  # the user has made warnings errors

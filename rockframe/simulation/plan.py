@@ -1,7 +1,7 @@
 """The plan of a run: its arguments, checked against the system and one another.
 
-Also the outputs that it gives on request, and its start: at rest, from an initial state, or from
-the end of another run.
+Also the requested outputs, and the start: at rest, from an initial state, or from the end of
+another run.
 """
 
 import json
@@ -152,7 +152,7 @@ def start_of(beginning: Beginning) -> Start | Ending:
 
 
 def continuation_of(dataset: xr.Dataset, system: Assembly, faults: list[str]) -> Beginning:
-    """Read the end of a run from its dataset, or add to faults why no run can go on from it."""
+    """Read the end of a run from its dataset; add to faults if no run can continue from it."""
     attributes: Mapping[str, Any] = cast("Mapping[str, Any]", dataset.attrs)
     if END_STATE not in attributes or "system_json" not in attributes:
         faults.append("initial is a dataset that holds no end of a run; expected one of simulate()")
@@ -190,7 +190,7 @@ def _with_new_peaks(ending: Ending, system: Assembly) -> Ending:
 
 
 def _came_back(dataset: xr.Dataset, system: Assembly, ending: Ending) -> bool:
-    """Whether a run that passed the overturning angle has not overturned, and ends within it."""
+    """Whether a run passed the overturning angle but ended within it without overturning."""
     rotation = system.model.rotation_in(ending.state)
     within = abs(rotation) < system.setting.overturning_angles.on_side_of(rotation)
     return within and "status" in dataset and verdict_of(dataset) is False
@@ -324,7 +324,7 @@ def plan_run(
 
 
 def read_arguments(faults: list[str], **options: Unpack[RunArguments]) -> RunRequest:
-    """Read the arguments of a run, as far as that needs neither system nor motion."""
+    """Read those arguments of a run that need neither system nor motion."""
     duration = _read_time("duration", options.get("duration"))
     free_vibration = _read_time("free_vibration", options.get("free_vibration"))
     if duration is not None and free_vibration is not None:

@@ -1,4 +1,4 @@
-"""Attributes by which a result describes its motion and system, and the way back to these."""
+"""Attributes of a result that describe its motion and system, and rebuilding of both from them."""
 
 import json
 from collections.abc import Iterable, Mapping

@@ -1,4 +1,4 @@
-"""Functions by which users prove verdicts, over the package proof."""
+"""Public functions that prove verdicts, based on the package proof."""
 
 from dataclasses import dataclass, replace
 from importlib.util import find_spec
@@ -47,43 +47,44 @@ def prove(
     Parameters
     ----------
     system : System
-        A block on rigid ground, with ``rotation="finite"``, inclined ground too; or on a
+        A block on rigid ground, level or inclined, with ``rotation="finite"``; or on a
         :class:`TwoSpringSupport` on level ground, held at its centre or by contact state.
     motion : GroundMotion, optional
-        With or without vertical component; a pulse in closed form is proved for the polynomials
-        by which runs represent it. The motion among the parts unless given.
+        With or without vertical component. For a pulse in closed form the proof holds for the
+        polynomials by which runs represent it. The motion among the parts unless given.
     scale : float, optional
         Factor of both components, taken as exact [1].
     restitution_tolerance : float, optional
         The proof holds for all coefficients of restitution of either corner that differ from the
         given ones by no more than this [1].
     scale_tolerance : float, optional
-        It holds also for all scales that differ by no more than this; on rigid ground [1].
+        The proof also holds for all scales that differ by no more than this; only on rigid
+        ground [1].
     angle_tolerance : str or Quantity, optional
-        It holds also for all angles theta of either corner that differ by no more than this, with
-        the same distance of the corner from the centre of mass, inertia and restitutions, and with
-        theta the angle that overturns; on rigid ground [rad].
+        The proof also holds for all angles theta of either corner that differ by no more than
+        this, with the same distance of the corner from the centre of mass, inertia and
+        restitutions, and with theta as the overturning angle; only on rigid ground [rad].
     parts : int, optional
-        Largest number of parts into which the set of all these numbers is divided, where nothing
-        can be decided for the whole set. Each part takes a proof of its own.
+        Largest number of parts into which the set of all these numbers is divided if nothing
+        can be decided for the whole set. Each part needs its own proof.
     initial : InitialState, optional
         Where the motion starts; at rest unless given.
 
     Returns
     -------
     Proof
-        Its ``verdict`` is ``"safe for ever"``, on ground that stays still after the record,
-        ``"overturns"``, between ``earliest`` and ``latest`` [s], or ``"undecided"``, with the
-        ``reason``; for a set that is decided in parts only, with the shares of these. Its text
-        says what has been proved.
+        Its ``verdict`` is ``"safe for ever"``, if the ground stays still after the record;
+        ``"overturns"``, between ``earliest`` and ``latest`` [s]; or ``"undecided"``, with the
+        ``reason``, and with the shares of the decided parts if only some parts of a set are
+        decided. Its text states what has been proved.
 
     Raises
     ------
     UnitsError
         An argument is no ratio.
     ComponentError
-        Not a System, a scene of another kind, small rotation on rigid ground, or
-        python-flint is not installed (``pip install rockframe[proof]``).
+        `system` is not a System, or is a scene of another kind; rotation is small on rigid
+        ground; or python-flint is not installed (``pip install rockframe[proof]``).
     AssemblyError
         As for :meth:`rockframe.System.simulate`.
 
@@ -120,7 +121,7 @@ def prove(
 
 @dataclass(frozen=True)
 class ProvedBracket:
-    """Two scales of a motion: at one the block is proved safe for ever, at the other to overturn.
+    """Two scales of a motion: one proved safe for ever, the other proved to overturn the block.
 
     Parameters
     ----------
@@ -136,7 +137,7 @@ class ProvedBracket:
 
     @property
     def width(self) -> float:
-        """Their distance, over the greater [1]."""
+        """Difference of both scales, divided by the greater [1]."""
         return abs(self.overturns - self.safe) / max(self.overturns, self.safe)
 
 
@@ -149,7 +150,7 @@ def prove_critical_scale(
     start: RatioLike = 1.0,
     initial: InitialState | None = None,
 ) -> ProvedBracket:
-    """Enclose a scale of a record at which the verdict changes, proved on both sides.
+    """Enclose a scale of a record at which the verdict changes, with proofs on both sides.
 
     Parameters
     ----------
@@ -158,7 +159,7 @@ def prove_critical_scale(
     motion : GroundMotion, optional
         A record; the one among the parts unless given.
     width : float, optional
-        Distance of both scales, over the greater, at which the search ends [1].
+        Difference of both scales, divided by the greater, at which the search ends [1].
     start : float, optional
         Scale from which the search begins, in steps of a tenth: upwards for a scale that
         overturns, or downwards for a safe one [1].
@@ -169,12 +170,12 @@ def prove_critical_scale(
     -------
     ProvedBracket
         ``safe``, ``overturns`` and ``width`` [1], and how many scales remained ``undecided``;
-        wider than `width` where no scale in between can be decided.
+        wider than `width` if no scale in between can be decided.
 
     Raises
     ------
     UnitsError, ComponentError, AssemblyError
-        As for :func:`prove`; or no scale of the other verdict was found.
+        As for :func:`prove`; or no scale with the other verdict was found.
 
     Notes
     -----
@@ -229,7 +230,7 @@ def prove_critical_scale(
 def _planned(
     system: object, motion: GroundMotion | None, initial: InitialState | None, owner: str
 ) -> tuple[Assembly, Plan]:
-    """Plan the run of which something is to be proved."""
+    """Plan the run about which something is to be proved."""
     assembly = getattr(system, "assembly", None)
     if not isinstance(assembly, Assembly):
         msg = f"{owner}: system must be a System, got {shown(system)}"
@@ -247,7 +248,7 @@ def proof_of(
     within: Tolerances = EXACT,
     owner: str = _OWNER,
 ) -> Proof:
-    """Prove the verdict of a planned run; raise ComponentError where that is not possible."""
+    """Prove the verdict of a planned run; raise ComponentError if that is not possible."""
     model, motion = system.model, plan.motion
     faults = _faults(system)
     if not plan.stop_at_overturning:
@@ -302,7 +303,7 @@ def _start_in_words(initial: Beginning) -> str:
 
 
 def _faults(system: Assembly) -> list[str]:
-    """Say why the verdicts of a scene cannot be proved; empty where they can."""
+    """Say why the verdicts of a scene cannot be proved; empty if they can."""
     law, options = system.model.system, system.options
     if isinstance(law, BlockOnRigidGround):
         faults = ["proofs on rigid ground are with rotation='finite'"] if options.small else []

@@ -35,7 +35,7 @@ def register(
     unit: Unit | str | None = None,
     long_name: str | None = None,
 ) -> None:
-    """Register something of your own: a base, a link, a scene, or a diagnostic.
+    """Register a user-defined base, link, scene or diagnostic.
 
     Parameters
     ----------
@@ -46,17 +46,17 @@ def register(
         :class:`~rockframe.extension.Diagnostic`.
     columns : sequence of Variable, optional
         Variables of results that only this base or scene has: over ``time``, over ``event``, over
-        dimensions of its own, each of which needs a column of its name with labels, or over no
-        dimension.
+        its own dimensions, or without dimensions. Each own dimension needs a column with its
+        name that contains the labels.
     name, unit, long_name : str, optional
-        For a function: the name of the diagnostic, that of the function unless given; the unit of
-        the numbers that it returns; and their meaning, the first line of its docstring unless
-        given.
+        For a function: the name of the diagnostic, by default that of the function; the unit of
+        the numbers that it returns; and their meaning, by default the first line of its
+        docstring.
 
     Raises
     ------
     ComponentError
-        Something does not have the required form; all faults are listed, and nothing is
+        The argument does not have the required form; all faults are listed, and nothing is
         registered.
 
     Examples

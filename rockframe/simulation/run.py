@@ -198,7 +198,7 @@ def run(
         frequency = system.setting.body.frequency_at(system.setting.gravity)
         objections = proof.objections(shown.overturned, summary.end_time, frequency)
         cautions += [(SolverWarning, text) for text in objections]
-    # an attribute of every run: xarray.concat would give one of a few runs to all of them
+    # an attribute of every run: otherwise xarray.concat would extend it from a few runs to all
     attributes["cautions"] = NONE
     for kind, text in cautions:
         warn(text, kind)
@@ -227,7 +227,7 @@ def run(
 
 
 def _looked_again(system: Assembly, plan: Plan, summary: Summary) -> tuple[float, list[Caution]]:
-    """Give the error of the peak by a second run with more steps, and the doubts it raises."""
+    """Give the error of the peak from a second run with more steps, and the doubts it raises."""
     second = respond(system, second_look(system, plan)).trajectory
     found = doubts(system.setting, plan, summary, second)
     return peak_error(summary, second), [(SolverWarning, text) for text in found]

@@ -131,8 +131,8 @@ class Certification:
     reach : float, optional
         Largest relative change of the motion's scale [1].
     runs : int, optional
-        Largest number of further runs; with more of them the verdict can be followed to larger
-        changes of scale where it changes often.
+        Largest number of further runs. If the verdict changes often, more runs allow larger
+        changes of scale to be examined.
 
     Raises
     ------

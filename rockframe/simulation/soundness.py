@@ -1,6 +1,6 @@
 """Checks of a finished run that give reasons to doubt it.
 
-Friction that bases lack to hold what stands on them, energies out of balance, a body that still
+Bases with too little friction to hold their bodies, energies out of balance, a body that still
 moves at the end, and impacts on rigid bases after which the motion is not unique.
 """
 
@@ -66,7 +66,7 @@ def unbalanced(
     base: "Callable[[], RunSummary]",
     run: "Callable[[Plan], RunSummary]",
 ) -> str | None:
-    """Say that a run is no solution, if its energies show that; `run` makes another run."""
+    """Say that a run is not a solution, if its energies show it; `run` makes another run."""
     residual, by_tolerance = summary.energy_residual, plan.accuracy.substeps is None
     if residual <= (BY_TOLERANCE if by_tolerance else doubtful_residual(system)):
         return None
@@ -126,7 +126,7 @@ def may_overturn_later(system: Assembly, summary: Summary) -> bool:
     held = upright or (beyond and bool(setting.link_names))
     if held and bool(np.all(np.abs(rates) < AT_REST * sizes)):
         return False
-    # scenes of users' own have no `wholes`
+    # user-defined scenes have no `wholes`
     if beyond or (setting.wholes and _whole_may_fall(system, ending)):
         return True
     kinetic, needed = _kinetic_energy(system, ending), setting.overturning_energy

@@ -67,15 +67,15 @@ class System(SystemValue):
         level unless given. Rotations are then relative to the base line, and displacements,
         velocities, accelerations and forces along and normal to it [rad].
     sliding : {"computed", "checked"}
-        What the friction of bases does: its forces let bodies slide, or a body is held and the
-        friction that it needs is compared with it. It is always compared in a cascade, on a base
-        of your own, and where a frame, or a block before a stiff wall, stands on the ground.
+        Whether bodies slide under the computed friction forces, or are held while the friction
+        they need is compared with that of the base. It is always compared in a cascade, on a
+        user-defined base, and if a frame, or a block before a stiff wall, stands on the ground.
 
     Raises
     ------
     AssemblyError
-        Parts or options do not fit, with all faults, and with the supported scenes if parts are
-        missing or do not combine; or the block falls by its own weight.
+        Parts or options do not fit, or the block falls by its own weight. The message lists all
+        faults, and the supported scenes if parts are missing or do not combine.
 
     Examples
     --------
@@ -147,17 +147,17 @@ class System(SystemValue):
         Parameters
         ----------
         motion : GroundMotion, optional
-            The ground's motion; the one among the parts unless given.
+            Motion of the ground; the one among the parts unless given.
         duration : str or Quantity, optional
             Length of the run; the motion's unless given. Beyond the motion the
             ground stands still [s].
         free_vibration : str or Quantity, optional
             Time added to the motion's length, instead of `duration` [s].
         initial : InitialState or xarray.Dataset, optional
-            Where the run starts; at rest unless given. With the result of another run of this
-            system it starts where that run ended, with its time at zero again.
+            Initial state; at rest unless given. With the result of another run of this system,
+            the run starts from the end of that run, and time starts at zero again.
         accuracy : {"fast", "standard", "reference"}, float or Accuracy
-            How accurate, and so how costly, the run is.
+            Accuracy, and thus cost, of the run.
         output_step : str or Quantity, optional
             Spacing of the histories; the motion's time step unless given [s].
         outputs : sequence of str, optional
@@ -166,27 +166,27 @@ class System(SystemValue):
             ``"impulse"`` and ``"energy"``. None keeps no histories at all, only events
             and scalars.
         points : mapping of str to (str or Quantity, str or Quantity), optional
-            Points of the body, by names of your own: how far to the right of the middle
-            of its base and how high above it they are at rest. Their displacements and
-            absolute accelerations are given over ``point`` and ``time``, and peaks of these
-            over ``point``, also where `outputs` is None [m].
+            Points of the body, by any names: distances at rest to the right of the middle of
+            its base and above it. Their displacements and absolute accelerations are given
+            over ``point`` and ``time``, and the peaks of these over ``point``, even if
+            `outputs` is None [m].
         overturning : {"stop", "continue"}
             Whether the run ends when the rotation reaches the overturning
-            angle, or goes on until the block lies flat.
+            angle, or continues until the block lies flat.
         certify : bool, Certification or "proved"
-            Whether some hundred further runs, with higher accuracy, slightly changed
-            parameters and scaled motions, show how sure the verdict is; or ``"proved"``, to
+            Whether to assess the certainty of the verdict by about a hundred further runs, with
+            higher accuracy, slightly changed parameters and scaled motions; or ``"proved"``, to
             prove the verdict as :func:`rockframe.prove` does.
         second_look : bool
             Whether a run with ``accuracy="fast"`` is repeated with 1.5 times as many steps and
-            without histories, to show whether its verdict and its peak rotation are sure. Runs
-            of other accuracies, and runs that are certified, are not repeated.
+            without histories, to check its verdict and its peak rotation. Runs of other
+            accuracies, and runs that are certified, are not repeated.
 
         Returns
         -------
         xarray.Dataset
-            Histories over ``time``, events over ``event``, and scalars; also of
-            a run that could not be finished, as its ``status`` tells.
+            Histories over ``time``, events over ``event``, and scalars; also for
+            an unfinished run, which its ``status`` indicates.
 
         Raises
         ------
@@ -197,8 +197,8 @@ class System(SystemValue):
         SolverError
             Unknown accuracy, or a tolerance out of range.
         ComponentError
-            `certify` is neither True, False, ``"proved"`` nor a Certification; or nothing can
-            be proved of the system.
+            `certify` is not True, False, ``"proved"`` or a Certification; or nothing can be
+            proved about the system.
 
         Examples
         --------
@@ -274,7 +274,7 @@ class System(SystemValue):
         Raises
         ------
         AssemblyError
-            The block stands on rigid ground, which leaves no small motion.
+            The block stands on rigid ground, where there is no small motion.
 
         Examples
         --------
@@ -289,7 +289,7 @@ class System(SystemValue):
         return frequencies(self._assembly)
 
     def moment_rotation(self, angles: object) -> xr.Dataset:
-        """Give the moments that hold the body at given rotations, in vertical equilibrium.
+        """Give the moments that hold the body at given rotations in vertical equilibrium.
 
         Parameters
         ----------
@@ -326,7 +326,7 @@ class System(SystemValue):
         Returns
         -------
         xarray.Dataset
-            Scalars: settlements and reactions of what the scene has,
+            Scalars: settlements and reactions of the parts of the scene,
             ``uplift_angle``, ``uplift_moment`` and ``overturning_angle``.
 
         Examples
@@ -347,8 +347,8 @@ class System(SystemValue):
         Returns
         -------
         dict
-            A motion among the parts stands under ``motion``: a pulse or a synthetic motion
-            by its recipe, a record with its samples.
+            A motion among the parts is stored under ``motion``: a pulse or a synthetic motion
+            by its parameters, a record by its samples.
 
         Examples
         --------
@@ -404,15 +404,15 @@ class System(SystemValue):
         Returns
         -------
         System
-            With the result's ground motion among its parts, where the dataset
-            holds enough of it (analytic pulses always; records where the
-            histories have the record's own time step).
+            With the ground motion of the result among its parts, if the dataset
+            contains enough of it (always for analytic pulses; for records if the
+            histories have the time step of the record).
 
         Raises
         ------
         SchemaError
-            No dataset, or one that does not describe a system; or a case picked out of a sweep
-            over parameters, whose system :func:`rockframe.case` gives.
+            Not a dataset, or one that does not describe a system; or a case selected from a
+            sweep over parameters, whose system :func:`rockframe.case` returns.
 
         Examples
         --------

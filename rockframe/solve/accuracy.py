@@ -29,30 +29,30 @@ class AccuracyLevel(StrEnum):
 @proposing
 @dataclass(frozen=True, kw_only=True)
 class Accuracy:
-    """Settings of the integration: by a tolerance, or with fixed sub-steps.
+    """Settings of the integration: an error tolerance, or fixed sub-steps.
 
     Parameters
     ----------
     rtol : float or None
         Error allowed in one step, relative to the size of each state variable [1].
-        None where `substeps` are given.
+        None if `substeps` is given.
     floor : float
         Errors are relative to the present size of a variable, or to this share of
-        its largest size so far where that is more; not used with `substeps` [1].
+        its largest size so far if that is greater; not used with `substeps` [1].
     steps_per_period : float
         Least number of steps per period of the model's highest frequency; not used
-        where `substeps` is a number [1].
+        if `substeps` is a number [1].
     max_steps : int
-        Steps after which a run ends with the status ``step_limit``.
+        Number of steps after which a run ends with the status ``step_limit``.
     substeps : int, "fewest" or None
         Equal steps into which each sample interval of the motion is cut; ``"fewest"``
-        is the least number for which `steps_per_period` holds. None where `rtol` is
+        is the least number that satisfies `steps_per_period`. None if `rtol` is
         given.
 
     Raises
     ------
     SolverError
-        A setting is out of range, or not one of `rtol` and `substeps` is given.
+        A setting is out of range, or not exactly one of `rtol` and `substeps` is given.
 
     Examples
     --------
@@ -97,7 +97,7 @@ class Accuracy:
             if whole and not isinstance(value, Integral):
                 msg = f"Accuracy: {field.name} must be a whole number, got {shown(value)}"
                 raise SolverError(msg)
-            number: Any = value  # of any size, which a float is not
+            number: Any = value  # integers have any size, unlike floats
             if not low <= number <= high:
                 msg = (
                     f"Accuracy: {field.name} must lie from {low:g} to {high:g}, got {shown(value)}"

@@ -1,4 +1,4 @@
-"""What a run records as it goes on: output samples, peaks, events, the energy balance."""
+"""What a run records as it proceeds: output samples, peaks, events, the energy balance."""
 
 import math
 import sys
@@ -162,7 +162,7 @@ def follow_peak(
 ) -> None:
     """Update the peaks of the rotation to both sides, with extrema inside the step.
 
-    Of other bodies, the largest ratio of a rotation to its limit.
+    For other bodies, the largest ratio of a rotation to its limit.
     """
     size = equations.coordinate_count
     clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT] = peaks_in_step(
@@ -232,7 +232,7 @@ def record_event(
 ) -> int:
     """Count an event and fill its row of the table, where the state before it stands already.
 
-    Give `CHATTER` where events repeat themselves or follow too close upon one another.
+    Give `CHATTER` where events repeat themselves or follow one another too closely.
     """
     clock, counters = progress.clock, progress.counters
     row = counters[at.EVENTS]

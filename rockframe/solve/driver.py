@@ -2,7 +2,7 @@
 
 `integrate` calls it; between events it calls the march, which makes steps. The driver knows a
 scene only by its :class:`rockframe.solve.equations.BoundEquations`. It returns where a table is
-full, and goes on when it is called again with a larger one.
+full, and continues when it is called again with a larger one.
 """
 
 import math

@@ -107,7 +107,7 @@ def begun(
     model : ContactModel
         The equations.
     start : Start or Ending
-        Start of the run, or the end of another run of the same model, from which it goes on.
+        Start of the run, or the end of another run of the same model, from which it continues.
     accuracy : Accuracy
         Settings.
     interval : float
@@ -328,7 +328,7 @@ def integrate(
     model : ContactModel
         The equations.
     start : Start or Ending
-        Start of the run, or the end of another run of the same model, from which it goes on.
+        Start of the run, or the end of another run of the same model, from which it continues.
     motion : Motion or None
         Motion of the ground, without acceleration after its last sample; None for still ground.
     accuracy : Accuracy
@@ -342,7 +342,7 @@ def integrate(
     with_work : bool
         Whether the works of dashpots and ground are stored at the output times.
     keep_steps : bool
-        Whether the ends of all steps are kept; of very many, those of the first.
+        Whether the ends of all steps are kept; if there are very many, only the first ones.
 
     Returns
     -------

@@ -268,9 +268,9 @@ def march(
     system : Evaluated
         The equations.
     known : KnownMode
-        The mode, and what it means.
+        The mode and its meaning.
     trial : float
-        Length of a single trial step; 0 to go on with the run [s].
+        Length of a single trial step; 0 to continue with the run [s].
     pieces : Pieces
         Polynomials of the ground acceleration.
     progress : Progress

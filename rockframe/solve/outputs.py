@@ -67,7 +67,7 @@ class OutputRows:
     def end(self, events: Events, clock: Vector, state: Vector, *, finished: bool) -> Vector:
         """Give the output times [s], and drop the rows behind the end of the run.
 
-        Of a run that was not finished, the instant at which it ended belongs to its history.
+        The history of an unfinished run includes the instant at which it ended.
         """
         stored = int(self._counters[at.OUTPUTS])
         self.state, self.mode = self.state[:stored], self.mode[:stored]

@@ -32,7 +32,7 @@ class Steps:
     width: int  # numbers in a state
     # whether slopes are those of the equations at the states; those of fixed steps are only near
     exact: bool
-    complete: bool = True  # whether they go on to the end of the run
+    complete: bool = True  # whether they continue to the end of the run
 
     # columns of these: time of each row, and length of the step that ends there, 0 in the row of a
     # start [s]; mode of the model; number of events before, which is the row of its memory; ground
@@ -171,7 +171,7 @@ class Trajectory(Summary):
     events: Events  # what happened when
     start_energy: float  # kinetic, gravity and elastic energy at the start, the last less at rest
     as_python: bool  # whether its system runs as plain Python for good: it cannot be compiled
-    steps: Steps | None  # None where they were not kept
+    steps: Steps | None  # None if they were not kept
     # rows of `steps` that are the second and following output times, as far as these are ends
     outputs_in_steps: Integers
 
@@ -185,7 +185,7 @@ class Trajectory(Summary):
 
     @property
     def kept_steps(self) -> Steps:
-        """The steps of the run; raises ValueError where they were not kept."""
+        """The steps of the run; raises ValueError if they were not kept."""
         if self.steps is None:
             msg = "no steps were kept"
             raise ValueError(msg)

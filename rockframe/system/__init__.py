@@ -1,1 +1,1 @@
-"""Assembly: from the parts that users give to a scene, and from a scene to its equations."""
+"""Assembly of parts to a scene, and of a scene to its equations."""

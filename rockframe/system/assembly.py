@@ -94,7 +94,7 @@ def _alone(slot: str, parts: Parts, options: Options) -> AloneSetting:
 
 
 def _refuse_twins(parts: Parts, upper: AloneSetting, lower: AloneSetting) -> None:
-    """Refuse two bases with a column of the same name: one of both would be lost."""
+    """Refuse two bases with a column of the same name: one column would be lost."""
     shown = [
         {column.name for column in each.support.base_numbers.columns} for each in (upper, lower)
     ]
@@ -203,12 +203,12 @@ _OWN: Final[dict[str, Scene]] = {}
 
 
 def scenes() -> tuple[Scene, ...]:
-    """Give all scenes, users' own scenes last."""
+    """Give all scenes, user-defined scenes last."""
     return (*_SHIPPED, *_OWN.values())
 
 
 def add_scene(kind: type[OwnScene]) -> None:
-    """Add a user's own scene to the table; it replaces one whose class had the same full name."""
+    """Add a user-defined scene to the table; it replaces one whose class has the same full name."""
     title = " + ".join(part.__name__ for part in kind.made_of.values())
     name = f"{kind.__module__}.{kind.__qualname__}"
     _OWN[name] = Scene(
@@ -231,7 +231,7 @@ def twin_of(kind: type[OwnScene]) -> str | None:
 
 
 def _own(kind: type[OwnScene], parts: Parts, options: Options) -> OwnScene:
-    """Make the setting of a user's own scene."""
+    """Make the setting of a user-defined scene."""
     found = kind(load_of(parts.the_block, options), parts)
     faults = found.misfits()
     if faults:

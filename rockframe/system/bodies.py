@@ -124,7 +124,7 @@ class SupportedBody(BodyGeometry):
 
 @dataclass(frozen=True)
 class OnCorners(SupportedBody):
-    """A body on rigid ground on which more acts than its weight and its base."""
+    """A body on rigid ground with forces other than those of its weight and its base."""
 
     @property
     def foot(self) -> float:

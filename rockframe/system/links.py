@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class OwnLink(PointLink):
-    """A link by a law of your own; :func:`rockframe.register` makes its class known.
+    """A link with a user-defined law; :func:`rockframe.register` makes its class known.
 
     A class derived from it declares the parameters of its law, and has the method ``law``.
 
@@ -53,7 +53,7 @@ class OwnLink(PointLink):
         Parameters
         ----------
         mass : float
-            Reference mass of the model, by which to divide forces, stiffness and damping [kg].
+            Reference mass of the model; forces, stiffness and damping are divided by it [kg].
 
         Returns
         -------
@@ -73,7 +73,7 @@ class PlacedLink:
 
     part: Link  # the link as users gave it
     name: str  # its name in results
-    on: int  # body of the first point, counted from 0 at the top; -1 for the ground
+    on: int  # body of the first point, numbered from 0 at the top; -1 for the ground
     # place of the first point, to the right of and above the centre of mass of its body, or, on the
     # ground, the middle of the lowest base [m]
     on_point: tuple[float, float]
@@ -200,7 +200,7 @@ def placed(
     tops: Sequence[float],
     offsets: Sequence[float],
 ) -> tuple[PlacedLink, ...]:
-    """Give the places of links on bodies upon one another; bodies are listed from the top down."""
+    """Give the places of links on stacked bodies; bodies are listed from the top down."""
     names, faults = link_labels(parts), called_alike(parts)
     found = list[PlacedLink]()
     for part, name in zip(parts, names, strict=True):
@@ -278,7 +278,7 @@ def link_labels(parts: Sequence[Link]) -> list[str]:
 
 
 def in_one_word(name: str) -> str:
-    """Give what axes call a link: of "restrainer 1" restrainer_1."""
+    """Give the name of a link in axes: restrainer_1 for "restrainer 1"."""
     return re.sub(r"\W", "_", name)
 
 

@@ -1,4 +1,4 @@
-"""Users' own bases: the class to derive from, and further results that it may give."""
+"""User-defined bases: their base class, and further results that they may return."""
 
 from collections.abc import Mapping
 from typing import Any, ClassVar
@@ -9,7 +9,7 @@ from rockframe.system.support import Support
 
 
 class OwnAnswers:
-    """Further results that a user's own base or scene gives of a run with histories."""
+    """Further results of a user-defined base or scene for a run with histories."""
 
     __slots__ = ()
 
@@ -34,11 +34,11 @@ class OwnAnswers:
 
 
 class OwnBase(OwnAnswers, Component):
-    """A component that carries a body, from a user's own file.
+    """A user-defined component that carries a body.
 
-    A subclass declares its parameters as all components do, the slot that it fills (``"pads"`` or
-    ``"soil"``), and a method that gives its support under a body. :func:`rockframe.register`
-    makes it known; from then on it can take the place of pads, or of soil, in any scene.
+    A subclass declares its parameters like all components, the slot that it fills (``"pads"`` or
+    ``"soil"``), and a method that returns its support under a body. After registration by
+    :func:`rockframe.register` it can replace pads, or soil, in any scene.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Users' own scenes: the class to derive from for a scene with its own equations."""
+"""User-defined scenes: the base class of a scene with its own equations."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -17,12 +17,12 @@ from rockframe.system.statics import Statics, least_overturning_energy
 
 @dataclass(frozen=True)
 class OwnScene(OwnAnswers, Setting):
-    """A scene with equations of its own, from a user's own file.
+    """A user-defined scene with its own equations.
 
     A subclass has the attributes ``made_of``, its parts, and ``model``, the name of its model, and
     the methods ``contact_model``, which gives the equations, and ``words``, for `describe()`.
-    All else has a default; an answer that the scene cannot give, such as its statics, is refused
-    when a user requests it. :func:`rockframe.register` makes the scene known.
+    Everything else has a default. If a user requests something that the scene does not define,
+    such as its statics, an error is raised. :func:`rockframe.register` makes the scene known.
 
     Parameters
     ----------
@@ -53,9 +53,9 @@ class OwnScene(OwnAnswers, Setting):
 
     @cached_property
     def overturning_energy(self) -> float:
-        """Energy that it takes to overturn the body; 0, for unknown, without `curve` [J].
+        """Energy needed to overturn the body; 0, for unknown, without `curve` [J].
 
-        With 0 no run warns that the body may still overturn after its end.
+        With 0 no run warns that the body may still overturn after the end of the run.
         """
         if type(self).curve is OwnScene.curve:
             return 0.0

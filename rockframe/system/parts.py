@@ -63,13 +63,13 @@ SHIPPED: Final = tuple(dict.fromkeys(kind.slot for kind in _KINDS.values()))
 
 
 def slots() -> tuple[str, ...]:
-    """Give all slots in a fixed order: slots of users' own scenes come before `motion`."""
+    """Give all slots in a fixed order: slots of user-defined scenes come before `motion`."""
     own = sorted({kind.slot for kind in _KINDS.values()} - set(SHIPPED))
     return (*SHIPPED[:-1], *own, SHIPPED[-1])
 
 
 def add_kind(of: type, kind: Kind) -> None:
-    """Add a class of users' own parts: a link, a base, or a part of a user's own scene."""
+    """Add a class of user-defined parts: a link, a base, or a part of a user-defined scene."""
     _KINDS[of] = kind
 
 
@@ -90,7 +90,7 @@ def known_kind(of: type) -> type | None:
 
 
 def slot_of_kind(of: type) -> str | None:
-    """Give the slot that parts of a class fill; None if they are no parts."""
+    """Give the slot that parts of a class fill; None if they are not parts."""
     kind = known_kind(of)
     return None if kind is None else _KINDS[kind].slot
 
@@ -101,7 +101,7 @@ def usual_kind(slot: str) -> type:
 
 
 def support_of(part: Component, load: BaseLoad) -> Support:
-    """Give a base as it is under a body."""
+    """Give the support that a base forms under a body."""
     kind = known_kind(type(part))
     make = None if kind is None else _KINDS[kind].support
     if make is None:  # only bases are in the slots of bases
@@ -134,7 +134,7 @@ def _beyond_models(part: Component, known: type) -> list[str]:
 
 
 def hint_for(part: object) -> str:
-    """Say how to make a part of something that is none; empty if that is not known."""
+    """Say how to make a part of something that is not one; empty if that is not known."""
     if isinstance(part, type) and known_kind(part) is not None:
         return "; it is the class itself: call it with its values"
     if isinstance(part, OwnBase):
@@ -222,7 +222,7 @@ class Parts:
         return Parts.of({**dict(self.filled), **by_slot})
 
     def structural(self) -> list[Component]:
-        """Give the parts that are no motion, in a fixed order."""
+        """Give the parts other than motions, in a fixed order."""
         return list(self.components.values())
 
     def standing(self) -> "Parts":
@@ -250,7 +250,7 @@ class Parts:
 
 
 def sort_parts(values: Sequence[object], faults: list[str]) -> Parts:
-    """Put each part in its slot; duplicate parts, and things that are no parts, become faults."""
+    """Put each part in its slot; duplicates, and objects that are not parts, become faults."""
     found: dict[str, Any] = {}
     for part in values:
         kind = known_kind(type(part))

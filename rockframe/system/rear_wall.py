@@ -1,4 +1,4 @@
-"""The scene of a block on rigid ground before a stiff wall: one-sided rocking."""
+"""The scene of a block on rigid ground in front of a stiff wall: one-sided rocking."""
 
 import math
 from collections.abc import Sequence
@@ -34,7 +34,7 @@ IMPACT_TIME: Final = 1e-3
 
 @dataclass(frozen=True)
 class RearWallSetting(RigidGroundSetting):
-    """A block on rigid ground before a wall."""
+    """A block on rigid ground in front of a wall."""
 
     wall: RearWall
     rebound: float  # angular velocity after an impact over that before it [1]
@@ -116,7 +116,7 @@ class RearWallSetting(RigidGroundSetting):
         return super().held_at(rotations)
 
     def words(self) -> Words:
-        """Describe the block before its wall."""
+        """Describe the block in front of its wall."""
         inherited, law = super().words(), self.wall.given.restitution
         named = f'law "{law}"' if isinstance(law, WallImpact) else "as given"
         away = "right" if self.direction > 0.0 else "left"
@@ -147,7 +147,7 @@ class RearWallSetting(RigidGroundSetting):
 
 
 def rear_wall_setting(parts: Parts, options: Options) -> RearWallSetting:
-    """Resolve the parts of a block before a wall."""
+    """Resolve the parts of a block in front of a wall."""
     load = BaseLoad(body_of_block(parts.the_block, OnCorners), options)
     wall = cast("RearWall", parts.wall)
     restitution = restitution_on(parts.ground, load.body.maximum_restitution)

@@ -49,7 +49,7 @@ class RigidBase(Support):
         return rigid_numbers(body)
 
     def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
-        """Refuse a vertical start: the base leaves no vertical freedom."""
+        """Refuse a vertical start: the base allows no vertical motion."""
         return [NO_VERTICAL_START] if has_vertical_start else []
 
     def words(self) -> BaseWords:
@@ -99,14 +99,14 @@ def pressed(setting: "StackSetting", k: int, tied: "Sequence[Tied]") -> Pressed:
 
 
 class Lifting(NamedTuple):
-    """What lifts a corner of a rigid base, from which all above then rocks as one."""
+    """What lifts a corner of a rigid base, on which everything above then rocks as one."""
 
     tipping_left: float  # ground acceleration, to the right, that tips it to the left [m s^-2]
     tipping_right: float  # likewise to the left [m s^-2]
     friction: float  # below which it slides before either corner lifts [1]
 
     def words(self) -> str:
-        """Write the accelerations; one where both sides are alike."""
+        """Write the accelerations; one if both sides are equal."""
         left, right = (f"{one:.4g} m s^-2" for one in self[:2])
         if left == right:
             return left
@@ -149,7 +149,7 @@ def rocking_energy(setting: "StackSetting", k: int) -> float:
 
 
 def rocked_statics(setting: "StackSetting", rotation: float) -> Statics:
-    """Give the equilibrium where all bases are rigid: all above the weakest one rocks."""
+    """Give the equilibrium on rigid bases only: everything above the weakest one rocks."""
     from rockframe.dynamics.tied import at_rest
 
     right, mass = rotation > 0.0, setting.body.mass
@@ -198,8 +198,8 @@ def beyond_lift(
 ) -> list[Statics | None]:
     """Give the equilibria with the highest body held at rotations, where joints may lift.
 
-    `closed` are the equilibria with all rigid bases in full contact. At rotations beyond the one at
-    which a corner first lifts from a rigid base, all above that base rotates about its other one.
+    `closed` are the equilibria with all rigid bases in full contact. Beyond the rotation at which
+    a corner first lifts from a rigid base, all bodies above rotate about the other corner.
     """
     found: list[Statics | None] = [None] * len(rotations)
     for side in (1, -1):

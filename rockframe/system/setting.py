@@ -1,4 +1,4 @@
-"""The setting of a scene: its numbers in SI units, its words, its statics and its model."""
+"""The setting of a scene: its numbers in SI units, description, statics and model."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -37,7 +37,7 @@ class SlipRange(NamedTuple):
 
 
 def chain_slips(setting: "Setting", count: int, ending: Ending) -> tuple[SlipRange, ...]:
-    """Give how far each of the `count` highest bodies of a chain has slipped."""
+    """Give the slips of the `count` highest bodies of a chain."""
     chain = cast("SlippingBodies", setting.compile().system)
     return tuple(SlipRange(*chain.slips(k, ending)) for k in range(count))
 
@@ -217,7 +217,7 @@ class Setting(ABC):
         return ()
 
     def beyond_edges(self, ending: Ending) -> list[str]:
-        """Warn of bodies that slipped beyond an edge, which the equations do not have."""
+        """Warn of bodies that slipped beyond an edge, which the equations do not model."""
         return []
 
     @abstractmethod

@@ -36,7 +36,7 @@ class SlidingSetting(RigidGroundSetting):
 
     @property
     def lands_flat(self) -> bool:
-        """Whether the block is so squat that it lands flat instead of rocking on."""
+        """Whether the block is so squat that it lands flat instead of continuing to rock."""
         return min(self.restitution) <= 0.0
 
     @property
@@ -167,7 +167,7 @@ def slips_on_ground(ending: "Ending") -> SlipRange:
 
 
 def friction_to_roll_over(body: SupportedBody) -> float:
-    """Give the friction from which on no corner slips in an impact [1], :eq:`eq-slide-housner`."""
+    """Give the least friction at which no corner slips in an impact [1], :eq:`eq-slide-housner`."""
     square = body.base_inertia / body.mass
     return max(body.centre_height * own / square for own in (body.left, body.right))
 

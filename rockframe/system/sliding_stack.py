@@ -31,7 +31,7 @@ The edge bears in place of the corner, and its lever is shorter by this share.""
 
 @dataclass(frozen=True)
 class SlidingStackSetting(StackSetting):
-    """Bodies upon one another that are held by friction, or slip, on their bases."""
+    """Stacked bodies that are held by friction, or slip, on their bases."""
 
     slides = True
 
@@ -57,7 +57,7 @@ class SlidingStackSetting(StackSetting):
         return chain_slips(self, len(self.bodies), ending)
 
     def beyond_edges(self, ending: "Ending") -> list[str]:
-        """Warn of bodies that slipped beyond an edge of the body below, which the model lacks."""
+        """Warn of bodies that slipped beyond an edge of the body below, which is not modelled."""
         pairs = zip(self.bodies, self.bodies[1:], self.offsets, self.slips_of(ending), strict=False)
         found = (
             beyond_edge(

@@ -1,4 +1,4 @@
-"""The scene of bodies upon one another, with links: its numbers, words, statics and model."""
+"""The scene of stacked bodies, with links: its numbers, words, statics and model."""
 
 import math
 from collections.abc import Sequence
@@ -44,7 +44,7 @@ PULLED: Final = ", or their restrainers or loads pull them over"
 
 @dataclass(frozen=True)
 class StackSetting(Setting):
-    """Bodies upon one another."""
+    """Stacked bodies."""
 
     bodies: tuple[SupportedBody, ...]  # all bodies, from the top down
     tops: tuple[float, ...]  # height of the top of each above its centre of mass [m]
@@ -132,7 +132,7 @@ class StackSetting(Setting):
     def friction_to_rock(self) -> dict[str, float]:
         """Give the friction to rock of all bodies above each base, as one.
 
-        Links stretch before an end lifts from a base that gives way: of these it is not given.
+        Links stretch before an end lifts from a deformable base; for these bases it is not given.
         """
         found = dict[str, float]()
         for k, (rigid, body) in enumerate(zip(self.rigid, (self.body, *self.wholes), strict=True)):
@@ -388,7 +388,7 @@ class StackSetting(Setting):
         return self.standing.chain.tied(self.standing.rest or [])
 
     def contact_model(self) -> "ContactModel":
-        """Give the equations of bodies upon one another."""
+        """Give the equations of stacked bodies."""
         from rockframe.dynamics.chain.model import chain
 
         rest = self._placed_at_rest()

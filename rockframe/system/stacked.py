@@ -158,7 +158,7 @@ class StackedSetting(Setting):
 
 
 class CoupledSetting(StackedSetting):
-    """Block and cap that act on one another, with one set of equations."""
+    """Block and cap coupled in one set of equations."""
 
     @property
     def model(self) -> str:
@@ -228,7 +228,7 @@ class SlidingCoupledSetting(CoupledSetting):
         ))  # fmt: skip
 
     def contact_model(self) -> "ContactModel":
-        """Give the equations of two bodies upon one another that slip."""
+        """Give the equations of two stacked bodies that slip."""
         from rockframe.dynamics.chain.model import AtRest
         from rockframe.dynamics.chain.on_cap import block_on_cap
 

@@ -1,4 +1,4 @@
-"""Supports: bases under a certain body, such as pads or a bed of soil, and statics on them.
+"""Supports: bases under a given body, such as pads or a bed of soil, and statics on them.
 
 The numbers of a support follow from its component and from the body on it; its words describe them,
 and its law is the base in the equations.
@@ -38,7 +38,7 @@ SMALL: Final = 2.0**-6
 
 @dataclass(frozen=True)
 class StandingBodies:
-    """Statics of bodies that stand on one another, in SI units."""
+    """Statics of stacked bodies, in SI units."""
 
     chain: StandingChain  # the bodies on their bases, per unit of the reference mass
     mass: float  # reference mass, that of the highest body [kg]
@@ -175,7 +175,7 @@ class Support(ABC):
 
     @abstractmethod
     def law(self, body: Body, mass: float, load_mass: float) -> BaseNumbers:
-        """Give the base as the equations take it.
+        """Give the base in the form that the equations need.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Units of a reader's choice in which numbers are shown, in place of SI units."""
+"""Units chosen by the reader, in which numbers are shown instead of SI units."""
 
 import math
 import re

@@ -59,12 +59,12 @@ class AnyBase(Base, LawNumbers):
 
     @kernel
     def end_guards(self) -> int:
-        """Give the number of guards of an end on pads; of a bed all but the first are idle."""
+        """Give the number of guards of an end on pads; those of a bed are idle except the first."""
         return CORNER_GUARDS
 
     @inlined
     def guards_of(self, contact: int, left: bool, line: BaseLine, own: Variables) -> Guards:
-        """Give the guards of an end, and their rates; of a bed all but the first are idle."""
+        """Give the guards of an end, and their rates; those of a bed are idle except the first."""
         if self.which == ON_PADS:
             return self.pads().guards_of(contact, left, line, own)
         found = self.bed().guards_of(contact, left, line, own)

@@ -37,7 +37,7 @@ LEVEL: Final = 1e-13
 
 
 class RigidCorners(Chain):
-    """Bodies upon one another of which some stand on rigid bases. A mixin of systems."""
+    """Stacked bodies, some of which stand on rigid bases. A mixin of systems."""
 
     __slots__ = ()
 

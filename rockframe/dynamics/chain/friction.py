@@ -18,7 +18,7 @@ from rockframe.dynamics.switching import stay_if_small
 
 
 class SlippingChain(SlipperyBases):
-    """Bodies upon one another that friction holds on their bases: a system."""
+    """Stacked bodies that friction holds on their bases: a system."""
 
     __slots__ = ()
 

@@ -56,7 +56,7 @@ class Met(NamedTuple):
 
 
 class RigidImpulses(RigidCorners):
-    """Bodies upon one another that rigid bases give impulses in an event. A mixin of systems."""
+    """Stacked bodies that get impulses from rigid bases in an event. A mixin of systems."""
 
     __slots__ = ()
 

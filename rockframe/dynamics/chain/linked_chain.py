@@ -100,7 +100,7 @@ class ChainLinks(Linked, Chain):
 
 
 class LinkedChain(LinkedLists, ChainLinks):  # pyright: ignore[reportGeneralTypeIssues]
-    """Bodies upon one another, with links: a system."""
+    """Stacked bodies with links: a system."""
 
     __slots__ = ()
 
@@ -159,7 +159,7 @@ class RestOnGround(ChainLinks):
 
 
 class LinkedRigidChain(LinkedLists, RestOnGround, RigidChain):  # pyright: ignore[reportGeneralTypeIssues]
-    """Bodies upon one another, some of them on rigid bases, with links: a system."""
+    """Stacked bodies, some of them on rigid bases, with links: a system."""
 
     __slots__ = ()
 

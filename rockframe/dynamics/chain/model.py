@@ -54,7 +54,7 @@ class AtRest(NamedTuple):
 
 
 def chain_of(links: Sequence[ChainBody], ties: Sequence[ChainLink] = ()) -> Chain:
-    """Give the system of bodies upon one another, from the top down, without their ties."""
+    """Give the system of stacked bodies, from the top down, without their ties."""
     kind = RigidChain if some_rigid(links) else Chain
     rows = [row_of(one.body, one.base, one.mass, one.top, one.beside) for one in links]
     for row in rows:
@@ -83,7 +83,7 @@ def chain(
     held: Callable[[float], float] | None = None,
     frictions: Sequence[tuple[float, float, float]] = (),
 ) -> ContactModel:
-    """Assemble the model of bodies upon one another.
+    """Assemble the model of stacked bodies.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def chain(
     mass : float
         The reference mass, over which all masses and forces are given [kg].
     rest : sequence of AtRest, or None
-        Placements of the bodies at rest; None where they all stand upright.
+        Placements of the bodies at rest; None if they all stand upright.
     limits : sequence of tuple of float
         Rotations to the left and to the right at which each body but the first overturns, with
         all above it; unless given, the rotations of these bodies are not checked [rad].
@@ -180,7 +180,7 @@ def _weights(count: int, k: int) -> Vector:
 
 
 def _tolerance(base: BaseNumbers, carried: float) -> Vector:
-    """Give the rounding noise of a body's guards; of each end of a bed one guard is in use."""
+    """Give the rounding noise of a body's guards; each end of a bed uses one guard."""
     if is_rigid(base):
         return np.full(GUARDS, ROUNDING_OF_FORCES * carried)
     found = part_tolerance(base)

@@ -34,7 +34,7 @@ from rockframe.dynamics.trigonometry import versine
 
 
 class MovingBodies(Rows):
-    """Equations of motion of bodies upon one another. A mixin of systems."""
+    """Equations of motion of stacked bodies. A mixin of systems."""
 
     __slots__ = ()
 

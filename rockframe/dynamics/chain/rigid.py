@@ -43,7 +43,7 @@ KEPT: Final = ("admissible_sets", "set_taken", "other_set")
 
 
 class RigidChain(RigidImpulses):
-    """Bodies upon one another of which some stand on rigid bases: a system."""
+    """Stacked bodies, some of which stand on rigid bases: a system."""
 
     __slots__ = ()
 
@@ -242,7 +242,7 @@ class RigidChain(RigidImpulses):
                 falls |= fall > ROUNDING * self.number(k, at.GRAVITY)
         if not falls:
             return new
-        self.forget_slips(mode, False)  # bodies that slip go on
+        self.forget_slips(mode, False)  # slipping bodies continue to slip
         corners, pulled = self.bearing(mode), self.pulled(new)
         held = self.with_bearing(new, corners, pulled | corners & ~self.bearing(new))
         self.write_contacts(new, state, memory)

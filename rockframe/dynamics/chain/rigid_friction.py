@@ -28,7 +28,7 @@ FRICTION_ALONE: Final = -1
 
 
 class SlippingRigidChain(TriedSlips):
-    """Bodies upon one another of which some slip on their bases: a system."""
+    """Stacked bodies, some of which slip on their bases: a system."""
 
     __slots__ = ()
 

@@ -25,7 +25,7 @@ from rockframe.dynamics.switching import end_speed, next_pivot
 
 
 class SlipperyBases(SlippingBodies):
-    """Bodies upon one another of which some slip on deformable bases. A mixin of systems."""
+    """Stacked bodies, some of which slip on deformable bases. A mixin of systems."""
 
     __slots__ = ()
 

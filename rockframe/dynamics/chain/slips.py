@@ -43,7 +43,7 @@ TRIES: Final = 6
 
 
 class SlippingBodies(Chain):
-    """Bodies upon one another of which some may slip on their bases. A mixin of systems."""
+    """Stacked bodies, some of which may slip on their bases. A mixin of systems."""
 
     __slots__ = ()
 

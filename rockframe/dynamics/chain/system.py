@@ -15,7 +15,7 @@ from rockframe.dynamics.switching import checked_sliding, disturbed, lift_by_sli
 
 
 class Chain(MovingBodies):
-    """Bodies upon one another, from the top down: a system."""
+    """Stacked bodies, from the top down: a system."""
 
     __slots__ = ()
 

@@ -314,7 +314,7 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @kernel
     def try_standing(self, mode: int, corners: int, state: Vector) -> None:
-        """Find the impulses by which bodies stand on corners: slipping ones go on, others are held.
+        """Find the impulses by which bodies stand on corners: slipping ones slip, others are held.
 
         A body whose slip would be reversed, as no friction can do, is held, too. Friction does not
         act at a base in tension, where it would drive the slip.

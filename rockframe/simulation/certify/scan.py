@@ -1,8 +1,8 @@
 """Search for a change of the verdict along a change of one number, from small to large changes.
 
-Between two runs of the same verdict there may be runs of the other one. That is judged by the
-clearances of the runs, which go to zero where the verdict changes: if they could do so inside an
-interval, at twice the slopes found around it, the interval is halved.
+Between two runs with the same verdict there may be runs with the other one. The clearances of the
+runs go to zero where the verdict changes: if they could reach zero inside an interval, at twice the
+slopes found around it, the interval is halved.
 """
 
 import math

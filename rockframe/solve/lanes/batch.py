@@ -134,7 +134,7 @@ def load_ground(batch: Batch, index: int, whole: Integers, ground: Vector) -> No
 
 @inlined
 def enter_interval(batch: Batch, lane: int) -> bool:
-    """Move a lane to its next interval; give whether the driver of single runs must go on there."""
+    """Move a lane to its next interval; return whether the single-run driver must continue."""
     room = batch.room
     clock, controls = lane_of(room, fields.CLOCK, lane), lane_of(room, fields.CONTROLS, lane)
     own, ground = lane_of(room, fields.OWN, lane), lane_of(room, fields.GROUND, lane)

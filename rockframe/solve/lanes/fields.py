@@ -3,7 +3,7 @@
 A row holds a whole run, one number after the other, so that the driver of single runs can work
 on it. The room of the lanes holds the same fields, each of sixteen runs next to one another.
 
-At the end of an interval of the motion all lanes go on to the next one together. The end of the
+At the end of an interval of the motion all lanes move to the next one together. The end of the
 motion, the end of a run and jumps of the ground are left to the driver of single runs.
 """
 
