@@ -14,7 +14,7 @@ import rockframe as rf
 
 
 def cabinet(height_of_load: str) -> rf.Block:
-    """Give the cabinet with its load at a height."""
+    """Return the cabinet with its load at a height."""
     return rf.Block.from_parts(
         {
             "case": {"width": "0.45 m", "height": "1.9 m", "mass": "60 kg"},

@@ -57,7 +57,7 @@ class YieldingPad(NamedTuple):
         return self.stiffness * (point.speed - growth) + self.damping * point.acceleration
 
     def power(self, state, point, own):
-        """Give what dashpot and yielding dissipate."""
+        """Return what dashpot and yielding dissipate."""
         (growth,) = self.rates(state, point, own)
         return self.damping * point.speed**2 + self.spring(point, own) * growth
 
@@ -65,7 +65,7 @@ class YieldingPad(NamedTuple):
         return self.stiffness / self.damping if self.damping > 0.0 else 0.0
 
     def yielding_set(self, point):
-        """Give the set with which the force would be on the hardening branch."""
+        """Return the set with which the force would be on the hardening branch."""
         return (1.0 - self.hardening) * (point.pressed - self.strength / self.stiffness)
 
     def guard(self, state, point, own):

@@ -67,7 +67,7 @@ class Rope(ext.OwnLink):
     )  # fmt: skip
 
     def law(self, mass):
-        """Give the law, per unit of a mass."""
+        """Return the law, per unit of a mass."""
         stiffness = self.si.stiffness / mass
         law = Hardening(stiffness, stiffness / self.si.reach**2)
         return ext.LinkNumbers(law, stiffness=13.0 * stiffness)

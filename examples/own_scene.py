@@ -70,7 +70,7 @@ class SlideRock(NamedTuple):
 
     @ext.inlined
     def moving_in(self, mode):
-        """Give how many of slip and rotation change, the slip first."""
+        """Return how many of slip and rotation change, the slip first."""
         return 0 if mode == 0 else 1 if mode // 3 == FULL else 2
 
     @ext.inlined
@@ -89,12 +89,12 @@ class SlideRock(NamedTuple):
 
     @ext.inlined
     def sense(self, mode):
-        """Give the sign of the slip, 0 where friction holds."""
+        """Return the sign of the slip, 0 where friction holds."""
         return 0.0 if mode % 3 == HELD else 1.0 if mode % 3 == TO_RIGHT else -1.0
 
     @ext.inlined
     def reach(self, mode, rotation):
-        """Give the place of the centre of mass beside the bearing corner, and above it."""
+        """Return the place of the centre of mass beside the bearing corner, and above it."""
         sine, cosine = math.sin(rotation), math.cos(rotation)
         side = self.mirror(mode)
         beside = self.height * sine - side * self.half_width * cosine
@@ -102,7 +102,7 @@ class SlideRock(NamedTuple):
 
     @ext.inlined
     def motion(self, mode, state, ground):
-        """Give the motion in a mode."""
+        """Return the motion in a mode."""
         weight, sense = self.gravity + ground.y, self.sense(mode)
         if mode // 3 == FULL:
             along = ground.x if sense == 0.0 else -sense * self.kinetic * weight
@@ -123,13 +123,13 @@ class SlideRock(NamedTuple):
 
     @ext.inlined
     def speeds(self, mode, state):
-        """Give the velocity of the centre of mass relative to the ground."""
+        """Return the velocity of the centre of mass relative to the ground."""
         beside, above = self.reach(mode, state[1])
         return state[2] + above * state[3], -beside * state[3]
 
     @ext.inlined
     def accelerate(self, mode, state, ground):
-        """Give accelerations, what friction dissipates, and what the ground puts in."""
+        """Return accelerations, what friction dissipates, and what the ground puts in."""
         if mode == 0:
             return 0.0, 0.0, 0.0, 0.0
         moved = self.motion(mode, state, ground)
@@ -239,7 +239,7 @@ class SlideRock(NamedTuple):
 
     @ext.kernel
     def rise(self, mode, rotation):
-        """Give the rise of the centre of mass, to all digits."""
+        """Return the rise of the centre of mass, to all digits."""
         half = math.sin(0.5 * rotation)
         side = self.mirror(mode)
         return side * self.half_width * math.sin(rotation) - 2.0 * self.height * half * half
@@ -252,7 +252,7 @@ class SlideRock(NamedTuple):
 
     @ext.kernel
     def observe(self, mode, state, slope, ground, memory):
-        """Give the motion of the centre of mass, the reactions, and the slip."""
+        """Return the motion of the centre of mass, the reactions, and the slip."""
         moved = self.motion(mode, state, ground)
         beside, _ = self.reach(mode, state[1])
         across, up = self.speeds(mode, state)

@@ -55,7 +55,7 @@ class YieldingSpring(NamedTuple):
         return elastic + self.damping * point.acceleration
 
     def power(self, state, point, own):
-        """Give what dashpot and yielding dissipate."""
+        """Return what dashpot and yielding dissipate."""
         by_yielding = self.spring(point, own) * point.speed if state == YIELDING else 0.0
         return self.damping * point.speed**2 + by_yielding
 
@@ -137,7 +137,7 @@ rf.register(YieldingSoil, columns=[
 
 
 def moment(n: float, phi: float) -> float:
-    """Give M/(N_u b) of a strip at a rotation phi = k0 b alpha/q_u under n = N/N_u."""
+    """Return M/(N_u b) of a strip at a rotation phi = k0 b alpha/q_u under n = N/N_u."""
     lifts, yields = phi > n, phi > 1.0 - n
     if lifts and (n <= 0.5 and phi <= 0.25 / n):
         return n * (1.0 - 2.0 / 3.0 * math.sqrt(n / phi))

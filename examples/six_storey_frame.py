@@ -16,7 +16,7 @@ import rockframe as rf
 
 
 def building(shape_factor: float | None) -> rf.FrameEquivalent:
-    """Give the six-storey frame of the paper's Table 2, of its members unless told otherwise."""
+    """Return the six-storey frame of the paper's Table 2, of its members unless told otherwise."""
     if shape_factor is not None:
         return rf.FrameEquivalent(
             width="4 m", height="18 m", mass="99 t", shape_factor=shape_factor

@@ -22,7 +22,7 @@ class RockframeError(Exception):
     """Base class of every error that rockframe raises on purpose."""
 
     def _render_traceback_(self) -> list[str]:
-        """Give the traceback for IPython and Jupyter, without the frames of rockframe."""
+        """Return the traceback for IPython and Jupyter, without the frames of rockframe."""
         console: Any = sys.modules["IPython"]
         shown_by = console.get_ipython().InteractiveTB
         before = (self.__cause__, self.__context__)
@@ -34,7 +34,7 @@ class RockframeError(Exception):
 
 
 def _outside(trace: TracebackType | None) -> TracebackType | None:
-    """Give a traceback without the frames of rockframe."""
+    """Return a traceback without the frames of rockframe."""
     if trace is None:
         return None
     rest = _outside(trace.tb_next)
@@ -189,7 +189,7 @@ class RecordWarning(RockframeWarning):
 
 
 def shown(value: object) -> str:
-    """Give a value for a message: its repr if that is short, else a shorter text."""
+    """Return a value for a message: its repr if that is short, else a shorter text."""
     text = repr(value)
     if len(text) <= LONGEST_SHOWN and "\n" not in text:
         return text
@@ -224,7 +224,7 @@ out: in papers they are half the width and half the height."""
 
 
 def nearest(value: object, known: Iterable[str]) -> str:
-    """Give the question whether a similar word was meant, for the end of a message; or nothing."""
+    """Return question whether a similar word was meant, for the end of a message; or nothing."""
     words = {one.casefold(): one for one in known}
     wanted = str(value).casefold()
     near = [one for one in _SYMBOLS.get(wanted, ()) if one in words]
@@ -233,14 +233,14 @@ def nearest(value: object, known: Iterable[str]) -> str:
 
 
 def unexpected_argument(call: str, name: str, known: Iterable[str]) -> ArgumentError:
-    """Give Python's error of an unexpected argument, and propose a similar one."""
+    """Return Python's error of an unexpected argument, and propose a similar one."""
     names = list(known)
     words = f"{call} got an unexpected keyword argument {name!r}{nearest(name, names) or '.'}"
     return ArgumentError(f"{words} It takes {', '.join(names) or 'none'}")
 
 
 def unknown_attribute(owner: str, name: str, known: Iterable[str]) -> AccessError:
-    """Give Python's error of a missing attribute, and propose a similar one."""
+    """Return Python's error of a missing attribute, and propose a similar one."""
     words = f"{owner} has no attribute {name!r}"
     if not name.startswith("_"):  # programs look up those with an underscore
         words += nearest(name, (one for one in known if not one.startswith("_")))

@@ -42,14 +42,14 @@ class OnlyAlone(BaseException):
 
 
 def _value(other: Any) -> Any:
-    """Give the other operand as numbers; None if it is of another type."""
+    """Return the other operand as numbers; None if it is of another type."""
     if isinstance(other, Many):
         return other.values
     return other if isinstance(other, float | int) else None
 
 
 def _agreed(some: NDArray[np.bool_]) -> bool:
-    """Give the result of a comparison if it is the same in all cases."""
+    """Return the result of a comparison if it is the same in all cases."""
     count = np.count_nonzero(some)
     if 0 < count < len(some):
         raise Differ(some)
@@ -174,7 +174,7 @@ def each_way(
 
 
 def in_each(number: Any, count: int) -> Floats:
-    """Give the values of a number in each case; a single number is repeated."""
+    """Return the values of a number in each case; a single number is repeated."""
     if isinstance(number, Many):
         return number.values
     return np.full(count, number, dtype=np.float64)
@@ -186,7 +186,7 @@ def python_number(number: Any) -> Any:
 
 
 def largest(first: Any, second: Any) -> Any:
-    """Give the greater of two numbers, as ``max`` does."""
+    """Return the greater of two numbers, as ``max`` does."""
     if isinstance(first, Many) or isinstance(second, Many):
         one, other = _value(first), _value(second)
         return Many(np.where(np.greater(other, one), other, one))
@@ -224,7 +224,7 @@ atan2, hypot = _of_two(math.atan2), _of_two(math.hypot)
 
 
 def sqrt(number: Any) -> Any:
-    """Give the square root; NumPy and Python round it alike."""
+    """Return the square root; NumPy and Python round it alike."""
     return Many(np.sqrt(number.values)) if isinstance(number, Many) else math.sqrt(number)
 
 

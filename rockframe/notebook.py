@@ -31,7 +31,7 @@ class Polygon(NamedTuple):
 
 
 def arguments_in_words(arguments: Mapping[str, Any]) -> dict[str, str]:
-    """Give names and values of arguments as texts to read, without long ones."""
+    """Return names and values of arguments as texts to read, without long ones."""
     found = {name.replace("_", " "): _written(value) for name, value in arguments.items()
              if name != "type"}  # fmt: skip
     return {name: words for name, words in found.items() if len(words) <= _LONGEST}
@@ -41,7 +41,7 @@ _LONGEST: Final = 60
 
 
 def card(title: str, rows: Mapping[str, str], drawing: str = "", more: str = "") -> str:
-    """Give a title, a drawing and a table of names and values as HTML."""
+    """Return a title, a drawing and a table of names and values as HTML."""
     cells = "".join(
         f'<tr style="background:transparent"><th style="{CELL};font-weight:normal;opacity:0.7">'
         f'{escape(name)}</th><td style="{CELL}">{escape(value)}</td></tr>'

@@ -55,7 +55,7 @@ _BECAME: Final[dict[str, tuple[Callable[..., Any], str]]] = {
 
 
 def old_name(name: str, known: Iterable[str]) -> Any:
-    """Give the object of an old name, and warn with the new one; else propose a similar name."""
+    """Return the object of an old name, and warn with the new one; else propose a similar name."""
     if name in _BECAME:
         found, now = _BECAME[name]
     elif name in MOVED:

@@ -56,7 +56,7 @@ def hinted(**hints: str) -> Callable[[Function], Function]:
 
 
 def hints_of(function: Callable[..., Any]) -> Mapping[str, str] | None:
-    """Give the hints of a function that is :func:`hinted`; None for any other."""
+    """Return the hints of a function that is :func:`hinted`; None for any other."""
     return getattr(function, "hints", None)
 
 
@@ -118,7 +118,7 @@ class Proposing(ABCMeta):
 
 
 def attributes_of(module: str, names: Iterable[str]) -> Callable[[str], NoReturn]:
-    """Give a function ``__getattr__`` for a module: it proposes a similar public name."""
+    """Return a function ``__getattr__`` for a module: it proposes a similar public name."""
     known, owner = list(names), f"module {module!r}"
 
     def no_attribute(name: str) -> NoReturn:

@@ -31,7 +31,7 @@ class Argument:
 
 
 def declared_in(kind: type) -> dict[str, Argument]:
-    """Give the arguments of a typed dictionary by name."""
+    """Return the arguments of a typed dictionary by name."""
     hints = get_type_hints(kind, include_extras=True)
     return {name: hint.__metadata__[0] for name, hint in hints.items()}
 

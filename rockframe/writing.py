@@ -42,7 +42,7 @@ class FileKind:
 
 
 def generator(what: str, version: str = "") -> str:
-    """Give the HTML tag that names rockframe as the author; without a version, its beginning."""
+    """Return the HTML tag that names rockframe as the author; without a version, its beginning."""
     begun = f'<meta name="generator" content="{what} by rockframe '
     return f'{begun}{version}">' if version else begun
 

@@ -38,7 +38,7 @@ def the_sweep(store=None, **changes):
 
 
 def files(folder):
-    """Give the bytes of all files but that with the date."""
+    """Return the bytes of all files but that with the date."""
     return {path.name: path.read_bytes() for path in folder.glob("*.arrays")}
 
 
@@ -65,7 +65,7 @@ def note_cases(log):
 
 
 def as_bytes(dataset):
-    """Give all numbers of a dataset, to be compared to the last bit."""
+    """Return all numbers of a dataset, to be compared to the last bit."""
     return {name: one.values.tolist() if one.dtype.kind in "OU" else one.values.tobytes()
             for name, one in dataset.variables.items()}  # fmt: skip
 

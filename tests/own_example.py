@@ -38,7 +38,7 @@ def _imported(file: Path) -> tuple[ModuleType, list[dict[Any, Any]]]:
 
 @contextmanager
 def example(file: Path = FILE) -> Iterator[ModuleType]:
-    """Give an example's module; the tables have what it registers as long as this lasts."""
+    """Return an example's module; the tables have what it registers as long as this lasts."""
     module, added = _imported(file)
     for table, rows in zip(TABLES, added, strict=True):
         table.update(rows)

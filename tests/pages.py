@@ -9,12 +9,12 @@ DIGITS = 0.6  # share by which a number of one digit may be off: 1.5 is written 
 
 
 def read(page: str) -> str:
-    """Give the text of a page."""
+    """Return the text of a page."""
     return (DOCS / page).read_text(encoding="utf-8")
 
 
 def said(page: str, sentence: str) -> list[float]:
-    """Give the numbers of a sentence of a page.
+    """Return the numbers of a sentence of a page.
 
     Each ``#`` in `sentence` stands for a number, the rest for itself, however its lines break.
     """
@@ -26,7 +26,7 @@ def said(page: str, sentence: str) -> list[float]:
 
 
 def tables(page: str, head: str) -> list[list[list[str]]]:
-    """Give the cells of all tables of a page with the given head."""
+    """Return the cells of all tables of a page with the given head."""
     pattern = re.escape(head) + r"\n\|[-| ]+\|\n((?:\|.*\|\n)+)"
     found = re.findall(pattern, read(page))
     assert found, f"{page} has no table {head}"
@@ -37,13 +37,13 @@ def tables(page: str, head: str) -> list[list[list[str]]]:
 
 
 def table(page: str, head: str) -> list[list[str]]:
-    """Give the cells of the only table of a page with the given head."""
+    """Return the cells of the only table of a page with the given head."""
     (rows,) = tables(page, head)
     return rows
 
 
 def listed() -> list[str]:
-    """Give the names that the reference lists, also those of packages that it lists whole."""
+    """Return the names that the reference lists, also those of packages that it lists whole."""
     text = read("reference/index.md")
     names = re.findall(r"^   ([A-Za-z][\w.]+)$", text, re.MULTILINE)
     for package in re.findall(r"^   :every: (\w+)$", text, re.MULTILINE):

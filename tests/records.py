@@ -10,12 +10,12 @@ _BESIDE_THE_PROJECT = Path(__file__).resolve().parents[2] / "shared" / "records"
 
 
 def records_folder() -> Path:
-    """Give the folder where recorded motions are looked for."""
+    """Return the folder where recorded motions are looked for."""
     return Path(os.environ.get(RECORDS_VARIABLE, _BESIDE_THE_PROJECT))
 
 
 def record_path(name: str) -> Path:
-    """Give the path of a recorded motion, or skip the test when it is not there.
+    """Return the path of a recorded motion, or skip the test when it is not there.
 
     Parameters
     ----------

@@ -154,7 +154,7 @@ class _Forces(NamedTuple):
         return min(max(self.by_formula, self.least), self.most)
 
     def lines(self) -> tuple[CheckedLine, ...]:
-        """Give the forces as lines of the check."""
+        """Return the forces as lines of the check."""
         newton = Unit.NEWTON
         return (
             CheckedLine("W_p", self.weight, newton, "weight", "of the block"),
@@ -172,7 +172,7 @@ class _Forces(NamedTuple):
 def _statics(
     forces: _Forces, height: float, arm: float, friction: float | None
 ) -> tuple[tuple[CheckedLine, ...], list[CheckedVerdict]]:
-    """Give moments and friction without anchors, with verdicts; `arm` is the shorter one [m]."""
+    """Return moments and friction without anchors, with verdicts; `arm` is the shorter one [m]."""
     pressing = _RESISTING * forces.weight
     lifted = max(pressing - forces.vertical, 0.0)
     tipping, resisting = forces.horizontal * height, lifted * arm

@@ -15,7 +15,7 @@ from rockframe.units import QuantityLike
 def rocking_block(
     system: object, owner: str, *, carries: bool = False, slides: bool = False
 ) -> RigidGroundSetting | TiedSetting:
-    """Give the setting of a block that rocks on level rigid ground; refuse any other scene.
+    """Return the setting of a block that rocks on level rigid ground; refuse any other scene.
 
     With `carries` it may carry loads that are masses, with `slides` it may slide.
     """
@@ -74,7 +74,7 @@ def peaks_of(
     free_vibration: QuantityLike,
     point: tuple[float, float] = (0.0, 0.0),
 ) -> dict[str, Peak]:
-    """Give the largest motion of the block, and of a point of it [m], under each motion."""
+    """Return the largest motion of the block, and of a point of it [m], under each motion."""
     x, y = point
     points = {"point": (f"{x!r} m", f"{y!r} m")}
     found: dict[str, Peak] = {}

@@ -211,7 +211,7 @@ class _Mechanism(NamedTuple):
 
 
 def _mechanism(system: System, setting: RigidGroundSetting | TiedSetting) -> _Mechanism:
-    """Give the mechanism of the wall and its loads about the edge over which it overturns."""
+    """Return the mechanism of the wall and its loads about the edge over which it overturns."""
     angles, block = setting.overturning_angles, system.parts.the_block
     side = 1.0 if setting.overturning_rotations[0] > 0.0 and angles.right <= angles.left else -1.0
     carried = [one.si for one in system.parts.links if isinstance(one, Load)]
@@ -227,7 +227,7 @@ def _mechanism(system: System, setting: RigidGroundSetting | TiedSetting) -> _Me
 
 
 def _capacity(mechanism: _Mechanism, factor: float) -> tuple[CheckedLine, ...]:
-    """Give activation, capacity curve, and displacements and periods of the limit states."""
+    """Return activation, capacity curve, and displacements and periods of the limit states."""
     weights, beside, above, gravity, _ = mechanism
     # virtual work of the weights in a virtual rotation of 1
     vertical = math.fsum(map(operator.mul, weights, beside))
@@ -266,12 +266,12 @@ def _capacity(mechanism: _Mechanism, factor: float) -> tuple[CheckedLine, ...]:
 
 
 def _of_spectrum(spectrum: TargetSpectrum, period: float, damping: float) -> float:
-    """Give the spectral displacement at a period [m]."""
+    """Return the spectral displacement at a period [m]."""
     return _ordinate(spectrum, period, damping) * period * period / (4.0 * math.pi**2)
 
 
 def _ordinate(spectrum: TargetSpectrum, period: float, damping: float) -> float:
-    """Give the spectral acceleration at a period [m s^-2]."""
+    """Return the spectral acceleration at a period [m s^-2]."""
     if not math.isclose(spectrum.damping_ratio, damping, rel_tol=1e-9):
         msg = (
             f"{_OWNER}: the spectrum must be of a damping ratio of {damping:g}, got "
@@ -282,7 +282,7 @@ def _ordinate(spectrum: TargetSpectrum, period: float, damping: float) -> float:
 
 
 def _of_motions(motions: Mapping[str, GroundMotion], period: float, damping: float) -> float:
-    """Give the largest mean spectral displacement of the motions, over periods up to one [m]."""
+    """Return the largest mean spectral displacement of the motions, over periods up to one [m]."""
     periods = np.geomspace(min(_SHORTEST, 0.5 * period), period, _PERIODS)
     found = response_spectrum(motions, (periods, "s"), damping).spectral_displacement
     return float(found.mean("motion").max())
@@ -294,7 +294,7 @@ def _dynamic(
     motions: Mapping[str, GroundMotion],
     free_vibration: QuantityLike,
 ) -> tuple[CheckedLine, ...]:
-    """Give the largest displacement of the equivalent oscillator under each motion."""
+    """Return the largest displacement of the equivalent oscillator under each motion."""
     beside = mechanism.centre[0]
     lines: list[CheckedLine] = []
     for label, peak in peaks_of(system, motions, free_vibration, mechanism.place).items():

@@ -77,7 +77,7 @@ class Answer:
         self._warnings.append(words)
 
     def printed(self, error: str = "") -> str:
-        """Give the lines for people; after an error without those on the question."""
+        """Return the lines for people; after an error without those on the question."""
         lines = [
             words for number, (beside, words) in enumerate(self._lines)
             if not (beside and self.quiet) and not (error and number in self._asked)
@@ -91,7 +91,7 @@ class Answer:
         return "".join(f"{line}\n" for line in lines)
 
     def json(self, code: int, error: str = "") -> str:
-        """Give the answer as a JSON object."""
+        """Return the answer as a JSON object."""
         files = {title: one[0] if len(one) == 1 else one for title, one in self._files.items()}
         fields = {
             **self._told,
@@ -109,7 +109,7 @@ class Answer:
 
 
 def _number(one: Any) -> dict[str, Any]:
-    """Give a value with its unit and, of an array, its dimensions."""
+    """Return a value with its unit and, of an array, its dimensions."""
     import numpy as np
 
     attributes = dict(getattr(one, "attrs", {}))
@@ -137,7 +137,7 @@ def _in_words(values: Any, attributes: Mapping[str, Any]) -> Any:
 
 
 def _as_json(value: Any) -> Any:
-    """Give a value in the types of JSON; NaN and infinity become null."""
+    """Return a value in the types of JSON; NaN and infinity become null."""
     if hasattr(value, "tolist"):  # of numpy
         value = value.tolist()
     if isinstance(value, list | tuple):

@@ -55,7 +55,7 @@ def whole_option(name: str, words: str, usual: int | None = None) -> CommandArgu
 
 
 def _reads(kind: type[float], expected: str) -> Callable[[str], float]:
-    """Give a function that reads an argument that is a number."""
+    """Return a function that reads an argument that is a number."""
 
     def read(typed: str) -> float:
         try:

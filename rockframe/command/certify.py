@@ -36,7 +36,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
 
 
 def _wanted(of_file: object, arguments: argparse.Namespace) -> Certification | str:
-    """Give the settings of the certificate; options replace those of the file."""
+    """Return the settings of the certificate; options replace those of the file."""
     typed = typed_options(arguments, "nudge", "reach", "runs")
     if arguments.proved and typed:
         name, value = next(iter(typed.items()))

@@ -55,7 +55,7 @@ def script(shell: str) -> str:
 
 
 def _options(command: Command) -> list[tuple[CommandArgument, str]]:
-    """Give the options of a command, each by its long name."""
+    """Return the options of a command, each by its long name."""
     values = (*command.arguments, *EVERYWHERE)
     return [(one, one.names[-1]) for one in values if one.names[0].startswith("-")]
 
@@ -110,7 +110,7 @@ def _fish() -> str:
 
 
 def _quoted(one: CommandArgument) -> str:
-    """Give the help text of an option without characters that shells interpret."""
+    """Return the help text of an option without characters that shells interpret."""
     words = str(one.settings.get("help", ""))
     for mark in "'[]:":
         words = words.replace(mark, "")

@@ -54,7 +54,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
 
 
 def _form_of(output: str) -> str:
-    """Give the format by the ending of a file."""
+    """Return the format by the ending of a file."""
     ending = Path(output).suffix.lower()
     found = next((form for form, one in _ENDINGS.items() if one.lower() == ending), None)
     if found is None:

@@ -55,7 +55,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
 
 
 def _pulse(found: Described, name: str | None) -> tuple[Any, str]:
-    """Give the pulse that was typed, else that of the scene, and its name."""
+    """Return the pulse that was typed, else that of the scene, and its name."""
     known = [one for one in CONSTRUCTORS if _has_axes(one)]
     if name is not None and name not in known:
         listed = f"{suggestion(name, known)} There are {', '.join(known)}"

@@ -54,7 +54,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
 
 
 def _numbered(picture: str | None, count: int) -> list[Path]:
-    """Give the names of pictures, numbered if there are several."""
+    """Return the names of pictures, numbered if there are several."""
     if picture is None:
         return []
     path = Path(picture)

@@ -47,7 +47,7 @@ def scene_and_motions(arguments: argparse.Namespace) -> DescribedStudy:
 
 
 def typed_intensity(arguments: argparse.Namespace, function: Callable[..., Any]) -> dict[str, Any]:
-    """Give the intensity and the limit states that were typed."""
+    """Return the intensity and the limit states that were typed."""
     options = typed_options(arguments, "intensity", "period")
     if arguments.limits is not None:
         options["limits"] = [_limit(word.strip()) for word in arguments.limits.split(",")]

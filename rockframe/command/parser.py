@@ -83,7 +83,7 @@ def build_parser() -> argparse.ArgumentParser:
 
 
 def misspelt(typed: Sequence[str]) -> str | None:
-    """Give a message on a word that is neither a command nor an option, with a proposal."""
+    """Return a message on a word that is neither a command nor an option, with a proposal."""
     known = {command.name: command for command in COMMANDS}
     place = next((k for k, word in enumerate(typed) if not word.startswith("-")), len(typed))
     first = typed[place] if place < len(typed) else None
@@ -124,7 +124,7 @@ def as_typed(words: str, name: str) -> str:
 
 
 def _options(command: Command | None) -> list[str]:
-    """Give all options of a command, or those that are allowed before the command."""
+    """Return all options of a command, or those that are allowed before the command."""
     declared = [*EVERYWHERE, *(() if command is None else command.arguments)]
     names = [name for one in declared for name in one.names if name.startswith("-")]
     return [*names, "-h", "--help", *(["--version"] if command is None else [])]

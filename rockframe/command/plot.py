@@ -58,7 +58,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
 def concluded(
     dataset: xr.Dataset, arguments: argparse.Namespace, answer: Answer, outputs: Outputs
 ) -> None:
-    """Give the numbers of an analysis, and write its result and its picture."""
+    """Return the numbers of an analysis, and write its result and its picture."""
     answer.numbers(dataset)
     outputs.result(dataset)
     if arguments.picture is not None:

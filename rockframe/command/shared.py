@@ -114,7 +114,7 @@ def check_format(arguments: argparse.Namespace) -> None:
 
 
 def run_from(of_file: Mapping[str, Any], arguments: argparse.Namespace) -> dict[str, Any]:
-    """Give the arguments of a run: those of a file, replaced by options that were typed."""
+    """Return the arguments of a run: those of a file, replaced by options that were typed."""
     run = {**of_file, **typed_options(arguments, "duration", "free_vibration")}
     if arguments.accuracy is not None:
         run["accuracy"] = _accuracy(arguments.accuracy, arguments.command)
@@ -126,24 +126,24 @@ def run_from(of_file: Mapping[str, Any], arguments: argparse.Namespace) -> dict[
 
 
 def taken_by(function: Callable[..., Any], run: Mapping[str, Any]) -> dict[str, Any]:
-    """Give the arguments of a run that an analysis takes too."""
+    """Return the arguments of a run that an analysis takes too."""
     known = arguments_of(function)
     return {name: value for name, value in run.items() if name in known}
 
 
 def reading_options(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Give the typed options on how a record is read."""
+    """Return the typed options on how a record is read."""
     return typed_options(arguments, *(one.attribute for one in READING))
 
 
 def typed_options(arguments: argparse.Namespace, *names: str) -> dict[str, Any]:
-    """Give the options that were typed, by their names."""
+    """Return the options that were typed, by their names."""
     values = {name: getattr(arguments, name) for name in names}
     return {name: value for name, value in values.items() if value is not None}
 
 
 def store_from(arguments: argparse.Namespace) -> Path | None:
-    """Give the folder of the store that was typed; refuse an empty name, the current folder."""
+    """Return the folder of the store that was typed; refuse an empty name, the current folder."""
     if arguments.store == "":
         msg = "found no name of a folder after --store; expected one, such as --store kept"
         raise ComponentError(msg)
@@ -275,7 +275,7 @@ class Outputs:
 
 
 def _bytes_of(content: Content, ending: str) -> bytes:
-    """Give the bytes of a file whose name has an ending."""
+    """Return the bytes of a file whose name has an ending."""
     if isinstance(content, bytes):
         return content
     with TemporaryDirectory() as folder:
@@ -312,7 +312,7 @@ def _result_in(place: Path, path: str) -> xr.Dataset:
 
 
 def result_kind(words: str, *, axes: bool) -> FileKind:
-    """Give the kind of file of results, of one run or of a study with axes."""
+    """Return the kind of file of results, of one run or of a study with axes."""
 
     def fits(found: xr.Dataset) -> bool:
         known = {*found.attrs}
@@ -326,7 +326,7 @@ def _is_computed(found: xr.Dataset) -> bool:
 
 
 def dataset_kind(words: str, fits: Callable[[xr.Dataset], bool]) -> FileKind:
-    """Give a kind of netCDF file, recognised by its contents."""
+    """Return a kind of netCDF file, recognised by its contents."""
 
     def is_own(path: Path) -> bool:
         try:
@@ -339,7 +339,7 @@ def dataset_kind(words: str, fits: Callable[[xr.Dataset], bool]) -> FileKind:
 
 
 def table_kind(words: str, *names: str, also: Iterable[str] = ()) -> FileKind:
-    """Give the kind of table in CSV, recognised by heads of columns that only rockframe writes."""
+    """Return kind of table in CSV, recognised by heads of columns that only rockframe writes."""
     heads = (*also, *map(head_of, names))
 
     def is_own(path: Path) -> bool:
@@ -352,7 +352,7 @@ def table_kind(words: str, *names: str, also: Iterable[str] = ()) -> FileKind:
 
 
 def analysis_kind(words: str, *names: str) -> FileKind:
-    """Give the kind of file of an analysis, recognised by its variables."""
+    """Return the kind of file of an analysis, recognised by its variables."""
     return dataset_kind(words, lambda found: _is_computed(found) and {*names} <= {*found.variables})
 
 

@@ -50,7 +50,7 @@ class StandardInput(BytesIO):
 
 
 def opened(path: str, what: str) -> "str | IO[bytes]":
-    """Give a path, or the standard input where it is ``-``."""
+    """Return a path, or the standard input where it is ``-``."""
     return StandardInput.read_for(what) if path == STREAM else path
 
 

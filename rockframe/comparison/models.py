@@ -157,7 +157,7 @@ def model_ladder(system: System) -> dict[str, System]:
 
 
 def _holding(part: Component) -> Component:
-    """Give a base, or a stack with all its interfaces, without sliding."""
+    """Return a base, or a stack with all its interfaces, without sliding."""
     if isinstance(part, Stack):
         return part.replace(interfaces=[_holding(one) for one in part.interfaces])
     if isinstance(part, RigidGround):
@@ -168,7 +168,7 @@ def _holding(part: Component) -> Component:
 
 
 def _bases(arguments: Mapping[str, Any], slots: tuple[str, ...]) -> Iterator[dict[str, Component]]:
-    """Give the bases of a model: for users' own bases the simpler ones, then the own ones."""
+    """Return the bases of a model: for users' own bases the simpler ones, then the own ones."""
     bases = {slot: arguments[slot] for slot in ("pads", "soil") if slot in slots}
     simpler = {
         slot: part.simpler() if isinstance(part, OwnBase) else () for slot, part in bases.items()
@@ -182,7 +182,7 @@ def _bases(arguments: Mapping[str, Any], slots: tuple[str, ...]) -> Iterator[dic
 
 
 def _named(bases: Mapping[str, Component]) -> dict[str, str]:
-    """Give the words for the bases of a model; users' own bases are named by their classes."""
+    """Return the words for the bases of a model; users' own bases are named by their classes."""
     own = {slot: type(part).__name__ for slot, part in bases.items() if isinstance(part, OwnBase)}
     return {words: own.get(slot, words) for words, slot in _WORDS.items()}
 

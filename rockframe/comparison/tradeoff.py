@@ -39,7 +39,7 @@ def verdicts_agree(run: xr.Dataset, reference: xr.Dataset) -> bool:
 
 
 def relative_peak_error(run: xr.Dataset, reference: xr.Dataset) -> float:
-    """Give the greater of the relative errors of peak rotation and of peak slip [1]."""
+    """Return the greater of the relative errors of peak rotation and of peak slip [1]."""
     if _cut_off(run, reference):
         return float("nan")
     peak, slips = float(reference["peak_rotation"]), _slips(reference)
@@ -51,13 +51,13 @@ def relative_peak_error(run: xr.Dataset, reference: xr.Dataset) -> float:
 
 
 def _slips(run: xr.Dataset) -> Generic:
-    """Give the peak slips of all bodies of a run, or zero if its model has no sliding [m]."""
+    """Return the peak slips of all bodies of a run, or zero if its model has no sliding [m]."""
     found = [np.atleast_1d(run[name].to_numpy()) for name in PEAK_SLIPS if name in run]
     return np.concatenate(found) if found else np.zeros(1)
 
 
 def history_error(run: xr.Dataset, reference: xr.Dataset) -> float:
-    """Give the largest difference of both histories of rotation over the peak rotation [1]."""
+    """Return the largest difference of both histories of rotation over the peak rotation [1]."""
     if _cut_off(run, reference):
         return float("nan")
     one, other = (data["rotation"].to_numpy() for data in (run, reference))
@@ -70,7 +70,7 @@ def history_error(run: xr.Dataset, reference: xr.Dataset) -> float:
 
 
 def event_time_error(run: xr.Dataset, reference: xr.Dataset) -> float:
-    """Give the largest difference of the times of events [s]; NaN if their kinds differ."""
+    """Return the largest difference of the times of events [s]; NaN if their kinds differ."""
     if _cut_off(run, reference):
         return float("nan")
     if not np.array_equal(run["event_kind"].to_numpy(), reference["event_kind"].to_numpy()):

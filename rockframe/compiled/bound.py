@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def numbers_in(bundle: Any) -> Vector:
-    """Give the numbers of a tuple and of the tuples in it, one after the other.
+    """Return the numbers of a tuple and of the tuples in it, one after the other.
 
     The elements of an array, which may be the last element of a tuple, are copied, so that each run
     has its own.
@@ -27,7 +27,7 @@ def numbers_in(bundle: Any) -> Vector:
 
 
 def elements_of(bundle: Any) -> Iterator[Any]:
-    """Give the elements of a tuple and of the tuples in it, one after the other."""
+    """Return the elements of a tuple and of the tuples in it, one after the other."""
     for value in bundle:
         if isinstance(value, tuple | np.ndarray):
             yield from elements_of(value)
@@ -36,7 +36,7 @@ def elements_of(bundle: Any) -> Iterator[Any]:
 
 
 def structure_of(bundle: Any) -> tuple[Any, ...]:
-    """Give the class of a tuple and, in their order, the types of its elements."""
+    """Return the class of a tuple and, in their order, the types of its elements."""
     return (type(bundle), *(
         structure_of(value) if isinstance(value, tuple) else type(value) for value in bundle
     ))  # fmt: skip

@@ -51,7 +51,7 @@ extending.make_attribute_wrapper(BufferType, "shape", "shape")
 
 @extending.intrinsic
 def buffer_of(_: Any, array: Any) -> Any:
-    """Give the buffer of an array that the caller keeps, in compiled code."""
+    """Return the buffer of an array that the caller keeps, in compiled code."""
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         struct = context.make_array(signature.args[0])(context, builder, values[0])
@@ -64,7 +64,7 @@ def buffer_of(_: Any, array: Any) -> Any:
 
 @extending.intrinsic
 def _shifted(_: Any, kept: Any, first: Any) -> Any:
-    """Give a buffer from an index on, in compiled code."""
+    """Return a buffer from an index on, in compiled code."""
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         proxy = cgutils.create_struct_proxy(kept)(context, builder, value=values[0])
@@ -79,7 +79,7 @@ def _shifted(_: Any, kept: Any, first: Any) -> Any:
 
 @extending.intrinsic
 def _stretch(_: Any, kept: Any, first: Any, count: Any) -> Any:
-    """Give a buffer of some elements, or rows, of another, in compiled code."""
+    """Return a buffer of some elements, or rows, of another, in compiled code."""
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         proxy = cgutils.create_struct_proxy(kept)(context, builder, value=values[0])
@@ -96,7 +96,7 @@ def _stretch(_: Any, kept: Any, first: Any, count: Any) -> Any:
 
 @extending.intrinsic
 def _with_number(_: Any, numbers: Any, place: Any, number: Any) -> Any:
-    """Give a tuple with another number at a place, in compiled code."""
+    """Return a tuple with another number at a place, in compiled code."""
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         room = cgutils.alloca_once_value(builder, values[0])
@@ -109,7 +109,7 @@ def _with_number(_: Any, numbers: Any, place: Any, number: Any) -> Any:
 
 @extending.intrinsic
 def _strided(_: Any, kept: Any, first: Any) -> Any:
-    """Give a buffer with stride `LANES` from an index on, in compiled code."""
+    """Return a buffer with stride `LANES` from an index on, in compiled code."""
     strided = BufferType(kept.dtype, 1, kept.writeable, language.LANES)
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
@@ -123,7 +123,7 @@ def _strided(_: Any, kept: Any, first: Any) -> Any:
 
 @extending.intrinsic
 def _as_integers(_: Any, kept: Any) -> Any:
-    """Give a buffer of numbers as one of whole numbers of the same memory, in compiled code."""
+    """Return a buffer of numbers as one of whole numbers of the same memory, in compiled code."""
     kind = BufferType(numba.int64, 1, kept.writeable, kept.stride)
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
@@ -225,7 +225,7 @@ def _length(context: Any, builder: Any, signature: Any, values: Any) -> Any:
 
 
 def _address_of(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-    """Give the address of an element of a buffer."""
+    """Return the address of an element of a buffer."""
     kept = signature.args[0]
     proxy = cgutils.create_struct_proxy(kept)(context, builder, value=values[0])
     if kept.dimensions == 1:
@@ -237,7 +237,7 @@ def _address_of(context: Any, builder: Any, signature: Any, values: Any) -> Any:
 
 
 def _place_in(kept: BufferType, place: Any) -> Any:
-    """Give the type of an index of an element; None for slices, which are not supported."""
+    """Return the type of an index of an element; None for slices, which are not supported."""
     if kept.dimensions == 1:
         return numba.intp if isinstance(place, numba.types.Integer) else None
     numbers = place if isinstance(place, numba.types.BaseTuple) else ()

@@ -65,7 +65,7 @@ class CalledBack:
 
 
 def _arguments(kinds: list[Any], words: tuple[Any, ...]) -> list[Any]:
-    """Give the arguments of a call from the words handed over; arrays are memory views."""
+    """Return the arguments of a call from the words handed over; arrays are memory views."""
     arguments: list[Any] = []
     place = 0
     for kind in kinds:

@@ -50,7 +50,7 @@ class _Compiled(numba.types.Dispatcher):
     """numba's type of a compiled function that is not compiled anew for constant arguments."""
 
     def get_call_type(self, context: Any, arguments: Any, keywords: Any) -> Any:
-        """Give the types of a call; a constant argument has the type of its kind of number."""
+        """Return the types of a call; a constant argument has the type of its kind of number."""
         alike = [numba.types.unliteral(each) for each in arguments]
         named = {name: numba.types.unliteral(each) for name, each in keywords.items()}
         return super().get_call_type(context, alike, named)

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 def viewed(argument: Any) -> Any:
-    """Give an argument of an entry with memory views in place of its arrays."""
+    """Return an argument of an entry with memory views in place of its arrays."""
     if isinstance(argument, np.ndarray):
         return memoryview(cast("Any", argument))
     if isinstance(argument, tuple):
@@ -89,7 +89,7 @@ def _as_python(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def table(values: Any) -> Vector:
-    """Give a table of constants, of one or two dimensions, in the form that is read fastest."""
+    """Return a table of constants, of one or two dimensions, in the form that is read fastest."""
     kept = np.array(values, dtype=np.float64)
     return kept if COMPILED else viewed(kept)
 
@@ -99,7 +99,7 @@ _PLACE: Final = re.compile(r'File "([^"]+)", line (\d+)')
 
 
 def _why(problem: Exception) -> str:
-    """Give what could not be compiled, and where: the innermost reason, which comes first."""
+    """Return what could not be compiled, and where: the innermost reason, which comes first."""
     lines = [line.strip() for line in str(problem).splitlines() if line.strip()]
     reasons = [line for line in lines if not line.startswith(_NO_REASONS)]
     reason = " ".join(reasons[:2]) if reasons and reasons[0].endswith(":") else "".join(reasons[:1])
@@ -118,7 +118,7 @@ def _could_not(function: Callable[..., Any], problem: Exception) -> None:
 
 
 def seconds_as_python() -> float:
-    """Give a clock that runs only while entries run as plain Python [s]."""
+    """Return a clock that runs only while entries run as plain Python [s]."""
     return AS_PYTHON[0] if COMPILED else perf_counter()
 
 
@@ -227,7 +227,7 @@ class Entry:
     def _meanwhile(
         self, structure: tuple[Any, ...], sources: list[Source], seldom: list[Source]
     ) -> "Meanwhile | None":
-        """Give the compilation for which plain Python fills in; None where that does not pay.
+        """Return the compilation for which plain Python fills in; None where that does not pay.
 
         That is where there can be no machine code, where there is some, or where all functions that
         the entry calls are compiled and the entry itself takes a moment.
@@ -249,7 +249,7 @@ class Entry:
         return failed or any(source.failed for source in sources)
 
     def _jobs(self, structure: tuple[Any, ...], sources: list[Source]) -> "list[Job]":
-        """Give the jobs of a call: its bound functions without machine code, then the entry."""
+        """Return the jobs of a call: its bound functions without machine code, then the entry."""
         from rockframe.compiled.jobs import Job
 
         jobs = [source.job for source in _missing(sources)]
@@ -313,7 +313,7 @@ def still_taking(seconds: float) -> Generator[None]:
 
 
 def _structure_of(argument: Any, words: list[Any], sources: list[Source]) -> Any:
-    """Give the structure of an argument; add the words that hand it over, and bound functions."""
+    """Return the structure of an argument; add the words that hand it over, and bound functions."""
     if isinstance(argument, tuple):
         values = cast("tuple[Any, ...]", argument)
         return (type(values), *[_structure_of(value, words, sources) for value in values])

@@ -52,7 +52,7 @@ class Writer:
         self.notes: list[str] = []  # comments on what the source depends on but does not show
 
     def tuple_of(self, structure: tuple[Any, ...]) -> str:
-        """Give the expression that makes a tuple of the elements of ``numbers``.
+        """Return the expression that makes a tuple of the elements of ``numbers``.
 
         An array, the last element of a tuple, takes the rest of them.
         """
@@ -73,7 +73,7 @@ class Writer:
         return f"{self._name(kind)}({', '.join(taken)})"
 
     def argument(self, structure: Any) -> str:
-        """Give the expression that makes an argument from words."""
+        """Return the expression that makes an argument from words."""
         if isinstance(structure, tuple) and isinstance(structure[0], type):
             parts = ", ".join(self.argument(part) for part in structure[1:])
             return f"{self._name(structure[0])}({parts})"
@@ -111,14 +111,14 @@ the first jobs of a run was 0.8 to 1.3 times this estimate.
 
 
 def signature_of(function: Callable[..., Any]) -> Any:
-    """Give numba's signature of a function that is to be bound to a tuple, from its annotations."""
+    """Return numba's signature of a function to be bound to a tuple, from its annotations."""
     names = list(inspect.signature(function).parameters)[1:]
     hints = get_type_hints(function, include_extras=True)
     return _kind_of(hints["return"])(*(_kind_of(hints[name]) for name in names), VECTOR)
 
 
 def _kind_of(hint: Any) -> Any:
-    """Give numba's type of what is annotated, of a named tuple by the annotations of its fields."""
+    """Return numba's type of an annotation, of a named tuple by the annotations of its fields."""
     if hint in KINDS:
         return KINDS[hint]
     fields = get_type_hints(hint, include_extras=True)
@@ -187,7 +187,7 @@ class Job:
         return self.file is not None and store.has_code(self.file)
 
     def make(self, waiting: Callable[[], bool] = lambda: True) -> Any:
-        """Give the compiled function: loaded from the store, or compiled now."""
+        """Return the compiled function: loaded from the store, or compiled now."""
         file = self.file
         if file is None:
             register_kernels()
@@ -254,14 +254,14 @@ def operators_remembered() -> Generator[None]:
 
 
 def classes_of_structure(structure: tuple[Any, ...]) -> set[type]:
-    """Give the classes of a tuple and of the tuples in it."""
+    """Return the classes of a tuple and of the tuples in it."""
     kind, *parts = structure
     found = {kind} if isinstance(kind, type) else set[type]()
     return found.union(*(classes_of_structure(part) for part in parts if isinstance(part, tuple)))
 
 
 def called_by(function: Any, kinds: set[type]) -> set[Any]:
-    """Give a function and all marked ones that it may call; methods of `kinds` by their names."""
+    """Return a function and all marked ones it may call; methods of `kinds` by their names."""
     found, waiting = set[Any](), [function]
     while waiting:
         caller = waiting.pop()

@@ -63,7 +63,7 @@ Bundle = TypeVar("Bundle")
 
 
 def constant(value: float, like: tuple[float, ...]) -> tuple[float, ...]:
-    """Give a tuple as long as another one, with one number in all places."""
+    """Return a tuple as long as another one, with one number in all places."""
     return (value,) * len(like)
 
 
@@ -76,23 +76,23 @@ def put(numbers: tuple[float, ...] | Vector, first: int, out: Vector) -> None:
 def with_numbers(
     numbers: tuple[float, ...], first: int, others: tuple[float, ...]
 ) -> tuple[float, ...]:
-    """Give a copy of a tuple in which other numbers replace some, from an index on."""
+    """Return a copy of a tuple in which other numbers replace some, from an index on."""
     return (*numbers[:first], *others, *numbers[first + len(others) :])
 
 
 def filled(like: Bundle, numbers: Vector) -> Bundle:
-    """Give a named tuple of the class of another one, filled with numbers from an array."""
+    """Return a named tuple of the class of another one, filled with numbers from an array."""
     kind: Any = type(like)
     return kind(*numbers[: len(kind._fields)])
 
 
 def part_of(array: Vector, first: int) -> Vector:
-    """Give the part of an array from an index on; no copy."""
+    """Return the part of an array from an index on; no copy."""
     return array[first:]
 
 
 def stretch(array: Array, first: int, count: int) -> Array:
-    """Give some elements of an array, or rows of a matrix, from an index on; no copy."""
+    """Return some elements of an array, or rows of a matrix, from an index on; no copy."""
     some: Any = array[first : first + count]
     return some
 
@@ -104,13 +104,13 @@ LANES: Final = 16
 
 
 def lane_of(room: Numbers, field: int, lane: int) -> Numbers:
-    """Give the fields of one lane, from a field on, as an array; no copy."""
+    """Return the fields of one lane, from a field on, as an array; no copy."""
     fields: Numbers = room[field * LANES + lane :: LANES]
     return fields
 
 
 def as_integers(array: Vector) -> Integers:
-    """Give a view of an array as integers of the same memory."""
+    """Return a view of an array as integers of the same memory."""
     return array.view("int64")
 
 
@@ -119,7 +119,7 @@ def widest_registers() -> None:
 
 
 def tuple_from(structure: tuple[Any, ...]) -> Callable[[Vector], Any]:
-    """Give the function that makes a tuple of some structure from a vector of its numbers."""
+    """Return the function that makes a tuple of some structure from a vector of its numbers."""
 
     def made(kind: Any, parts: tuple[Any, ...], numbers: Vector, first: int) -> tuple[Any, int]:
         taken: list[Any] = []

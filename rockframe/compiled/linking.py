@@ -57,7 +57,7 @@ class _Waiting(_codegen.JITCodeLibrary):
             super().add_linking_library(library)
 
     def get_pointer_to_function(self, name: str) -> int:
-        """Give the address of a function; 0 where this library has none of that name."""
+        """Return the address of a function; 0 where this library has none of that name."""
         if not self._finalized and not any(
             name == each.name and not each.is_declaration for each in self._final_module.functions
         ):
@@ -97,7 +97,7 @@ class _Waiting(_codegen.JITCodeLibrary):
 
 
 def _callers_first(library: Any) -> list[Any]:
-    """Give all libraries that a library calls, callers before what they call."""
+    """Return all libraries that a library calls, callers before what they call."""
     seen: set[Any] = set()
     ended: list[Any] = []
 

@@ -37,7 +37,7 @@ class PlainPasses(_compiler.CompilerBase):
     """The passes over a plain function; they give the same result as all passes of numba."""
 
     def define_pipelines(self) -> list[Any]:
-        """Give the passes, in numba's order."""
+        """Return the passes, in numba's order."""
         passes = _compiler.DefaultPassBuilder.define_nopython_pipeline(self.state)
         passes.passes = [one for one in passes.passes if one[0].name() not in _FOR_OTHERS]
         passes.finalize()

@@ -27,7 +27,7 @@ _INSTALLED: Final = tuple(
 
 
 def digest_of_sources(function: Callable[..., Any], classes: Iterable[type]) -> str | None:
-    """Give a digest of all files that the machine code of a function depends on, or None."""
+    """Return a digest of all files that the machine code of a function depends on, or None."""
     files = _own_files({function.__module__, *(kind.__module__ for kind in classes)})
     if files is None:
         return None
@@ -35,7 +35,7 @@ def digest_of_sources(function: Callable[..., Any], classes: Iterable[type]) -> 
 
 
 def digest(*contents: bytes) -> str:
-    """Give a digest of contents."""
+    """Return a digest of contents."""
     total = hashlib.blake2b(digest_size=12)
     for content in contents:
         total.update(len(content).to_bytes(8, "little"))
@@ -51,7 +51,7 @@ def _package_digest() -> bytes:
 
 
 def _own_files(modules: set[str]) -> list[Path] | None:
-    """Give the files of modules outside of the package, and of such modules that they import."""
+    """Return the files of modules outside of the package, and of such modules that they import."""
     files: set[Path] = set()
     seen: set[str] = set()
     while modules:
@@ -70,7 +70,7 @@ def _own_files(modules: set[str]) -> list[Path] | None:
 
 
 def _imported(module: ModuleType, source: bytes) -> Iterator[str]:
-    """Give the names of the modules that a module imports, without installed packages."""
+    """Return the names of the modules that a module imports, without installed packages."""
     for node in ast.walk(ast.parse(source)):
         names: list[str] = []
         if isinstance(node, ast.Import):
@@ -168,7 +168,7 @@ _UNUSED: Final = 30 * 24 * 3600.0
 
 
 def file_of(function: Callable[..., Any], text: str, classes: Iterable[type]) -> Path | None:
-    """Give the file of a job's module, written if it does not exist; None if it cannot be."""
+    """Return the file of a job's module, written if it does not exist; None if it cannot be."""
     classes = list(classes)
     sources = digest_of_sources(function, classes)
     if sources is None:
@@ -233,7 +233,7 @@ def forget_code(file: Path) -> None:
 
 
 def folders() -> list[Path]:
-    """Give the folders that the store may be in, the preferred one first."""
+    """Return the folders that the store may be in, the preferred one first."""
     value = os.environ.get("ROCKFRAME_CACHE_DIR")
     if value:
         return [Path(value)]

@@ -119,7 +119,7 @@ class Component(metaclass=Proposing):
             warn(caution, ModelWarning)
 
     def cautions(self) -> list[str]:
-        """Give the warnings of the constructor about unusual values.
+        """Return the warnings of the constructor about unusual values.
 
         Returns
         -------
@@ -143,7 +143,7 @@ class Component(metaclass=Proposing):
 
     @classmethod
     def _owner(cls, values: Mapping[str, object]) -> str:
-        """Give the name of the component for messages."""
+        """Return the name of the component for messages."""
         return cls.__name__
 
     def _check(self, values: Mapping[str, object], owner: str) -> None:
@@ -152,11 +152,11 @@ class Component(metaclass=Proposing):
             alternative.check(values, owner)
 
     def _numbers(self, numbers: SIValues) -> Any:
-        """Give the numbers for the equations; refuse values that do not fit together."""
+        """Return the numbers for the equations; refuse values that do not fit together."""
         return numbers
 
     def _cautions(self) -> list[str]:
-        """Give a text for each unusual value."""
+        """Return a text for each unusual value."""
         values = vars(self.given)
         found = [
             one.caution(values[name])
@@ -166,7 +166,7 @@ class Component(metaclass=Proposing):
         return [words for words in found if words is not None]
 
     def _arguments(self) -> dict[str, float | str]:
-        """Give arguments of the constructor for an equal component."""
+        """Return arguments of the constructor for an equal component."""
         values = vars(self.given)
         written = {
             name: None if values[name] is None else one.write(values[name])
@@ -198,7 +198,7 @@ class Component(metaclass=Proposing):
         return f"{type(self).__name__}({argument})"
 
     def _shapes(self) -> list[Polygon]:
-        """Give the polygons that notebooks draw, to scale; none if it has no shape."""
+        """Return the polygons that notebooks draw, to scale; none if it has no shape."""
         return []
 
     def _repr_html_(self) -> str:
@@ -210,7 +210,7 @@ class Component(metaclass=Proposing):
         return (type(self).from_dict, (self._arguments(),))
 
     def to_dict(self) -> dict[str, float | str]:
-        """Give the constructor's arguments in SI units, with the class under ``type``.
+        """Return the constructor's arguments in SI units, with the class under ``type``.
 
         Returns
         -------
@@ -245,7 +245,7 @@ class Component(metaclass=Proposing):
 
     @classmethod
     def _described(cls, description: Mapping[str, float | str]) -> dict[str, Any]:
-        """Give the arguments in a description; refuse one of another class."""
+        """Return the arguments in a description; refuse one of another class."""
         description = by_names(
             description,
             owner=f"{cls.__name__}.from_dict",
@@ -283,7 +283,7 @@ class Component(metaclass=Proposing):
 
     @classmethod
     def declared(cls) -> Mapping[str, Declared[Any, Any]]:
-        """Give the declarations of all parameters by name.
+        """Return the declarations of all parameters by name.
 
         Returns
         -------
@@ -293,7 +293,7 @@ class Component(metaclass=Proposing):
 
     @classmethod
     def varied(cls) -> Mapping[str, Declared[Any, Any]]:
-        """Give the declarations of all quantities that :meth:`with_si` takes, by name.
+        """Return the declarations of all quantities that :meth:`with_si` takes, by name.
 
         Returns
         -------
@@ -422,7 +422,7 @@ def replaced(
     changes: Mapping[str, Any],
     alternatives: tuple[OneOf, ...],
 ) -> dict[str, Any]:
-    """Give arguments with changes, without those that the changes replace."""
+    """Return arguments with changes, without those that the changes replace."""
     gone = {name for each in alternatives for name in each.displaced(changes)}
     return {**{name: value for name, value in arguments.items() if name not in gone}, **changes}
 
@@ -488,7 +488,7 @@ def _is_finite(value: object) -> bool:
 
 
 def _number_in(value: float | str) -> float:
-    """Give the number in an argument; zero for a word."""
+    """Return the number in an argument; zero for a word."""
     if not isinstance(value, str):
         return value
     try:

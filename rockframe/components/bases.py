@@ -211,11 +211,11 @@ class CushionCapSI:
     mass_per_width: float | None
 
     def mass_at(self, width: float) -> float:
-        """Give the mass of a cap of a width [kg]."""
+        """Return the mass of a cap of a width [kg]."""
         return self.mass if self.mass is not None else (self.mass_per_width or 0.0) * width
 
     def inertia_at(self, width: float) -> float:
-        """Give the moment of inertia of a solid cap about its centre [kg m^2]."""
+        """Return the moment of inertia of a solid cap about its centre [kg m^2]."""
         diagonal = hypot(width, self.height)
         return self.mass_at(width) * diagonal * diagonal / 12.0
 

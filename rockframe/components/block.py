@@ -204,7 +204,7 @@ class Block(Component):
 
     @classmethod
     def varied(cls) -> Mapping[str, Declared[Any, Any]]:
-        """Give the declarations of all parameters, and of `radius` and `slenderness`.
+        """Return the declarations of all parameters, and of `radius` and `slenderness`.
 
         Returns
         -------

@@ -81,7 +81,7 @@ class BlockSI(BodyGeometry):
 
 
 def greatest_restitutions(body: BodyGeometry) -> tuple[float, float]:
-    """Give the ratios of the angular velocities after and before impacts, left and right corner.
+    """Return the ratios of the angular velocities after and before impacts, left and right corner.
 
     For a rigid body that goes on rocking about this corner without a bounce,
     :eq:`eq-eccentric-impact`; this is Eq. (4) if the centre of mass is above the middle.
@@ -163,7 +163,7 @@ def _about_a_corner(si: BlockSI) -> bool:
 
 
 def width_by_radius(owner: str, radius: Any, slenderness: Any, centre_height: Any = None) -> Any:
-    """Give the width [m] of a block by R0 [m] and H/B; `owner` is named in messages.
+    """Return the width [m] of a block by R0 [m] and H/B; `owner` is named in messages.
 
     The centre of mass is at half the height, unless its height above the base is given [m].
     """

@@ -317,7 +317,7 @@ class FrameEquivalent(Block):
         return quantity(self._building.centre_of_mass[1], LENGTH)
 
     def members_table(self) -> xr.Dataset:
-        """Give a table of mass, position, size and moment of inertia of all members.
+        """Return a table of mass, position, size and moment of inertia of all members.
 
         Returns
         -------
@@ -401,7 +401,7 @@ class FrameEquivalent(Block):
         return super()._arguments() if self._building is None else dict(self._building.arguments)
 
     def _plain_arguments(self) -> dict[str, Any]:
-        """Give the arguments of :meth:`from_members`, members as a list."""
+        """Return the arguments of :meth:`from_members`, members as a list."""
         values: dict[str, Any] = self._arguments()
         return values | ({"members": json.loads(values["members"])} if "members" in values else {})
 

@@ -78,7 +78,7 @@ class Building:
         return 1.0 / inverse if inverse > 0.0 else math.inf
 
     def block_arguments(self, owner: str) -> dict[str, float | str]:
-        """Give the arguments of the equivalent block."""
+        """Return the arguments of the equivalent block."""
         mass = sum(member.si.mass for member in self.members)
         arguments: dict[str, float | str] = {
             "width": f"{self.width!r} {LENGTH.unit}",
@@ -182,7 +182,7 @@ class Building:
 
 
 def _spread(si: MemberSI, point: tuple[float, float], radius: float) -> float:
-    """Give the mean square distance of a member's mass from a point, over a radius squared."""
+    """Return the mean square distance of a member's mass from a point, over a radius squared."""
     if si.width is None or si.height is None:
         turning = si.inertia / si.mass / radius / radius
     else:

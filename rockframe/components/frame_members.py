@@ -245,7 +245,7 @@ _COLUMNS: Final = {
 def members_table(
     members: Sequence[Member], height: float, attributes: dict[str, float | None]
 ) -> xr.Dataset:
-    """Give a table of the members of a building of some height [m], with sums as attributes."""
+    """Return a table of the members of a building of some height [m], with sums as attributes."""
     variables: dict[str, Any] = {}
     rows = [_row(member.si, height) for member in members]
     for name, (unit, words) in _COLUMNS.items():

@@ -104,7 +104,7 @@ class StoreyHeights(Declared[Quantity, Missing]):
         return "; ".join(f"{height!r} {LENGTH.unit}" for height in value)
 
     def public(self, value: tuple[float, ...]) -> Quantity:
-        """Give all heights in one Quantity."""
+        """Return all heights in one Quantity."""
         return quantity(np.array(value), LENGTH)
 
 
@@ -126,7 +126,7 @@ class InfillThickness(Declared[Quantity | None, str]):
         return f"{value!r} {self.unit}" if value else _NO_INFILL
 
     def public(self, value: float) -> Quantity | None:
-        """Give the thickness, or None."""
+        """Return the thickness, or None."""
         return quantity(value, self.measure) if value else None
 
 

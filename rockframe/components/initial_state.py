@@ -19,7 +19,7 @@ from rockframe.units import (
 
 
 def _in_degrees(rotation: str) -> str:
-    """Give the question whether degrees were meant by a rotation in radians."""
+    """Return the question whether degrees were meant by a rotation in radians."""
     degrees = re.sub(r"\brad(ians?)?\b", "deg", rotation)
     return "" if degrees == rotation else f"; was {shown(degrees)} meant?"
 

@@ -114,11 +114,11 @@ class Declared(Generic[Public, Usual]):
         return value
 
     def public(self, value: Any) -> Any:
-        """Give a value for users, with its unit."""
+        """Return a value for users, with its unit."""
         return value
 
     def caution(self, value: Any) -> str | None:
-        """Give a text on an unusual value, None for a usual one."""
+        """Return a text on an unusual value, None for a usual one."""
         return None
 
 
@@ -176,7 +176,7 @@ class Parameter(Declared[Quantity, Usual]):
         return f"{value!r} {self.unit}"
 
     def public(self, value: float) -> Quantity:
-        """Give the number with its unit."""
+        """Return the number with its unit."""
         return quantity(value, self.measure)
 
 
@@ -400,7 +400,7 @@ class Place(Declared[tuple[Quantity, Quantity], Missing]):
         return f"({value[0]!r}, {value[1]!r}) m"
 
     def public(self, value: tuple[float, float]) -> tuple[Quantity, Quantity]:
-        """Give the numbers with their unit."""
+        """Return the numbers with their unit."""
         return quantity(value[0], LENGTH), quantity(value[1], LENGTH)
 
 

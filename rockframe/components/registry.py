@@ -26,7 +26,7 @@ def register_class(kind: "type[Component]") -> None:
 
 
 def kinds() -> Mapping[str, "type[Component]"]:
-    """Give all registered classes by name."""
+    """Return all registered classes by name."""
     return _KINDS
 
 

@@ -130,7 +130,7 @@ class RockingFrame(Component):
         return RockingFrameSI(si, numbers.columns, numbers.beam_mass, spacing, depth)
 
     def cautions(self) -> list[str]:
-        """Give the warnings about unusual values of the column.
+        """Return the warnings about unusual values of the column.
 
         Returns
         -------
@@ -188,7 +188,7 @@ class RockingFrame(Component):
 
 
 def frame_outlines(si: RockingFrameSI) -> list[list[tuple[float, float]]]:
-    """Give the corners of all columns and of the beam, from the middle of the bases [m]."""
+    """Return the corners of all columns and of the beam, from the middle of the bases [m]."""
     half, height = si.column.half_width, si.column.height
     places = column_places(si)
     reach, top = places[-1] + 2.0 * half, height + si.beam_height
@@ -199,5 +199,5 @@ def frame_outlines(si: RockingFrameSI) -> list[list[tuple[float, float]]]:
 
 
 def column_places(si: RockingFrameSI) -> list[float]:
-    """Give the coordinates of the column axes, to the right of the middle of the frame [m]."""
+    """Return the coordinates of the column axes, to the right of the middle of the frame [m]."""
     return [(k - 0.5 * (si.columns - 1)) * si.spacing for k in range(si.columns)]

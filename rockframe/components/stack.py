@@ -130,7 +130,7 @@ class Stack(Component):
         return tuple(quantity(one, LENGTH) for one in self.given.offsets)
 
     def cautions(self) -> list[str]:
-        """Give the warnings about unusual values of bodies and interfaces.
+        """Return the warnings about unusual values of bodies and interfaces.
 
         Returns
         -------

@@ -46,47 +46,47 @@ class Alone(InState, OnePart):
 
     @inlined
     def bodies(self) -> int:
-        """Give the number of bodies."""
+        """Return the number of bodies."""
         return 1
 
     @kernel
     def variables(self) -> int:
-        """Give the number of variables of first order: the base's own."""
+        """Return the number of variables of first order: the base's own."""
         return self.part.base.variables()
 
     @kernel
     def guards(self) -> int:
-        """Give the number of guards."""
+        """Return the number of guards."""
         return self.part.guards()
 
     @kernel
     def modes(self) -> int:
-        """Give the number of modes."""
+        """Return the number of modes."""
         return self.part.modes()
 
     @inlined
     def moving_in(self, mode: int) -> int:
-        """Give the number of coordinates that move: all, or all but a held horizontal one."""
+        """Return the number of coordinates that move: all, or all but a held horizontal one."""
         return DEGREES if self.part.is_free(self.part.mode_of(mode)) else HORIZONTAL
 
     @inlined
     def contact_state_of(self, mode: int, k: int) -> int:
-        """Give the contact state."""
+        """Return the contact state."""
         return self.part.shown_contact(self.part.mode_of(mode))
 
     @inlined
     def relaxation_in(self, mode: int) -> float:
-        """Give the rate at which a sliding end follows the base [s^-1]."""
+        """Return the rate at which a sliding end follows the base [s^-1]."""
         return self.part.relaxation_in(self.part.mode_of(mode))
 
     @inlined
     def own_place(self, k: int) -> int:
-        """Give the index in the state of the base's own variables."""
+        """Return the index in the state of the base's own variables."""
         return OWN
 
     @inlined
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> tuple[float, ...]:
-        """Give accelerations, rates of the base's own variables, and powers."""
+        """Return accelerations, rates of the base's own variables, and powers."""
         standing = self.part.mode_of(mode)
         body, own = self.state_of(0, state), self.part.base.read(state, OWN)
         rates = self.part.rates_in(standing, body, own, ground)
@@ -100,12 +100,12 @@ class Alone(InState, OnePart):
 
     @inlined
     def without_sliding(self, mode: int) -> int:
-        """Give a mode without its sliding."""
+        """Return a mode without its sliding."""
         return mode & ~SLIDES
 
     @inlined
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
-        """Give all guards, and their rates, :eq:`eq-guards`."""
+        """Return all guards, and their rates, :eq:`eq-guards`."""
         standing, body = self.part.mode_of(mode), self.state_of(0, state)
         sliding = IDLE
         if standing.slides:
@@ -124,7 +124,7 @@ class Alone(InState, OnePart):
 
     @kernel
     def energies(self, mode: int, state: Vector) -> Energies:
-        """Give kinetic, gravity and elastic energy, and the elastic energy less that at rest."""
+        """Return kinetic, gravity and elastic energy, and the elastic energy less that at rest."""
         body = self.state_of(0, state)
         elastic, change = self.part.elastic_energy(body, self.part.base.read(state, OWN))
         kinetic = self.part.kinetic_energy(self.part.mode_of(mode), body)
@@ -134,7 +134,7 @@ class Alone(InState, OnePart):
     def observe(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> tuple[float, ...]:
-        """Give motion and reactions, :eq:`eq-reactions`, and the base's columns."""
+        """Return motion and reactions, :eq:`eq-reactions`, and the base's columns."""
         standing, body = self.part.mode_of(mode), self.state_of(0, state)
         attitude = self.part.body.attitude(body.rotation)
         shear = slope[HORIZONTAL] + ground.x
@@ -155,17 +155,17 @@ class Alone(InState, OnePart):
 
     @kernel
     def part_mode(self, mode: int, k: int) -> Mode:
-        """Give contact, held point and sliding of the body in a mode."""
+        """Return contact, held point and sliding of the body in a mode."""
         return self.part.mode_of(mode)
 
     @kernel
     def with_part(self, mode: int, k: int, part: Mode) -> int:
-        """Give the number of a mode of the body."""
+        """Return the number of a mode of the body."""
         return self.part.number_of(part)
 
     @kernel
     def place(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
-        """Give x of the centre of mass: about the held point, or free."""
+        """Return x of the centre of mass: about the held point, or free."""
         standing, body = self.part.mode_of(mode), self.state_of(k, state)
         attitude = self.part.body.attitude(body.rotation)
         return self.part.horizontal_place(standing, body, attitude, memory[HELD_PLACE])
@@ -174,27 +174,27 @@ class Alone(InState, OnePart):
     def response(
         self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
     ) -> VelocityChange:
-        """Give the changes of velocities by an impulse, or by a hold that stops a slip."""
+        """Return the changes of velocities by an impulse, or by a hold that stops a slip."""
         attitude = self.part.body.attitude(state[ROTATION])
         return self.part.response_in(self.part.mode_of(mode), attitude, press, moment, slip)
 
     @kernel
     def velocities(self, state: Vector) -> tuple[float, ...]:
-        """Give all velocities."""
+        """Return all velocities."""
         return state[DEGREES], state[DEGREES + 1], state[DEGREES + 2]
 
     @kernel
     def end_accelerations(
         self, k: int, mode: int, state: Vector, ground: Ground
     ) -> tuple[float, float]:
-        """Give the upward accelerations of the left and right end of the base in a mode."""
+        """Return the upward accelerations of the left and right end of the base in a mode."""
         body, own = self.state_of(0, state), self.part.base.read(state, OWN)
         rates = self.part.rates_in(self.part.mode_of(mode), body, own, ground)
         return self.part.end_rises(body, rates.vertical, rates.rotation)
 
     @kernel
     def tendency(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
-        """Give the sign of the rotation that the ground, or else the contact, will cause."""
+        """Return the sign of the rotation that the ground, or else the contact, will cause."""
         if ground.x != 0.0:
             return -ground.x
         return self.part.base.tilt(self.part.mode_of(mode).contact)
@@ -210,7 +210,7 @@ def rigid_body(
     small_rotation: bool,
     gravity: float,
 ) -> Body:
-    """Give the body of the equations of motion.
+    """Return the body of the equations of motion.
 
     Parameters
     ----------
@@ -295,30 +295,30 @@ def alone(
 
 
 def radius_of(body: Body) -> float:
-    """Give the distance from the ends of the base to the centre of mass, their mean [m]."""
+    """Return the distance from the ends of the base to the centre of mass, their mean [m]."""
     return hypot(0.5 * (body.left + body.right), body.height)
 
 
 def eccentricity_of(body: Body) -> float:
-    """Give the distance of the centre of mass to the right of the middle of the base [m]."""
+    """Return the distance of the centre of mass to the right of the middle of the base [m]."""
     return 0.5 * (body.left - body.right)
 
 
 def rocking_rate(body: Body) -> float:
-    """Give the rate of rocking about a corner [s^-1]."""
+    """Return the rate of rocking about a corner [s^-1]."""
     radius = radius_of(body)
     return sqrt(body.gravity * radius / (radius**2 + body.inertia))
 
 
 def part_tolerance(base: BaseNumbers) -> Vector:
-    """Give the rounding noise of the guards of a body: those of both ends, then its own."""
+    """Return the rounding noise of the guards of a body: those of both ends, then its own."""
     return np.concatenate([base.end_tolerance, base.end_tolerance, np.full(BODY_GUARDS, ROUNDING)])
 
 
 def rounding_at(
     size: float, settlement: float, answers: Vector, fastest: float, variables: int
 ) -> Callable[[float], Vector]:
-    """Give a function of the rotation that estimates the rounding noise of each state variable.
+    """Return a function of the rotation that estimates the rounding noise of each state variable.
 
     The heights of the base's ends are differences of terms as large as the settlement and the
     tilt; the base reacts to their rounding, and moves the body to and fro by as much.
@@ -333,7 +333,7 @@ def rounding_at(
 
 
 def starting_state(part: OnBase, start: Start, own: tuple[float, ...]) -> tuple[BodyState, Mode]:
-    """Give placement, rates and mode of a body at the start of a run, whose rotation is known.
+    """Return placement, rates and mode of a body at the start of a run, whose rotation is known.
 
     Unless the start says otherwise it is in vertical equilibrium.
     """
@@ -346,7 +346,7 @@ def starting_state(part: OnBase, start: Start, own: tuple[float, ...]) -> tuple[
 
 
 def _initial(part: OnBase, rest_rotation: float, given: Start) -> tuple[int, Vector, Vector]:
-    """Give mode, state and memory at the start of a run; at rest unless it says otherwise."""
+    """Return mode, state and memory at the start of a run; at rest unless it says otherwise."""
     start = given if given.rotation is not None else replace(given, rotation=rest_rotation)
     own = np.zeros(part.base.variables())
     body, mode = starting_state(part, start, part.base.read(own, 0))

@@ -49,11 +49,11 @@ class Base:
     __slots__ = ()
 
     def contacts(self) -> int:
-        """Give the number of contacts."""
+        """Return the number of contacts."""
         raise NotImplementedError
 
     def end_guards(self) -> int:
-        """Give the number of guards that each end has."""
+        """Return the number of guards that each end has."""
         raise NotImplementedError
 
     def is_held(self, contact: int, left: bool) -> bool:
@@ -61,15 +61,15 @@ class Base:
         raise NotImplementedError
 
     def force(self, contact: int, line: BaseLine, own: Any) -> BaseForce:
-        """Give force, moment and dissipated power of the base, for a body that moves as `line`."""
+        """Return force, moment and dissipated power of the base if a body moves as `line`."""
         raise NotImplementedError
 
     def energy(self, line: BaseLine, own: Any) -> tuple[float, float]:
-        """Give the elastic energy, and how much more that is than at rest [m^2 s^-2]."""
+        """Return the elastic energy, and how much more that is than at rest [m^2 s^-2]."""
         raise NotImplementedError
 
     def guards_of(self, contact: int, left: bool, line: BaseLine, own: Any) -> Guards:
-        """Give the guards of an end, and their rates; `line` includes the accelerations here.
+        """Return the guards of an end, and their rates; `line` includes the accelerations here.
 
         A guard is positive as long as the contact lasts; one without meaning in the contact is 1,
         with a rate of 0.
@@ -77,29 +77,29 @@ class Base:
         raise NotImplementedError
 
     def switch(self, contact: int, left: bool, which: int, line: BaseLine, own: Any) -> EndEvent:
-        """Give what follows when the guard `which` of an end falls through zero.
+        """Return what follows when the guard `which` of an end falls through zero.
 
         Own variables that jump are changed in `own`.
         """
         raise NotImplementedError
 
     def level(self, left: bool, line: BaseLine, own: Any) -> float:
-        """Give how far below its level of separation from the base an end is [m]."""
+        """Return how far below its level of separation from the base an end is [m]."""
         raise NotImplementedError
 
     def starting(self, line: BaseLine, own: Any) -> int:
-        """Give the contact at the start of a run, and set the base's own variables."""
+        """Return the contact at the start of a run, and set the base's own variables."""
         raise NotImplementedError
 
     def resting_height(self, left: float, right: float, own: Any) -> float:
-        """Give the height h at which the base carries the body at rest [m].
+        """Return the height h at which the base carries the body at rest [m].
 
         The ends are then at the heights h + `left` and h + `right`.
         """
         raise NotImplementedError
 
     def observed(self, contact: int, line: BaseLine, own: Any) -> Variables:
-        """Give the values of the base's columns in the results."""
+        """Return the values of the base's columns in the results."""
         raise NotImplementedError
 
     @inlined
@@ -109,23 +109,23 @@ class Base:
 
     @kernel
     def tilt(self, contact: int) -> float:
-        """Give the sign of the rotation that begins in a contact from upright rest, or 0."""
+        """Return the sign of the rotation that begins in a contact from upright rest, or 0."""
         left = 1.0 if self.is_held(contact, True) else 0.0
         return left - (1.0 if self.is_held(contact, False) else 0.0)
 
     @inlined
     def variables(self) -> int:
-        """Give the number of variables of the base's own."""
+        """Return the number of variables of the base's own."""
         return 0
 
     @inlined
     def read(self, state: Vector, first: int) -> Any:
-        """Give the base's own variables, which stand in a state from an index on."""
+        """Return the base's own variables, which stand in a state from an index on."""
         return ()
 
     @inlined
     def flow(self, contact: int, line: BaseLine, own: Any) -> Variables:
-        """Give the rates of the base's own variables."""
+        """Return the rates of the base's own variables."""
         return ()
 
     @kernel
@@ -135,31 +135,31 @@ class Base:
 
     @inlined
     def follows(self, contact: int, left: bool) -> int:
-        """Give the contact with an end in sliding contact: it touches the base without force."""
+        """Return the contact with an end in sliding contact: it touches the base without force."""
         return self.in_flight()
 
     def in_flight(self) -> int:
-        """Give the contact in which no end is held."""
+        """Return the contact in which no end is held."""
         raise NotImplementedError
 
     @inlined
     def following_rate(self) -> float:
-        """Give the rate at which a base without force returns to its level [s^-1]."""
+        """Return the rate at which a base without force returns to its level [s^-1]."""
         return 0.0
 
     @kernel
     def following_speed(self, left: bool, line: BaseLine, own: Any) -> float:
-        """Give the upward speed at which an unloaded base rises, :eq:`eq-forceless` [m s^-1]."""
+        """Return the upward speed at which an unloaded base rises, :eq:`eq-forceless` [m s^-1]."""
         return self.following_rate() * self.level(left, line, own)
 
     @inlined
     def least_landing(self) -> float:
-        """Give the speed of a landing below which the base's force is rounding noise [m s^-1]."""
+        """Return the speed of a landing below which the base's force is rounding noise [m s^-1]."""
         return 0.0
 
     @kernel
     def released(self, contact: int, left: bool, line: BaseLine, own: Any) -> int:
-        """Give the contact after an end that touched the base without force has lifted off."""
+        """Return the contact after an end that touched the base without force has lifted off."""
         return self.in_flight()
 
     @kernel
@@ -174,37 +174,37 @@ class Base:
 
     @kernel
     def held(self, contact: int, left: bool) -> int:
-        """Give the contact with an end that lifted off but touches again, pressed by the base."""
+        """Return the contact with an end that lifted off but touches again, pressed by the base."""
         return contact
 
     @kernel
     def waiting(self, contact: int, left: bool) -> int:
-        """Give the contact with an end that has lifted off while the base still presses it."""
+        """Return the contact with an end that has lifted off while the base still presses it."""
         return contact
 
     @kernel
     def unpressed(self, contact: int, left: bool) -> int:
-        """Give the contact with an end that stays held though the base no longer presses it."""
+        """Return the contact with an end that stays held though the base no longer presses it."""
         return contact
 
     @kernel
     def engaged(self, contact: int, left: bool, line: BaseLine, own: Any) -> int:
-        """Give the contact after an end has landed and the restraint has caught its body."""
+        """Return the contact after an end has landed and the restraint has caught its body."""
         return contact
 
     @kernel
     def disturbed(self, contact: int) -> int:
-        """Give the contact after an event elsewhere has changed the speeds of the ends."""
+        """Return the contact after an event elsewhere has changed the speeds of the ends."""
         return contact
 
     @kernel
     def rebound(self, left: bool) -> float:
-        """Give the coefficient of restitution of an end that lands with an impact [1]."""
+        """Return the coefficient of restitution of an end that lands with an impact [1]."""
         return 1.0
 
 
 def root_above_zero(function: Callable[[float], float], start: float) -> float:
-    """Give the root of an increasing function that is negative at zero, searched from `start`."""
+    """Return the root of an increasing function that is negative at zero, searched from `start`."""
     from scipy.optimize import root_scalar
 
     while function(start) <= 0.0:
@@ -216,7 +216,7 @@ def root_above_zero(function: Callable[[float], float], start: float) -> float:
 def height_under(
     base: Base, weight: float, depth: float, ends: tuple[float, float], own: Any
 ) -> float:
-    """Give the height at which a base carries a weight, found numerically.
+    """Return the height at which a base carries a weight, found numerically.
 
     Parameters
     ----------

@@ -58,7 +58,7 @@ def pads_numbers(
     restitution: tuple[float, float],
     load: float = 1.0,
 ) -> BaseNumbers:
-    """Give the pads under a body.
+    """Return the pads under a body.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def pads_over(
     columns: Sequence[Column] = (),
     variable_scales: Sequence[float] = (),
 ) -> BaseNumbers:
-    """Give pads that follow another law; at rest they are like elastic pads.
+    """Return pads that follow another law; at rest they are like elastic pads.
 
     Parameters
     ----------
@@ -148,7 +148,7 @@ def springs_under(
     columns: Sequence[Column] = (),
     variable_scales: Sequence[float] = (),
 ) -> BaseNumbers:
-    """Give a bed of springs under a body.
+    """Return a bed of springs under a body.
 
     Parameters
     ----------
@@ -220,7 +220,7 @@ _BED_COLUMNS: Final = (
 def bed_numbers(
     body: Body, *, stiffness: float, damping: float, by_pressure: bool, load: float = 1.0
 ) -> BaseNumbers:
-    """Give the bed under a body.
+    """Return the bed under a body.
 
     Parameters
     ----------
@@ -253,7 +253,7 @@ def bed_numbers(
 
 
 def rigid_numbers(body: Body) -> BaseNumbers:
-    """Give a rigid base under a body of a chain: it has no stiffness, its corners constraints."""
+    """Return a rigid base under a body of a chain: it has no stiffness, its corners constraints."""
     width = body.left + body.right
     return BaseNumbers(
         Rigid(0.0, 0.0, 1.0, width, by_pressure=False),

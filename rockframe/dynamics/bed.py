@@ -33,31 +33,31 @@ class Ends(NamedTuple):
 
 @inlined
 def end_contact(contact: int, left: bool) -> int:
-    """Give the contact of one end."""
+    """Return the contact of one end."""
     return contact & LEFT_BIT if left else contact >> RIGHT_BIT & LEFT_BIT
 
 
 @inlined
 def both_contacts(left: int, right: int) -> int:
-    """Give the contacts of both ends in one integer."""
+    """Return the contacts of both ends in one integer."""
     return left + (right << RIGHT_BIT)
 
 
 @inlined
 def mean_product(f0: float, f1: float, g0: float, g1: float) -> float:
-    """Give the mean of the product of two linear functions, by their values at both ends."""
+    """Return the mean of the product of two linear functions, by their values at both ends."""
     return (2.0 * (f0 * g0 + f1 * g1) + f0 * g1 + f1 * g0) / 6.0
 
 
 @inlined
 def between(left: float, right: float, place: float) -> float:
-    """Give a function that is linear along the base at a place, from its values at both ends."""
+    """Return a value between the ends of the base of a quantity that is linear along it."""
     return left + place * (right - left)
 
 
 @inlined
 def first_place(near: float, far: float) -> float:
-    """Give the distance, from the near end, beyond which a linear function is positive.
+    """Return the distance, from the near end, beyond which a linear function is positive.
 
     As a share of the length of the base. It may be negative, down to -1, as a step may overshoot
     the instant at which the end starts to bear.
@@ -69,7 +69,7 @@ def first_place(near: float, far: float) -> float:
 
 @inlined
 def compressed_part(left: int, right: int, ends: Ends) -> tuple[float, float]:
-    """Give the places between which the bed is compressed, from the contacts of both ends."""
+    """Return the places between which the bed is compressed, from the contacts of both ends."""
     if left == RAISED and right == RAISED:
         return 0.0, 0.0
     start = first_place(ends.u_left, ends.u_right) if left == RAISED else 0.0
@@ -79,7 +79,7 @@ def compressed_part(left: int, right: int, ends: Ends) -> tuple[float, float]:
 
 @inlined
 def end_of(u: float) -> int:
-    """Give the contact of an end, DOWN or RAISED, from the compression under it."""
+    """Return the contact of an end, DOWN or RAISED, from the compression under it."""
     return DOWN if u > 0.0 else RAISED
 
 
@@ -100,17 +100,17 @@ class Bed(Base, BedNumbers):
 
     @kernel
     def contacts(self) -> int:
-        """Give the number of contacts of both ends together."""
+        """Return the number of contacts of both ends together."""
         return CONTACTS
 
     @kernel
     def end_guards(self) -> int:
-        """Give the number of guards of an end."""
+        """Return the number of guards of an end."""
         return 1
 
     @inlined
     def in_flight(self) -> int:
-        """Give the contact with both ends raised."""
+        """Return the contact with both ends raised."""
         return both_contacts(RAISED, RAISED)
 
     @inlined
@@ -120,19 +120,19 @@ class Bed(Base, BedNumbers):
 
     @inlined
     def ends(self, line: BaseLine) -> Ends:
-        """Give the compression under both ends, and its rate."""
+        """Return the compression under both ends, and its rate."""
         delta = self.settlement
         return Ends(delta - line.left, delta - line.right, line.left_speed, line.right_speed)
 
     @inlined
     def pressure(self, place: float, ends: Ends) -> float:
-        """Give the pressure at a place of the base."""
+        """Return the pressure at a place of the base."""
         u = between(ends.u_left, ends.u_right, place)
         return self.stiffness * u - self.damping * between(ends.v_left, ends.v_right, place)
 
     @inlined
     def bearing_part(self, contact: int, ends: Ends) -> tuple[float, float]:
-        """Give the places between which the base bears."""
+        """Return the places between which the base bears."""
         start, end = compressed_part(end_contact(contact, True), end_contact(contact, False), ends)
         if not self.by_pressure:
             return start, end
@@ -147,7 +147,7 @@ class Bed(Base, BedNumbers):
 
     @inlined
     def force(self, contact: int, line: BaseLine, own: Variables) -> BaseForce:
-        """Give the bed's force, its generalised force on the rotation, and the dissipated power.
+        """Return the bed's force, its generalised force on the rotation, and the dissipated power.
 
         Where the bed is compressed without pressing, its springs relax against their own dashpots.
         """
@@ -173,7 +173,7 @@ class Bed(Base, BedNumbers):
 
     @kernel
     def spring_power(self, start: float, end: float, ends: Ends) -> float:
-        """Give the power that the springs release between two places of the bed."""
+        """Return the power that the springs release between two places of the bed."""
         u0 = between(ends.u_left, ends.u_right, start)
         u1 = between(ends.u_left, ends.u_right, end)
         v0 = between(ends.v_left, ends.v_right, start)
@@ -182,7 +182,7 @@ class Bed(Base, BedNumbers):
 
     @kernel
     def energy(self, line: BaseLine, own: Variables) -> tuple[float, float]:
-        """Give the energy of the compressed springs, and the energy less that at rest."""
+        """Return the energy of the compressed springs, and the energy less that at rest."""
         ends, delta = self.ends(line), self.settlement
         half = 0.5 * self.stiffness * self.width
         start, end = compressed_part(end_of(ends.u_left), end_of(ends.u_right), ends)
@@ -196,7 +196,7 @@ class Bed(Base, BedNumbers):
 
     @inlined
     def guards_of(self, contact: int, left: bool, line: BaseLine, own: Variables) -> Guards:
-        """Give the guard of an end, its level below or above the unloaded bed, and its rate."""
+        """Return the guard of an end, its level below or above the unloaded bed, and its rate."""
         scale = (1.0 if self.is_held(contact, left) else -1.0) / self.settlement
         level = line.left if left else line.right
         speed = line.left_speed if left else line.right_speed
@@ -206,7 +206,7 @@ class Bed(Base, BedNumbers):
     def switch(
         self, contact: int, left: bool, which: int, line: BaseLine, own: Variables
     ) -> EndEvent:
-        """Give the contact and the event after the guard of an end.
+        """Return the contact and the event after the guard of an end.
 
         Where both ends land, or leave, at the same instant one event switches both.
         """
@@ -224,18 +224,18 @@ class Bed(Base, BedNumbers):
 
     @kernel
     def level(self, left: bool, line: BaseLine, own: Variables) -> float:
-        """Give how far below the unloaded bed an end is [m]."""
+        """Return how far below the unloaded bed an end is [m]."""
         return self.settlement - (line.left if left else line.right)
 
     @kernel
     def starting(self, line: BaseLine, own: Variables) -> int:
-        """Give the contact at the start of a run."""
+        """Return the contact at the start of a run."""
         ends = self.ends(line)
         return both_contacts(end_of(ends.u_left), end_of(ends.u_right))
 
     @kernel
     def resting_height(self, left: float, right: float, own: Variables) -> float:
-        """Give the height of the ends' middle at which the bed carries the weight at rest.
+        """Return the height of the ends' middle at which the bed carries the weight at rest.
 
         With one end raised, the bearing part is 2 sqrt(b delta/|sin a|) long.
         """
@@ -246,7 +246,7 @@ class Bed(Base, BedNumbers):
 
     @kernel
     def observed(self, contact: int, line: BaseLine, own: Variables) -> Variables:
-        """Give the bed's reaction, the length in contact, and the greater pressure at its ends."""
+        """Return bed's reaction, the length in contact, and the greater pressure at its ends."""
         ends = self.ends(line)
         start, end = self.bearing_part(contact, ends)
         left, right = self.pressure(start, ends), self.pressure(end, ends)

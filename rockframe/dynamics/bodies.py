@@ -24,23 +24,23 @@ class Bodies(Protocol):
     """What events need of a system of bodies: access to body `k`, and responses to impulses."""
 
     def part_mode(self, mode: int, k: int) -> Mode:
-        """Give contact, held point and sliding of body `k` in a mode."""
+        """Return contact, held point and sliding of body `k` in a mode."""
         ...
 
     def with_part(self, mode: int, k: int, part: Mode) -> int:
-        """Give the system's mode with another mode of body `k`."""
+        """Return the system's mode with another mode of body `k`."""
         ...
 
     def state_of(self, k: int, state: Vector) -> BodyState:
-        """Give placement and rates of body `k` relative to its base."""
+        """Return placement and rates of body `k` relative to its base."""
         ...
 
     def own_place(self, k: int) -> int:
-        """Give the index in the state of the own variables of the base of body `k`."""
+        """Return the index in the state of the own variables of the base of body `k`."""
         ...
 
     def place(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
-        """Give the horizontal place of the centre of mass of body `k`, relative to its base."""
+        """Return the horizontal place of the centre of mass of body `k`, relative to its base."""
         ...
 
     def change(self, k: int, rise: float, speed: float, state: Vector) -> None:
@@ -58,7 +58,7 @@ class Bodies(Protocol):
     def response(
         self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
     ) -> VelocityChange:
-        """Give changes of velocities by an impulse of a base, or by a hold that stops a slip."""
+        """Return changes of velocities by an impulse of a base, or by a hold that stops a slip."""
         ...
 
     def respond(self, k: int, mode: int, response: VelocityChange, state: Vector) -> None:
@@ -70,7 +70,7 @@ class Bodies(Protocol):
         ...
 
     def velocities(self, state: Vector) -> tuple[float, ...] | Vector:
-        """Give all velocities."""
+        """Return all velocities."""
         ...
 
     def blend_velocities(
@@ -82,11 +82,11 @@ class Bodies(Protocol):
     def end_accelerations(
         self, k: int, mode: int, state: Vector, ground: Ground
     ) -> tuple[float, float]:
-        """Give the upward accelerations of the left and right end of the base of body `k`."""
+        """Return the upward accelerations of the left and right end of the base of body `k`."""
         ...
 
     def tendency(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
-        """Give the sign of the rotation that body `k`, upright and at rest, will begin."""
+        """Return the sign of the rotation that body `k`, upright and at rest, will begin."""
         ...
 
 
@@ -96,22 +96,22 @@ class InState:
     __slots__ = ()
 
     def bodies(self) -> int:
-        """Give the number of bodies."""
+        """Return the number of bodies."""
         raise NotImplementedError
 
     @inlined
     def coordinates(self) -> int:
-        """Give the number of coordinates."""
+        """Return the number of coordinates."""
         return DEGREES * self.bodies()
 
     @inlined
     def horizontal_of(self, k: int) -> int:
-        """Give the index in the state of the horizontal coordinate of body `k`."""
+        """Return the index in the state of the horizontal coordinate of body `k`."""
         return BEFORE_HORIZONTAL * self.bodies() + k
 
     @inlined
     def state_of(self, k: int, state: Vector) -> BodyState:
-        """Give placement and rates of body `k`, relative to its base."""
+        """Return placement and rates of body `k`, relative to its base."""
         i, x, n = BEFORE_HORIZONTAL * k, self.horizontal_of(k), self.coordinates()
         return BodyState(
             state[i + ROTATION], state[i + VERTICAL], state[x],

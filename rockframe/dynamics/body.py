@@ -26,7 +26,7 @@ what any accuracy setting resolves, and ends the infinite series of ever smaller
 
 @kernel
 def leading_pivot(rotation: float, tendency: float) -> int:
-    """Give the pivot of the corner to which a body leans, or else tends to lean."""
+    """Return the pivot of the corner to which a body leans, or else tends to lean."""
     leading = rotation if rotation != 0.0 else tendency
     if leading == 0.0:
         return PIVOT_CENTRE
@@ -37,7 +37,7 @@ def leading_pivot(rotation: float, tendency: float) -> int:
 def pivot_of(
     rule: int, holds_left: bool, holds_right: bool, rotation: float, angular_velocity: float
 ) -> int:
-    """Give the pivot by a rule of restraint, for a body not in flight."""
+    """Return the pivot by a rule of restraint, for a body not in flight."""
     if rule == BY_CONTACT:
         if not holds_left:
             return PIVOT_RIGHT
@@ -90,7 +90,7 @@ class BaseLine(NamedTuple):
 
 @inlined
 def accelerated(line: BaseLine, left: float, right: float) -> BaseLine:
-    """Give a base line with the accelerations of its ends."""
+    """Return a base line with the accelerations of its ends."""
     return BaseLine(
         line.left, line.right, line.left_speed, line.right_speed, line.left_lever,
         line.right_lever, left, right,
@@ -118,7 +118,7 @@ class Body(NamedTuple):
 
     @inlined
     def attitude(self, rotation: float) -> Attitude:
-        """Give sine, cosine and rise at a rotation."""
+        """Return sine, cosine and rise at a rotation."""
         if self.small:
             return Attitude(rotation, 1.0, 0.5 * self.height * rotation * rotation)
         sine, cosine = sine_cosine(rotation)
@@ -129,7 +129,7 @@ class Body(NamedTuple):
 
     @inlined
     def base_line(self, state: BodyState, attitude: Attitude) -> BaseLine:
-        """Give heights, speeds and levers of both ends of the base."""
+        """Return heights, speeds and levers of both ends of the base."""
         middle = state.vertical + attitude.rise
         swing = self.height * attitude.sine
         left = swing + self.left * attitude.cosine
@@ -147,7 +147,7 @@ class Body(NamedTuple):
 
     @kernel
     def base_line_at(self, state: BodyState) -> BaseLine:
-        """Give the same as `base_line`, with the attitude computed from the state."""
+        """Return the same as `base_line`, with the attitude computed from the state."""
         return self.base_line(state, self.attitude(state.rotation))
 
     @inlined
@@ -158,7 +158,7 @@ class Body(NamedTuple):
         vertical: float,
         angular: float,
     ) -> tuple[float, float]:
-        """Give the vertical accelerations of the left and of the right end.
+        """Return the vertical accelerations of the left and of the right end.
 
         `vertical` and `angular` are the accelerations of the centre of mass and of the rotation;
         the levers change by h cos a -/+ b sin a.
@@ -176,7 +176,7 @@ class Body(NamedTuple):
 
     @inlined
     def pin(self, pivot: int) -> float:
-        """Give e, the held point to the right of the centre of mass, upright [m]."""
+        """Return e, the held point to the right of the centre of mass, upright [m]."""
         if pivot == PIVOT_RIGHT:
             return self.right
         if pivot == PIVOT_LEFT:
@@ -185,7 +185,7 @@ class Body(NamedTuple):
 
     @inlined
     def reach(self, pin: float, attitude: Attitude) -> Reach:
-        """Give dx/da and d2x/da2 of the centre of mass about the held point."""
+        """Return dx/da and d2x/da2 of the centre of mass about the held point."""
         if self.small:
             return Reach(self.height, 0.0)
         return Reach(
@@ -195,17 +195,17 @@ class Body(NamedTuple):
 
     @inlined
     def about_pin(self, pin: float, attitude: Attitude) -> float:
-        """Give h sin a - e cos a, the centre of mass to the right of the held point [m]."""
+        """Return h sin a - e cos a, the centre of mass to the right of the held point [m]."""
         return self.height * attitude.sine - pin * attitude.cosine
 
     @kernel
     def size(self) -> float:
-        """Give half the width plus the height of the centre of mass, a scale of levers [m]."""
+        """Return half the width plus the height of the centre of mass, a scale of levers [m]."""
         return 0.5 * (self.left + self.right) + self.height
 
     @inlined
     def least_rise(self) -> float:
-        """Give the height above which a rise of an end counts as one [m]."""
+        """Return the height above which a rise of an end counts as one [m]."""
         return REST_AMPLITUDE * self.angle * self.size()
 
     @inlined

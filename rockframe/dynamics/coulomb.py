@@ -19,7 +19,7 @@ class ImpulseResponse(NamedTuple):
 def coulomb_impulse(
     answers: ImpulseResponse, slip: float, sinking: float, friction: float
 ) -> tuple[float, float]:
-    """Give the impulses along and normal to the base that change the normal velocity by -`sinking`.
+    """Return impulses along and normal to the base that change the normal velocity by -`sinking`.
 
     `sinking` is negative. The normal impulse grows until this change is reached; friction opposes
     the slip by `friction` times the normal impulse. The slip may end, and reverse, within the

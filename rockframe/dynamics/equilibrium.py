@@ -65,7 +65,7 @@ class Balance(NamedTuple):
 
     @classmethod
     def of(cls, chain: "StandingChain", stands: "Sequence[Stand]", held: int = 1) -> "Balance":
-        """Give the forces and places of bodies as they stand, no couple yet on `held` rotations."""
+        """Return forces and places of bodies as they stand, no couple yet on `held` rotations."""
         tied = chain.tied(stands)
         return cls(
             np.array([one.state.rotation for one in stands]),
@@ -85,7 +85,7 @@ class Path(NamedTuple):
     before: "tuple[float, Balance] | None" = None
 
     def foreseen(self, at: float) -> Balance:
-        """Give the equilibrium further on by linear extrapolation."""
+        """Return the equilibrium further on by linear extrapolation."""
         if self.before is None:
             return self.place
         share = (at - self.at) / (self.at - self.before[0])
@@ -123,7 +123,7 @@ def followed(
 
 
 def balanced(held: HeldBodies, guess: Balance) -> Balance | None:
-    """Give a stable equilibrium near a guess, by Newton's steps.
+    """Return a stable equilibrium near a guess, by Newton's steps.
 
     Heights follow from the forces of bases, so that a loss of contact within a step does no harm.
     """
@@ -152,7 +152,7 @@ def of_loads(
     of_links: "Callable[[Sequence[Stand]], Vector]",
     stencil: Sequence[tuple[float, float]] = STENCIL,
 ) -> Matrix:  # fmt: skip
-    """Give minus the derivatives of the generalised forces of weights and links."""
+    """Return minus the derivatives of the generalised forces of weights and links."""
     found = np.zeros((2 * len(stands), 2 * len(stands)))
     for at, size in enumerate(chain.sizes):
         step = STEP * size
@@ -168,7 +168,7 @@ def of_loads(
 def of_bases(
     chain: "StandingChain", stands: "Sequence[Stand]", *, from_rest: bool = False
 ) -> Matrix:
-    """Give minus the derivatives of the generalised forces of bases, zero for rigid ones.
+    """Return minus the derivatives of the generalised forces of bases, zero for rigid ones.
 
     With loads that grow `from_rest`, variables of a base's own follow them.
     """
@@ -188,7 +188,7 @@ def _breaks(chain: "StandingChain", before: Balance, after: Balance) -> bool:
 
 
 def _greatest(values: Vector) -> float:
-    """Give the greatest absolute value."""
+    """Return the greatest absolute value."""
     return float(np.abs(values).max())
 
 
@@ -253,7 +253,7 @@ class _Step:
     def _stretched(
         self, link: "ChainLink", tied: "Tied", i: int, rounding: float
     ) -> tuple[float, bool]:
-        """Give the change of a link's elongation, and whether its force is then the predicted one.
+        """Return change of a link's elongation, and whether its force is then the predicted one.
 
         Where the link only begins to have stiffness the change is kept small.
         """
@@ -272,7 +272,7 @@ class _Step:
         return share * more, as_foreseen
 
     def ahead(self, share: float) -> Balance:
-        """Give the place after a share of the step."""
+        """Return the place after a share of the step."""
         there = self.coordinates + share * self.move
         presses = np.array([one.press for one in self.stands])
         presses -= share * (self.of_bases @ self.move)[1::2]
@@ -282,7 +282,7 @@ class _Step:
         return Balance(there[::2], there[1::2], presses, stretches, pulls, couples)
 
     def _answers_of(self, i: int, tied: "Tied") -> list[_Answer]:
-        """Give the directions in which a link has stiffness; in others its law gives its force."""
+        """Return directions in which a link has stiffness; in others its law gives its force."""
         force, hardness = self.chain.pull * tied.force, self.chain.pull * tied.stiffness
         along, pull = tied.direction, self.pulls[i].copy()
         self.pulls[i] = force * along
@@ -305,7 +305,7 @@ class _Step:
         return found
 
     def _loads(self, stands: "Sequence[Stand]") -> Vector:
-        """Give the generalised forces of links, of fixed sizes, as bodies move."""
+        """Return the generalised forces of links, of fixed sizes, as bodies move."""
         found = np.zeros(2 * len(stands))
         points = self.chain.reached(stands)
         for pull, here, there in zip(self.pulls, self.tied, points, strict=True):
@@ -316,7 +316,7 @@ class _Step:
         return found
 
     def _equations(self) -> tuple[Matrix, Vector]:
-        """Give matrix and right-hand side of the equations, symmetrical and non-dimensional."""
+        """Return matrix and right-hand side of the equations, symmetrical and non-dimensional."""
         chain, weight, free, sizes = self.chain, self.chain.weight, self.free, self.sizes
         energy = weight * sizes[1]
         forces = chain.loads(self.stands, self._loads(self.stands))

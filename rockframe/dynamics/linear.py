@@ -24,7 +24,7 @@ class Linear(NamedTuple):
 
 
 def linear(chain: StandingChain, stands: list[Stand]) -> Linear:
-    """Give the matrices of small motion about rest."""
+    """Return the matrices of small motion about rest."""
     size = 2 * len(stands)
     damping = np.zeros((size, size))
     ties = chain.tied(stands)
@@ -40,7 +40,7 @@ def linear(chain: StandingChain, stands: list[Stand]) -> Linear:
 
 
 def _mass(chain: StandingChain, stands: list[Stand]) -> Matrix:
-    """Give the mass matrix: with a body all bodies above it move."""
+    """Return the mass matrix: with a body all bodies above it move."""
     size = 2 * len(stands)
     ways = np.zeros((len(stands), 3, size))  # of each body: to the right, up, rotation
     places, place = np.zeros((len(stands), 2)), np.zeros(2)

@@ -59,21 +59,21 @@ class LinkLaw:
     __slots__ = ()
 
     def force(self, state: int, stretch: Stretch, own: Vector) -> float:
-        """Give the force with which the link pulls its points together."""
+        """Return the force with which the link pulls its points together."""
         raise NotImplementedError
 
     def energy(self, state: int, stretch: Stretch, own: Vector) -> float:
-        """Give the stored energy."""
+        """Return the stored energy."""
         raise NotImplementedError
 
     @inlined
     def power(self, state: int, stretch: Stretch, own: Vector) -> float:
-        """Give the dissipated power."""
+        """Return the dissipated power."""
         return 0.0
 
     @inlined
     def variables(self) -> int:
-        """Give the number of variables."""
+        """Return the number of variables."""
         return 0
 
     @kernel
@@ -84,17 +84,17 @@ class LinkLaw:
 
     @inlined
     def states(self) -> int:
-        """Give the number of states, counted from 0."""
+        """Return the number of states, counted from 0."""
         return 1
 
     @kernel
     def starting(self, stretch: Stretch, own: Vector) -> int:
-        """Give the state at the start of a run; sets the variables."""
+        """Return the state at the start of a run; sets the variables."""
         return 0
 
     @kernel
     def guard(self, which: int, state: int, stretch: Stretch, own: Vector) -> tuple[float, float]:
-        """Give a function that falls through zero where the state ends, and its rate.
+        """Return a function that falls through zero where the state ends, and its rate.
 
         `which` is 0 or 1.
         """
@@ -102,12 +102,12 @@ class LinkLaw:
 
     @kernel
     def switch(self, which: int, state: int, stretch: Stretch, own: Vector) -> LinkEvent:
-        """Give what happens when a guard falls through zero; sets the variables."""
+        """Return what happens when a guard falls through zero; sets the variables."""
         return LinkEvent(state, SILENT, 0.0)
 
     @inlined
     def shown(self, state: int) -> int:
-        """Give the state that users see, a :class:`~rockframe.dynamics.events.LinkState`."""
+        """Return the state that users see, a :class:`~rockframe.dynamics.events.LinkState`."""
         return TAUT
 
     @inlined
@@ -121,12 +121,12 @@ class LinkLaw:
 
     @inlined
     def number_count(self) -> int:
-        """Give the number of the law's numbers."""
+        """Return the number of the law's numbers."""
         return len(self)  # type: ignore[arg-type]
 
     @inlined
     def with_numbers(self, numbers: Vector) -> Any:
-        """Give the law with other numbers, from an array."""
+        """Return the law with other numbers, from an array."""
         return filled(self, numbers)
 
 
@@ -171,11 +171,11 @@ class SteadyForce(NamedTuple):
     size: float  # per unit mass
 
     def force(self, state: int, stretch: Stretch, own: Vector) -> float:
-        """Give the force."""
+        """Return the force."""
         return self.size
 
     def energy(self, state: int, stretch: Stretch, own: Vector) -> float:
-        """Give the work against it."""
+        """Return the work against it."""
         return self.size * stretch.elongation
 
 
@@ -207,30 +207,30 @@ class Bumper(NamedTuple):
     gap: float  # elongation at which it is touched
 
     def force(self, state: int, stretch: Stretch, own: Vector) -> float:
-        """Give k x + c x'."""
+        """Return k x + c x'."""
         if state == SLACK:
             return 0.0
         return self.stiffness * (stretch.elongation - self.gap) + self.damping * stretch.rate
 
     def energy(self, state: int, stretch: Stretch, own: Vector) -> float:
-        """Give k x^2/2."""
+        """Return k x^2/2."""
         x = stretch.elongation - self.gap
         return 0.5 * self.stiffness * x * x if state != SLACK else 0.0
 
     def power(self, state: int, stretch: Stretch, own: Vector) -> float:
-        """Give the power that the dashpot dissipates."""
+        """Return the power that the dashpot dissipates."""
         return self.damping * stretch.rate * stretch.rate if state != SLACK else 0.0
 
     def states(self) -> int:
-        """Give 2: free and touched."""
+        """Return 2: free and touched."""
         return 2
 
     def starting(self, stretch: Stretch, own: Vector) -> int:
-        """Give the state at the start: touched if the gap is closed."""
+        """Return the state at the start: touched if the gap is closed."""
         return TAUT if stretch.elongation - self.gap > TAUT_NOISE * stretch.noise else SLACK
 
     def guard(self, which: int, state: int, stretch: Stretch, own: Vector) -> tuple[float, float]:
-        """Give the distance of the point from the end of the state, and its rate."""
+        """Return the distance of the point from the end of the state, and its rate."""
         x = stretch.elongation - self.gap
         if state == SLACK and which == UPPER:
             return -x, -stretch.rate
@@ -239,13 +239,13 @@ class Bumper(NamedTuple):
         return 1.0, 0.0
 
     def switch(self, which: int, state: int, stretch: Stretch, own: Vector) -> LinkEvent:
-        """Give the other state."""
+        """Return the other state."""
         if state == SLACK:
             return LinkEvent(TAUT, LINK_TAUT, 0.0)
         return LinkEvent(SLACK, LINK_SLACK, 0.0)
 
     def shown(self, state: int) -> int:
-        """Give the state that users see."""
+        """Return the state that users see."""
         return state
 
     def idles(self, state: int) -> bool:
@@ -288,7 +288,7 @@ class Tie(NamedTuple):
     pushes: float  # 1 if it also resists compression
 
     def force(self, state: int, stretch: Stretch, own: Vector) -> float:
-        """Give k x + c l'; k x is the strength while it yields, and zero while it is slack."""
+        """Return k x + c l'; k x is the strength while it yields, and zero while it is slack."""
         if state == BROKEN:
             return 0.0
         x = stretch.elongation - self.free - own[0]
@@ -299,7 +299,7 @@ class Tie(NamedTuple):
         return self.stiffness * x + self.damping * stretch.rate
 
     def energy(self, state: int, stretch: Stretch, own: Vector) -> float:
-        """Give k x^2/2."""
+        """Return k x^2/2."""
         x = stretch.elongation - self.free - own[0]
         if state == BROKEN:
             x = 0.0
@@ -310,7 +310,7 @@ class Tie(NamedTuple):
         return 0.5 * self.stiffness * x * x
 
     def power(self, state: int, stretch: Stretch, own: Vector) -> float:
-        """Give the power that dashpot and yielding dissipate."""
+        """Return the power that dashpot and yielding dissipate."""
         if state == BROKEN:
             return 0.0
         lost = self.damping * stretch.rate * stretch.rate
@@ -321,15 +321,15 @@ class Tie(NamedTuple):
         return lost
 
     def variables(self) -> int:
-        """Give 1: the permanent elongation."""
+        """Return 1: the permanent elongation."""
         return 1
 
     def states(self) -> int:
-        """Give 4."""
+        """Return 4."""
         return 4
 
     def starting(self, stretch: Stretch, own: Vector) -> int:
-        """Give the state after slow loading up to here."""
+        """Return the state after slow loading up to here."""
         own[0] = 0.0
         x = stretch.elongation - self.free
         found = TAUT
@@ -347,7 +347,7 @@ class Tie(NamedTuple):
         return found
 
     def guard(self, which: int, state: int, stretch: Stretch, own: Vector) -> tuple[float, float]:
-        """Give the elongation left until the state ends, or the rate that must not reverse."""
+        """Return the elongation left until the state ends, or the rate that must not reverse."""
         x, sign = stretch.elongation - self.free - own[0], 1.0
         value, rate = 1.0, 0.0
         if which == UPPER:
@@ -374,12 +374,12 @@ class Tie(NamedTuple):
         return value, rate
 
     def turning(self, sign: float, stretch: Stretch) -> tuple[float, float]:
-        """Give the rate that must not reverse, times a time: guards of links are lengths."""
+        """Return the rate that must not reverse, times a time: guards of links are lengths."""
         time = sign / math.sqrt(self.stiffness)
         return time * stretch.rate, time * stretch.acceleration
 
     def switch(self, which: int, state: int, stretch: Stretch, own: Vector) -> LinkEvent:
-        """Give the next state; the stored energy of a tie that breaks is lost."""
+        """Return the next state; the stored energy of a tie that breaks is lost."""
         x = stretch.elongation - self.free
         if state == YIELDS:
             own[0] = x - self.most + CLEAR * stretch.noise
@@ -397,7 +397,7 @@ class Tie(NamedTuple):
         return LinkEvent(YIELDS if which == UPPER else YIELDS_PRESSED, LINK_YIELDS, 0.0)
 
     def shown(self, state: int) -> int:
-        """Give the state that users see."""
+        """Return the state that users see."""
         return SHOWN_PRESSED if state == SLACK and self.pushes != 0.0 else state
 
     def idles(self, state: int) -> bool:

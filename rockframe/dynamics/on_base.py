@@ -87,12 +87,12 @@ class OnBase(NamedTuple):
 
     @kernel
     def modes(self) -> int:
-        """Give the number of modes; some of these numbers do not occur."""
+        """Return the number of modes; some of these numbers do not occur."""
         return STANDINGS * self.base.contacts()
 
     @kernel
     def guards(self) -> int:
-        """Give the number of guards."""
+        """Return the number of guards."""
         return 2 * self.base.end_guards() + BODY_GUARDS
 
     @inlined
@@ -102,7 +102,7 @@ class OnBase(NamedTuple):
 
     @kernel
     def number_of(self, mode: Mode) -> int:
-        """Give the number of a mode."""
+        """Return the number of a mode."""
         return mode.pivot + (SLIDES if mode.slides else 0) + (mode.contact << CONTACT_BIT)
 
     @inlined
@@ -117,7 +117,7 @@ class OnBase(NamedTuple):
 
     @inlined
     def shown_contact(self, mode: Mode) -> int:
-        """Give the contact state that users see."""
+        """Return the contact state that users see."""
         left, right = self.base.is_held(mode.contact, True), self.base.is_held(mode.contact, False)
         if left and right:
             return FULL
@@ -127,12 +127,12 @@ class OnBase(NamedTuple):
 
     @inlined
     def relaxation_in(self, mode: Mode) -> float:
-        """Give the rate at which a sliding end follows the base, 0 where none slides [s^-1]."""
+        """Return the rate at which a sliding end follows the base, 0 where none slides [s^-1]."""
         return self.base.following_rate() if mode.slides else 0.0
 
     @kernel
     def standing(self, contact: int, state: BodyState) -> Mode:
-        """Give the mode of a contact, with the pivot of the restraint rule."""
+        """Return the mode of a contact, with the pivot of the restraint rule."""
         if self.flies(contact):
             return Mode(contact, 0, False)
         pivot = pivot_of(
@@ -145,7 +145,7 @@ class OnBase(NamedTuple):
         return Mode(contact, pivot, False)
 
     def starting_pin(self, mode: Mode, state: BodyState) -> float:
-        """Give the point of the base that starts at its place at rest, as `Body.pin` [m].
+        """Return the point of the base that starts at its place at rest, as `Body.pin` [m].
 
         It is the held point; in flight the one that the rule would hold if both ends were to bear.
         """
@@ -157,14 +157,14 @@ class OnBase(NamedTuple):
 
     @inlined
     def contact_with_force(self, mode: Mode) -> int:
-        """Give the contact by which the base's force is computed: a sliding end has none."""
+        """Return the contact by which the base's force is computed: a sliding end has none."""
         if mode.slides:
             return self.base.follows(mode.contact, self.base.is_held(mode.contact, True))
         return mode.contact
 
     @inlined
     def sway(self, mode: Mode, state: BodyState, attitude: Attitude) -> float:
-        """Give the horizontal velocity of the centre of mass: about the held point, or free."""
+        """Return the horizontal velocity of the centre of mass: about the held point, or free."""
         if self.is_free(mode):
             return state.horizontal_velocity
         reach = self.body.reach(self.body.pin(mode.pivot), attitude)
@@ -172,7 +172,7 @@ class OnBase(NamedTuple):
 
     @inlined
     def rates_in(self, mode: Mode, state: BodyState, own: Any, ground: Ground) -> Rates:
-        """Give the accelerations of :eq:`eq-two-spring`, with the powers."""
+        """Return the accelerations of :eq:`eq-two-spring`, with the powers."""
         body, attitude = self.body, self.body.attitude(state.rotation)
         line = body.base_line(state, attitude)
         rate, speed = state.angular_velocity, state.vertical_velocity
@@ -205,7 +205,7 @@ class OnBase(NamedTuple):
 
     @inlined
     def end_guards_in(self, mode: Mode, left: bool, line: BaseLine, own: Any) -> Guards:
-        """Give the guards of an end of the base; those of an end that slides are idle."""
+        """Return the guards of an end of the base; those of an end that slides are idle."""
         found = self.base.guards_of(mode.contact, left, line, own)
         if mode.slides and self.base.is_held(mode.contact, left):
             return Guards(constant(1.0, found.values), constant(0.0, found.values))
@@ -213,7 +213,7 @@ class OnBase(NamedTuple):
 
     @inlined
     def pivot_guard(self, mode: Mode, state: BodyState, angular: float) -> tuple[float, float]:
-        """Give the guard of the rule that the leading corner is held, and its rate."""
+        """Return the guard of the rule that the leading corner is held, and its rate."""
         body, rate = self.body, state.angular_velocity
         if self.flies(mode.contact) or body.restraint != LEADING_CORNER:
             return 1.0, 0.0
@@ -228,7 +228,7 @@ class OnBase(NamedTuple):
         self, mode: Mode, state: BodyState, own: Any, vertical: float, angular: float,
         sliding: SlidingGuards,
     ) -> Guards:  # fmt: skip
-        """Give all guards of the body, :eq:`eq-guards`: of both ends, and its own.
+        """Return all guards of the body, :eq:`eq-guards`: of both ends, and its own.
 
         `vertical` and `angular` are the accelerations of vertical coordinate and rotation.
         """
@@ -248,7 +248,7 @@ class OnBase(NamedTuple):
         self, mode: Mode, state: BodyState, angular: float, horizontal: float, push: float,
         rise: float,
     ) -> SlidingGuards:  # fmt: skip
-        """Give the guards of a sliding end: of the hold, which lifts it, and of the slip.
+        """Return the guards of a sliding end: of the hold, which lifts it, and of the slip.
 
         `angular` and `horizontal` are the accelerations of rotation and horizontal coordinate,
         `push` is the force of the hold, `rise` the speed at which the end rises per unit of slip.
@@ -267,7 +267,7 @@ class OnBase(NamedTuple):
 
     @kernel
     def kinetic_energy(self, mode: Mode, state: BodyState) -> float:
-        """Give the kinetic energy relative to the ground, :eq:`eq-energy`."""
+        """Return the kinetic energy relative to the ground, :eq:`eq-energy`."""
         sway = self.sway(mode, state, self.body.attitude(state.rotation))
         rate, speed = state.angular_velocity, state.vertical_velocity
         return 0.5 * (self.body.inertia * rate * rate + speed * speed + sway * sway)
@@ -276,27 +276,27 @@ class OnBase(NamedTuple):
     def horizontal_place(
         self, mode: Mode, state: BodyState, attitude: Attitude, held_at: float
     ) -> float:
-        """Give x of the centre of mass: about the held point, or free [m]."""
+        """Return x of the centre of mass: about the held point, or free [m]."""
         if self.is_free(mode):
             return state.horizontal
         return held_at + self.body.about_pin(self.body.pin(mode.pivot), attitude)
 
     @kernel
     def end_rises(self, state: BodyState, vertical: float, angular: float) -> tuple[float, float]:
-        """Give the upward accelerations of the base's ends, from those of the body."""
+        """Return the upward accelerations of the base's ends, from those of the body."""
         attitude = self.body.attitude(state.rotation)
         return self.body.end_accelerations(attitude, state.angular_velocity, vertical, angular)
 
     @kernel
     def elastic_energy(self, state: BodyState, own: Any) -> tuple[float, float]:
-        """Give the energy that the base stores, and the energy less that at rest."""
+        """Return the energy that the base stores, and the energy less that at rest."""
         return self.base.energy(self.body.base_line_at(state), own)
 
     @kernel
     def observed_base(
         self, mode: Mode, state: BodyState, attitude: Attitude, own: Any
     ) -> tuple[float, ...]:
-        """Give the base's columns in the results."""
+        """Return the base's columns in the results."""
         line = self.body.base_line(state, attitude)
         return self.base.observed(self.contact_with_force(mode), line, own)
 
@@ -304,7 +304,7 @@ class OnBase(NamedTuple):
     def response_in(
         self, mode: Mode, attitude: Attitude, press: float, moment: float, slip: float
     ) -> VelocityChange:
-        """Give changes of velocities by an impulse of the base, or by a hold that stops a slip."""
+        """Return velocity changes by an impulse of the base, or by a hold that stops a slip."""
         if self.is_free(mode):
             return VelocityChange(moment / self.body.inertia, press, 0.0, ())
         reach = self.body.reach(self.body.pin(mode.pivot), attitude).rate

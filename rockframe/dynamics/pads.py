@@ -51,7 +51,7 @@ ROUNDING: Final = 4.0 * sys.float_info.epsilon
 
 @inlined
 def corner_contact(contact: int, left: bool) -> int:
-    """Give the contact of one corner."""
+    """Return the contact of one corner."""
     return contact & CORNER_BITS if left else (contact >> RIGHT_BIT) & CORNER_BITS
 
 
@@ -78,17 +78,17 @@ class Pads(Base, PadNumbers):
 
     @kernel
     def contacts(self) -> int:
-        """Give the number of contacts of both corners, with the states of their laws."""
+        """Return the number of contacts of both corners, with the states of their laws."""
         return CONTACTS * self.law.states() * self.law.states()
 
     @kernel
     def end_guards(self) -> int:
-        """Give the number of guards of a corner."""
+        """Return the number of guards of a corner."""
         return CORNER_GUARDS + (1 if self.law.states() > 1 else 0)
 
     @inlined
     def variables(self) -> int:
-        """Give the number of variables of both laws."""
+        """Return the number of variables of both laws."""
         return 2 * self.law.variables()
 
     @inlined
@@ -98,24 +98,24 @@ class Pads(Base, PadNumbers):
 
     @inlined
     def of_corner(self, own: Any, left: bool) -> Any:
-        """Give the variables of one corner's law."""
+        """Return the variables of one corner's law."""
         return self.law.of_point(own, 0 if left else 1)
 
     @inlined
     def law_state(self, contact: int, left: bool) -> int:
-        """Give the state of a corner's law."""
+        """Return the state of a corner's law."""
         both = contact // CONTACTS
         return (both if left else both // self.law.states()) % self.law.states()
 
     @kernel
     def with_state(self, contact: int, left: bool, state: int) -> int:
-        """Give the contacts with another state of a corner's law."""
+        """Return the contacts with another state of a corner's law."""
         step = CONTACTS if left else CONTACTS * self.law.states()
         return contact + step * (state - self.law_state(contact, left))
 
     @kernel
     def with_corner(self, contact: int, left: bool, corner: int) -> int:
-        """Give both corners' contacts with a new one of one corner, its law in state 0."""
+        """Return both corners' contacts with a new one of one corner, its law in state 0."""
         step = 1 if left else CORNER
         new = contact + step * (corner - corner_contact(contact, left))
         return self.with_state(new, left, 0)
@@ -132,18 +132,18 @@ class Pads(Base, PadNumbers):
 
     @kernel
     def tilt(self, contact: int) -> float:
-        """Give the sign of the rotation that begins if one corner alone touches, or 0."""
+        """Return the sign of the rotation that begins if one corner alone touches, or 0."""
         return float(corner_contact(contact, False) - corner_contact(contact, True))
 
     @inlined
     def level(self, left: bool, line: BaseLine, own: Any) -> float:
-        """Give how far below the unloaded level of its pad a corner is [m]."""
+        """Return how far below the unloaded level of its pad a corner is [m]."""
         point = self.corner(left, line)
         return point.settlement - self.law.sunk(self.of_corner(own, left)) - point.rise
 
     @inlined
     def corner(self, left: bool, line: BaseLine) -> Point:
-        """Give the compression and motion of one corner, for its law."""
+        """Return the compression and motion of one corner, for its law."""
         settlement = self.left_settlement if left else self.right_settlement
         rise = line.left if left else line.right
         speed = line.left_speed if left else line.right_speed
@@ -154,7 +154,7 @@ class Pads(Base, PadNumbers):
 
     @inlined
     def reaction(self, contact: int, left: bool, line: BaseLine, own: Any) -> float:
-        """Give the reaction of a pad that touches its corner."""
+        """Return the reaction of a pad that touches its corner."""
         state, point = self.law_state(contact, left), self.corner(left, line)
         return self.law.force(state, point, self.of_corner(own, left))
 
@@ -162,7 +162,7 @@ class Pads(Base, PadNumbers):
     def reaction_and_power(
         self, contact: int, left: bool, line: BaseLine, own: Any
     ) -> tuple[float, float]:
-        """Give a pad's reaction and dissipated power in its corner's contact."""
+        """Return a pad's reaction and dissipated power in its corner's contact."""
         corner, point = corner_contact(contact, left), self.corner(left, line)
         mine = self.of_corner(own, left)
         if corner == TOUCHING:
@@ -174,7 +174,7 @@ class Pads(Base, PadNumbers):
 
     @inlined
     def force(self, contact: int, line: BaseLine, own: Any) -> BaseForce:
-        """Give force, moment and dissipated power of both pads together."""
+        """Return force, moment and dissipated power of both pads together."""
         left, by_left = self.reaction_and_power(contact, True, line, own)
         right, by_right = self.reaction_and_power(contact, False, line, own)
         moment = left * line.left_lever + right * line.right_lever
@@ -182,13 +182,13 @@ class Pads(Base, PadNumbers):
 
     @inlined
     def state_if_touching(self, contact: int, left: bool) -> int:
-        """Give the state of a corner's law; FREE if the corner does not touch."""
+        """Return the state of a corner's law; FREE if the corner does not touch."""
         touches = corner_contact(contact, left) == TOUCHING
         return self.law_state(contact, left) if touches else FREE
 
     @inlined
     def flow(self, contact: int, line: BaseLine, own: Any) -> Variables:
-        """Give the rates of both laws' variables."""
+        """Return the rates of both laws' variables."""
         left, right = self.corner(True, line), self.corner(False, line)
         on_left, on_right = (
             self.state_if_touching(contact, True), self.state_if_touching(contact, False),
@@ -199,7 +199,7 @@ class Pads(Base, PadNumbers):
 
     @kernel
     def pad_energy(self, left: bool, line: BaseLine, own: Any) -> tuple[float, float]:
-        """Give the energy of a pad, and the energy less that at rest."""
+        """Return the energy of a pad, and the energy less that at rest."""
         if self.level(left, line, own) <= 0.0:
             return 0.0, -self.rest_energy
         return self.law.energies(
@@ -208,14 +208,14 @@ class Pads(Base, PadNumbers):
 
     @kernel
     def energy(self, line: BaseLine, own: Any) -> tuple[float, float]:
-        """Give the energy of both pads, and the energy less that at rest."""
+        """Return the energy of both pads, and the energy less that at rest."""
         left, left_change = self.pad_energy(True, line, own)
         right, right_change = self.pad_energy(False, line, own)
         return left + right, left_change + right_change
 
     @inlined
     def guards_of(self, contact: int, left: bool, line: BaseLine, own: Any) -> Guards:
-        """Give the guards of a corner and their rates; idle ones are 1."""
+        """Return the guards of a corner and their rates; idle ones are 1."""
         corner, point = corner_contact(contact, left), self.corner(left, line)
         state, mine = self.law_state(contact, left), self.of_corner(own, left)
         per_rest, per_weight = 1.0 / self.rest, 1.0 / self.gravity
@@ -247,7 +247,7 @@ class Pads(Base, PadNumbers):
 
     @kernel
     def released_corner(self, left: bool, line: BaseLine, own: Any) -> int:
-        """Give the contact of a corner that has just lifted off: RELAXING, or CLEAR."""
+        """Return the contact of a corner that has just lifted off: RELAXING, or CLEAR."""
         pressed = self.level(left, line, own)
         if self.law.return_rate() > 0.0 and pressed > LEVEL_ROUNDING * self.rest:
             return RELAXING
@@ -255,7 +255,7 @@ class Pads(Base, PadNumbers):
 
     @kernel
     def switch(self, contact: int, left: bool, which: int, line: BaseLine, own: Any) -> EndEvent:
-        """Give contacts and event after a guard of a corner; correct the laws' variables."""
+        """Return contacts and event after a guard of a corner; correct the laws' variables."""
         if which == CORNER_GUARDS:
             state = (self.law_state(contact, left) + 1) % self.law.states()
             found = EndEvent(self.with_state(contact, left, state), SILENT, False)
@@ -275,7 +275,7 @@ class Pads(Base, PadNumbers):
     def switch_corner(
         self, contact: int, left: bool, which: int, line: BaseLine, own: Any
     ) -> EndEvent:
-        """Give the contacts and the event after a guard of a corner's contact.
+        """Return the contacts and the event after a guard of a corner's contact.
 
         Where both corners land, or leave, at the same instant one event switches both.
         """
@@ -323,22 +323,22 @@ class Pads(Base, PadNumbers):
 
     @inlined
     def follows(self, contact: int, left: bool) -> int:
-        """Give the contact with a corner that its pad follows without a force."""
+        """Return the contact with a corner that its pad follows without a force."""
         return self.with_corner(contact, left, RELAXING)
 
     @inlined
     def following_rate(self) -> float:
-        """Give the rate at which an unloaded pad returns [s^-1]; 0 without a dashpot."""
+        """Return the rate at which an unloaded pad returns [s^-1]; 0 without a dashpot."""
         return self.law.return_rate()
 
     @inlined
     def least_landing(self) -> float:
-        """Give the speed of a landing below which a dashpot's force is rounding noise."""
+        """Return the speed of a landing below which a dashpot's force is rounding noise."""
         return self.least
 
     @kernel
     def released(self, contact: int, left: bool, line: BaseLine, own: Any) -> int:
-        """Give the contact after a sliding corner has lifted off."""
+        """Return the contact after a sliding corner has lifted off."""
         return self.with_corner(contact, left, self.released_corner(left, line, own))
 
     @kernel
@@ -355,22 +355,22 @@ class Pads(Base, PadNumbers):
 
     @kernel
     def held(self, contact: int, left: bool) -> int:
-        """Give the contact with a corner that touches."""
+        """Return the contact with a corner that touches."""
         return self.with_corner(contact, left, TOUCHING)
 
     @kernel
     def waiting(self, contact: int, left: bool) -> int:
-        """Give the contact of a corner that has lifted off while its pad still presses it."""
+        """Return the contact of a corner that has lifted off while its pad still presses it."""
         return self.with_corner(contact, left, LEAVING)
 
     @kernel
     def unpressed(self, contact: int, left: bool) -> int:
-        """Give the contact of a corner that stays held though its pad no longer presses it."""
+        """Return the contact of a corner that stays held though its pad no longer presses it."""
         return self.with_corner(contact, left, ENGAGING)
 
     @kernel
     def engaged(self, contact: int, left: bool, line: BaseLine, own: Any) -> int:
-        """Give the contact after a corner has come back to its pad and its body been held."""
+        """Return the contact after a corner has come back to its pad and its body been held."""
         if self.reaction(contact, left, line, own) < 0.0:
             # the hold made the corner faster than its pad; released, it would come back endlessly
             return self.with_corner(contact, left, ENGAGING)
@@ -378,7 +378,7 @@ class Pads(Base, PadNumbers):
 
     @kernel
     def disturbed(self, contact: int) -> int:
-        """Give the contact after an event elsewhere has changed the corners' speeds."""
+        """Return the contact after an event elsewhere has changed the corners' speeds."""
         if corner_contact(contact, True) == LEAVING:
             contact = self.with_corner(contact, True, RELAXING)
         if corner_contact(contact, False) == LEAVING:
@@ -387,31 +387,31 @@ class Pads(Base, PadNumbers):
 
     @kernel
     def rebound(self, left: bool) -> float:
-        """Give the coefficient of restitution of a corner that lands [1]."""
+        """Return the coefficient of restitution of a corner that lands [1]."""
         return self.left_restitution if left else self.right_restitution
 
     @kernel
     def starting_corner(self, left: bool, line: BaseLine, own: Any) -> int:
-        """Give a corner's contact at the start of a run."""
+        """Return a corner's contact at the start of a run."""
         if self.level(left, line, own) <= 0.0:
             return CLEAR
         return TOUCHING if self.reaction(TOUCHING, left, line, own) > 0.0 else RELAXING
 
     @kernel
     def starting(self, line: BaseLine, own: Any) -> int:
-        """Give the contact at the start of a run."""
+        """Return the contact at the start of a run."""
         self.law.reset(own)
         self.settle(TOUCHING, line, own)
         right = self.starting_corner(False, line, own)
         return self.starting_corner(True, line, own) + CORNER * right
 
     def resting_height(self, left: float, right: float, own: Any) -> float:
-        """Give the height at which the pads carry the weight [m], found numerically."""
+        """Return the height at which the pads carry the weight [m], found numerically."""
         return height_under(self, self.gravity, 2.0 * self.rest, (left, right), own)
 
     @kernel
     def observed(self, contact: int, line: BaseLine, own: Any) -> Variables:
-        """Give the reactions of the left and right pad, and the columns of their laws."""
+        """Return the reactions of the left and right pad, and the columns of their laws."""
         left, _ = self.reaction_and_power(contact, True, line, own)
         right, _ = self.reaction_and_power(contact, False, line, own)
         on_left, on_right = (
@@ -432,7 +432,7 @@ class ElasticPads(Pads):
 
     @kernel
     def resting_height(self, left: float, right: float, own: Any) -> float:
-        """Give the height at which both pads, or only the lower one, carry the weight [m]."""
+        """Return the height at which both pads, or only the lower one, carry the weight [m]."""
         sunk = (self.left_settlement - self.rest) + (self.right_settlement - self.rest)
         middle = 0.5 * (sunk - left - right)
         if middle + left > self.left_settlement:

@@ -42,7 +42,7 @@ class Point(NamedTuple):
 
 @inlined
 def point_at(line: BaseLine, place: float, settlement: float) -> Point:
-    """Give compression and motion of the point at a place between the ends."""
+    """Return compression and motion of the point at a place between the ends."""
     rise = line.left + place * (line.right - line.left)
     speed = line.left_speed + place * (line.right_speed - line.left_speed)
     change = line.left_acceleration + place * (line.right_acceleration - line.left_acceleration)
@@ -58,55 +58,55 @@ class PointLaw:
     __slots__ = ()
 
     def spring(self, point: Point, own: Any) -> float:
-        """Give the elastic force, by which the stored energy grows with the compression."""
+        """Return the elastic force, by which the stored energy grows with the compression."""
         raise NotImplementedError
 
     def force_rate(self, state: int, point: Point, own: Any) -> float:
-        """Give the rate of the force."""
+        """Return the rate of the force."""
         raise NotImplementedError
 
     def energy(self, point: Point, own: Any) -> float:
-        """Give the stored energy of a point below the unloaded level."""
+        """Return the stored energy of a point below the unloaded level."""
         raise NotImplementedError
 
     @inlined
     def force(self, state: int, point: Point, own: Any) -> float:
-        """Give the force on a point that touches; by default the elastic force alone."""
+        """Return the force on a point that touches; by default the elastic force alone."""
         return self.spring(point, own)
 
     @inlined
     def power(self, state: int, point: Point, own: Any) -> float:
-        """Give the power that is dissipated at a point that touches."""
+        """Return the power that is dissipated at a point that touches."""
         return 0.0
 
     @inlined
     def sunk(self, own: Any) -> float:
-        """Give the permanent compression: how far the unloaded level has sunk [m]."""
+        """Return the permanent compression: how far the unloaded level has sunk [m]."""
         return 0.0
 
     @inlined
     def return_rate(self) -> float:
-        """Give the rate at which the base returns without a force; 0 if immediately [s^-1]."""
+        """Return the rate at which the base returns without a force; 0 if immediately [s^-1]."""
         return 0.0
 
     @inlined
     def variables(self) -> int:
-        """Give the number of variables."""
+        """Return the number of variables."""
         return 0
 
     @inlined
     def rates(self, state: int, point: Point, own: Any) -> Variables:
-        """Give the rates of the variables; the state is `FREE` where the point does not touch."""
+        """Return the rates of the variables; the state is `FREE` where the point does not touch."""
         return ()
 
     @inlined
     def states(self) -> int:
-        """Give the number of states, counted from 0."""
+        """Return the number of states, counted from 0."""
         return 1
 
     @inlined
     def guard(self, state: int, point: Point, own: Any) -> tuple[float, float]:
-        """Give a function that falls through zero where the law changes to its next state.
+        """Return a function that falls through zero where the law changes to its next state.
 
         And its rate. It is evaluated for points that touch; any other event of a point sets the
         law to state 0.
@@ -119,12 +119,12 @@ class PointLaw:
 
     @inlined
     def seen(self, state: int, point: Point, own: Any) -> Variables:
-        """Give the law's columns in the results, besides the force."""
+        """Return the law's columns in the results, besides the force."""
         return ()
 
     @inlined
     def energies(self, point: Point, rest: float, at_rest: float, own: Any) -> tuple[float, float]:
-        """Give the stored energy, and the energy less that at rest, `at_rest`.
+        """Return the stored energy, and the energy less that at rest, `at_rest`.
 
         A law may give the difference without cancellation; `rest` is the compression at rest.
         """
@@ -138,7 +138,7 @@ class PointLaw:
 
     @inlined
     def of_point(self, own: Any, i: int) -> Any:
-        """Give the variables of point `i` among those read."""
+        """Return the variables of point `i` among those read."""
         return ()
 
     @kernel
@@ -147,7 +147,7 @@ class PointLaw:
 
     @inlined
     def guards(self, state: int, point: Point, own: Any) -> Guards:
-        """Give the guards of the law's state at a point that touches."""
+        """Return the guards of the law's state at a point that touches."""
         return Guards((), ())
 
 
@@ -180,7 +180,7 @@ class _WithGuard:
 def methods_of_law(
     law: type[Law], known: type, needed: Collection[str]
 ) -> tuple[dict[str, Any], list[str]]:
-    """Give a law's own methods, and what is wrong with its class and the names of its fields."""
+    """Return a law's own methods, and what is wrong with its class and the names of its fields."""
     if not isinstance(law, type):  # pyright: ignore[reportUnnecessaryIsInstance]
         msg = f"a law is a NamedTuple, got {shown(law)}"
         raise ArgumentError(msg)
@@ -239,33 +239,33 @@ class Viscoelastic(NamedTuple):
     damping: float  # c/m
 
     def spring(self, point: Point, own: Variables) -> float:
-        """Give k u."""
+        """Return k u."""
         return self.stiffness * point.pressed
 
     def force(self, state: int, point: Point, own: Variables) -> float:
-        """Give k u + c u'."""
+        """Return k u + c u'."""
         return self.stiffness * point.pressed + self.damping * point.speed
 
     def force_rate(self, state: int, point: Point, own: Variables) -> float:
-        """Give k u' + c u''."""
+        """Return k u' + c u''."""
         return self.stiffness * point.speed + self.damping * point.acceleration
 
     def power(self, state: int, point: Point, own: Variables) -> float:
-        """Give the power that the dashpot dissipates."""
+        """Return the power that the dashpot dissipates."""
         return self.damping * point.speed * point.speed
 
     def energy(self, point: Point, own: Variables) -> float:
-        """Give k u^2/2."""
+        """Return k u^2/2."""
         return 0.5 * self.stiffness * point.pressed * point.pressed
 
     def energies(
         self, point: Point, rest: float, at_rest: float, own: Variables
     ) -> tuple[float, float]:
-        """Give the energy of the spring, and the energy less that at rest, as products."""
+        """Return the energy of the spring, and the energy less that at rest, as products."""
         change = point.rise * (0.5 * point.rise - point.settlement)
         change += 0.5 * (point.settlement - rest) * (point.settlement + rest)
         return self.energy(point, own), self.stiffness * change
 
     def return_rate(self) -> float:
-        """Give k/c."""
+        """Return k/c."""
         return self.stiffness / self.damping if self.damping > 0.0 else 0.0

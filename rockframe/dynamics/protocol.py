@@ -80,48 +80,48 @@ class Equations(Protocol):
     """The equations of a scene."""
 
     def bodies(self) -> int:
-        """Give the number of bodies that move on their bases."""
+        """Return the number of bodies that move on their bases."""
         ...
 
     def coordinates(self) -> int:
-        """Give n, the number of coordinates."""
+        """Return n, the number of coordinates."""
         ...
 
     def variables(self) -> int:
-        """Give the number of variables of first order."""
+        """Return the number of variables of first order."""
         ...
 
     def guards(self) -> int:
-        """Give the number of guards."""
+        """Return the number of guards."""
         ...
 
     def modes(self) -> int:
-        """Give the number of modes; not every number below it need stand for one."""
+        """Return the number of modes; not every number below it need stand for one."""
         ...
 
     def moving_in(self, mode: int) -> int:
-        """Give the number of leading coordinates that move in a mode.
+        """Return the number of leading coordinates that move in a mode.
 
         If it is 0 and there are no variables of first order, the powers of the mode must be 0.
         """
         ...
 
     def contact_state_of(self, mode: int, k: int) -> int:
-        """Give the :class:`rockframe.dynamics.events.ContactState` of body `k` in a mode.
+        """Return the :class:`rockframe.dynamics.events.ContactState` of body `k` in a mode.
 
         Body 0 is the one that the scene is about.
         """
         ...
 
     def relaxation_in(self, mode: int) -> float:
-        """Give the rate at which a constraint of a mode decays, 0 where there is none [s^-1].
+        """Return the rate at which a constraint of a mode decays, 0 where there is none [s^-1].
 
         Fixed steps must be short compared with the inverse of this rate.
         """
         ...
 
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> Numbers:
-        """Give accelerations, rates of the variables of first order, and two powers.
+        """Return accelerations, rates of the variables of first order, and two powers.
 
         The powers are the one dissipated and the one put in by the ground. Values in the state of
         coordinates that do not move in the mode must not be used.
@@ -129,7 +129,7 @@ class Equations(Protocol):
         ...
 
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
-        """Give the guards, each positive as long as it calls for no switch, and their rates.
+        """Return the guards, each positive as long as it calls for no switch, and their rates.
 
         `slope` is what :meth:`accelerate` gave for the state.
         """
@@ -140,7 +140,7 @@ class Equations(Protocol):
         ...
 
     def without_sliding(self, mode: int) -> int:
-        """Give a mode without its sliding: code that only sliding needs is not compiled then."""
+        """Return a mode without its sliding: code that only sliding needs is not compiled then."""
         ...
 
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
@@ -151,13 +151,13 @@ class Equations(Protocol):
         ...
 
     def energies(self, mode: int, state: Vector) -> Energies:
-        """Give the energies of a state."""
+        """Return the energies of a state."""
         ...
 
     def observe(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> Numbers:
-        """Give the columns that the model names; `slope` is what :meth:`accelerate` gave."""
+        """Return the columns that the model names; `slope` is what :meth:`accelerate` gave."""
         ...
 
 
@@ -169,7 +169,7 @@ class EquationsWithPowers(Equations, Protocol):
     """
 
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
-        """Give the power dissipated and the power put in by the ground [m^2 s^-3].
+        """Return the power dissipated and the power put in by the ground [m^2 s^-3].
 
         `slope` is what :meth:`accelerate` has just given for the same place at other rates.
         """
@@ -193,27 +193,27 @@ class OnRigidGround:
 
     @inlined
     def bodies(self) -> int:
-        """Give 1, the number of bodies."""
+        """Return 1, the number of bodies."""
         return 1
 
     @kernel
     def variables(self) -> int:
-        """Give 0: rigid ground has no variables of first order."""
+        """Return 0: rigid ground has no variables of first order."""
         return 0
 
     @inlined
     def relaxation_in(self, mode: int) -> float:
-        """Give 0: no constraint decays."""
+        """Return 0: no constraint decays."""
         return 0.0
 
     @kernel
     def some_end_slides(self, mode: int) -> bool:
-        """Give False: only ends on springs slide in this sense, and there are none."""
+        """Return False: only ends on springs slide in this sense, and there are none."""
         return False
 
     @inlined
     def without_sliding(self, mode: int) -> int:
-        """Give the mode itself."""
+        """Return the mode itself."""
         return mode
 
 
@@ -260,7 +260,7 @@ BODY_FORCES: Final = ("base_shear", "horizontal_reaction", "vertical_reaction")
 
 
 def column_of(name: str, body: int) -> str:
-    """Give the name that a column has for a body of some number; body 0 has the plain name."""
+    """Return the name that a column has for a body of some number; body 0 has the plain name."""
     return name if body == 0 else f"{name}_of_{body}"
 
 
@@ -378,19 +378,19 @@ class ContactModel:
             raise AssemblyError([msg])
 
     def moving(self, modes: Integers) -> Integers:
-        """Give how many leading coordinates move in each of some modes."""
+        """Return how many leading coordinates move in each of some modes."""
         return _of_each(self.system.moving_in, modes)
 
     def contact_states(self, modes: Integers, body: int = 0) -> Integers:
-        """Give the contact state of a body in each of some modes."""
+        """Return the contact state of a body in each of some modes."""
         return _of_each(lambda mode: self.system.contact_state_of(mode, body), modes)
 
     def rotation_in(self, state: Vector) -> float:
-        """Give the block's rotation in a state [rad]."""
+        """Return the block's rotation in a state [rad]."""
         return python_number(self.rotation_weights @ state[: len(self.rotation_weights)])
 
     def other_share_in(self, state: Vector) -> float:
-        """Give the largest ratio of another body's rotation to its limit; 0 without one [1]."""
+        """Return the largest ratio of another body's rotation to its limit; 0 without one [1]."""
         size = len(self.rotation_weights)
         share = 0.0
         for left, right, *weights in self.other_limits.reshape(-1, 2 + size).tolist():

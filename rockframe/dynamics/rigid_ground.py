@@ -87,46 +87,46 @@ class BlockOnRigidGround(RockingNumbers, OnRigidGround):
 
     @kernel
     def coordinates(self) -> int:
-        """Give 1, the rotation."""
+        """Return 1, the rotation."""
         return 1
 
     @kernel
     def guards(self) -> int:
-        """Give the number of guards."""
+        """Return the number of guards."""
         return GUARDS
 
     @kernel
     def modes(self) -> int:
-        """Give the number of modes."""
+        """Return the number of modes."""
         return MODES
 
     @inlined
     def moving_in(self, mode: int) -> int:
-        """Give 1 while the block rocks, 0 at rest."""
+        """Return 1 while the block rocks, 0 at rest."""
         return 0 if mode == RESTING else 1
 
     @inlined
     def contact_state_of(self, mode: int, k: int) -> int:
-        """Give the contact state: which corner bears, or both."""
+        """Return the contact state: which corner bears, or both."""
         if mode == RESTING:
             return FULL
         return RIGHT if mode == ON_RIGHT else LEFT
 
     @inlined
     def corner(self, mode: int) -> RockingCorner:
-        """Give the corner that bears in a mode; the right one at rest."""
+        """Return the corner that bears in a mode; the right one at rest."""
         return self.left if mode == ON_LEFT else self.right
 
     @inlined
     def side(self, mode: int) -> float:
-        """Give s = sgn(alpha) of a rocking mode, 0 at rest."""
+        """Return s = sgn(alpha) of a rocking mode, 0 at rest."""
         if mode == RESTING:
             return 0.0
         return 1.0 if mode == ON_RIGHT else -1.0
 
     @inlined
     def lean(self, mode: int, rotation: float) -> tuple[float, float]:
-        """Give the sine and cosine of theta s - alpha, or their small-rotation forms."""
+        """Return the sine and cosine of theta s - alpha, or their small-rotation forms."""
         angle = self.corner(mode).angle * self.side(mode) - rotation
         if self.small:
             return angle, 1.0
@@ -134,7 +134,7 @@ class BlockOnRigidGround(RockingNumbers, OnRigidGround):
 
     @inlined
     def angular_acceleration(self, mode: int, rotation: float, ground: Ground) -> float:
-        """Give the angular acceleration of Housner's block, :eq:`eq-rigid-rocking`."""
+        """Return the angular acceleration of Housner's block, :eq:`eq-rigid-rocking`."""
         corner = self.corner(mode)
         sine, cosine = self.lean(mode, rotation)
         moment = (self.gravity + ground.y) * sine + ground.x * cosine
@@ -142,7 +142,7 @@ class BlockOnRigidGround(RockingNumbers, OnRigidGround):
 
     @inlined
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> tuple[float, ...]:
-        """Give acceleration, dashpot power (none) and input power."""
+        """Return acceleration, dashpot power (none) and input power."""
         if mode == RESTING:
             return 0.0, 0.0, 0.0
         sine, cosine = self.lean(mode, state[0])
@@ -151,13 +151,13 @@ class BlockOnRigidGround(RockingNumbers, OnRigidGround):
 
     @inlined
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
-        """Give the two powers of :meth:`accelerate`."""
+        """Return the two powers of :meth:`accelerate`."""
         found = self.accelerate(mode, state, ground)
         return found[1], found[2]
 
     @inlined
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
-        """Give the guards of impact while rocking, and of uplift while at rest."""
+        """Return the guards of impact while rocking, and of uplift while at rest."""
         if mode == RESTING:
             weight = self.gravity + ground.y
             right = (weight * self.right.tangent + ground.x) / self.gravity
@@ -205,7 +205,7 @@ class BlockOnRigidGround(RockingNumbers, OnRigidGround):
 
     @inlined
     def leaning(self, tilt: float, weight: float, ground: Ground) -> tuple[float, float]:
-        """Give the difference of the corners' reactions, and the base shear, with a wall behind.
+        """Return the difference of the corners' reactions, and the base shear, with a wall behind.
 
         A ground acceleration that would tip the block into the wall presses its top against it.
         """
@@ -220,7 +220,7 @@ class BlockOnRigidGround(RockingNumbers, OnRigidGround):
 
     @kernel
     def centre_rise(self, mode: int, rotation: float) -> float:
-        """Give the rise of the centre of mass, R0 [cos(theta - a) - cos theta] [m]."""
+        """Return the rise of the centre of mass, R0 [cos(theta - a) - cos theta] [m]."""
         corner, angle = self.corner(mode), abs(rotation)
         if self.small:
             return corner.radius * angle * (corner.angle - 0.5 * angle)
@@ -230,7 +230,7 @@ class BlockOnRigidGround(RockingNumbers, OnRigidGround):
 
     @kernel
     def energies(self, mode: int, state: Vector) -> Energies:
-        """Give kinetic and gravity energy, :eq:`eq-rigid-energy`; nothing is elastic."""
+        """Return kinetic and gravity energy, :eq:`eq-rigid-energy`; nothing is elastic."""
         kinetic = 0.5 * self.corner(mode).inertia * state[1] * state[1]
         return Energies(kinetic, self.gravity * self.centre_rise(mode, state[0]), 0.0, 0.0)
 
@@ -238,7 +238,7 @@ class BlockOnRigidGround(RockingNumbers, OnRigidGround):
     def observe(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> tuple[float, ...]:
-        """Give motion of the centre of mass, resultant reactions, and those of both corners."""
+        """Return motion of the centre of mass, resultant reactions, and those of both corners."""
         rotation, rate = state[0], state[1]
         weight = self.gravity + ground.y
         height = self.centre_rise(mode, rotation)
@@ -273,7 +273,7 @@ def corner_of(
     restitution: float,
     small_rotation: bool,
 ) -> RockingCorner:
-    """Give a corner about which a block rotates.
+    """Return a corner about which a block rotates.
 
     Parameters
     ----------

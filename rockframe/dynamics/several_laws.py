@@ -23,25 +23,25 @@ class OneOfTwo(NamedTuple):
     second: Any
 
     def force(self, state: int, stretch: Stretch, own: Vector) -> float:
-        """Give the force of the law."""
+        """Return the force of the law."""
         if self.which == 0.0:
             return self.first.force(state, stretch, own)
         return self.second.force(state, stretch, own)
 
     def energy(self, state: int, stretch: Stretch, own: Vector) -> float:
-        """Give the stored energy."""
+        """Return the stored energy."""
         if self.which == 0.0:
             return self.first.energy(state, stretch, own)
         return self.second.energy(state, stretch, own)
 
     def power(self, state: int, stretch: Stretch, own: Vector) -> float:
-        """Give the dissipated power."""
+        """Return the dissipated power."""
         if self.which == 0.0:
             return self.first.power(state, stretch, own)
         return self.second.power(state, stretch, own)
 
     def variables(self) -> int:
-        """Give the number of variables, the larger of both laws."""
+        """Return the number of variables, the larger of both laws."""
         return max(self.first.variables(), self.second.variables())
 
     def rates(self, state: int, stretch: Stretch, own: Vector, out: Vector) -> None:
@@ -54,29 +54,29 @@ class OneOfTwo(NamedTuple):
             self.second.rates(state, stretch, own, out)
 
     def states(self) -> int:
-        """Give the number of states, the larger of both laws."""
+        """Return the number of states, the larger of both laws."""
         return max(self.first.states(), self.second.states())
 
     def starting(self, stretch: Stretch, own: Vector) -> int:
-        """Give the state at the start of a run; sets the variables."""
+        """Return the state at the start of a run; sets the variables."""
         if self.which == 0.0:
             return self.first.starting(stretch, own)
         return self.second.starting(stretch, own)
 
     def guard(self, which: int, state: int, stretch: Stretch, own: Vector) -> tuple[float, float]:
-        """Give a guard of the law, and its rate."""
+        """Return a guard of the law, and its rate."""
         if self.which == 0.0:
             return self.first.guard(which, state, stretch, own)
         return self.second.guard(which, state, stretch, own)
 
     def switch(self, which: int, state: int, stretch: Stretch, own: Vector) -> LinkEvent:
-        """Give the event as a guard falls through zero; sets the variables."""
+        """Return the event as a guard falls through zero; sets the variables."""
         if self.which == 0.0:
             return self.first.switch(which, state, stretch, own)
         return self.second.switch(which, state, stretch, own)
 
     def shown(self, state: int) -> int:
-        """Give the state that users see."""
+        """Return the state that users see."""
         if self.which == 0.0:
             return self.first.shown(state)
         return self.second.shown(state)
@@ -86,11 +86,11 @@ class OneOfTwo(NamedTuple):
         return self.first.idles(state) if self.which == 0.0 else self.second.idles(state)
 
     def number_count(self) -> int:
-        """Give the number of numbers of both laws, and of `which`."""
+        """Return the number of numbers of both laws, and of `which`."""
         return 1 + self.first.number_count() + self.second.number_count()
 
     def with_numbers(self, numbers: Vector) -> Any:
-        """Give the law with other numbers, from an array."""
+        """Return the law with other numbers, from an array."""
         behind = 1 + self.first.number_count()
         return OneOfTwo(
             numbers[0],
@@ -100,7 +100,7 @@ class OneOfTwo(NamedTuple):
 
 
 def one_of(laws: Sequence[Any], own: Any) -> Any:
-    """Give a law that may be any of `laws`, of different classes, and here is `own`."""
+    """Return a law that may be any of `laws`, of different classes, and here is `own`."""
     first, *others = laws
     if not others:
         return own
@@ -114,7 +114,7 @@ SHIPPED: Final = (Tie(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), Bumper(0.0, 0.0, 0.0), Stea
 
 
 def kinds_of(laws: Sequence[Any]) -> list[Any]:
-    """Give a law of each class that links of these laws may follow.
+    """Return a law of each class that links of these laws may follow.
 
     If one class of `SHIPPED` is among them all of these are given, so that any mixture of them runs
     by the same machine code.

@@ -99,22 +99,22 @@ class SlideMotion(OnRigidGround):
 
     @kernel
     def coordinates(self) -> int:
-        """Give 3: rotation, slip, rise."""
+        """Return 3: rotation, slip, rise."""
         return SIZE
 
     @kernel
     def guards(self) -> int:
-        """Give the number of guards."""
+        """Return the number of guards."""
         return GUARDS
 
     @kernel
     def modes(self) -> int:
-        """Give the number of modes."""
+        """Return the number of modes."""
         return MODES
 
     @inlined
     def moving_in(self, mode: int) -> int:
-        """Give the number of coordinates that move: the first of rotation, slip, rise."""
+        """Return the number of coordinates that move: the first of rotation, slip, rise."""
         bears, slips = self.bears_in(mode), 0 if mode % SLIPS == HELD else 1
         if bears >= FLIES_RIGHT:
             return SIZE
@@ -122,7 +122,7 @@ class SlideMotion(OnRigidGround):
 
     @inlined
     def contact_state_of(self, mode: int, k: int) -> int:
-        """Give the contact state: which corner bears, both, or none."""
+        """Return the contact state: which corner bears, both, or none."""
         bears = self.bears_in(mode)
         if bears == FULL:
             return events.FULL
@@ -132,45 +132,45 @@ class SlideMotion(OnRigidGround):
 
     @inlined
     def bears_in(self, mode: int) -> int:
-        """Give what bears in a mode, whose number may include more, such as states of links."""
+        """Return what bears in a mode, whose number may include more, such as states of links."""
         return mode // SLIPS % BEARINGS
 
     @inlined
     def with_contact(self, mode: int, contact: int) -> int:
-        """Give the mode with another bearing and slip, in one number `contact`."""
+        """Return the mode with another bearing and slip, in one number `contact`."""
         return mode - mode % MODES + contact
 
     @inlined
     def side(self, bears: int) -> float:
-        """Give 1 where coordinates are those of the right corner, -1 of the left one."""
+        """Return 1 where coordinates are those of the right corner, -1 of the left one."""
         return -1.0 if bears in (ON_LEFT, FLIES_LEFT) else 1.0
 
     @inlined
     def sense(self, mode: int) -> float:
-        """Give the sign of the slip, 0 where friction holds."""
+        """Return the sign of the slip, 0 where friction holds."""
         slip = mode % SLIPS
         return 0.0 if slip == HELD else 1.0 if slip == TO_RIGHT else -1.0
 
     @inlined
     def distance(self, side: float) -> float:
-        """Give the distance of a corner from the foot of the centre of mass [m]."""
+        """Return the distance of a corner from the foot of the centre of mass [m]."""
         return self.right if side > 0.0 else self.left
 
     @inlined
     def reach(self, side: float, rotation: float) -> tuple[float, float]:
-        """Give the place of the centre of mass to the right of a corner, and above it [m]."""
+        """Return the place of the centre of mass to the right of a corner, and above it [m]."""
         sine, cosine = sine_cosine(rotation)
         away = side * self.distance(side)
         return self.height * sine - away * cosine, self.height * cosine + away * sine
 
     @inlined
     def loads(self, mode: int, state: Vector, ground: Ground) -> Loads:
-        """Give the loads on the block: weight and inertia forces of the ground's motion."""
+        """Return the loads on the block: weight and inertia forces of the ground's motion."""
         return Loads(ground.x, self.gravity + ground.y, 0.0)
 
     @inlined
     def contact(self, mode: int, state: Vector, loads: Loads) -> Contact:
-        """Give the motion in a mode, :eq:`eq-slide-planar` under its constraints.
+        """Return the motion in a mode, :eq:`eq-slide-planar` under its constraints.
 
         For a corner that slips this is :eq:`eq-slide-rocking`.
         """
@@ -200,20 +200,20 @@ class SlideMotion(OnRigidGround):
 
     @inlined
     def free_rise(self, bears: int, state: Vector, loads: Loads) -> float:
-        """Give the upward acceleration of a corner if the ground did not act on it."""
+        """Return the upward acceleration of a corner if the ground did not act on it."""
         flies = bears + FLIES_RIGHT - ON_RIGHT
         return self.contact(SLIPS * flies, state, loads).rise
 
     @inlined
     def speeds(self, mode: int, state: Vector) -> tuple[float, float]:
-        """Give the velocity of the centre of mass relative to the ground."""
+        """Return the velocity of the centre of mass relative to the ground."""
         beside, above = self.reach(self.side(self.bears_in(mode)), state[ROTATION])
         rate = state[SIZE + ROTATION]
         return state[SIZE + SLIP] + above * rate, state[SIZE + RISE] - beside * rate
 
     @inlined
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> Numbers:
-        """Give accelerations, the power that friction dissipates, and that of the ground."""
+        """Return accelerations, the power that friction dissipates, and that of the ground."""
         if mode == HELD:
             return 0.0, 0.0, 0.0, 0.0, 0.0
         return self.accelerations(mode, state, ground, self.loads(mode, state, ground))
@@ -222,7 +222,7 @@ class SlideMotion(OnRigidGround):
     def accelerations(
         self, mode: int, state: Vector, ground: Ground, loads: Loads
     ) -> tuple[float, float, float, float, float]:
-        """Give what :meth:`accelerate` gives, under given loads."""
+        """Return what :meth:`accelerate` gives, under given loads."""
         found = self.contact(mode, state, loads)
         across, up = self.speeds(mode, state)
         supplied = -ground.x * across - ground.y * up
@@ -231,18 +231,18 @@ class SlideMotion(OnRigidGround):
 
     @inlined
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
-        """Give the two powers of :meth:`accelerate`; the compiler merges both evaluations."""
+        """Return the two powers of :meth:`accelerate`; the compiler merges both evaluations."""
         found = self.accelerate(mode, state, ground)
         return found[SIZE], found[SIZE + 1]
 
     @inlined
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
-        """Give the guards, :eq:`eq-slide-guards`."""
+        """Return the guards, :eq:`eq-slide-guards`."""
         return self.guards_under(mode, state, slope, self.loads(mode, state, ground))
 
     @inlined
     def guards_under(self, mode: int, state: Vector, slope: Slope, loads: Loads) -> Guards:
-        """Give the guards, :eq:`eq-slide-guards`, under given loads."""
+        """Return the guards, :eq:`eq-slide-guards`, under given loads."""
         scale, size = 1.0 / self.gravity, 1.0 / (self.left + self.right)
         bears, sense, rate = self.bears_in(mode), self.sense(mode), state[SIZE + ROTATION]
         side = self.side(bears)
@@ -275,14 +275,14 @@ class SlideMotion(OnRigidGround):
 
     @kernel
     def kinetic_energy(self, mode: int, state: Vector) -> float:
-        """Give the kinetic energy relative to the ground."""
+        """Return the kinetic energy relative to the ground."""
         across, up = self.speeds(mode, state)
         rate = state[SIZE + ROTATION]
         return 0.5 * (across * across + up * up + self.inertia * rate * rate)
 
     @kernel
     def centre_rise(self, mode: int, state: Vector) -> float:
-        """Give the rise of the centre of mass, without cancellation [m]."""
+        """Return the rise of the centre of mass, without cancellation [m]."""
         sine, _ = sine_cosine(state[ROTATION])
         half, _ = sine_cosine(0.5 * state[ROTATION])
         side = self.side(self.bears_in(mode))
@@ -290,12 +290,12 @@ class SlideMotion(OnRigidGround):
 
     @kernel
     def energies(self, mode: int, state: Vector) -> Energies:
-        """Give kinetic and gravity energy; nothing is elastic."""
+        """Return kinetic and gravity energy; nothing is elastic."""
         return self.energies_alone(mode, state)
 
     @inlined
     def energies_alone(self, mode: int, state: Vector) -> Energies:
-        """Give the energies of the block without links."""
+        """Return the energies of the block without links."""
         kinetic = self.kinetic_energy(mode, state)
         return Energies(kinetic, self.gravity * self.centre_rise(mode, state), 0.0, 0.0)
 
@@ -303,12 +303,12 @@ class SlideMotion(OnRigidGround):
     def observe(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> Numbers:
-        """Give the motion of the centre of mass, the reactions, and the slip."""
+        """Return the motion of the centre of mass, the reactions, and the slip."""
         return self.columns_under(mode, state, slope, self.loads(mode, state, ground))
 
     @inlined
     def centre_acceleration(self, mode: int, state: Vector, slope: Slope) -> tuple[float, float]:
-        """Give the acceleration of the centre of mass relative to the ground, from a slope."""
+        """Return the acceleration of the centre of mass relative to the ground, from a slope."""
         beside, above = self.reach(self.side(self.bears_in(mode)), state[ROTATION])
         square = state[SIZE + ROTATION] * state[SIZE + ROTATION]
         sway = slope[SLIP] + above * slope[ROTATION] - beside * square
@@ -318,7 +318,7 @@ class SlideMotion(OnRigidGround):
     def columns_under(
         self, mode: int, state: Vector, slope: Slope, loads: Loads
     ) -> tuple[float, ...]:
-        """Give the columns of :meth:`observe` under given loads."""
+        """Return the columns of :meth:`observe` under given loads."""
         bears, rotation, rate = self.bears_in(mode), state[ROTATION], state[SIZE + ROTATION]
         side = self.side(bears)
         beside, _ = self.reach(side, rotation)

@@ -52,14 +52,14 @@ class SlideSwitches(SlideMotion):
 
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Give the mode after a guard has fallen; after an impact also the rates."""
+        """Return the mode after a guard has fallen; after an impact also the rates."""
         return self.switch_contact(mode, guard, state, ground, memory)
 
     @inlined
     def switch_contact(
         self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Give the mode after a guard of bearing or slip has fallen."""
+        """Return the mode after a guard of bearing or slip has fallen."""
         bears = self.bears_in(mode)
         if bears >= FLIES_RIGHT:
             new = self.come_down(mode, guard, state, ground, memory)
@@ -89,7 +89,7 @@ class SlideSwitches(SlideMotion):
 
     @kernel
     def go_on(self, mode: int, state: Vector, ground: Ground, lets_go: bool, tips: int) -> int:
-        """Give the mode that follows without an impact, from the forces on the block.
+        """Return the mode that follows without an impact, from the forces on the block.
 
         With `lets_go` friction holds no longer; `tips` is the corner over which it tips, if known.
         """
@@ -102,7 +102,7 @@ class SlideSwitches(SlideMotion):
 
     @inlined
     def kind_of(self, old: int, new: int) -> int:
-        """Give the kind of event by which one mode follows another without an impact."""
+        """Return the kind of event by which one mode follows another without an impact."""
         bore, bears = self.bears_in(old), self.bears_in(new)
         if bears >= FLIES_RIGHT:
             return SEPARATION
@@ -116,7 +116,7 @@ class SlideSwitches(SlideMotion):
 
     @kernel
     def standing(self, state: Vector, loads: Loads, lets_go: bool, tips: int) -> int:
-        """Give bearing and slip that follow for a block upright on its base, :eq:`eq-slide-start`.
+        """Return the bearing and slip of a block upright on its base, :eq:`eq-slide-start`.
 
         With `lets_go` friction holds no longer; `tips` is the corner over which it tips.
         """
@@ -141,7 +141,7 @@ class SlideSwitches(SlideMotion):
 
     @inlined
     def tips_over(self, along: float, loads: Loads) -> int:
-        """Give the corner over which a force of the ground on the whole base tips the block."""
+        """Return the corner over which a force of the ground on the whole base tips the block."""
         tips = self.height * along - loads.turning
         if self.right * loads.weight + tips < 0.0:
             return ON_RIGHT
@@ -149,7 +149,7 @@ class SlideSwitches(SlideMotion):
 
     @kernel
     def leaning(self, bears: int, state: Vector, loads: Loads, lets_go: bool) -> int:
-        """Give bearing and slip that follow for a block on one corner: held, slipping, flight."""
+        """Return bearing and slip that follow for a block on one corner: held, slipping, flight."""
         slip, corner = state[SIZE + SLIP], SLIPS * bears
         flies = corner + SLIPS * (FLIES_RIGHT - ON_RIGHT)
         held = self.contact(corner + HELD, state, loads)
@@ -178,7 +178,7 @@ class SlideSwitches(SlideMotion):
     def strike(
         self, beside: float, above: float, lever: float, slip: float, sinking: float
     ) -> tuple[float, float]:
-        """Give the impulses along and normal to the ground that stop a corner.
+        """Return the impulses along and normal to the ground that stop a corner.
 
         The normal one acts at a distance of `lever` times `beside` from the centre of mass.
         """

@@ -18,7 +18,7 @@ from rockframe.many import atan2, hypot, sqrt
 
 
 def ill_posed_friction(inertia: float, square: float) -> float:
-    """Give the least coefficient at which a slipping corner may jam, :eq:`eq-slide-painleve`.
+    """Return the least coefficient at which a slipping corner may jam, :eq:`eq-slide-painleve`.
 
     `inertia` is that about the centre of mass over the mass [m^2]; `square` is the square of the
     distance between the centre of mass and the corner [m^2].
@@ -28,7 +28,7 @@ def ill_posed_friction(inertia: float, square: float) -> float:
 
 
 def impulse_lever(*, restitution: float, own: float, width: float, about_foot: float) -> float:
-    """Give the lever of the impulse as a block rocks onto its other corner, :eq:`eq-slide-lever`.
+    """Return the lever of the impulse as a block rocks onto its other corner, :eq:`eq-slide-lever`.
 
     It is over the distance `own` of the striking corner from the foot of the centre of mass [m];
     `about_foot` is the inertia about that foot over the mass [m^2].

@@ -23,7 +23,7 @@ DISTURBED: Final = 1e3
 
 @inlined
 def speed_noise(speed: float, lever: float, angular_velocity: float) -> float:
-    """Give the rounding noise of an end's speed, the sum of two velocities."""
+    """Return the rounding noise of an end's speed, the sum of two velocities."""
     return NOISE * (abs(speed) + abs(lever * angular_velocity))
 
 
@@ -38,7 +38,7 @@ def is_lifted(before: float, after: float, noise: float) -> bool:
 
 @inlined
 def share_until_lifted(before: float, after: float) -> float:
-    """Give the share of the hold's impulse that stops a landing end, :eq:`eq-partial-hold`.
+    """Return the share of the hold's impulse that stops a landing end, :eq:`eq-partial-hold`.
 
     `before` and `after` are the end's speeds without the impulse and with all of it.
     """
@@ -49,11 +49,11 @@ def share_until_lifted(before: float, after: float) -> float:
 
 @inlined
 def blend(before: float, after: float, share: float) -> float:
-    """Give a rate after a share of an impulse, from the rates without and with all of it."""
+    """Return a rate after a share of an impulse, from the rates without and with all of it."""
     return before + share * (after - before)
 
 
 @inlined
 def share_of_loss(share: float) -> float:
-    """Give the energy loss of a share of a plastic impulse, over that of the whole one [1]."""
+    """Return the energy loss of a share of a plastic impulse, over that of the whole one [1]."""
     return share * (2.0 - share)

@@ -61,17 +61,17 @@ class Springs(Base, SpringNumbers):
 
     @kernel
     def contacts(self) -> int:
-        """Give the number of contacts."""
+        """Return the number of contacts."""
         return CONTACTS
 
     @kernel
     def end_guards(self) -> int:
-        """Give the number of guards of the springs on one side."""
+        """Return the number of guards of the springs on one side."""
         return len(self.idle)
 
     @inlined
     def in_flight(self) -> int:
-        """Give the contact with all springs clear."""
+        """Return the contact with all springs clear."""
         return FLIGHT
 
     @inlined
@@ -81,7 +81,7 @@ class Springs(Base, SpringNumbers):
 
     @inlined
     def variables(self) -> int:
-        """Give the number of variables: the springs' contacts, then those of their laws."""
+        """Return the number of variables: the springs' contacts, then those of their laws."""
         return len(self.steady)
 
     @inlined
@@ -91,18 +91,18 @@ class Springs(Base, SpringNumbers):
 
     @inlined
     def of_law(self, own: Vector, i: int) -> Any:
-        """Give the variables of the law of one spring."""
+        """Return the variables of the law of one spring."""
         count = len(self.places)
         return self.law.of_point(stretch(own, count, len(self.steady) - count), i)
 
     @inlined
     def point(self, i: int, line: BaseLine) -> Point:
-        """Give compression and motion of the base at one spring."""
+        """Return compression and motion of the base at one spring."""
         return point_at(line, self.places[i], self.settlement)
 
     @kernel
     def contact_of(self, own: Vector) -> int:
-        """Give the contact of the bed from the contacts of its springs."""
+        """Return the contact of the bed from the contacts of its springs."""
         last = len(self.places) - 1
         contact = 1 if int(own[0]) % SPRING == CLEAR else 0
         contact += RIGHT_RAISED if int(own[last]) % SPRING == CLEAR else 0
@@ -114,7 +114,7 @@ class Springs(Base, SpringNumbers):
 
     @inlined
     def force(self, contact: int, line: BaseLine, own: Vector) -> BaseForce:
-        """Give the forces of all springs together."""
+        """Return the forces of all springs together."""
         upward = moment = dissipated = 0.0
         if contact == FLIGHT:
             return BaseForce(0.0, 0.0, 0.0)
@@ -133,7 +133,7 @@ class Springs(Base, SpringNumbers):
 
     @inlined
     def flow(self, contact: int, line: BaseLine, own: Vector) -> Variables:
-        """Give the rates of the laws' variables; contacts change at events only."""
+        """Return the rates of the laws' variables; contacts change at events only."""
         rates = self.steady
         each = self.law.variables()
         for i in range(len(self.places)):
@@ -144,7 +144,7 @@ class Springs(Base, SpringNumbers):
 
     @kernel
     def energy(self, line: BaseLine, own: Vector) -> tuple[float, float]:
-        """Give the energy of all springs, and the energy less that at rest."""
+        """Return the energy of all springs, and the energy less that at rest."""
         stored = change = 0.0
         for i in range(len(self.places)):
             point, mine = self.point(i, line), self.of_law(own, i)
@@ -157,12 +157,12 @@ class Springs(Base, SpringNumbers):
 
     @inlined
     def spring_of(self, left: bool, which: int) -> int:
-        """Give the number of the spring of a guard; guards of an end count from the outside."""
+        """Return the number of the spring of a guard; guards of an end count from the outside."""
         return which // GUARDS if left else len(self.places) - 1 - which // GUARDS
 
     @inlined
     def guards_of(self, contact: int, left: bool, line: BaseLine, own: Vector) -> Guards:
-        """Give the guards of the springs on one side, and their rates."""
+        """Return the guards of the springs on one side, and their rates."""
         values, changes, count = self.idle, constant(0.0, self.idle), len(self.places)
         per_rest, per_force = 1.0 / self.settlement, 1.0 / self.pressure
         for k in range(len(self.idle) // GUARDS if left else count // 2):
@@ -210,7 +210,7 @@ class Springs(Base, SpringNumbers):
 
     @kernel
     def after(self, was: int, guard: int, point: Point, own: Any) -> float:
-        """Give the variable of a spring after one of its guards has fallen."""
+        """Return the variable of a spring after one of its guards has fallen."""
         spring, state = was % SPRING, was // SPRING
         if spring == TOUCHING and guard == OTHER:
             return float(TOUCHING + SPRING * ((state + 1) % self.law.states()))
@@ -221,20 +221,20 @@ class Springs(Base, SpringNumbers):
 
     @kernel
     def level(self, left: bool, line: BaseLine, own: Vector) -> float:
-        """Give how far below its unloaded level the outermost spring on a side is [m]."""
+        """Return how far below its unloaded level the outermost spring on a side is [m]."""
         i = 0 if left else len(self.places) - 1
         return self.point(i, line).pressed - self.law.sunk(self.of_law(own, i))
 
     @kernel
     def released(self, contact: int, left: bool, line: BaseLine, own: Vector) -> int:
-        """Give the contact with all springs clear."""
+        """Return the contact with all springs clear."""
         for i in range(len(self.places)):
             own[i] = float(CLEAR)
         return FLIGHT
 
     @kernel
     def starting(self, line: BaseLine, own: Vector) -> int:
-        """Give the contact at the start of a run; springs pressed too much have yielded."""
+        """Return the contact at the start of a run; springs pressed too much have yielded."""
         count = len(self.places)
         self.law.reset(stretch(own, count, len(self.steady) - count))
         for i in range(count):
@@ -248,12 +248,12 @@ class Springs(Base, SpringNumbers):
         return self.contact_of(own)
 
     def resting_height(self, left: float, right: float, own: Any) -> float:
-        """Give the height at which the springs carry the weight [m], found numerically."""
+        """Return the height at which the springs carry the weight [m], found numerically."""
         return height_under(self, self.weight, 2.0 * self.settlement, (left, right), own)
 
     @kernel
     def observed(self, contact: int, line: BaseLine, own: Vector) -> Variables:
-        """Give reaction, length in contact, greatest pressure, columns of the outermost springs."""
+        """Return reaction, length in contact, greatest pressure, columns of outermost springs."""
         length = greatest = 0.0
         last = len(self.places) - 1
         for i in range(last + 1):
@@ -266,6 +266,6 @@ class Springs(Base, SpringNumbers):
 
     @kernel
     def seen(self, i: int, line: BaseLine, own: Vector) -> Variables:
-        """Give the columns of the law of one spring."""
+        """Return the columns of the law of one spring."""
         state = int(own[i]) // SPRING if int(own[i]) % SPRING == TOUCHING else FREE
         return self.law.seen(state, self.point(i, line), self.of_law(own, i))

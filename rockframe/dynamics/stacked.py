@@ -70,27 +70,27 @@ class Stacked(InState):
 
     @inlined
     def bodies(self) -> int:
-        """Give the number of bodies."""
+        """Return the number of bodies."""
         return 2
 
     @kernel
     def variables(self) -> int:
-        """Give the number of variables of first order: those of both bases."""
+        """Return the number of variables of first order: those of both bases."""
         return self.upper.base.variables() + self.lower.base.variables()
 
     @kernel
     def guards(self) -> int:
-        """Give the number of guards: of the upper body, then of the lower one."""
+        """Return the number of guards: of the upper body, then of the lower one."""
         return self.upper.guards() + self.lower.guards()
 
     @kernel
     def modes(self) -> int:
-        """Give the number of modes."""
+        """Return the number of modes."""
         return self.upper.modes() * self.lower.modes()
 
     @inlined
     def contact_state_of(self, mode: int, k: int) -> int:
-        """Give the contact state of a body."""
+        """Return the contact state of a body."""
         modes = self.modes_in(mode)
         if k == UPPER:
             return self.upper.shown_contact(modes.upper)
@@ -98,7 +98,7 @@ class Stacked(InState):
 
     @inlined
     def relaxation_in(self, mode: int) -> float:
-        """Give the rate at which a sliding end follows its base, of the faster base [s^-1]."""
+        """Return the rate at which a sliding end follows its base, of the faster base [s^-1]."""
         modes = self.modes_in(mode)
         return max(self.upper.relaxation_in(modes.upper), self.lower.relaxation_in(modes.lower))
 
@@ -115,7 +115,7 @@ class Stacked(InState):
 
     @inlined
     def own_place(self, k: int) -> int:
-        """Give the index in the state of a base's own variables."""
+        """Return the index in the state of a base's own variables."""
         return 2 * COORDINATES + (0 if k == UPPER else self.upper.base.variables())
 
     @inlined
@@ -130,13 +130,13 @@ class Stacked(InState):
 
     @kernel
     def part_mode(self, mode: int, k: int) -> Mode:
-        """Give contact, held point and sliding of a body in a mode."""
+        """Return contact, held point and sliding of a body in a mode."""
         modes = self.modes_in(mode)
         return modes.upper if k == UPPER else modes.lower
 
     @kernel
     def with_part(self, mode: int, k: int, part: Mode) -> int:
-        """Give the mode of both bodies with another mode of one."""
+        """Return the mode of both bodies with another mode of one."""
         count = self.upper.modes()
         if k == UPPER:
             return mode - mode % count + self.upper.number_of(part)
@@ -144,7 +144,7 @@ class Stacked(InState):
 
     @kernel
     def velocities(self, state: Vector) -> tuple[float, ...]:
-        """Give all velocities."""
+        """Return all velocities."""
         n = COORDINATES
         return state[n], state[n + 1], state[n + 2], state[n + 3], state[n + 4], state[n + 5]
 
@@ -156,7 +156,7 @@ class Stacked(InState):
 
     @inlined
     def without_sliding(self, mode: int) -> int:
-        """Give a mode without the sliding of either body."""
+        """Return a mode without the sliding of either body."""
         count = self.upper.modes()
         return (mode % count & ~SLIDES) + count * (mode // count & ~SLIDES)
 
@@ -164,7 +164,7 @@ class Stacked(InState):
     def guards_of_both(
         self, modes: Modes, state: Vector, slope: Slope, upper: SlidingGuards, lower: SlidingGuards
     ) -> Guards:
-        """Give the guards of both bodies, with those of ends that slide, and their rates."""
+        """Return the guards of both bodies, with those of ends that slide, and their rates."""
         states = self.states_in(state)
         above = self.upper.guards_with(
             modes.upper,
@@ -182,7 +182,7 @@ class Stacked(InState):
 
     @kernel
     def bases_observed(self, mode: int, state: Vector) -> tuple[float, ...]:
-        """Give the columns of both bases."""
+        """Return the columns of both bases."""
         modes, states = self.modes_in(mode), self.states_in(state)
         return self.upper.observed_base(
             modes.upper, states.upper, self.upper.body.attitude(states.upper.rotation),

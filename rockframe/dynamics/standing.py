@@ -59,18 +59,18 @@ class StandingBody(NamedTuple):
         return 2.0 * self.settlement / (self.part.body.left + self.part.body.right)
 
     def corner_lever(self, stand: "Stand") -> float:
-        """Give the derivative of the height of its bearing corner by the rotation [m]."""
+        """Return the derivative of the height of its bearing corner by the rotation [m]."""
         return stand.line.right_lever if self.corner > 0 else stand.line.left_lever
 
     def way(self, attitude: Attitude, pivot: int) -> tuple[Reach, float]:
-        """Give derivatives of the centre of mass's place along the deck beneath, and this place."""
+        """Return the place of the centre of mass along the deck beneath, and its derivatives."""
         body = self.part.body
         pin = body.pin(pivot)
         across = self.beside + pin + (body.height * attitude.sine - pin * attitude.cosine)
         return body.reach(pin, attitude), across
 
     def with_share(self, share: float) -> "StandingBody":
-        """Give the body with a share of its eccentricity."""
+        """Return the body with a share of its eccentricity."""
         body = self.part.body
         if self.beside == 0.0 and body.left == body.right:
             return self
@@ -96,7 +96,7 @@ class Stand(NamedTuple):
 def standing_body(
     part: OnBase, mass: float = 1.0, top: float = 0.0, beside: float = 0.0, own: Any = None
 ) -> StandingBody:
-    """Give a body on its base; `own` are the base's variables, by default those before any run."""
+    """Return a body on its base; `own`: the base's variables, by default those before any run."""
     body, base = part
     if own is None:
         own = base.read(np.zeros(base.variables()), 0)
@@ -105,7 +105,7 @@ def standing_body(
 
 
 def settled(standing: StandingBody, rotation: float, press: float) -> Stand:
-    """Give the equilibrium of a body at a rotation on its base, which carries a force `press`.
+    """Return the equilibrium of a body at a rotation on its base, which carries a force `press`.
 
     The force of a base falls with the height of the body on it. The height at which the base
     carries the weight is a first guess, which a secant between bounds refines.
@@ -143,7 +143,7 @@ def settled(standing: StandingBody, rotation: float, press: float) -> Stand:
 
 
 def lifted(standing: StandingBody, rotation: float, height: float) -> Stand:
-    """Give a body at a rotation and a height, at which links may have lifted it off its base."""
+    """Return a body at a rotation and a height, at which links may have lifted it off its base."""
     body, base = standing.part
     own = standing.own if isinstance(standing.own, tuple) else np.array(standing.own)
     state, attitude = BodyState(rotation, height, 0.0, 0.0, 0.0, 0.0), body.attitude(rotation)
@@ -154,7 +154,7 @@ def lifted(standing: StandingBody, rotation: float, height: float) -> Stand:
 
 
 def on_corner(standing: StandingBody, rotation: float, press: float) -> Stand:
-    """Give a body at a rotation on a corner of a rigid base, which carries a force."""
+    """Return a body at a rotation on a corner of a rigid base, which carries a force."""
     body, right = standing.part.body, standing.corner > 0
     attitude = body.attitude(rotation)
     level = attitude.rise + (-body.right if right else body.left) * attitude.sine
@@ -167,7 +167,7 @@ def on_corner(standing: StandingBody, rotation: float, press: float) -> Stand:
 
 
 def uplift_rotation(standing: StandingBody, press: float) -> float:
-    """Give the least rotation to the right at which a base is no longer in full contact [rad].
+    """Return the least rotation to the right at which a base is no longer in full contact [rad].
 
     NaN if contact is full up to a right angle.
     """
@@ -208,7 +208,7 @@ def uplift_rotation(standing: StandingBody, press: float) -> float:
 def of_base(
     standing: StandingBody, stand: Stand, name: str, *, from_rest: bool = False
 ) -> tuple[float, float]:
-    """Give minus the derivatives of a base's moment and force by a coordinate or rate of its body.
+    """Return minus the derivatives of a base's moment and force by a coordinate or rate.
 
     The size of rates is that of a vibration with the settlement as its amplitude. The base's own
     variables keep their values, or are those of a load that has grown `from_rest`.

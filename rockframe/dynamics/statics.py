@@ -54,14 +54,14 @@ class StandingChain(NamedTuple):
         return level and all(one.beside == 0.0 for one in self.bodies)
 
     def with_share(self, share: float) -> "StandingChain":
-        """Give the chain with a share of its slope and of the eccentricity of its bodies."""
+        """Return the chain with a share of its slope and of the eccentricity of its bodies."""
         if share == 1.0:
             return self
         bodies = tuple(one.with_share(share) for one in self.bodies)
         return StandingChain(bodies, share * self.along_gravity, self.ties, share * self.pull)
 
     def frames(self, rotations: Sequence[float]) -> list[tuple[float, float]]:
-        """Give gravity normal to the deck under each body, and along it."""
+        """Return gravity normal to the deck under each body, and along it."""
         normal, along = self.bodies[0].part.body.gravity, self.along_gravity
         turned, found = 0.0, [(normal, along)]
         for rotation in reversed(rotations[1:]):
@@ -81,7 +81,7 @@ class StandingChain(NamedTuple):
         return np.ravel([(one.allowed_rotation, one.settlement) for one in self.bodies])
 
     def settled(self, rotations: Sequence[float]) -> list[Stand] | None:
-        """Give the bodies at rotations on their bases; None where a base would be in tension."""
+        """Return the bodies at rotations on their bases; None where a base would be in tension."""
         if len(rotations) == 1:
             return self.curve(rotations)[0]
         stands = self._under_weight(rotations)
@@ -97,7 +97,7 @@ class StandingChain(NamedTuple):
         return any(is_broken(one, of.elongation) for one, of in zip(self.ties, tied, strict=False))
 
     def _alone_at(self, rotation: float) -> list[Stand] | None:
-        """Give a single body at a rotation, with links as after slow loading up to there."""
+        """Return a single body at a rotation, with links as after slow loading up to there."""
         stands = self._under_weight([rotation])
         if stands is None or not self.ties:
             return stands
@@ -106,7 +106,7 @@ class StandingChain(NamedTuple):
         return self._at_height(stands[0])
 
     def _at_height(self, stand: Stand) -> list[Stand] | None:
-        """Give a single body at its rotation, its height found by bracketing.
+        """Return a single body at its rotation, its height found by bracketing.
 
         Newton's method fails where links yield or break, as these have no stiffness then.
         """
@@ -135,7 +135,7 @@ class StandingChain(NamedTuple):
         return found if abs(lack) <= LEFT * self.weight else None
 
     def uplift_rotation(self, side: float) -> float:
-        """Give the rotation to a side at which an end of a single body with links lifts off [rad].
+        """Return rotation to a side at which an end of a single body with links lifts off [rad].
 
         NaN if there is none up to a right angle.
         """
@@ -158,7 +158,7 @@ class StandingChain(NamedTuple):
         return cast("float", brentq(lack, 0.0, far))
 
     def _under_weight(self, rotations: Sequence[float]) -> list[Stand] | None:
-        """Give the bodies at rotations on their bases, without their links."""
+        """Return the bodies at rotations on their bases, without their links."""
         mass, found = 0.0, list[Stand]()
         frames = self.frames(rotations)
         for standing, rotation, (normal, _) in zip(self.bodies, rotations, frames, strict=True):
@@ -169,7 +169,7 @@ class StandingChain(NamedTuple):
         return self._with_arms(found)
 
     def _with_arms(self, stands: Sequence[Stand]) -> list[Stand]:
-        """Give the bodies with their heights over the bodies beneath them."""
+        """Return the bodies with their heights over the bodies beneath them."""
         decks = [*(one.top for one in self.bodies[1:]), 0.0]
         return [
             one._replace(arm=deck + standing.part.body.height + one.state.vertical)
@@ -177,7 +177,7 @@ class StandingChain(NamedTuple):
         ]
 
     def stands_at(self, balance: Balance) -> list[Stand]:
-        """Give the bodies on bases that carry the forces of a balance, or lifted off them."""
+        """Return the bodies on bases that carry the forces of a balance, or lifted off them."""
         places = zip(self.bodies, *(each.tolist() for each in balance[:3]), strict=True)
         return self._with_arms([
             settled(one, rotation, press) if press > 0.0 else lifted(one, rotation, height)
@@ -185,7 +185,7 @@ class StandingChain(NamedTuple):
         ])  # fmt: skip
 
     def moved(self, stands: Sequence[Stand], at: int, by: float) -> list[Stand]:
-        """Give the bodies with one coordinate moved, the forces of their bases unchanged."""
+        """Return the bodies with one coordinate moved, the forces of their bases unchanged."""
         k, found = at // 2, [*stands]
         standing, now = self.bodies[k], stands[k]
         state = now.state._replace(**{PLACES[at % 2]: now.state[at % 2] + by})
@@ -198,7 +198,7 @@ class StandingChain(NamedTuple):
         return self._with_arms(found)
 
     def following(self, stands: Sequence[Stand]) -> Matrix:
-        """Give derivatives of coordinates by the free ones: on a corner no height is free."""
+        """Return derivatives of coordinates by the free ones: on a corner no height is free."""
         found = np.eye(2 * len(stands))
         for k, (standing, stand) in enumerate(zip(self.bodies, stands, strict=True)):
             if standing.corner:
@@ -207,7 +207,7 @@ class StandingChain(NamedTuple):
         return found
 
     def loads(self, stands: Sequence[Stand], of_links: Vector) -> Vector:
-        """Give the generalised forces of weights and links on rotation and height of each body.
+        """Return the generalised forces of weights and links on rotation and height of each body.
 
         A body that rests on a corner has none on its height: it follows from the rotation.
         """
@@ -219,7 +219,7 @@ class StandingChain(NamedTuple):
         return found
 
     def _at(self, path: Path | None) -> list[Stand] | None:
-        """Give the bodies at the end of a path; corners of rigid bases carry the rest."""
+        """Return the bodies at the end of a path; corners of rigid bases carry the rest."""
         if path is None:
             return None
         stands = self.stands_at(path.place)
@@ -233,7 +233,7 @@ class StandingChain(NamedTuple):
         return self._with_arms(stands) if bears else None
 
     def reached(self, stands: Sequence[Stand]) -> "list[Reached]":
-        """Give displacements of the points of the links."""
+        """Return displacements of the points of the links."""
         from rockframe.dynamics.tied import reached
 
         return reached(self.bodies, stands, self.ties)
@@ -242,20 +242,20 @@ class StandingChain(NamedTuple):
         self, stands: Sequence[Stand], states: Sequence[int] | None = None,
         stretches: Sequence[float] | None = None,
     ) -> "list[Tied]":  # fmt: skip
-        """Give elongations and forces of the links."""
+        """Return elongations and forces of the links."""
         from rockframe.dynamics.tied import tied
 
         return tied(self.bodies, stands, self.ties, states, stretches)
 
     def tie_loads(self, stands: Sequence[Stand], states: Sequence[int] | None = None) -> Vector:
-        """Give the generalised forces of links on rotation and height of each body."""
+        """Return the generalised forces of links on rotation and height of each body."""
         found = np.zeros(2 * len(stands))
         for one in self.tied(stands, states):
             found += self.pull * one.loads
         return found
 
     def moments(self, stands: Sequence[Stand]) -> list[float]:
-        """Give the generalised force on each body's rotation on its base."""
+        """Return the generalised force on each body's rotation on its base."""
         weights = self.weights(stands)
         found = [stand.force.moment + of[0] for stand, of in zip(stands, weights, strict=True)]
         if self.ties:
@@ -264,7 +264,7 @@ class StandingChain(NamedTuple):
         return found
 
     def weights(self, stands: Sequence[Stand]) -> list[tuple[float, float]]:
-        """Give the generalised forces of all weights on rotation and height of each body."""
+        """Return the generalised forces of all weights on rotation and height of each body."""
         found = list[tuple[float, float]]()
         mass = side = height = 0.0  # of what stands on a body, and its moments about the centre
         frames = self.frames([stand.state.rotation for stand in stands])
@@ -281,7 +281,7 @@ class StandingChain(NamedTuple):
         return found
 
     def rise(self, stands: Sequence[Stand]) -> float:
-        """Give the rise of the highest centre of mass from upright rest [m]."""
+        """Return the rise of the highest centre of mass from upright rest [m]."""
         found = turned = top = 0.0
         for standing, stand in zip(self.bodies[::-1], stands[::-1], strict=True):
             sine, cosine = sine_cosine(turned)
@@ -293,7 +293,7 @@ class StandingChain(NamedTuple):
         return found
 
     def rest(self) -> list[Stand] | None:
-        """Give the bodies at rest under their weight, :eq:`eq-tilted-rest`; None if they fall.
+        """Return the bodies at rest under their weight, :eq:`eq-tilted-rest`; None if they fall.
 
         Eccentricity and slope grow from zero, and the equilibrium is followed from upright: a chain
         that leans has a second equilibrium, farther out, which is unstable.
@@ -304,7 +304,7 @@ class StandingChain(NamedTuple):
         return self._at(self._loaded(upright, []))
 
     def curve(self, rotations: Sequence[float]) -> list[list[Stand] | None]:
-        """Give the bodies while a couple holds the highest one at each of some rotations.
+        """Return the bodies while a couple holds the highest one at each of some rotations.
 
         Equilibrium is followed from upright to either side; None from where it ends.
         """
@@ -323,13 +323,13 @@ class StandingChain(NamedTuple):
         return found
 
     def _upright_path(self) -> Path | None:
-        """Give the start of the curve: equilibrium under all loads, the highest body upright."""
+        """Return the start of the curve: equilibrium under all loads, the highest body upright."""
         upright = self._under_weight([0.0] * len(self.bodies))
         loaded = None if upright is None else self._loaded(upright, [len(self.bodies) * [1.0]])
         return None if loaded is None else Path(0.0, loaded.place)
 
     def held(self, path: Path, rotation: float) -> tuple[Path | None, list[Stand] | None]:
-        """Give path and bodies at a rotation of the highest one, followed from a path so far."""
+        """Return path and bodies at a rotation of the highest one, followed from a path so far."""
         highest, size = np.ones((1, len(self.bodies))), float(self.sizes[::2].min())
         further = followed(
             lambda at: HeldBodies(self, highest, np.array([at])), path, rotation, size

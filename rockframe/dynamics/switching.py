@@ -51,7 +51,7 @@ def has_same_hold(part: OnBase, one: Mode, other: Mode) -> bool:
 
 @kernel
 def end_speed(part: OnBase, left: bool, state: BodyState) -> tuple[float, float]:
-    """Give the speed of an end of the base, and its rounding noise."""
+    """Return the speed of an end of the base, and its rounding noise."""
     line = part.body.base_line_at(state)
     lever = line.left_lever if left else line.right_lever
     noise = speed_noise(state.vertical_velocity, lever, state.angular_velocity)
@@ -70,7 +70,7 @@ def set_end_speed(
 
 @kernel
 def following_speed(system: Bodies, part: OnBase, k: int, left: bool, state: Vector) -> float:
-    """Give the upward speed of an end that moves with its base without a force [m s^-1]."""
+    """Return the upward speed of an end that moves with its base without a force [m s^-1]."""
     line = part.body.base_line_at(system.state_of(k, state))
     return part.base.following_speed(left, line, part.base.read(state, system.own_place(k)))
 
@@ -103,7 +103,7 @@ def repin(
 
 @kernel
 def lift_by_slip(system: Bodies, part: OnBase, k: int, mode: int, state: Vector) -> float:
-    """Give the upward speed of a sliding end by a hold's impulse that adds a slip of 1 [1]."""
+    """Return the upward speed of a sliding end by a hold's impulse that adds a slip of 1 [1]."""
     was = system.part_mode(mode, k)
     held = system.with_part(mode, k, Mode(was.contact, was.pivot, False))
     line = part.body.base_line_at(system.state_of(k, state))
@@ -219,7 +219,7 @@ def after_separation(
     system: Bodies, part: OnBase, k: int, left: bool, mode: int, new: int, state: Vector,
     ground: Ground, memory: Vector,
 ) -> int:  # fmt: skip
-    """Give the mode after an end has lifted off, with its new held point.
+    """Return the mode after an end has lifted off, with its new held point.
 
     An end that its base would press again in flight slides, :eq:`eq-leaving-into-flight`. If the
     impulse of the new held point leaves it pressed, it lifts off once its base has lost its force.
@@ -306,7 +306,7 @@ def switch_end(
 def next_pivot(
     system: Bodies, part: OnBase, k: int, mode: int, state: Vector, ground: Ground
 ) -> int:
-    """Give the next leading corner, to which the body leans or, from upright rest, will lean."""
+    """Return the next leading corner, to which the body leans or, from upright rest, will lean."""
     was = system.part_mode(mode, k)
     if was.pivot != PIVOT_CENTRE:
         return PIVOT_LEFT if was.pivot == PIVOT_RIGHT else PIVOT_RIGHT
@@ -362,7 +362,7 @@ def end_sliding(
 
 @kernel
 def fly(system: Bodies, part: OnBase, k: int, mode: int, state: Vector) -> int:
-    """Give the mode after a sliding end has lifted off."""
+    """Return the mode after a sliding end has lifted off."""
     was = system.part_mode(mode, k)
     left = part.base.is_held(was.contact, True)
     line = part.body.base_line_at(system.state_of(k, state))
@@ -374,7 +374,7 @@ def fly(system: Bodies, part: OnBase, k: int, mode: int, state: Vector) -> int:
 
 @kernel
 def checked_sliding(system: Bodies, part: OnBase, k: int, mode: int, state: Vector) -> int:
-    """Give the mode after an event that may have changed the speed of a sliding end.
+    """Return the mode after an event that may have changed the speed of a sliding end.
 
     If it differs from that of its base the end flies; it lands again at once if it moves down.
     """
@@ -392,7 +392,7 @@ def checked_sliding(system: Bodies, part: OnBase, k: int, mode: int, state: Vect
 
 @kernel
 def disturbed(system: Bodies, part: OnBase, k: int, mode: int, state: Vector) -> int:
-    """Give the mode after an event of another body has changed the speeds of this one."""
+    """Return the mode after an event of another body has changed the speeds of this one."""
     was = system.part_mode(mode, k)
     if was.slides:
         return checked_sliding(system, part, k, mode, state)

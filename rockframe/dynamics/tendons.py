@@ -61,83 +61,83 @@ class TiedFrame(FrameNumbers, OnRigidGround):
 
     @kernel
     def coordinates(self) -> int:
-        """Give 1, the rotation."""
+        """Return 1, the rotation."""
         return 1
 
     @kernel
     def variables(self) -> int:
-        """Give the number of variables of all tendons."""
+        """Return the number of variables of all tendons."""
         return self.link_count * self.law.variables()
 
     @kernel
     def guards(self) -> int:
-        """Give the number of guards, of the columns and then of each tendon in turn."""
+        """Return the number of guards, of the columns and then of each tendon in turn."""
         return bare.GUARDS + GUARDS * self.link_count
 
     @kernel
     def modes(self) -> int:
-        """Give the number of modes."""
+        """Return the number of modes."""
         return bare.MODES * int(self.law.states() ** self.link_count)
 
     @inlined
     def moving_in(self, mode: int) -> int:
-        """Give 1 while the columns rock, 0 at rest."""
+        """Return 1 while the columns rock, 0 at rest."""
         return self.rocking.moving_in(mode % bare.MODES)
 
     @inlined
     def contact_state_of(self, mode: int, k: int) -> int:
-        """Give the contact state: which corner bears, or both."""
+        """Return the contact state: which corner bears, or both."""
         return self.rocking.contact_state_of(mode % bare.MODES, k)
 
     @inlined
     def row_of_link(self, i: int) -> Vector:
-        """Give the row of a tendon."""
+        """Return the row of a tendon."""
         width = NUMBERS + self.law.number_count()
         return stretch(self.rows, i * width, width)
 
     @inlined
     def room(self, first: int, count: int) -> Vector:
-        """Give a part of the workspace behind the rows."""
+        """Return a part of the workspace behind the rows."""
         return stretch(
             self.rows, self.link_count * (NUMBERS + self.law.number_count()) + first, count
         )
 
     @inlined
     def slopes(self) -> Vector:
-        """Give the room for accelerations, rates of variables, and powers."""
+        """Return the room for accelerations, rates of variables, and powers."""
         return self.room(0, 1 + self.variables() + POWERS)
 
     @inlined
     def guard_room(self, which: int) -> Vector:
-        """Give the room for guards (0) or their rates (1)."""
+        """Return the room for guards (0) or their rates (1)."""
         first = 1 + self.variables() + POWERS + which * self.guards()
         return self.room(first, self.guards())
 
     @inlined
     def column_room(self) -> Vector:
-        """Give the room for columns."""
+        """Return the room for columns."""
         first = 1 + self.variables() + POWERS + 2 * self.guards()
         return self.room(first, OWN_COLUMNS + EACH_COLUMNS * self.link_count)
 
     @inlined
     def link_state(self, mode: int, row: Vector) -> int:
-        """Give the state of a tendon, by its row."""
+        """Return the state of a tendon, by its row."""
         return mode // int(row[PLACE_VALUE]) % self.law.states()
 
     @inlined
     def of_link(self, i: int, state: Vector) -> Vector:
-        """Give the variables of a tendon."""
+        """Return the variables of a tendon."""
         each = self.law.variables()
         return stretch(state, 2 + i * each, each)
 
     @inlined
     def lever(self, rotation: float) -> float:
-        """Give the derivative of the elongation by the rotation, 2 b cos(a/2), without sign [m]."""
+        """Return derivative of the elongation by the rotation, 2 b cos(a/2), without sign [m]."""
         return 2.0 * self.half_width * sine_cosine(0.5 * rotation)[1]
 
     @inlined
     def stretched(self, mode: int, state: Vector, turning: float) -> Stretch:
-        """Give the elongation 4 b sin(|a|/2) of the tendons, and its rates."""
+        """Return the elongation 4 b sin(|a|/2) of the tendons, and its rates."""
         side, rate = self.rocking.side(mode % bare.MODES), state[1]
         half = sine_cosine(0.5 * state[0])[0]
         length, lever = 4.0 * self.half_width, self.lever(state[0])
@@ -149,7 +149,7 @@ class TiedFrame(FrameNumbers, OnRigidGround):
 
     @kernel
     def pull(self, mode: int, state: Vector) -> float:
-        """Give the force of all tendons of all columns together."""
+        """Return the force of all tendons of all columns together."""
         link, force = self.stretched(mode, state, 0.0), 0.0
         for i in range(self.link_count):
             row = self.row_of_link(i)
@@ -159,7 +159,7 @@ class TiedFrame(FrameNumbers, OnRigidGround):
 
     @kernel
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> Vector:
-        """Give the acceleration, rates of variables, dashpot power and input power."""
+        """Return the acceleration, rates of variables, dashpot power and input power."""
         out, rocks = self.slopes(), mode % bare.MODES
         found = self.rocking.accelerate(rocks, state, ground)
         for i in range(len(out)):
@@ -182,7 +182,7 @@ class TiedFrame(FrameNumbers, OnRigidGround):
 
     @kernel
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
-        """Give the two powers of :meth:`accelerate`."""
+        """Return the two powers of :meth:`accelerate`."""
         rocks = mode % bare.MODES
         if rocks == bare.RESTING:
             return 0.0, 0.0
@@ -195,7 +195,7 @@ class TiedFrame(FrameNumbers, OnRigidGround):
 
     @kernel
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
-        """Give the guards of impact and uplift, then those of each tendon."""
+        """Return the guards of impact and uplift, then those of each tendon."""
         values, changes, rocks = self.guard_room(0), self.guard_room(1), mode % bare.MODES
         found = self.rocking.guards_in(rocks, state, slope, ground)
         put(found.values, 0, values)
@@ -238,7 +238,7 @@ class TiedFrame(FrameNumbers, OnRigidGround):
 
     @kernel
     def energies(self, mode: int, state: Vector) -> Energies:
-        """Give the energies of columns, beam and tendons."""
+        """Return the energies of columns, beam and tendons."""
         found = self.rocking.energies(mode % bare.MODES, state)
         link, stored, at_rest = self.stretched(mode, state, 0.0), 0.0, 0.0
         for i in range(self.link_count):
@@ -253,7 +253,7 @@ class TiedFrame(FrameNumbers, OnRigidGround):
     def observe(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> Vector:
-        """Give the columns without tendons, then force, elongation and state of each tendon."""
+        """Return the columns without tendons, then force, elongation and state of each tendon."""
         out, rocks = self.column_room(), mode % bare.MODES
         put(self.rocking.observe(rocks, state, slope, ground, memory), 0, out)
         # the tendons pull the ground up, and the columns press it down by as much
@@ -292,7 +292,7 @@ class TiedFrame(FrameNumbers, OnRigidGround):
 def tied_frame(
     model: ContactModel, links: Sequence[LinkNumbers], *, half_width: float, columns: int
 ) -> ContactModel:
-    """Give the model of a frame with tendons from the model without them."""
+    """Return the model of a frame with tendons from the model without them."""
     rows, value = list[Vector](), bare.MODES
     for one in links:
         rows.append(np.array([0.0, value, *numbers_in(one.law)]))

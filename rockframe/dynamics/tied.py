@@ -77,7 +77,7 @@ class Reached(NamedTuple):
 def reached(
     bodies: "Sequence[StandingBody]", stands: "Sequence[Stand]", ties: Sequence[ChainLink]
 ) -> list[Reached]:
-    """Give the relative displacements of the points of links, for given places of bodies."""
+    """Return the relative displacements of the points of links, for given places of bodies."""
     frames, found = _frames(bodies, stands) if ties else [], list[Reached]()
     for one in ties:
         on, on_way = _point(one.on, one.on_point, stands, frames)
@@ -93,7 +93,7 @@ def tied(
     states: Sequence[int] | None = None,
     stretches: Sequence[float] | None = None,
 ) -> list[Tied]:
-    """Give elongations and forces of links, for given places of bodies.
+    """Return elongations and forces of links, for given places of bodies.
 
     With `stretches` the forces are those of these elongations instead.
     """
@@ -106,7 +106,7 @@ def tied(
 def pulled(
     tie: ChainLink, point: Reached, state: int | None = None, stretch: float | None = None
 ) -> Tied:
-    """Give elongation and force of a link; `stretch` is an elongation for the force alone."""
+    """Return elongation and force of a link; `stretch` is an elongation for the force alone."""
     moved, way, direction = point
     apart, along, meets = np.array(tie.apart), any(tie.along), False
     if along:
@@ -121,7 +121,7 @@ def pulled(
 
 
 def force_at(tie: ChainLink, elongation: float) -> float:
-    """Give the force of a link after slow loading to an elongation."""
+    """Return the force of a link after slow loading to an elongation."""
     return _answer(tie, elongation, None)[0]
 
 
@@ -134,7 +134,7 @@ def is_broken(tie: ChainLink, elongation: float) -> bool:
 def _answer(
     tie: ChainLink, elongation: float, state: int | None
 ) -> tuple[float, int, float, float]:
-    """Give a link's force, its state, and the force's derivatives by elongation and rate."""
+    """Return a link's force, its state, and the force's derivatives by elongation and rate."""
     law: Any = tie.numbers.law
     length = math.hypot(*tie.apart)
     reach = length + math.hypot(*tie.on_point) + math.hypot(*tie.to_point)
@@ -154,7 +154,7 @@ def _answer(
 
 
 def _reached(tie: ChainLink, moved: Vector, way: Matrix) -> Reached:
-    """Give relative displacement, its derivatives and the direction of a link."""
+    """Return relative displacement, its derivatives and the direction of a link."""
     if any(tie.along):
         return Reached(moved, way, np.array(tie.along))
     now = np.array(tie.apart) + moved
@@ -163,7 +163,7 @@ def _reached(tie: ChainLink, moved: Vector, way: Matrix) -> Reached:
 
 
 def at_rest(ties: Sequence[ChainLink]) -> list[Tied]:
-    """Give elongations and forces of links in the geometry in which they are given."""
+    """Return elongations and forces of links in the geometry in which they are given."""
     return [pulled(one, _reached(one, np.zeros(2), np.zeros((2, 1)))) for one in ties]
 
 
@@ -171,7 +171,7 @@ def rocked(
     ties: Sequence[ChainLink], ends: Sequence[Ends], upper: int, pivot: tuple[float, float],
     rotation: float,
 ) -> list[Tied]:  # fmt: skip
-    """Give elongations and forces of links as some bodies rotate as one about a fixed point.
+    """Return elongations and forces of links as some bodies rotate as one about a fixed point.
 
     These are the bodies from the top down to `upper`. `ends` are both points of each link, upright.
     """
@@ -190,7 +190,7 @@ def rocked(
 
 
 def _frames(bodies: "Sequence[StandingBody]", stands: "Sequence[Stand]") -> list[_Frame]:
-    """Give displacements of bodies from where they are given, and their axes."""
+    """Return displacements of bodies from where they are given, and their axes."""
     found, place, turned = list[_Frame](), np.zeros(2), 0.0
     sine, cosine = 0.0, 1.0
     for k in range(len(stands) - 1, -1, -1):
@@ -211,7 +211,7 @@ def _frames(bodies: "Sequence[StandingBody]", stands: "Sequence[Stand]") -> list
 def _point(
     k: int, point: tuple[float, float], stands: "Sequence[Stand]", frames: Sequence[_Frame]
 ) -> tuple[Vector, Matrix]:
-    """Give the displacement of a point of a body, and its derivatives by all coordinates."""
+    """Return the displacement of a point of a body, and its derivatives by all coordinates."""
     way = np.zeros((2, 2 * len(stands)))
     if k == GROUND:
         return np.zeros(2), way
@@ -230,7 +230,7 @@ def _point(
 
 
 def _between(k: int, j: int, stands: "Sequence[Stand]", frames: Sequence[_Frame]) -> Vector:
-    """Give the place of the centre of mass of body k from that of body j below it."""
+    """Return the place of the centre of mass of body k from that of body j below it."""
     return sum(
         (stands[i].across * frames[i].along + stands[i].arm * frames[i].normal
          for i in range(k, j)), start=np.zeros(2),

@@ -83,27 +83,27 @@ class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[repo
 
     @inlined
     def places(self) -> Vector:
-        """Give the room for speeds, loads and accelerations of the block."""
+        """Return the room for speeds, loads and accelerations of the block."""
         return stretch(self.rows, 0, PLACES)
 
     @inlined
     def behind_bodies(self) -> int:
-        """Give the index behind the workspace of the block."""
+        """Return the index behind the workspace of the block."""
         return PLACES
 
     @inlined
     def own_guards(self) -> int:
-        """Give the number of guards of the block."""
+        """Return the number of guards of the block."""
         return GUARDS
 
     @inlined
     def own_columns(self) -> int:
-        """Give the number of columns of the block."""
+        """Return the number of columns of the block."""
         return OWN_COLUMNS
 
     @inlined
     def link_place(self) -> int:
-        """Give the index in the memory of the last event's link."""
+        """Return the index in the memory of the last event's link."""
         return LINK_PLACE
 
     @inlined
@@ -135,7 +135,7 @@ class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[repo
 
     @inlined
     def pulled(self, mode: int, state: Vector, ground: Ground) -> tuple[Loads, float]:
-        """Give the loads on the block, :eq:`eq-slide-tied`, and the power that links dissipate."""
+        """Return loads on the block, :eq:`eq-slide-tied`, and the power that links dissipate."""
         if self.all_idle(mode):
             return Loads(ground.x, self.gravity + ground.y, 0.0), 0.0
         room = self.places()
@@ -146,12 +146,12 @@ class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[repo
 
     @kernel
     def loads(self, mode: int, state: Vector, ground: Ground) -> Loads:
-        """Give the loads on the block: weight, inertia, and the forces of links."""
+        """Return the loads on the block: weight, inertia, and the forces of links."""
         return self.pulled(mode, state, ground)[0]
 
     @kernel
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> Vector:
-        """Give accelerations, rates of the links' variables, and powers."""
+        """Return accelerations, rates of the links' variables, and powers."""
         out = self.slopes()
         if self.all_idle(mode):
             for i in range(len(out)):
@@ -167,7 +167,7 @@ class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[repo
 
     @kernel
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
-        """Give the power dissipated, of the slope, and that of the ground at the state's rates."""
+        """Return power dissipated, of the slope, and that of the ground at the state's rates."""
         across, up = self.speeds(mode, state)
         return slope[SIZE + self.variables()], -ground.x * across - ground.y * up
 
@@ -197,7 +197,7 @@ class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[repo
 
     @kernel
     def energies_of_bodies(self, mode: int, state: Vector) -> Energies:
-        """Give the energies of the block."""
+        """Return the energies of the block."""
         return self.energies_alone(mode, state)
 
     @kernel
@@ -254,7 +254,7 @@ def tied_slide_rock(bare: SlideRock, ties: Sequence[ChainLink], *, mass: float) 
 
 
 def fastest_pull(bare: SlideRock, ties: Sequence[ChainLink]) -> tuple[float, float]:
-    """Give bounds of angular frequency and damping rate of a block that links alone hold."""
+    """Return bounds of angular frequency and damping rate of a block that links alone hold."""
     stiffness, damping = np.zeros((3, 3)), np.zeros((3, 3))
     for tie in ties:
         sign = 1.0 if tie.on == 0 else -1.0

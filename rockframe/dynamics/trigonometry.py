@@ -24,7 +24,7 @@ TO_WHOLE: Final = 6755399441055744.0
 
 @inlined
 def sine_cosine(angle: float) -> tuple[float, float]:
-    """Give sine and cosine of an angle [rad].
+    """Return sine and cosine of an angle [rad].
 
     The terms are added in pairs, so that few of them wait for another.
     """
@@ -48,5 +48,5 @@ def sine_cosine(angle: float) -> tuple[float, float]:
 
 @inlined
 def versine(sine: float, cosine: float) -> float:
-    """Give 1 - cos without cancellation, from sine and cosine."""
+    """Return 1 - cos without cancellation, from sine and cosine."""
     return sine * sine / (1.0 + cosine) if cosine > 0.0 else 1.0 - cosine

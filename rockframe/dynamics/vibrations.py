@@ -32,14 +32,14 @@ def is_rigid(base: BaseNumbers) -> bool:
 
 
 def per_own_mass(link: ChainBody) -> Body:
-    """Give the body per unit of its own mass."""
+    """Return the body per unit of its own mass."""
     return link.body._replace(inertia=link.body.inertia / link.mass)
 
 
 def fastest_vibration(
     links: Sequence[ChainBody], ties: Sequence["ChainLink"] = ()
 ) -> tuple[float, float]:
-    """Give upper bounds of angular frequency and damping rate, whichever of the bodies fly [s^-1].
+    """Return upper bounds of angular frequency and damping rate, whichever bodies fly [s^-1].
 
     Neither gravity nor a loss of contact makes a vibration faster.
     """
@@ -58,7 +58,7 @@ def fastest_vibration(
 def _of_ties(
     links: Sequence[ChainBody], ties: Sequence["ChainLink"], first: int
 ) -> tuple[Matrix, Matrix]:
-    """Give bounds of the stiffness and damping of links, whatever their directions.
+    """Return bounds of the stiffness and damping of links, whatever their directions.
 
     Bodies before number `first` do not move.
     """
@@ -77,7 +77,7 @@ def _of_ties(
 
 
 def greatest_share(matrix: Matrix, root: Matrix) -> float:
-    """Give the greatest eigenvalue of a matrix relative to the mass matrix R^T R, R the `root`.
+    """Return the greatest eigenvalue of a matrix relative to the mass matrix R^T R, R the `root`.
 
     With very unlike masses the mass matrix may be singular within rounding; its root is not.
     """
@@ -86,7 +86,7 @@ def greatest_share(matrix: Matrix, root: Matrix) -> float:
 
 
 def small_motion_matrices(links: Sequence[ChainBody]) -> tuple[Matrix, Matrix, Matrix]:
-    """Give root of the masses, stiffness of the bases and damping of small motion, upright.
+    """Return root of the masses, stiffness of the bases and damping of small motion, upright.
 
     In the order of rotation and height of each body relative to what it stands on, from the top
     down.
@@ -104,7 +104,7 @@ def small_motion_matrices(links: Sequence[ChainBody]) -> tuple[Matrix, Matrix, M
 
 
 def small_ways(links: Sequence[ChainBody]) -> tuple[Matrix, Matrix, Matrix]:
-    """Give derivatives of x, y and rotation of each body by all coordinates, upright."""
+    """Return derivatives of x, y and rotation of each body by all coordinates, upright."""
     count = len(links)
     x, y, turn = (np.zeros((count, 2 * count)) for _ in range(3))
     below_x, below_y, below_turn = (np.zeros(2 * count) for _ in range(3))

@@ -270,7 +270,7 @@ def to_openquake(
 def _fits(
     value: object, measures: Mapping[str, Any], *, owner: str
 ) -> tuple[str, list[tuple[str, float, float]]]:
-    """Give the measure of a fragility, and the name, median and dispersion of its limit states."""
+    """Return measure of a fragility, and the name, median and dispersion of its limit states."""
     dataset = checked_dataset(value, owner=owner)
     known = [name for name in measures if name in dataset.dims]
     if "median_intensity" not in dataset or len(known) != 1:
@@ -318,5 +318,5 @@ def _check_word(value: object) -> None:
 
 
 def _state_name(state: str) -> str:
-    """Give the name of a limit state with characters that are not allowed replaced by ``_``."""
+    """Return the name of a limit state with characters that are not allowed replaced by ``_``."""
     return re.sub(r"[^A-Za-z0-9_-]", "_", state)

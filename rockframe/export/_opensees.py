@@ -192,7 +192,7 @@ _KNOWN: Final = (Block, FrameEquivalent, TwoSpringSupport, WinklerSoil, RigidGro
 
 
 def _springs(system: System, count: int) -> SpringsOfBase:
-    """Give the springs that model the base."""
+    """Return the springs that model the base."""
     setting: Any = system.setting
     body = setting.body
     corners = [-body.half_width, body.half_width]
@@ -247,7 +247,7 @@ _HELD: Final = (
 
 
 def _head(system: System, motion: GroundMotion, base: SpringsOfBase, dashpots: Dashpots) -> str:
-    """Give the docstring of the file."""
+    """Return the docstring of the file."""
     elsewhere = base.words is not _GROUND and system.restraint is not Restraint.CENTRE
     rows = [
         f"{_MARK}{__version__}: {system.setting.model} under {motion.name}, in OpenSees.",

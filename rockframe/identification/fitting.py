@@ -57,7 +57,7 @@ class Solution:
         return np.where(self.seen, self.jacobian, 0.0) / self.lengths
 
     def leverages(self) -> Array:
-        """Give how much of each residual the unknowns take up; the sum is their number."""
+        """Return how much of each residual the unknowns take up; the sum is their number."""
         left, singular, _ = np.linalg.svd(self.directions, full_matrices=False)
         return np.sum(left[:, singular > _SINGULAR * singular[0]] ** 2, axis=1)
 
@@ -238,7 +238,7 @@ def _first_weights(measured: MeasuredPeaks) -> Weights:
 def _misfit_of(
     prediction: Prediction, measured: MeasuredPeaks, weights: Weights
 ) -> Callable[[Array], Array]:
-    """Give the weighted residuals of the peaks as a function of the unknowns."""
+    """Return the weighted residuals of the peaks as a function of the unknowns."""
 
     def misfit(values: Array) -> Array:
         times, rotation = prediction.peaks(values, measured)
@@ -269,7 +269,7 @@ def _reweighted(
 
 
 def _freedoms(solution: Solution, measured: MeasuredPeaks) -> tuple[float, float]:
-    """Give the degrees of freedom of rotations and of times, at least 1."""
+    """Return the degrees of freedom of rotations and of times, at least 1."""
     leverages, count = solution.leverages(), measured.rotation.size
     kinds = leverages[:count], leverages[count:]
     rotation, time = (max(1.0, of.size - float(np.sum(of))) for of in kinds)

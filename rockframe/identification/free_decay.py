@@ -195,7 +195,7 @@ def _names(parameters: Sequence[str] | str) -> tuple[str, ...]:
 def _sought(
     values: Sequence[str] | str | None, data: History | MeasuredPeaks
 ) -> tuple[Circumstance, ...]:
-    """Give the circumstances that are to be found; refuse those that the data do not determine."""
+    """Return circumstances that are to be found; refuse those that the data do not determine."""
     circumstances = [Circumstance.INITIAL_ROTATION]
     if isinstance(data, History) or data.time is not None:
         circumstances.append(Circumstance.RELEASE_TIME)

@@ -127,7 +127,7 @@ def check_below_overturning(
 
 
 def _two(value: object) -> tuple[object, object] | None:
-    """Give the two items of a pair of arrays with units, or None of anything else."""
+    """Return the two items of a pair of arrays with units, or None of anything else."""
     if not isinstance(value, tuple | list):
         return None
     items = cast("tuple[object, ...]", value)

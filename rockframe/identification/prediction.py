@@ -37,7 +37,7 @@ class FreeMotion:
     rate: Array  # angular velocity, which jumps between both samples of an event [rad s^-1]
 
     def at(self, time: Array) -> Array:
-        """Give the rotation, constant before the release and after the end of the run [rad]."""
+        """Return the rotation, constant before the release and after the end of the run [rad]."""
         inside = np.clip(time, self.time[0], self.time[-1])
         first = np.searchsorted(self.time, inside, side="right") - 1
         first = np.clip(first, 0, self.time.size - 2)
@@ -47,12 +47,12 @@ class FreeMotion:
         return start + share * (slope + share * (square + share * cube))
 
     def crossing(self) -> float:
-        """Give the time of the first passage through zero, or of the end without one [s]."""
+        """Return the time of the first passage through zero, or of the end without one [s]."""
         beyond = np.flatnonzero(self.rotation * self.rotation[0] <= 0.0)
         return float(self.time[beyond[0] if beyond.size else -1])
 
     def peaks(self) -> tuple[Array, Array]:
-        """Give times [s] and magnitudes [rad] of the peaks between passages through zero."""
+        """Return times [s] and magnitudes [rad] of the peaks between passages through zero."""
         side = np.sign(self.rotation)
         there = np.flatnonzero(side)
         turns = there[1:][side[there[1:]] != side[there[:-1]]]
@@ -80,7 +80,7 @@ class FreeMotion:
         return float(self.time[first]) + share * length, size
 
     def _cubics(self, first: NDArray[np.intp]) -> tuple[Array, Array, Array, Array]:
-        """Give the coefficients of the cubic through rotations and rates of two samples [rad]."""
+        """Return the coefficients of the cubic through rotations and rates of two samples [rad]."""
         length = self.time[first + 1] - self.time[first]
         start, step = self.rotation[first], self.rotation[first + 1] - self.rotation[first]
         leaving, arriving = self.rate[first] * length, self.rate[first + 1] * length
@@ -113,7 +113,7 @@ def let_go(system: Assembly, rotation: float, duration: float, accuracy: Accurac
 def first_peaks(
     system: Assembly, rotation: float, count: int, duration: float, accuracy: Accuracy
 ) -> tuple[Array, Array]:
-    """Give times and magnitudes of the first peaks after a release, zero for missing ones."""
+    """Return times and magnitudes of the first peaks after a release, zero for missing ones."""
     motion = let_go(system, rotation, duration, accuracy)
     times, sizes = motion.peaks()
     for _ in range(_DOUBLINGS):
@@ -151,18 +151,18 @@ class Prediction:
         self._for_peaks = lru_cache(maxsize=_REMEMBERED)(self._run_peaks)
 
     def values(self, found: Array) -> dict[str, float]:
-        """Give the values of all parameters and circumstances by name, including known ones."""
+        """Return the values of all parameters and circumstances by name, including known ones."""
         return {**self._known, **dict(zip(self.names, found.tolist(), strict=True))}
 
     def history(self, found: Array, measured: History) -> Array:
-        """Give the rotation that the gauge would show at the times of a history [rad]."""
+        """Return the rotation that the gauge would show at the times of a history [rad]."""
         values = self.values(found)
         motion = self._for_history(*self._key(values), (1.0 + EARLIER) * measured.span)
         since = measured.time - values[Circumstance.RELEASE_TIME]
         return values[Circumstance.GAUGE_OFFSET] + motion.at(since)
 
     def peaks(self, found: Array, measured: MeasuredPeaks) -> tuple[Array, Array]:
-        """Give times [s] and rotations [rad] of the peaks that the gauge would show."""
+        """Return times [s] and rotations [rad] of the peaks that the gauge would show."""
         values = self.values(found)
         count = measured.rotation.size
         times, sizes = self._for_peaks(*self._key(values), count, self._length(measured))
@@ -189,7 +189,7 @@ class Prediction:
         return first_peaks(system, rotation, count, duration, self._accuracy)
 
     def _length(self, measured: MeasuredPeaks) -> float:
-        """Give the duration of a run that is likely to contain all peaks [s]."""
+        """Return the duration of a run that is likely to contain all peaks [s]."""
         if measured.time is not None:
             return 1.5 * float(measured.time[-1] - np.nanmin(measured.time))
         radius, gravity = self.trials.radius, self.trials.gravity
@@ -208,7 +208,7 @@ def starts_of(
     sought: Collection[Circumstance],
     accuracy: Accuracy,
 ) -> dict[str, Unknown]:
-    """Give start values and bounds of all parameters and circumstances."""
+    """Return start values and bounds of all parameters and circumstances."""
     peaks = (
         measured
         if isinstance(measured, MeasuredPeaks)

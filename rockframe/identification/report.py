@@ -34,7 +34,7 @@ _CLOSE: Final = 0.98
 def fit_sentence(
     values: Mapping[str, Any], names: Sequence[str], confidence: float, reach: float
 ) -> str:
-    """Give the result of a fit as a sentence."""
+    """Return the result of a fit as a sentence."""
     found = ", ".join(
         f"{name.replace('_', ' ')} {_with_error(value, reach * error)}"
         for name, value, error in zip(
@@ -54,7 +54,7 @@ def fit_sentence(
 def cautions_of(
     names: Sequence[str], solution: Solution, uncertainty: Uncertainty, values: Mapping[str, Any]
 ) -> Iterator[str]:
-    """Give the reasons for which values or their errors may be wrong, as clauses."""
+    """Return the reasons for which values or their errors may be wrong, as clauses."""
     if solution.status == FitStatus.TRIAL_LIMIT:
         yield f"the fit was given up after {MOST_EVALUATIONS} trials"
     for name, value, bound in zip(names, solution.values, solution.at_bound, strict=True):
@@ -107,7 +107,7 @@ def fit_dataset(
     confidence: float,
     accuracy: str,
 ) -> xr.Dataset:
-    """Give the results of a fit as a labelled dataset, and warn of reasons for doubt."""
+    """Return the results of a fit as a labelled dataset, and warn of reasons for doubt."""
     names, places = list(prediction.names), prediction.trials.places
     uncertainty = uncertainty_of(solution, confidence)
     found = prediction.values(solution.values)
@@ -156,7 +156,7 @@ def fit_dataset(
 def _compared(
     prediction: Prediction, measured: History | MeasuredPeaks, found: Array
 ) -> Mapping[str, Array | float]:
-    """Give measured and fitted values with their residuals, by their names in the schema."""
+    """Return measured and fitted values with their residuals, by their names in the schema."""
     if isinstance(measured, History):
         fitted = prediction.history(found, measured)
         residual = measured.rotation - fitted
@@ -186,7 +186,7 @@ def _compared(
 
 
 def _noise(residual: Array) -> dict[str, float]:
-    """Give the root mean square of the residuals, and their autocorrelation."""
+    """Return the root mean square of the residuals, and their autocorrelation."""
     total = float(residual @ residual)
     following = float(residual[1:] @ residual[:-1])
     return {

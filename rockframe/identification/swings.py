@@ -80,14 +80,14 @@ def restitution_of(peaks: Array, theta: Array, pull: Array, *, small_rotation: b
 
 
 def _offset(rotation: Array) -> float:
-    """Give the median of the rotation after it first falls below half its initial value."""
+    """Return the median of the rotation after it first falls below half its initial value."""
     first = float(np.median(rotation[:3]))
     left = np.flatnonzero(rotation * np.sign(first) < 0.5 * abs(first))
     return float(np.median(rotation[left[0] :])) if left.size else 0.0
 
 
 def _top(time: Array, swing: Array) -> tuple[float, float]:
-    """Give time and rotation of a swing's peak, by a parabola where it has enough samples."""
+    """Return time and rotation of a swing's peak, by a parabola where it has enough samples."""
     highest = int(np.argmax(np.abs(swing)))
     when, size = float(time[highest]), float(swing[highest])
     near = np.flatnonzero(np.abs(swing) > _TOP * abs(size))

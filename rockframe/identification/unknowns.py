@@ -40,12 +40,12 @@ class Unknown:
     upper: float = math.inf
 
     def started_at(self, value: float) -> "Unknown":
-        """Give the unknown with another start value, within the bounds."""
+        """Return the unknown with another start value, within the bounds."""
         return replace(self, start=min(max(value, self.lower), self.upper))
 
 
 def started_at(unknowns: Sequence[Unknown], values: NDArray[np.float64]) -> list[Unknown]:
-    """Give the unknowns with other start values, within their bounds."""
+    """Return the unknowns with other start values, within their bounds."""
     return [one.started_at(float(value)) for one, value in zip(unknowns, values, strict=True)]
 
 
@@ -59,7 +59,7 @@ class PartParameter:
     bounds: tuple[float, float]  # bounds of the values that the part accepts
 
     def unknown(self, name: str) -> Unknown:
-        """Give the parameter as an unknown of a fit."""
+        """Return the parameter as an unknown of a fit."""
         scale = abs(self.start) or _SMALLEST_SCALE
         lower, upper = self.bounds[0] + _ALMOST * scale, self.bounds[1]
         return Unknown(name, self.start, scale, lower, upper).started_at(self.start)
@@ -99,7 +99,7 @@ class TrialSystems:
                 )
 
     def _with(self, values: Mapping[str, float]) -> list[Component]:
-        """Give the parts with these values of the parameters."""
+        """Return the parts with these values of the parameters."""
         changes: dict[int, dict[str, float]] = {}
         for name, value in values.items():
             place = self.places[name]
@@ -114,7 +114,7 @@ class TrialSystems:
         return assemble(self._with(values), **self._options)
 
     def system(self, values: Mapping[str, float]) -> System:
-        """Give the system with these values of the parameters."""
+        """Return the system with these values of the parameters."""
         return System(*self._with(values), **self._options)
 
 

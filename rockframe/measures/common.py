@@ -67,7 +67,7 @@ class Inputs(Generic[Thing]):
         return () if self.labels is None else (MOTION,)
 
     def each(self, function: Callable[[Thing], Answer]) -> list[Answer]:
-        """Give the function of each input, computed in threads where compiled code permits."""
+        """Return the function of each input, computed in threads where compiled code permits."""
         workers = min(cpu_count() or 1, len(self.things))
         if not COMPILED or workers < 2:
             return [function(thing) for thing in self.things]
@@ -76,7 +76,7 @@ class Inputs(Generic[Thing]):
             return [first, *pool.map(function, self.things[1:])]
 
     def joined(self, answers: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
-        """Give the values of all results as arrays, or those of the single one."""
+        """Return the values of all results as arrays, or those of the single one."""
         rows = list(answers)
         if self.labels is None:
             return dict(rows[0])
@@ -141,7 +141,7 @@ def build_over(
     title: str,
     source: str,
 ) -> xr.Dataset:
-    """Give a labelled dataset of values, with coordinates of their dimensions.
+    """Return a labelled dataset of values, with coordinates of their dimensions.
 
     The axes have the names and units of the schema's rows for a system's modes, where
     these are variables over ``mode``.

@@ -143,7 +143,7 @@ def intensity_measures(
 
 
 def measure_of_ground(motion: GroundMotion, name: str) -> float:
-    """Give one measure of the ground, of the horizontal component with default arguments."""
+    """Return one measure of the ground, of the horizontal component with default arguments."""
     if name in ("housner_spectrum_intensity", "predominant_velocity_period"):
         check_cost(motion.si.horizontal, _PERIODS, owner=_OWNER)
     level = to_si(_THRESHOLD, ACCELERATION, owner=_OWNER, name="threshold", condition=POSITIVE)
@@ -156,7 +156,7 @@ def measure_of_ground(motion: GroundMotion, name: str) -> float:
 def _of_ground(
     signal: Signal, *, threshold: float, damping_ratio: float, gravity: float
 ) -> dict[str, Callable[[], float]]:
-    """Give a function for each measure: some take a hundred times as long as others."""
+    """Return a function for each measure: some take a hundred times as long as others."""
     velocity, displacement = ground_path(signal)
     arias = arias_history(signal, gravity)
     step = signal.time_step

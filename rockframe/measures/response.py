@@ -110,7 +110,7 @@ def spectra_of(
     ratios: Array,
     between: Interpolation = Interpolation.LINEAR,
 ) -> xr.Dataset:
-    """Give spectra of signals at checked periods, as :func:`response_spectrum` does."""
+    """Return spectra of signals at checked periods, as :func:`response_spectrum` does."""
     if between is Interpolation.BAND_LIMITED:
         looked = replace(looked, things=[_refined(one, seconds) for one in looked.things])
     for signal in looked.things:
@@ -128,12 +128,12 @@ def spectra_of(
 
 
 def shortest_of(seconds: Array) -> float:
-    """Give the shortest period above zero; infinity where there is none [s]."""
+    """Return the shortest period above zero; infinity where there is none [s]."""
     return float(seconds[seconds > 0.0].min(initial=np.inf))
 
 
 def oscillator_axes(ratios: Array, seconds: Array) -> dict[str, tuple[Array, str]]:
-    """Give the axes of spectra, values and schema rows, for :func:`build_over`."""
+    """Return the axes of spectra, values and schema rows, for :func:`build_over`."""
     return {
         "damping_ratio": (ratios, "damping ratio of the oscillator"),
         "period": (seconds, "undamped period of the oscillator"),

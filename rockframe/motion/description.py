@@ -32,7 +32,7 @@ _MATCHED: Final = re.compile(r"scaled by \S+ and matched to ")
 
 
 def shown_name(name: str, history: Iterable[str]) -> str:
-    """Give the name of a motion, with its factor before it and its processing behind it."""
+    """Return the name of a motion, with its factor before it and its processing behind it."""
     steps = list(history)
     factors = [_SCALED.fullmatch(step) for step in steps]
     factor = math.prod(float(found[1]) for found in factors if found is not None)
@@ -41,7 +41,7 @@ def shown_name(name: str, history: Iterable[str]) -> str:
 
 
 def _processing(step: str) -> str:
-    """Give the word for a step of a history that changes a motion; nothing for another."""
+    """Return the word for a step of a history that changes a motion; nothing for another."""
     if _MATCHED.match(step):
         return "matched"
     return next((words for start, words in _PROCESSED.items() if step.startswith(start)), "")
@@ -52,7 +52,7 @@ _TOLD: tuple[str, ...] = ("event", "station", "component")
 
 
 def motion_html(motion: MotionValue) -> str:
-    """Give name, curve and numbers of a motion as HTML."""
+    """Return name, curve and numbers of a motion as HTML."""
     si = motion.si
     samples = np.asarray(si.horizontal.samples)
     rows: dict[str, Any] = {
@@ -70,7 +70,7 @@ def motion_html(motion: MotionValue) -> str:
 
 
 def peak_words(motion: MotionValue) -> str:
-    """Give the largest horizontal acceleration of the samples as a text."""
+    """Return the largest horizontal acceleration of the samples as a text."""
     samples = np.asarray(motion.si.horizontal.samples)
     return _in_gravity(float(np.abs(samples).max(initial=0.0)))
 

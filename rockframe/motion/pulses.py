@@ -220,7 +220,7 @@ _SHORT: Final = 0.01
 
 
 def impulse_duration(owner: str, longest: float | None, interval: float) -> float:
-    """Give the longest duration up to `longest` of which `interval` is a whole multiple."""
+    """Return the longest duration up to `longest` of which `interval` is a whole multiple."""
     if longest is None:
         longest = _SHORT * interval
     if longest > interval:

@@ -146,7 +146,7 @@ def _has_unit(value: object) -> TypeGuard[tuple[object, str]]:
 
 
 def declared_times(value: object) -> Array | None:
-    """Give the times that an array has itself: a time axis, or the index of a Series."""
+    """Return the times that an array has itself: a time axis, or the index of a Series."""
     held = cast("tuple[object, ...]", value)[0] if isinstance(value, tuple) and value else value
     if isinstance(held, xr.DataArray):
         if held.dims != ("time",) or "time" not in held.coords:

@@ -256,7 +256,7 @@ class PointSource:
         return share * self.moment / sphere
 
     def shape(self, frequency: Array) -> Array:
-        """Give the shape of the source spectrum; with two corners :eq:`eq-two-corner-shape`."""
+        """Return the shape of the source spectrum; with two corners :eq:`eq-two-corner-shape`."""
         if self.corners is Corners.ONE:
             return source_shape(frequency, self.corner_frequency)
         lower, upper, share = self.two_corners
@@ -341,7 +341,7 @@ def normal_numbers(count: int, seed: int, stream: int) -> Array:
 
 
 def faded(count: int, fade: int, time_step: float) -> tuple[Array, Array, Array]:
-    """Give a smooth step up at the start and down at the end, and derivatives, :eq:`eq-step`."""
+    """Return a smooth step up at the start and down at the end, and derivatives, :eq:`eq-step`."""
     x = np.minimum(np.arange(fade + 1) / fade, 1.0)
     rises = (
         x**3 * (10.0 - 15.0 * x + 6.0 * x**2),

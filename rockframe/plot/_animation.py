@@ -141,7 +141,7 @@ class Animation:
         return write_file(path, _PICTURES, write, overwrite=overwrite)
 
     def to_html(self) -> str:
-        """Give the page of :func:`player`.
+        """Return the page of :func:`player`.
 
         Returns
         -------

@@ -160,7 +160,7 @@ class Drawer:
         return points + self.magnify * (moved - points)
 
     def _lift(self, at: Placement) -> Array:
-        """Give the displacement of the block in the drawing by the thickness of pads on a cap."""
+        """Return the displacement of the block in the drawing by the thickness of pads on a cap."""
         if not self.geometry.stacked:
             return np.zeros(2)
         angle = self.magnify * at.cap_rotation
@@ -193,7 +193,7 @@ class Drawer:
         return tuple(found), at.bearing()
 
     def _soil(self, at: Placement) -> tuple[Array | None, tuple[Array, ...]]:
-        """Give the surface of the soil, which follows the base up to its free level."""
+        """Return the surface of the soil, which follows the base up to its free level."""
         geometry = self.geometry
         if geometry.bed_sinks is None:
             return None, ()
@@ -233,7 +233,7 @@ class Drawer:
 
 
 def _contact(outline: Array, bears: tuple[bool, bool]) -> Array:
-    """Give the part of a rigid base that bears: the whole, an end, or none."""
+    """Return the part of a rigid base that bears: the whole, an end, or none."""
     if all(bears):
         return outline[:2]
     return outline[[bears.index(True)]] if any(bears) else _NOWHERE
@@ -393,7 +393,7 @@ _DRAWN: Final = ("name", "on", "to", "on_body", "to_body", "depth")
 
 
 def part_labels(parts: Parts, geometry: Geometry, units: ReaderUnits) -> dict[str, str]:
-    """Give the names of the parts of a scene, with their parameters, by their slots."""
+    """Return the names of the parts of a scene, with their parameters, by their slots."""
     found: dict[str, list[str]] = {}
     for slot in ("block", "wall", "pads", "cap", "soil"):
         part = parts.components.get(slot)

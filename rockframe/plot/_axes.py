@@ -91,12 +91,12 @@ def apart(words: list[str]) -> tuple[str, list[str]]:
 
 
 def escaped(text: str) -> str:
-    """Give a text so that matplotlib writes it letter by letter."""
+    """Return a text so that matplotlib writes it letter by letter."""
     return text.replace("$", r"\$")
 
 
 def as_label(name: str, most: int = _MOST_LETTERS) -> str:
-    """Give a name without the meaning of ``$`` and ``_`` in matplotlib, in legends too.
+    """Return a name without the meaning of ``$`` and ``_`` in matplotlib, in legends too.
 
     Long names are shortened in the middle, to leave room for the data.
     """
@@ -107,43 +107,43 @@ def as_label(name: str, most: int = _MOST_LETTERS) -> str:
 
 
 def labels_of_names(names: Iterable[str], most: int = _MOST_LETTERS) -> list[str]:
-    """Give names as :func:`as_label` does, numbered if they would be equal."""
+    """Return names as :func:`as_label` does, numbered if they would be equal."""
     found = [as_label(name, most) for name in names]
     alike = len(set(found)) < len(found)
     return [f"{k}: {one}" for k, one in enumerate(found, 1)] if alike else found
 
 
 def ink() -> Any:
-    """Give the colour of text in matplotlib's style."""
+    """Return the colour of text in matplotlib's style."""
     from matplotlib import rcParams
 
     return rcParams["text.color"]
 
 
 def colour_of(number: int) -> str:
-    """Give the colour of a line by its number."""
+    """Return the colour of a line by its number."""
     return COLOURS[number % len(COLOURS)]
 
 
 def style_of(number: int) -> Any:
-    """Give the dashes of a line by its number."""
+    """Return the dashes of a line by its number."""
     return STYLES[number % len(STYLES)]
 
 
 def label_of(values: xr.DataArray) -> str:
-    """Give the name and unit of values, for an axis."""
+    """Return the name and unit of values, for an axis."""
     return axis_label(str(values.name).replace("_", " "), str(values.attrs.get("units", "1")))
 
 
 def label_of_value(value: xr.DataArray) -> str:
-    """Give a value along an axis with its unit, for a legend."""
+    """Return a value along an axis with its unit, for a legend."""
     unit = str(value.attrs.get("units", "1"))
     text = f"{value.item():.4g}" if value.dtype.kind == "f" else as_label(str(value.item()))
     return text if unit == "1" else f"{text} {powers_in_mathtext(unit)}"
 
 
 def label_of_intensity(values: xr.DataArray, study: xr.Dataset) -> str:
-    """Give the name, period and unit of an intensity measure of a study, for an axis."""
+    """Return the name, period and unit of an intensity measure of a study, for an axis."""
     words = measure_words(str(values.name), study.attrs.get(PERIOD_OF))
     return axis_label(words, str(values.attrs.get("units", "1")))
 
@@ -190,7 +190,7 @@ def label_log_ticks(axes: "Axes", which: str = "xy") -> None:
 
 
 def colour_steps(along: xr.DataArray) -> Any:
-    """Give colours from dark to light, one for each label."""
+    """Return colours from dark to light, one for each label."""
     from matplotlib import colormaps
 
     return colormaps["viridis"](np.linspace(0.1, 0.85, along.size))
@@ -229,7 +229,7 @@ class FigureUnits:
     reader: ReaderUnits
 
     def of(self, measure: Measure, usual: str = "", **values: object) -> Shown:
-        """Give the unit of an axis; `values` has the axis's own argument by its name."""
+        """Return the unit of an axis; `values` has the axis's own argument by its name."""
         for name, unit in values.items():
             if unit is not None:
                 return shown_unit(unit, measure, owner=self.owner, name=name)
@@ -237,7 +237,7 @@ class FigureUnits:
         return self.reader.chose(measure) or shown_unit(usual, measure, owner=self.owner, name="")
 
     def unless_relative(self, measure: Measure, **items: object) -> Shown | None:
-        """Give the unit of an axis; None where values are relative to a scale of the body."""
+        """Return the unit of an axis; None where values are relative to a scale of the body."""
         (unit,) = items.values()
         if unit is None and self.reader.chose(measure) is None:
             return None
@@ -245,7 +245,7 @@ class FigureUnits:
         return None if told_relative else self.of(measure, "", **items)
 
     def rotations(self, rotation: str | None) -> str | None:
-        """Give the unit of a history of rotations: the given one, that of `units`, or degrees."""
+        """Return the unit of a history of rotations: the given one, that of `units`, or degrees."""
         return "deg" if rotation is None and self.reader.chose(ANGLE) is None else rotation
 
 

@@ -146,7 +146,7 @@ def _known_by(dataset: xr.Dataset) -> str | None:
 
 
 def drawn_by(dataset: xr.Dataset) -> str:
-    """Give the function that draws a dataset."""
+    """Return the function that draws a dataset."""
     if (known := _known_by(dataset)) is not None:
         return known
     if _holds(dataset, ("relative_rotation", "time", "contact_state")):
@@ -188,7 +188,7 @@ def checked_run(value: object, function: str) -> xr.Dataset:
 
 
 def drawable(value: object, function: str, units: UnitsLike = None) -> xr.Dataset:
-    """Give the dataset that a function draws, in the chosen units; raise on anything else."""
+    """Return the dataset that a function draws, in the chosen units; raise on anything else."""
     dataset = _checked(value, function, KINDS[function])
     return reader_units(units, owner=f"rf.plot.{function}").of_all(dataset)
 
@@ -287,7 +287,7 @@ def _holds(dataset: xr.Dataset, names: tuple[str, ...]) -> bool:
 
 
 def overturning_angles(dataset: xr.Dataset) -> tuple[float, float]:
-    """Give the overturning angles to the left and to the right [rad].
+    """Return the overturning angles to the left and to the right [rad].
 
     In a sweep those of both sides are NaN for a case whose body is symmetric.
     """

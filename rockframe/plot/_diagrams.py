@@ -277,7 +277,7 @@ def energies(
 
 
 def _rate(run: Run, unit: Shown | None) -> Any:
-    """Give the angular velocity; without a unit over the overturning angle of its side."""
+    """Return the angular velocity; without a unit over the overturning angle of its side."""
     rate = run.dataset["angular_velocity"].to_numpy()
     if unit is not None:
         return unit.of(rate)
@@ -305,7 +305,7 @@ def _draw_held(axes: Axes, held: xr.Dataset, angle: Shown, size: Shown) -> None:
 
 
 def _on_base(run: xr.Dataset) -> xr.DataArray:
-    """Give the rotation of the body relative to its support."""
+    """Return the rotation of the body relative to its support."""
     if "body" in run.dims:
         return run["body_rotation_on_base"].isel(body=0)
     return run["rotation_on_cap" if "rotation_on_cap" in run else "rotation"]

@@ -37,7 +37,7 @@ _CAPPED: Final = 1.0
 
 
 def of_one_structure(dataset: xr.Dataset) -> xr.Dataset:
-    """Give an analysis without axes of a single value; raise on several structures."""
+    """Return an analysis without axes of a single value; raise on several structures."""
     dims = dataset["capacity_scale"].dims
     beside = [dim for dim in dims if dim not in ("limit_state", "motion")]
     several = [f"{dim} ({dataset.sizes[dim]})" for dim in beside if dataset.sizes[dim] > 1]
@@ -124,7 +124,7 @@ def dynamic_analysis(
 
 
 def _flips(dataset: xr.Dataset, intensity: xr.DataArray) -> list[np.ndarray]:
-    """Give the intensities at which the verdict on each motion changes."""
+    """Return the intensities at which the verdict on each motion changes."""
     scales = dataset["scale"].to_numpy()
     above = dataset["scale_above"].isel(limit_state=-1).transpose("motion", ...).to_numpy()
     each = zip(above, intensity.transpose("motion", ...).to_numpy(), strict=True)
@@ -173,14 +173,14 @@ def _shares(axes: Axes, dataset: xr.Dataset, intensity: xr.DataArray) -> None:
 
 
 def _until_flips(along: Any, peaks: Any, flips: Any) -> tuple[Any, Any]:
-    """Give the intensities and peaks of a motion, also where the verdict changes."""
+    """Return the intensities and peaks of a motion, also where the verdict changes."""
     up = np.concatenate([along, flips])
     order = np.argsort(up, kind="stable")
     return up[order], np.concatenate([peaks.clip(max=_CAPPED), np.full(len(flips), _CAPPED)])[order]
 
 
 def _fractiles(lines: list[tuple[Any, Any]], up: Any) -> list[tuple[float, Any]]:
-    """Give shares of the motions, and the fractiles of the peaks at intensities."""
+    """Return shares of the motions, and the fractiles of the peaks at intensities."""
     peaks = np.sort(
         [np.interp(up, np.append(0.0, along), np.append(0.0, peak)) for along, peak in lines],
         axis=0,

@@ -272,7 +272,7 @@ def _check_structures(one: xr.Dataset, structures: list[str], most: int) -> None
 
 
 def _sheet(ax: AxesLike, states: list[xr.Dataset]) -> Sheet:
-    """Give a panel for each limit state."""
+    """Return a panel for each limit state."""
     return sheet(
         ax, "fragility", [_name(one) for one in states], (0.8 + 3.6 * len(states), 3.8),
         lambda figure: figure.subplots(1, len(states)),
@@ -280,7 +280,7 @@ def _sheet(ax: AxesLike, states: list[xr.Dataset]) -> Sheet:
 
 
 def _each(one: xr.Dataset, structures: list[str]) -> list[tuple[str, xr.Dataset]]:
-    """Give each structure with its label."""
+    """Return each structure with its label."""
     found: list[tuple[str, xr.Dataset]] = []
     for place in np.ndindex(*(one.sizes[dim] for dim in structures)):
         part = one.isel(dict(zip(structures, place, strict=True)))

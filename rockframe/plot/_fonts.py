@@ -80,7 +80,7 @@ def _warn(lost: Iterable[str], where: str) -> None:
 
 
 def _texts(artists: "Iterable[Axes | Figure | SubFigure]") -> list[Any]:
-    """Give the texts with letters beyond ASCII."""
+    """Return the texts with letters beyond ASCII."""
     from matplotlib.text import Text
 
     found: list[Any] = [one for artist in artists for one in artist.findobj(Text)]
@@ -88,7 +88,7 @@ def _texts(artists: "Iterable[Axes | Figure | SubFigure]") -> list[Any]:
 
 
 def _paths(families: Iterable[str]) -> list[str]:
-    """Give the files of those fonts that are installed."""
+    """Return the files of those fonts that are installed."""
     from matplotlib.font_manager import FontProperties, findfont
 
     found: list[str] = []

@@ -47,7 +47,7 @@ class Drawn:
 
 
 def motions_title(values: list[Drawn]) -> str:
-    """Give the title of a figure: the name of a single motion, otherwise none."""
+    """Return the title of a figure: the name of a single motion, otherwise none."""
     if len(values) != 1:
         return ""
     (one,) = values

@@ -115,7 +115,7 @@ class Player:
         return write_file(path, KIND, self._html.encode(), overwrite=overwrite)
 
     def to_html(self) -> str:
-        """Give the page.
+        """Return the page.
 
         Returns
         -------
@@ -236,7 +236,7 @@ class _Numbers:
         return before
 
     def packed(self) -> str:
-        """Give the differences of neighbours as compressed text."""
+        """Return the differences of neighbours as compressed text."""
         whole = np.concatenate(self._columns)
         steps = np.diff(whole, prepend=0).astype("<i2")  # modulo 2**16, as the page adds them up
         # first all low bytes, then all high bytes: these are mostly equal, and compress well
@@ -245,7 +245,7 @@ class _Numbers:
 
 
 def _layers(moving: Moving, shown_at: np.ndarray, store: _Numbers) -> dict[str, Any]:
-    """Give everything that is drawn, at all instants."""
+    """Return everything that is drawn, at all instants."""
     placements = [moving.at(int(place)) for place in shown_at]
     found = [moving.drawer.lay_out(at) for at in placements]
     layers = [*_of_parts(moving, found), *_of_contacts(found)]
@@ -276,7 +276,7 @@ def _layers(moving: Moving, shown_at: np.ndarray, store: _Numbers) -> dict[str, 
 
 
 def _of_parts(moving: Moving, found: Sequence[Layout]) -> Iterator[_Layer]:
-    """Give the parts of a scene, from the back to the front."""
+    """Return the parts of a scene, from the back to the front."""
     upright, first = moving.drawer.lay_out(moving.upright), found[0]
 
     def still(points: Array) -> Array:
@@ -308,14 +308,14 @@ def _of_parts(moving: Moving, found: Sequence[Layout]) -> Iterator[_Layer]:
 
 
 def _of_contacts(found: Sequence[Layout]) -> Iterator[_Layer]:
-    """Give the contacts: both ends of each line; a point is a line of zero length."""
+    """Return the contacts: both ends of each line; a point is a line of zero length."""
     for k in range(len(found[0].touching)):
         points = np.array([one.touching[k][[0, -1]] for one in found])
         yield _Layer("contact", "contact", CONTACT, 0.0, points)
 
 
 def _slips(run: xr.Dataset) -> list[tuple[str, xr.DataArray]]:
-    """Give the slips of the bodies that slid farthest, with their names."""
+    """Return the slips of the bodies that slid farthest, with their names."""
     found = {SLIP: run[SLIP]} if SLIP in run else {}
     if OF_BODIES in run:
         found = {
@@ -329,7 +329,7 @@ def _slips(run: xr.Dataset) -> list[tuple[str, xr.DataArray]]:
 
 
 def _surface(found: Layout) -> Array:
-    """Give the corners of the surface of the soil, which is straight between them."""
+    """Return the corners of the surface of the soil, which is straight between them."""
     surface = cast("Array", found.soil)
     bend = int(np.argmax(np.abs(np.diff(surface[:, 1], 2)[2:-2]))) + 3
     return surface[[0, 1, 2, bend, -3, -2, -1]]
@@ -340,7 +340,7 @@ def _label(words: str, unit: str) -> str:
 
 
 def _trace(values: np.ndarray, label: str, colour: str, store: _Numbers) -> dict[str, Any]:
-    """Give the least and the largest value in equal intervals of time."""
+    """Return the least and the largest value in equal intervals of time."""
     edges = np.linspace(0, values.size, min(_TRACE, values.size) + 1).astype(int)
     least = np.minimum.reduceat(values, edges[:-1])
     most = np.maximum.reduceat(values, edges[:-1])
@@ -353,7 +353,7 @@ def _trace(values: np.ndarray, label: str, colour: str, store: _Numbers) -> dict
 
 
 def _strip(state: xr.DataArray, words: str) -> dict[str, Any]:
-    """Give the instants at which contact changes, and the state after each."""
+    """Return the instants at which contact changes, and the state after each."""
     values, time = state.to_numpy(), state["time"].to_numpy()
     changes = np.flatnonzero(np.diff(values, prepend=values[0] - 1))
     names = words_of_flags(state.attrs)

@@ -78,7 +78,7 @@ def draw_contact_legend(axes: Axes, state: xr.DataArray) -> None:
 
 
 def mixed_colours(state: xr.DataArray, columns: int) -> Any:
-    """Give the mean colour in equal intervals of time."""
+    """Return the mean colour in equal intervals of time."""
     from matplotlib.colors import to_rgb
 
     time, values = state["time"].to_numpy(), state.to_numpy()
@@ -274,7 +274,7 @@ def response(
 
 
 def of_rotation(run: Run, unit: Shown | None, name: str = "rotation") -> Any:
-    """Give a rotation in a unit; without a unit over the overturning angle of its side."""
+    """Return a rotation in a unit; without a unit over the overturning angle of its side."""
     values = run.dataset[name].to_numpy()
     if unit is not None:
         return unit.of(values)
@@ -282,7 +282,7 @@ def of_rotation(run: Run, unit: Shown | None, name: str = "rotation") -> Any:
 
 
 def relative(rotation: Any, left: float, right: float) -> Any:
-    """Give rotations over the overturning angle of their side."""
+    """Return rotations over the overturning angle of their side."""
     return np.asarray(rotation) / np.where(np.asarray(rotation) < 0.0, left, right)
 
 
@@ -293,7 +293,7 @@ def has_slid(run: xr.Dataset) -> bool:
 
 
 def usual_panels(runs: list[Run]) -> tuple[str, ...]:
-    """Give the default panels of runs."""
+    """Return the default panels of runs."""
     slid = any(has_slid(run.dataset) for run in runs)
     of_bodies = len(runs) == 1 and OF_BODIES in runs[0].dataset
     *above, contact = _HEIGHTS
@@ -318,7 +318,7 @@ def _chosen(panels: object, runs: list[Run]) -> tuple[str, ...]:
 
 
 def histories_of(run: xr.Dataset) -> list[str]:
-    """Give the names of the histories of a run, also of those of several points or bodies."""
+    """Return the names of the histories of a run, also of those of several points or bodies."""
     return [
         str(name)
         for name, values in run.data_vars.items()
@@ -327,7 +327,7 @@ def histories_of(run: xr.Dataset) -> list[str]:
 
 
 def strips_of(runs: list[Run]) -> dict[str, tuple[xr.DataArray, str]]:
-    """Give the strips of contact states with their labels."""
+    """Return the strips of contact states with their labels."""
     found: dict[str, tuple[xr.DataArray, str]] = {}
     for run in runs:
         for whose, state in _contacts_of(run.dataset, alone=len(runs) == 1).items():
@@ -337,7 +337,7 @@ def strips_of(runs: list[Run]) -> dict[str, tuple[xr.DataArray, str]]:
 
 
 def _contacts_of(run: xr.Dataset, *, alone: bool) -> dict[str, xr.DataArray]:
-    """Give the contact states of a run, by the name of the body or base."""
+    """Return the contact states of a run, by the name of the body or base."""
     if "body" in run.dims:
         if not alone or CONTACT_OF_BODIES not in run:
             return {"body 1": run["contact_state"]}

@@ -35,7 +35,7 @@ class Run:
         return self.dataset["time"].to_numpy()
 
     def nearest(self, times: np.ndarray) -> np.ndarray:
-        """Give the samples that are nearest to times [s]."""
+        """Return the samples that are nearest to times [s]."""
         after = np.clip(np.searchsorted(self.time, times), 1, self.time.size - 1)
         before = after - 1
         return np.where(times - self.time[before] <= self.time[after] - times, before, after)
@@ -77,7 +77,7 @@ def window_of(window: object, function: str, name: str = "window") -> tuple[floa
 
 
 def runs_title(runs: list[Run], units: ReaderUnits) -> str:
-    """Give the title of a figure: the verdict of one run, or the common motion of several."""
+    """Return the title of a figure: the verdict of one run, or the common motion of several."""
     if len(runs) == 1:
         return verdict_of_case(runs[0].dataset, units)
     motions = {str(run.dataset.attrs.get("motion", "")) for run in runs}
@@ -85,7 +85,7 @@ def runs_title(runs: list[Run], units: ReaderUnits) -> str:
 
 
 def verdict_of_case(run: xr.Dataset, units: ReaderUnits) -> str:
-    """Give the verdict of a run, also of one case of a sweep, whose attribute covers all cases."""
+    """Return verdict of a run, also of one case of a sweep, whose attribute covers all cases."""
     if "axes_json" not in run.attrs:
         return units.of_sentence(str(run.attrs.get("verdict", "")))
     fell = verdict_of(run)
@@ -114,7 +114,7 @@ def _labels_of(run: xr.Dataset) -> str:
 
 
 def _labelled(value: object) -> dict[str, Any] | None:
-    """Give several runs by their labels; None for a single run."""
+    """Return several runs by their labels; None for a single run."""
     if isinstance(value, Mapping) and not isinstance(value, xr.Dataset):
         labels = {str(key): one for key, one in value.items()}
         return labels if labels and _all_runs(list(labels.values())) else None

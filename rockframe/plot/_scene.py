@@ -221,7 +221,7 @@ class Moving:
         return {str(name): (float(x), float(y)) for name, (x, y) in zip(names, places, strict=True)}
 
     def at(self, place: int) -> Placement:
-        """Give the scene at a sample."""
+        """Return the scene at a sample."""
         values = {name: float(column[place]) for name, column in self._columns.items()}
         bodies = contacts = None
         if self.geometry.lower:
@@ -262,7 +262,7 @@ class Moving:
 
 
 def figure_size(drawer: Drawer, *, wide: bool) -> tuple[float, float]:
-    """Give the size of a figure for a scene [in]."""
+    """Return the size of a figure for a scene [in]."""
     geometry = drawer.geometry
     tall = (geometry.level + geometry.height) / (2.0 * drawer.reach)
     return (5.6 if wide else 4.2), float(np.clip(3.6 * tall, 3.2, 5.6))

@@ -277,7 +277,7 @@ def _is_axis(dataset: xr.Dataset, dim: str) -> bool:
 
 
 def _along(dataset: xr.Dataset, dim: str) -> tuple[Any, str]:
-    """Give the places along a dimension, and its label."""
+    """Return the places along a dimension, and its label."""
     if _is_axis(dataset, dim):
         return dataset[dim].to_numpy(), label_of(dataset[dim])
     return np.arange(dataset.sizes[dim]), dim.replace("_", " ")

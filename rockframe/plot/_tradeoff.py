@@ -129,7 +129,7 @@ def _mark_below(axes: Axes, errors: Any) -> None:
 
 
 def _keys(dataset: xr.Dataset, models: list[str]) -> "list[Line2D]":
-    """Give the legend: the accuracies, hollow markers and crosses."""
+    """Return the legend: the accuracies, hollow markers and crosses."""
     from matplotlib.lines import Line2D
 
     keys = [

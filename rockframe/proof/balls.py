@@ -26,27 +26,27 @@ WITHIN_ONE: Final[Ball] = arb(0, 1)
 
 
 def working_precision(bits: int) -> Any:
-    """Give a context in which the middles of balls have a number of bits."""
+    """Return a context in which the middles of balls have a number of bits."""
     return ctx.workprec(bits)
 
 
 def bits() -> int:
-    """Give the present number of bits of the middles."""
+    """Return the present number of bits of the middles."""
     return ctx.prec
 
 
 def upper(one: Ball) -> Ball:
-    """Give the largest absolute value in a ball, rounded up, as an exact ball."""
+    """Return the largest absolute value in a ball, rounded up, as an exact ball."""
     return arb(one.abs_upper())
 
 
 def total(one: Sequence[Ball], other: Sequence[Ball]) -> Ball:
-    """Give the sum of products of two rows, up to the end of the shorter one."""
+    """Return the sum of products of two rows, up to the end of the shorter one."""
     return sum(map(mul, one, other), ZERO)
 
 
 def product(one: Row, other: Row, order: int) -> Ball:
-    """Give the coefficient of some order in the product of two power series."""
+    """Return the coefficient of some order in the product of two power series."""
     return sum(map(mul, one, other[order::-1]), ZERO)
 
 
@@ -59,12 +59,12 @@ def value(coefficients: Row, at: Ball) -> Ball:
 
 
 def slope(coefficients: Row) -> Row:
-    """Give the derivative of a polynomial."""
+    """Return the derivative of a polynomial."""
     return [each * power for power, each in enumerate(coefficients)][1:]
 
 
 def moved(coefficients: Row, by: Ball) -> Row:
-    """Give a polynomial about another point: its Taylor coefficients there."""
+    """Return a polynomial about another point: its Taylor coefficients there."""
     if len(coefficients) == 2:
         return [coefficients[0] + coefficients[1] * by, coefficients[1]]
     row = list(coefficients)
@@ -75,7 +75,7 @@ def moved(coefficients: Row, by: Ball) -> Row:
 
 
 def hull(balls: Row) -> Ball:
-    """Give a ball that contains others."""
+    """Return a ball that contains others."""
     result = balls[0]
     for each in balls[1:]:
         result = result.union(each)

@@ -32,7 +32,7 @@ class Instant(NamedTuple):
     after: Ball
 
     def later(self, problem: Problem, span: Ball) -> "Instant":
-        """Give the instant after a span of time [s]."""
+        """Return the instant after a span of time [s]."""
         number, after = self.number, self.after + span
         while not after < problem.length(number):
             if not after >= problem.length(number):
@@ -133,7 +133,7 @@ class _Bounds:
         return upper(self.left / self.restitution)
 
     def jumped(self, number: int) -> "_Bounds":
-        """Give the bounds after an interval, at whose end the ground may jump."""
+        """Return the bounds after an interval, at whose end the ground may jump."""
         if self.problem.joins(number):
             return self
         before = self.problem.ground(number).at(self.problem.length(number))

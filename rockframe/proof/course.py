@@ -135,7 +135,7 @@ class Course:
         raise Undecided(_UNSURE)
 
     def _left(self) -> Ball:
-        """Give the time to the end of the interval."""
+        """Return the time to the end of the interval."""
         return self.problem.length(self.number) - self.after
 
     def _lifted(self, during: GroundPiece, waited: Ball) -> SetOfStates:
@@ -331,7 +331,7 @@ class Course:
     # ---- end of the motion
 
     def _settled(self) -> bool | None:
-        """Give False if it stands for ever on still ground, else None, :eq:`eq-proof-energy`."""
+        """Return False if it stands for ever on still ground, else None, :eq:`eq-proof-energy`."""
         problem, near, far = self.problem, self.corner, self.problem.corner(-self.sign)
         still = problem.ground(self.number)
         rotation, rate = self.states.box()
@@ -352,7 +352,7 @@ class Course:
 
 
 def _potential(rotation: Ball, corner: CornerNumbers, still: GroundPiece) -> Ball:
-    """Give the potential energy at a rotation on a corner less that upright, over the inertia."""
+    """Return the potential energy at a rotation on a corner less that upright, over the inertia."""
     lean = corner.angle * corner.sign
     rise = (lean - rotation).cos() - lean.cos()
     shift = (lean - rotation).sin() - lean.sin()

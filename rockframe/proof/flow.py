@@ -120,7 +120,7 @@ class ByScale(NamedTuple):
 def _forces(
     corner: CornerNumbers, ground: GroundPiece, during: GroundPiece, h: Ball
 ) -> tuple[Row, Row, list[int]]:
-    """Give kappa h^2 times the ground in powers of x, and exponents that bound it over a step."""
+    """Return kappa h^2 times the ground in powers of x, and exponents that bound it over a step."""
     along, weight, powers = list[Ball](), list[Ball](), list[int]()
     factor = h * h * corner.ratio
     for k in range(max(len(ground.along), len(ground.weight))):
@@ -139,7 +139,7 @@ def _forces(
 def flow(
     start: Row, box: Row, corner: CornerNumbers, ground: GroundPiece, during: GroundPiece, h: Ball
 ) -> Flow:
-    """Give the series of a rotation from a point, with bounds that hold for a box about it.
+    """Return the series of a rotation from a point, with bounds that hold for a box about it.
 
     The series are for the middles of all inputs, the bounds for all inputs.
     """
@@ -168,7 +168,7 @@ def flow(
 def _series(
     start: Row, corner: CornerNumbers, along: Row, weight: Row, h: Ball, order: int
 ) -> tuple[Row, Row, Row]:
-    """Give the coefficients of sine, cosine and rotation, by recursion."""
+    """Return the coefficients of sine, cosine and rotation, by recursion."""
     first, second = (corner.angle * corner.sign - start[0]).sin_cos()
     sine, cosine, angle, turns = [first], [second], [start[0], h * start[1]], list[Ball]()
     for k in range(order - 1):

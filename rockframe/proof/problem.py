@@ -25,7 +25,7 @@ class Deviations(NamedTuple):
 
     @classmethod
     def within(cls, restitution: float, scale: float, angle: float) -> "Deviations":
-        """Give the deviations within tolerances."""
+        """Return the deviations within tolerances."""
         e, factor, lean = (ball(0, one) for one in (restitution, scale, angle))
         return cls(e, e, factor, lean, lean)
 
@@ -50,7 +50,7 @@ class Deviations(NamedTuple):
         return all(one.is_exact() for one in self)
 
     def spread(self) -> "Deviations":
-        """Give the deviations less their middles."""
+        """Return the deviations less their middles."""
         return self._make(one - one.mid() for one in self)
 
     def halves(self, influences: list[float]) -> "tuple[Deviations, Deviations]":
@@ -63,11 +63,11 @@ class Deviations(NamedTuple):
         return self._replace(**{name: low}), self._replace(**{name: high})
 
     def restitution(self, sign: int) -> Ball:
-        """Give the deviation of the restitution of the corner that bears at a sign of rotation."""
+        """Return deviation of the restitution of the corner that bears at a sign of rotation."""
         return self.right_restitution if sign > 0 else self.left_restitution
 
     def angle(self, sign: int) -> Ball:
-        """Give the deviation of the angle of the corner that bears at a sign of rotation."""
+        """Return the deviation of the angle of the corner that bears at a sign of rotation."""
         return self.right_angle if sign > 0 else self.left_angle
 
 
@@ -91,7 +91,7 @@ class CornerNumbers(NamedTuple):
         return cls(sign, ball(corner.angle) + lean, ratio, restitution, ball(limit) + lean)
 
     def middle(self) -> "CornerNumbers":
-        """Give the corner with the middles of its uncertain numbers."""
+        """Return the corner with the middles of its uncertain numbers."""
         return self._replace(angle=self.angle.mid(), restitution=self.restitution.mid())
 
 
@@ -103,12 +103,12 @@ class GroundPiece(NamedTuple):
     spread: "GroundSpread | None" = None  # None where the scale is a single number
 
     def at(self, time: Ball) -> "GroundPiece":
-        """Give the polynomials about another time, or about all times of a ball [s]."""
+        """Return the polynomials about another time, or about all times of a ball [s]."""
         spread = None if self.spread is None else self.spread.at(time)
         return GroundPiece(moved(self.along, time), moved(self.weight, time), spread)
 
     def rates(self) -> "GroundPiece":
-        """Give the rates of both accelerations at the origin of the polynomials."""
+        """Return the rates of both accelerations at the origin of the polynomials."""
         along, weight = ([*row[1:2], ZERO][:1] for row in (self.along, self.weight))
         return GroundPiece(along, weight)
 
@@ -137,7 +137,7 @@ class GroundSpread(NamedTuple):
     by_scale: GroundPiece  # derivative by the scale
 
     def at(self, time: Ball) -> "GroundSpread":
-        """Give the polynomials about another time."""
+        """Return the polynomials about another time."""
         return GroundSpread(self.middle.at(time), self.by_scale.at(time))
 
 
@@ -157,11 +157,11 @@ class Shaking:
         return self.motion.horizontal.samples.size - 1
 
     def length(self, number: int) -> Ball:
-        """Give the length of an interval [s]."""
+        """Return the length of an interval [s]."""
         return ball(self.motion.time_step if number < self.count else self.still_step)
 
     def time(self, number: int, after: Ball) -> Ball:
-        """Give the time since the first sample [s]."""
+        """Return the time since the first sample [s]."""
         moving, still = min(number, self.count), max(0, number - self.count)
         return moving * ball(self.motion.time_step) + still * ball(self.still_step) + after
 
@@ -173,7 +173,7 @@ class Shaking:
         return number >= self.count or (lines and not ends)
 
     def ground(self, number: int) -> GroundPiece:
-        """Give the ground in an interval, by the time since its start, :eq:`eq-incline-ground`."""
+        """Return ground in an interval, by the time since its start, :eq:`eq-incline-ground`."""
         number = min(number, self.count)
         if number not in self._known:
             self._known[number] = self._ground(number)
@@ -232,7 +232,7 @@ class Problem(Shaking):
         )  # fmt: skip
 
     def corner(self, sign: int) -> CornerNumbers:
-        """Give the corner that bears while the rotation has a sign."""
+        """Return the corner that bears while the rotation has a sign."""
         return self.right if sign > 0 else self.left
 
 
@@ -251,7 +251,7 @@ def _ground(problem: Shaking, number: int, scale: Ball, gravity: Ball) -> Ground
 
 
 def _component(problem: Shaking, number: int, scale: Ball, *, vertical: bool) -> Row:
-    """Give a component of the motion as a polynomial of time."""
+    """Return a component of the motion as a polynomial of time."""
     motion = problem.motion
     signal = motion.vertical if vertical else motion.horizontal
     if signal is None or number >= problem.count:
@@ -266,13 +266,13 @@ def _component(problem: Shaking, number: int, scale: Ball, *, vertical: bool) ->
 
 
 def acceleration(rotation: Ball, corner: CornerNumbers, ground: GroundPiece) -> Ball:
-    """Give the angular acceleration, with the ground at the origin of its polynomials."""
+    """Return the angular acceleration, with the ground at the origin of its polynomials."""
     sine, cosine = (corner.angle * corner.sign - rotation).sin_cos()
     return -corner.ratio * (ground.weight[0] * sine + ground.along[0] * cosine)
 
 
 def stiffness(rotation: Ball, corner: CornerNumbers, ground: GroundPiece) -> Ball:
-    """Give the derivative of the angular acceleration with respect to the rotation."""
+    """Return the derivative of the angular acceleration with respect to the rotation."""
     sine, cosine = (corner.angle * corner.sign - rotation).sin_cos()
     return corner.ratio * (ground.weight[0] * cosine - ground.along[0] * sine)
 

@@ -74,7 +74,7 @@ class _Part(NamedTuple):
 
 
 def _of_parts(known: list[_Part], rest: list[_Part]) -> Proof:
-    """Give the proof for a set from the proofs of its parts."""
+    """Return the proof for a set from the proofs of its parts."""
     every = [part.proof for part in (*known, *rest)]
     shares = {
         verdict: float(abs(sum(part.share for part in known if part.proof.verdict == verdict)))

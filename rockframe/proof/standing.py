@@ -13,7 +13,7 @@ _VERGE = "a ground that comes to the verge of uplift"
 def lifts_in(
     problem: Problem, number: int, ground: GroundPiece, left: Ball
 ) -> tuple[Ball, int] | None:
-    """Give when it lifts in the rest of an interval [s], and the sign of its rotation; or None.
+    """Return when it lifts in the rest of an interval [s], and the sign of its rotation; or None.
 
     If some members of a set lift before the sample at its end and some after it, the time encloses
     both.
@@ -49,7 +49,7 @@ def _lifts_about_sample(
 
 
 def guard_of(problem: Problem, ground: GroundPiece, side: int) -> Row:
-    """Give the guard of uplift to a side, a polynomial that is positive while it does not lift."""
+    """Return guard of uplift to a side, a polynomial that is positive while it does not lift."""
     tangent = problem.corner(side).angle.tan()
     pairs = zip_longest(ground.weight, ground.along, fillvalue=ZERO)
     return [weight * tangent + side * along for weight, along in pairs]

@@ -21,7 +21,7 @@ class SetOfStates(NamedTuple):
 
     @classmethod
     def about(cls, state: Row, uncertain: Sequence[Ball]) -> "SetOfStates":
-        """Give the box of a state as a set that does not depend on the uncertain inputs."""
+        """Return the box of a state as a set that does not depend on the uncertain inputs."""
         centre = [each.mid() for each in state]
         free = [[ZERO] * len(uncertain) for _ in centre]
         rest = [each - middle for each, middle in zip(state, centre, strict=True)]
@@ -35,7 +35,7 @@ class SetOfStates(NamedTuple):
         ]
 
     def influences(self) -> list[float]:
-        """Give the largest change of the first component by each uncertain input."""
+        """Return the largest change of the first component by each uncertain input."""
         pairs = zip(self.inputs[0], self.uncertain, strict=True)
         return [float((row * one).abs_upper()) for row, one in pairs]
 
@@ -70,12 +70,12 @@ class SetOfStates(NamedTuple):
 
 
 def identity(size: int) -> Matrix:
-    """Give the unit matrix."""
+    """Return the unit matrix."""
     return [[ONE if i == j else ZERO for j in range(size)] for i in range(size)]
 
 
 def _axes(turned: Matrix, rest: Row) -> tuple[Matrix, Matrix]:
-    """Give nearly orthogonal axes, the first along the longest edge, and their inverse."""
+    """Return nearly orthogonal axes, the first along the longest edge, and their inverse."""
     sizes = [float(each.abs_upper()) + 1e-300 for each in rest]
     edges = [[float(each.mid()) * sizes[j] for j, each in enumerate(row)] for row in turned]
     lengths = [math.hypot(*column) for column in zip(*edges, strict=True)]
@@ -94,5 +94,5 @@ def _axes(turned: Matrix, rest: Row) -> tuple[Matrix, Matrix]:
 
 
 def nearly_identity(size: int, off: Ball) -> Matrix:
-    """Give the unit matrix with a ball added to each element."""
+    """Return the unit matrix with a ball added to each element."""
     return [[each + off for each in row] for row in identity(size)]

@@ -122,7 +122,7 @@ class Proof:
         return []
 
     def values(self, overturned: bool | None, end: float) -> dict[str, float | bool]:
-        """Give the scalars for the dataset of a run up to a time, by their names in the schema."""
+        """Return scalars for the dataset of a run up to a time, by their names in the schema."""
         falls = self.verdict == OVERTURNS
         return {
             "verdict_proved": self.agrees(overturned, end),
@@ -132,7 +132,7 @@ class Proof:
         }
 
     def attributes(self) -> dict[str, str | int]:
-        """Give the attributes of a dataset that describe the proof."""
+        """Return the attributes of a dataset that describe the proof."""
         return {"proof": str(self), "proof_verdict": self.verdict, "proof_bits": self.bits}
 
     def __str__(self) -> str:
@@ -180,5 +180,5 @@ def _rounded(time: float, rounding: str) -> str:
 
 
 def outwards(value: object, direction: float) -> float:
-    """Give the next double in a direction, so that a rounded bound stays one."""
+    """Return the next double in a direction, so that a rounded bound stays one."""
     return math.nextafter(float(value), direction)  # type: ignore[arg-type]

@@ -269,7 +269,7 @@ def _member(name: str, data: bytes) -> ArchiveMember:
 
 
 def _misnamed(name: str) -> str:
-    """Give the fault of the name of a file in an archive, if any."""
+    """Return the fault of the name of a file in an archive, if any."""
     plain = name.replace("\\", "/")
     if plain.startswith("/") or _DRIVE.match(plain) or ".." in plain.split("/"):
         return "a name that leads out of the archive"

@@ -225,7 +225,7 @@ def _response(
 
 
 def _text_in(group: Any, name: str) -> bytes | None:
-    """Give a text that is stored as an array of bytes; None if it is missing or too long."""
+    """Return a text that is stored as an array of bytes; None if it is missing or too long."""
     variable = group.variables.get(name)
     if variable is None or math.prod(map(int, variable.shape)) > _LARGEST_TEXT:
         return None

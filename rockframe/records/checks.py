@@ -108,7 +108,7 @@ def check_no_missing_marks(source: Source, samples: Array) -> None:
 
 
 def plausibility(source: Source, time_step: float, samples: Array, unit: RecordUnit) -> list[str]:
-    """Give warnings of a peak, an offset or a time step that is not plausible."""
+    """Return warnings of a peak, an offset or a time step that is not plausible."""
     warnings: list[str] = []
     low, high = USUAL_PEAKS
     with np.errstate(over="ignore"):
@@ -238,7 +238,7 @@ def ends_inside(source: Source, line: int, rows: int) -> list[str]:
 
 
 def _printed(text: str) -> tuple[float | None, float]:
-    """Give a number and half of its last printed digit."""
+    """Return a number and half of its last printed digit."""
     text = text.strip()
     if len(text) > _LONGEST or ONE_NUMBER.fullmatch(text) is None:
         return None, 0.0

@@ -52,7 +52,7 @@ class Orientation:
         return min(turn, _FULL_CIRCLE - turn) < 1e-6
 
     def reversed(self) -> "Orientation":
-        """Give the opposite direction, for a minus before a name; downwards if it is vertical."""
+        """Return the opposite direction, for a minus before a name; downwards if it is vertical."""
         if self.vertical is not None:
             return Orientation(vertical=DOWNWARDS)
         return self if self.azimuth is None else azimuth_of((self.azimuth + 180.0) % _FULL_CIRCLE)
@@ -120,7 +120,7 @@ def orientation_of(name: str) -> Orientation:
 
 
 def azimuth_of(degrees: float) -> Orientation:
-    """Give a horizontal direction; unknown if the angle is not from 0 to 360 degrees."""
+    """Return a horizontal direction; unknown if the angle is not from 0 to 360 degrees."""
     if not (math.isfinite(degrees) and 0.0 <= degrees <= _FULL_CIRCLE):
         return UNKNOWN
     return Orientation(azimuth=degrees)

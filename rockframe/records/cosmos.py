@@ -114,18 +114,18 @@ class _Header:
     unknown: tuple[int, float]  # marks of an unknown integer and an unknown real
 
     def line(self, place: int) -> str:
-        """Give a text line by its number from 1; empty if it is missing."""
+        """Return a text line by its number from 1; empty if it is missing."""
         return self.text[place - 1] if place <= len(self.text) else ""
 
     def integer(self, place: int) -> int | None:
-        """Give an integer header by its number from 1; None if it is unknown."""
+        """Return an integer header by its number from 1; None if it is unknown."""
         if place > self.integer_count or not self.integers.cell(place):
             return None
         value = self.integers.count(place, f"integer header {place}")
         return None if value == self.unknown[0] else value
 
     def real(self, place: int) -> float | None:
-        """Give a real header by its number from 1; None if it is unknown."""
+        """Return a real header by its number from 1; None if it is unknown."""
         if place > self.real_count or not self.reals.cell(place):
             return None
         value = self.reals.number(place, f"real header {place}")
@@ -152,7 +152,7 @@ def _read_header(source: Source, start: int, end: int, text_lines: int) -> _Head
 def _section(
     source: Source, at: int, end: int, announcement: re.Pattern[str], what: str, such_as: str
 ) -> tuple[Fields, int, int]:
-    """Give the fields of a section, their number, and the index of the line below them."""
+    """Return the fields of a section, their number, and the index of the line below them."""
     # one line of tolerance: some files have one more line of text than they announce
     for index in (at, at + 1, at - 1):
         if not 0 <= index < end:

@@ -124,7 +124,7 @@ def _peak_in_header(header: list[str], first: int) -> Stated | None:
 
 
 def _stated(header: list[str], first: int) -> list[Stated]:
-    """Give peak and length of a record, if its header states them."""
+    """Return peak and length of a record, if its header states them."""
     peak, length = _peak_in_header(header, first), first_match(_LENGTH, header, first + 1)
     stated = [] if peak is None else [peak]
     return stated if length is None else [*stated, Stated(length[0][1], LENGTH, length[1])]
@@ -136,7 +136,7 @@ def is_corrected(header: list[str]) -> bool:
 
 
 def description(header: list[str]) -> Metadata:
-    """Give the metadata in a header."""
+    """Return the metadata in a header."""
     lines = [text.strip() for text in header]
     metadata: Metadata = {}
     place = next((k for k, text in enumerate(lines) if FIRST_LINE.match(text)), 0)
@@ -341,7 +341,7 @@ def _ends_inside(source: Source) -> list[str]:
 
 
 def _starts(source: Source, blocks: list[_Block]) -> list[int]:
-    """Give the indices of the first lines of channels, and that of the line after the file."""
+    """Return the indices of the first lines of channels, and that of the line after the file."""
     named = [
         index
         for index, line in enumerate(source.lines)
@@ -354,7 +354,7 @@ def _starts(source: Source, blocks: list[_Block]) -> list[int]:
 
 
 def _without_data(source: Source, first: int, end: int) -> FileComponent:
-    """Give a channel that has only a header."""
+    """Return a channel that has only a header."""
 
     def samples() -> Record:
         found = f"no evenly sampled accelerations below {quoted_first_line(source.lines[first])}"

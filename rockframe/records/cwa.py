@@ -110,7 +110,7 @@ def _table(source: Source, header: Keys, first: int, columns: int, rate: float) 
 
 
 def _announced(source: Source, header: Keys, rate: float) -> tuple[int, str, int] | None:
-    """Give the number of samples that follows from the length of the record, if it is stated."""
+    """Return the number of samples that follows from the length of the record, if it is stated."""
     if "recordlength" not in header:
         return None
     text, line = header["recordlength"]
@@ -147,7 +147,7 @@ def _columns(source: Source, header: Keys) -> tuple[list[tuple[str, Orientation]
 
 
 def _stated_peak(source: Source, name: str, unit: str) -> list[Stated]:
-    """Give the larger of the largest and the smallest value of a column, as printed."""
+    """Return the larger of the largest and the smallest value of a column, as printed."""
     for line, text in enumerate(source.top(_LONGEST_HEADER), start=1):
         match = _PEAKS.match(text)
         if match is not None and match.group(1).casefold() == name.lstrip("-").casefold():

@@ -43,7 +43,7 @@ def read_source(given: RecordLike) -> Source:
 
 
 def as_given(value: object) -> tuple[str, bytes]:
-    """Give name and bytes of an argument, without unpacking."""
+    """Return name and bytes of an argument, without unpacking."""
     if isinstance(value, bytes | bytearray | memoryview):
         data = bytes(value)
         check_size(IN_MEMORY, len(data), MAXIMUM_BYTES)
@@ -155,7 +155,7 @@ class Unread:
 
     @classmethod
     def of(cls, path: str, problem: RecordError) -> "Unread":
-        """Give the reason from an error."""
+        """Return the reason from an error."""
         where = "" if problem.line is None else f"line {problem.line}: "
         return cls(path, f"{where}found {problem.found}; expected {problem.expected}")
 

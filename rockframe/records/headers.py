@@ -34,7 +34,7 @@ def read_keys(lines: Iterable[str], first: int = 1) -> Keys:
 
 
 def needed_count(source: Source, keys: Keys, key: str) -> tuple[int, int]:
-    """Give a required number of samples, above zero, and its line."""
+    """Return a required number of samples, above zero, and its line."""
     text, line = needed(source, keys, key)
     count = whole(text)
     if count is None or count < 1:
@@ -44,7 +44,7 @@ def needed_count(source: Source, keys: Keys, key: str) -> tuple[int, int]:
 
 
 def needed(source: Source, keys: Keys, key: str) -> tuple[str, int]:
-    """Give the value of a required key, and its line."""
+    """Return the value of a required key, and its line."""
     value, line = keys.get(key, ("", 1))
     if not value:
         expected = f"a header line {key!r} with a value"
@@ -53,7 +53,7 @@ def needed(source: Source, keys: Keys, key: str) -> tuple[str, int]:
 
 
 def needed_rate(source: Source, request: Request, keys: Keys, key: str) -> float:
-    """Give a required sampling rate, above zero and consistent with the request [Hz]."""
+    """Return a required sampling rate, above zero and consistent with the request [Hz]."""
     text, line = needed(source, keys, key)
     rate = one_number(text.casefold().removesuffix("hz").strip(), source, line)
     if not rate > 0.0:
@@ -64,7 +64,7 @@ def needed_rate(source: Source, request: Request, keys: Keys, key: str) -> float
 
 
 def needed_step(source: Source, request: Request, keys: Keys, key: str) -> float:
-    """Give a required time step, consistent with the request [s]."""
+    """Return a required time step, consistent with the request [s]."""
     text, line = needed(source, keys, key)
     time_step = one_number(text, source, line)
     settle_time_step(source, request, time_step, line)
@@ -72,7 +72,7 @@ def needed_step(source: Source, request: Request, keys: Keys, key: str) -> float
 
 
 def text_of(keys: Keys, key: str) -> str:
-    """Give the value of a key, empty if it is not there."""
+    """Return the value of a key, empty if it is not there."""
     return keys.get(key, NOTHING)[0]
 
 
@@ -93,5 +93,5 @@ def needed_match(
 
 
 def renamed(keys: Keys, names: Mapping[str, str]) -> Metadata:
-    """Give values of a header for the metadata, under their new names."""
+    """Return values of a header for the metadata, under their new names."""
     return without_blanks({name: text_of(keys, key) for key, name in names.items()})

@@ -129,12 +129,12 @@ def codes_of(name: str) -> tuple[str, str, str, str]:
 
 
 def location_code(value: str) -> str:
-    """Give the code of the location of a sensor; two hyphens or blanks mean none."""
+    """Return the code of the location of a sensor; two hyphens or blanks mean none."""
     return value.strip(" -")
 
 
 def metadata_of_codes(name: str) -> Metadata:
-    """Give the codes of a channel for the metadata."""
+    """Return the codes of a channel for the metadata."""
     keys = ("network", "station", "sensor_location")
     return {key: code for key, code in zip(keys, codes_of(name), strict=False) if code}
 

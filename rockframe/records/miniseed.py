@@ -132,7 +132,7 @@ def _check_pieces(source: Source) -> None:
 
 
 def _rate(factor: int, multiplier: int) -> float:
-    """Give the samples per second; negative numbers mean periods and divisors."""
+    """Return the samples per second; negative numbers mean periods and divisors."""
     over = float(factor) if factor >= 0 else -1.0 / factor
     if multiplier < 0:
         return -over / multiplier
@@ -288,7 +288,7 @@ def joined_traces(source: Source, traces: list[Any]) -> tuple[Array, float, str]
 def components_of_traces(
     source: Source, request: Request, traces: list[Any]
 ) -> list[FileComponent]:
-    """Give the channels of traces in memory as components."""
+    """Return the channels of traces in memory as components."""
     channels = by_channel(traces)
 
     def samples(name: str) -> Record:
@@ -309,7 +309,7 @@ def components_of_traces(
 
 
 def _stated_unit(stats: Mapping[str, Any]) -> str | None:
-    """Give the unit that gmprocess stores with a trace."""
+    """Return the unit that gmprocess stores with a trace."""
     standard = stats.get("standard")
     unit = cast("Mapping[str, Any]", standard).get("units") if hasattr(standard, "get") else None
     return unit if isinstance(unit, str) and unit else None

@@ -130,7 +130,7 @@ def one_number(text: str, source: Source, line: int) -> float:
 
 
 def last_fields(source: Source, first: int, count: int = _SAME_SHAPE + 1) -> list[str]:
-    """Give the last fields of a file, as printed."""
+    """Return the last fields of a file, as printed."""
     fields: list[str] = []
     for line in reversed(source.lines[first:]):
         fields = line.split()[-count:] + fields
@@ -217,7 +217,7 @@ class FixedWidth:
     indent: int = 0
 
     def rows(self, count: int) -> int:
-        """Give the number of lines for some numbers."""
+        """Return the number of lines for some numbers."""
         return -(-count // self.per_line)
 
     def read(self, source: Source, first: int, count: int) -> Array:
@@ -267,11 +267,11 @@ class Fields:
     first: int  # index of their first line, from 0
 
     def line(self, place: int) -> int:
-        """Give the line of a field, from 1."""
+        """Return the line of a field, from 1."""
         return self.first + (place - 1) // self.layout.per_line + 1
 
     def cell(self, place: int) -> str:
-        """Give a field without surrounding blanks; empty if the file ends before it."""
+        """Return a field without surrounding blanks; empty if the file ends before it."""
         row, column = divmod(place - 1, self.layout.per_line)
         if self.first + row >= len(self.source.lines):
             return ""
@@ -325,7 +325,7 @@ def same_start(one: object, other: object, time_step: float) -> bool:
 
 
 def epoch_seconds(time: object) -> float | None:
-    """Give the seconds from 1970 to a time in ISO 8601; None for other text."""
+    """Return the seconds from 1970 to a time in ISO 8601; None for other text."""
     try:
         moment = datetime.fromisoformat(str(time).strip())
     except ValueError:
@@ -335,7 +335,7 @@ def epoch_seconds(time: object) -> float | None:
 
 
 def time_after(time: object, seconds: float) -> str:
-    """Give the time some seconds after a time in ISO 8601, or after any text."""
+    """Return the time some seconds after a time in ISO 8601, or after any text."""
     text = str(time).strip()
     try:
         moved = datetime.fromisoformat(text) + timedelta(seconds=seconds)

@@ -245,7 +245,7 @@ def _known_from(fields: dict[str, str], source: Source, line: int) -> Known:
 
 
 def _filled(text: str) -> str:
-    """Give a field, empty if it has only hyphens."""
+    """Return a field, empty if it has only hyphens."""
     return text if text.strip("- ") else ""
 
 

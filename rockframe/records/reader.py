@@ -77,7 +77,7 @@ class Source:
         return _lines(self)
 
     def top(self, count: int, first: int = 0) -> list[str]:
-        """Give lines of a header, cut to `HEADER_WIDTH` characters.
+        """Return lines of a header, cut to `HEADER_WIDTH` characters.
 
         Parameters
         ----------
@@ -314,7 +314,7 @@ def begins_otherwise(source: Source, expected: str) -> RecordError:
 
 
 def base_name(path: str) -> str:
-    """Give the file name of a path with slashes or backslashes."""
+    """Return the file name of a path with slashes or backslashes."""
     return path.replace("\\", "/").rstrip("/").rsplit("/", 1)[-1]
 
 

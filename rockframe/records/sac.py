@@ -83,12 +83,12 @@ class _Header:
     text: bytes
 
     def known(self, place: int) -> float | None:
-        """Give a float, or None if it is not known."""
+        """Return a float, or None if it is not known."""
         value = float(self.floats[place])
         return None if not math.isfinite(value) or math.isclose(value, _UNKNOWN) else value
 
     def word(self, place: int, count: int = 1) -> str:
-        """Give a text of some words of 8 characters, up to its first zero; empty if unknown."""
+        """Return a text of some words of 8 characters, up to its first zero; empty if unknown."""
         data = self.text[8 * place : 8 * (place + count)].split(b"\x00")[0]
         text = "".join(c for c in data.decode("latin-1") if c.isprintable()).strip()
         return "" if set(text.split()) <= {str(_UNKNOWN)} else text

@@ -136,7 +136,7 @@ def _samples(source: Source, request: Request, kind: str, integers: Fields) -> R
 
 
 def _stated_peak(reals: Fields) -> list[Stated]:
-    """Give the larger of the peaks in reals 30 and 32."""
+    """Return the larger of the peaks in reals 30 and 32."""
     printed = [reals.cell(place) for place in _PEAKS]
     stated = [abs(float(with_e(text))) for text in printed if ONE_NUMBER.fullmatch(text)]
     known = [value for value in stated if value < _UNKNOWN_REAL / 10.0]

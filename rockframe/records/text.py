@@ -207,7 +207,7 @@ def _step_without_times(source: Source, request: Request, table: Table) -> float
 
 
 def _first_sample(source: Source, request: Request, table: Table) -> tuple[int, list[str]]:
-    """Give the row of the first sample, which may be below a time step, and warnings."""
+    """Return the row of the first sample, which may be below a time step, and warnings."""
     requested = request.time_step
     if requested is None or table.values.shape[1] > 1 or stated_step(table.header) is not None:
         return 0, []

@@ -300,12 +300,12 @@ def reading_order(values: Array) -> Literal["rows", "columns"] | None:
 
 
 def _share(part: Array, whole: Array) -> Array:
-    """Give the ratio of two arrays; zero where the denominator is zero."""
+    """Return the ratio of two arrays; zero where the denominator is zero."""
     return np.divide(part, whole, out=np.zeros_like(part), where=whole > 0.0)
 
 
 def _mean(values: Array) -> tuple[Array, Array]:
-    """Give the means of columns, and their ratios to the standard errors."""
+    """Return the means of columns, and their ratios to the standard errors."""
     pieces = np.array([piece.mean(axis=0) for piece in np.array_split(values, _PIECES)])
     mean = pieces.mean(axis=0)
     error = pieces.std(axis=0, ddof=1) / np.sqrt(_PIECES)

@@ -186,7 +186,7 @@ def _unit_row(table: Table, columns: int) -> list[str]:
 
 
 def time_scale(source: Source, table: Table, names: list[str]) -> float:
-    """Give the unit of the times in seconds."""
+    """Return the unit of the times in seconds."""
     name = names[0] if names else ""
     for unit in in_brackets(name)[:1]:
         if unit.casefold() not in TIME_UNITS:
@@ -229,7 +229,7 @@ def unit_of_header(
 
 
 def in_brackets(text: str) -> list[str]:
-    """Give the texts in brackets."""
+    """Return the texts in brackets."""
     return [name.strip() for name in _BRACKETED.findall(text)]
 
 

@@ -115,7 +115,7 @@ def _samples(source: Source, request: Request, header: Keys, place: int, values:
 
 
 def _list(header: Keys, start: str) -> list[tuple[str, int]]:
-    """Give the entries of a list, which may continue in a second line for channels 7 to 12."""
+    """Return the entries of a list, which may continue in a second line for channels 7 to 12."""
     entries: list[tuple[str, int]] = []
     for key, (text, line) in header.items():
         if key.startswith(start) and "MUESTRA" not in key.removeprefix(start):

@@ -100,7 +100,7 @@ def acceleration_unit(name: str) -> RecordUnit | None:
 
 
 def other_quantity(name: str) -> str | None:
-    """Give the other quantity of a unit name; None if it is unknown."""
+    """Return the other quantity of a unit name; None if it is unknown."""
     return OTHER_QUANTITIES.get(normalised(name))
 
 

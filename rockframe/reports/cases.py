@@ -70,7 +70,7 @@ class _Column:
 
 
 def case_tables(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
-    """Give a row for each case, or for the worst ones if there are too many, and the extremes."""
+    """Return a row for each case, or for the worst ones if there are too many, and the extremes."""
     count = dataset["status"].size
     order = np.arange(count)
     if count > MOST_ROWS:
@@ -94,7 +94,7 @@ def _sheets(columns: Iterable[_Column]) -> list[list[_Column]]:
 
 
 def _verdict(dataset: xr.Dataset, place: int) -> str:
-    """Give the verdict on a case, or the status of an unfinished run."""
+    """Return the verdict on a case, or the status of an unfinished run."""
     status = dataset["status"]
     one = status.isel(dict.fromkeys(status.dims, 0)).copy()
     one.values = status.to_numpy().ravel()[place]
@@ -112,7 +112,7 @@ def _table(
     *,
     with_verdict: bool,
 ) -> str:
-    """Give a table of columns, with their mean and largest values in the last rows."""
+    """Return a table of columns, with their mean and largest values in the last rows."""
     status = dataset["status"]
     rows = list[list[str]]()
     for place in order.tolist():
@@ -138,7 +138,7 @@ def _over_cases(over: Callable[..., Any], column: _Column, units: ReaderUnits) -
 
 
 def _columns(dataset: xr.Dataset, names: Sequence[str], units: ReaderUnits) -> Iterator[_Column]:
-    """Give the columns of the variables that any case has; one for each of several bodies."""
+    """Return the columns of the variables that any case has; one for each of several bodies."""
     status = dataset["status"]
     for name in names:
         if name not in dataset or not set(status.dims) & set(dataset[name].dims):
@@ -162,7 +162,7 @@ def _columns(dataset: xr.Dataset, names: Sequence[str], units: ReaderUnits) -> I
 
 
 def capacity_table(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
-    """Give a row for each capacity of a dynamic analysis, or for the least if there are many."""
+    """Return a row for each capacity of a dynamic analysis, or for the least if there are many."""
     name = _CAPACITY[0]
     if name not in dataset:
         return
@@ -194,7 +194,7 @@ def from_worst(dataset: xr.Dataset) -> np.ndarray:
 
 
 def labels_at(dataset: xr.Dataset, place: int, of: str = "status") -> dict[str, Any]:
-    """Give the labels of a value of a variable by its place; usually those of a case."""
+    """Return the labels of a value of a variable by its place; usually those of a case."""
     status = dataset[of]
     places = np.unravel_index(place, status.shape)
     return {str(dim): status[dim].to_numpy()[k].item() if dim in status.coords else int(k)

@@ -52,7 +52,7 @@ class CheckedLine:
     source: str
 
     def written(self, units: ReaderUnits | None = None) -> str:
-        """Give the number with its unit.
+        """Return the number with its unit.
 
         Parameters
         ----------
@@ -141,7 +141,7 @@ class CodeCheck:
     scene: str = ""
 
     def value(self, symbol: str) -> float:
-        """Give a number by its symbol.
+        """Return a number by its symbol.
 
         Parameters
         ----------
@@ -186,7 +186,7 @@ class CodeCheck:
         return card(escape(self.title), rows)
 
     def banners(self, units: ReaderUnits) -> Iterator[str]:
-        """Give each verdict with demand, capacity and clause, as pages show it.
+        """Return each verdict with demand, capacity and clause, as pages show it.
 
         Parameters
         ----------
@@ -204,7 +204,7 @@ class CodeCheck:
             yield page.banner(f"{one.title}: {text}", words, kind)
 
     def tables(self, units: ReaderUnits) -> Iterator[tuple[str, list[str]]]:
-        """Give titles and tables of the numbers, and of what is neglected, as pages show them.
+        """Return titles and tables of the numbers, and of what is neglected, as pages show them.
 
         Parameters
         ----------
@@ -275,7 +275,7 @@ class CodeCheck:
         return [page.paragraph(f"Checked: {words}.")] if words else []
 
     def section(self, units: ReaderUnits) -> str:
-        """Give its section of a larger page.
+        """Return its section of a larger page.
 
         Parameters
         ----------

@@ -108,7 +108,7 @@ GENERAL: Final = (
 
 
 def limits_of(parts: Parts | None, *, slides: bool = False) -> list[Limit]:
-    """Give the limits that concern a scene; all of them if its parts are not known.
+    """Return the limits that concern a scene; all of them if its parts are not known.
 
     Equations in which the block slides include its flight, too.
     """

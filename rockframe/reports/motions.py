@@ -73,7 +73,7 @@ def aim_of(value: object, motions: object, owner: str) -> Aim | None:
 
 
 def motions_of(dataset: xr.Dataset, value: object, owner: str) -> dict[str, GroundMotion]:
-    """Give the available motions of a study: those given, else those in the dataset or process."""
+    """Return available motions of a study: those given, else those in the dataset or process."""
     named = _named(value, owner)
     if "motions_json" not in dataset.attrs:
         return named
@@ -101,7 +101,7 @@ def _named(value: object, owner: str) -> dict[str, GroundMotion]:
 def spectra_section(
     motions: Mapping[str, GroundMotion], aim: Aim | None, units: ReaderUnits
 ) -> Iterator[str]:
-    """Give the spectra of motions with a target, and what is known of each motion."""
+    """Return the spectra of motions with a target, and what is known of each motion."""
     damping = 0.05 if aim is None else aim.target.damping_ratio
     if aim is not None:
         name = raised(units.of_sentence(aim.target.name))
@@ -146,7 +146,7 @@ def _of_the_mean(over: Numbers, periods: Numbers) -> str:
 def _records(
     motions: Mapping[str, GroundMotion], misfits: Numbers | None, units: ReaderUnits
 ) -> str:
-    """Give a table with a row for each motion, with what is known of its record."""
+    """Return a table with a row for each motion, with what is known of its record."""
     known = {
         name: values for name in OF_RECORDS
         if not all(map(_missing, values := [column(name, one) for one in motions.values()]))
@@ -161,7 +161,7 @@ def _records(
 
 
 def record_rows(motion: GroundMotion, units: ReaderUnits) -> list[tuple[str, str]]:
-    """Give what is known of the record of a motion, without its peak."""
+    """Return what is known of the record of a motion, without its peak."""
     found = ((name, column(name, motion)) for name in OF_RECORDS[:-1])
     return [
         (_head(name, units), _cell(name, value, units))
@@ -175,7 +175,7 @@ def _head(name: str, units: ReaderUnits) -> str:
 
 
 def _of(name: str, units: ReaderUnits) -> ReaderUnits:
-    """Give the units of a column: distances are in km, in whichever unit lengths are shown."""
+    """Return the units of a column: distances are in km, in whichever unit lengths are shown."""
     return _DISTANCES if SCHEMA[name].unit is Unit.METRE else units
 
 

@@ -75,7 +75,7 @@ td.value { white-space: normal; overflow-wrap: anywhere; min-width: 5.5rem; }
 
 
 def page(title: str, body: Iterable[str]) -> str:
-    """Give the whole page."""
+    """Return the whole page."""
     head = (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f"{generator('report', __version__)}\n"
@@ -87,28 +87,28 @@ def page(title: str, body: Iterable[str]) -> str:
 
 
 def section(title: str, pieces: Iterable[str]) -> str:
-    """Give a section with its heading."""
+    """Return a section with its heading."""
     return "\n".join([f"<section>\n<h2>{escape(title)}</h2>", *pieces, "</section>"])
 
 
 def subtitle(words: str) -> str:
-    """Give a heading inside a section."""
+    """Return a heading inside a section."""
     return f"<h3>{escape(words)}</h3>"
 
 
 def paragraph(words: str, *, kind: str = "") -> str:
-    """Give a paragraph, of a class of the style sheet."""
+    """Return a paragraph, of a class of the style sheet."""
     return f"<p{_class(kind)}>{escape(words)}</p>"
 
 
 def banner(title: str, words: str, kind: str) -> str:
-    """Give a verdict with its sentence; `kind` is good, bad or doubt."""
+    """Return a verdict with its sentence; `kind` is good, bad or doubt."""
     inner = f"<strong>{escape(title)}</strong>{escape(words)}"
     return f'<div class="verdict {kind}">{inner}</div>'
 
 
 def rows(values: Iterable[Sequence[str]], *, head: Sequence[str] = ()) -> str:
-    """Give a table; the second column holds values."""
+    """Return a table; the second column holds values."""
     lines = ['<div class="scroll"><table>']
     if head:
         names = "".join(f"<th>{escape(name)}</th>" for name in head)
@@ -125,7 +125,7 @@ def rows(values: Iterable[Sequence[str]], *, head: Sequence[str] = ()) -> str:
 
 
 def columns(values: Iterable[Sequence[str]], head: Sequence[str]) -> str:
-    """Give a table in which all columns but the first hold values."""
+    """Return a table in which all columns but the first hold values."""
     names = "".join(f"<th>{escape(name)}</th>" for name in head)
     lines = [f'<div class="scroll"><table class="many"><thead><tr>{names}</tr></thead><tbody>']
     for first, *others in values:
@@ -139,7 +139,7 @@ def columns(values: Iterable[Sequence[str]], head: Sequence[str]) -> str:
 
 
 def items(values: Iterable[str | tuple[str, str]]) -> str:
-    """Give a numbered list; of pairs, the first is a title."""
+    """Return a numbered list; of pairs, the first is a title."""
     inner = list[str]()
     for one in values:
         title, words = ("", one) if isinstance(one, str) else one
@@ -149,12 +149,12 @@ def items(values: Iterable[str | tuple[str, str]]) -> str:
 
 
 def verbatim(text: str) -> str:
-    """Give preformatted text."""
+    """Return preformatted text."""
     return f"<pre>{escape(text)}</pre>"
 
 
 def picture(drawn: Any, words: str) -> str:
-    """Give the figure of what was drawn with its caption, with the image inside the page."""
+    """Return the figure of what was drawn with its caption, with the image inside the page."""
     figure = figure_of(drawn)
     data, kind = _drawn(figure, "svg"), "svg+xml"
     if len(data) > LARGEST_DRAWING:
@@ -166,7 +166,7 @@ def picture(drawn: Any, words: str) -> str:
 
 
 def figure_of(drawn: Any) -> "Figure":
-    """Give the figure of what was drawn: itself, or that of an axes or of several."""
+    """Return the figure of what was drawn: itself, or that of an axes or of several."""
     while not hasattr(drawn, "savefig"):
         drawn = drawn.figure if hasattr(drawn, "figure") else next(iter(drawn))
     return cast("Figure", drawn)

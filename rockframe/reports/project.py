@@ -37,12 +37,12 @@ class Project:
     checks: tuple[str, ...] = ()
 
     def block(self) -> Iterator[str]:
-        """Give the lines at the head of a report."""
+        """Return the lines at the head of a report."""
         if self.lines:
             yield f'<div class="sheet">{page.rows(self.lines)}</div>'
 
     def conclusions(self) -> Iterator[str]:
-        """Give the conclusion, which precedes all verdicts."""
+        """Return the conclusion, which precedes all verdicts."""
         if self.conclusion:
             yield page.banner("Conclusion", self.conclusion, "")
 

@@ -72,7 +72,7 @@ _PROVENANCE: Final = (
 
 
 def outcome_of(dataset: xr.Dataset, units: ReaderUnits) -> str:
-    """Give the verdict; its title says whether the body slid."""
+    """Return the verdict; its title says whether the body slid."""
     title, kind = _BANNERS[verdict_of(dataset)]
     words = units.of_sentence(str(dataset.attrs.get("verdict", "")))
     slid = float(slips_of_cases(dataset)) >= LEAST_SLIP
@@ -84,7 +84,7 @@ def outcome_of(dataset: xr.Dataset, units: ReaderUnits) -> str:
 
 
 def verdict_section(dataset: xr.Dataset, reason: str, units: ReaderUnits) -> Iterator[str]:
-    """Give the verdict, its proof or certificate, and cautions."""
+    """Return the verdict, its proof or certificate, and cautions."""
     yield outcome_of(dataset, units)
     if "proof" in dataset.attrs:
         proved = bool(dataset["verdict_proved"])
@@ -106,7 +106,7 @@ def verdict_section(dataset: xr.Dataset, reason: str, units: ReaderUnits) -> Ite
 
 
 def scene_section(dataset: xr.Dataset, system: System | None, units: ReaderUnits) -> Iterator[str]:
-    """Give the parts with their parameters, and the model."""
+    """Return the parts with their parameters, and the model."""
     if system is not None:
         yield from _drawing(system, units)
         for part in system.parts.structural():
@@ -126,7 +126,7 @@ def scene_section(dataset: xr.Dataset, system: System | None, units: ReaderUnits
 def motion_section(
     dataset: xr.Dataset, found: GroundMotion | None, units: ReaderUnits, aim: Aim | None = None
 ) -> Iterator[str]:
-    """Give the motion, its measures and its figure, and its spectrum with a target."""
+    """Return the motion, its measures and its figure, and its spectrum with a target."""
     attributes = dict(dataset.attrs)
     if "motion" in attributes:
         attributes["motion"] = motion_words(attributes)
@@ -161,7 +161,7 @@ def motion_section(
 
 
 def response_section(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
-    """Give the scalars of a run, and figures of its histories."""
+    """Return the scalars of a run, and figures of its histories."""
     if dataset.sizes.get("time", 0) > 1 and {*RUN.known, *RUN.needed} <= {*dataset.variables}:
         angle = units.chosen.get(Unit.RADIAN)
         yield page.picture(
@@ -181,7 +181,7 @@ def response_section(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
 
 
 def _histories(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
-    """Give figures and extremes of forces, accelerations and other requested histories."""
+    """Return figures and extremes of forces, accelerations and other requested histories."""
     beside = [name for name in histories_of(dataset) if name not in _DRAWN]
     below = [name for name in beside if name not in SLIPS or not has_slid(dataset)]
     for start in range(0, len(below), _PANELS):
@@ -196,7 +196,7 @@ def _histories(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
 
 
 def limits_section(system: System | None, assumptions: Sequence[str] = ()) -> Iterator[str]:
-    """Give the assumptions, and what the model neglects."""
+    """Return the assumptions, and what the model neglects."""
     parts = None if system is None else system.parts
     slides = system is not None and system.setting.slides
     left_out = [(one.title, one.words) for one in limits_of(parts, slides=slides)]
@@ -208,7 +208,7 @@ def limits_section(system: System | None, assumptions: Sequence[str] = ()) -> It
 
 
 def provenance_section(dataset: xr.Dataset, file: str) -> Iterator[str]:
-    """Give the provenance of the numbers, from which they can be computed again."""
+    """Return the provenance of the numbers, from which they can be computed again."""
     attributes = dataset.attrs
     pairs = [(words, str(attributes[name])) for name, words in _PROVENANCE if name in attributes]
     versions = ", ".join(f"{name} {version(name)}" for name in _LIBRARIES)
@@ -233,7 +233,7 @@ def _drawing(system: System, units: ReaderUnits) -> Iterator[str]:
 
 
 def _part(title: str, part: Component, units: ReaderUnits) -> Iterator[str]:
-    """Give a part with its parameters, and the parts of which it consists."""
+    """Return a part with its parameters, and the parts of which it consists."""
     yield page.subtitle(title)
     yield page.rows(_parameters(part, units))
     described: dict[str, Any] = dict(part.to_dict())
@@ -248,12 +248,12 @@ def _part(title: str, part: Component, units: ReaderUnits) -> Iterator[str]:
 
 
 def _made_of(value: object) -> list[Any]:
-    """Give the descriptions of parts in an argument of a part."""
+    """Return the descriptions of parts in an argument of a part."""
     return [one for one in value if isinstance(one, dict)] if isinstance(value, list) else []
 
 
 def _parameters(part: Component, units: ReaderUnits) -> list[tuple[str, str, str]]:
-    """Give the parameters of a part as they were given, with their meanings."""
+    """Return the parameters of a part as they were given, with their meanings."""
     declared = part.declared()
     return [
         (

@@ -28,7 +28,7 @@ from rockframe.units.shown import ReaderUnits, raised
 def verdict_sections(
     dataset: xr.Dataset, about: Project, units: ReaderUnits, by_codes: Sequence[str] = ()
 ) -> Iterator[str]:
-    """Give the verdicts of the cases and of codes, the figure, and the numbers."""
+    """Return the verdicts of the cases and of codes, the figure, and the numbers."""
     sentence = cases_verdict(dataset)
     verdict = [*about.conclusions()]
     if sentence:
@@ -99,7 +99,7 @@ def run_of_case(dataset: xr.Dataset, motions: Any) -> xr.Dataset:
 
 
 def under(system: System, motion: GroundMotion) -> System:
-    """Give a system with a motion of its own."""
+    """Return a system with a motion of its own."""
     options: dict[str, Any] = dict(system.options.to_dict())
     return System(*system.parts.structural(), motion, **options)
 
@@ -147,7 +147,7 @@ def _figure(dataset: xr.Dataset, units: ReaderUnits) -> str:
 
 
 def _of_limit_states(dataset: xr.Dataset, units: ReaderUnits) -> list[str]:
-    """Give all numbers of a fragility: a row for each, with a column for each limit state."""
+    """Return all numbers of a fragility: a row for each, with a column for each limit state."""
     dim = "limit_state"
     if dim not in dataset.dims:
         return []

@@ -49,7 +49,7 @@ def column_head(name: str, unit: str, units: ReaderUnits) -> str:
 def table_of(
     dataset: xr.Dataset, names: list[str] | None = None, units: ReaderUnits | None = None
 ) -> list[tuple[str, str]]:
-    """Give the meaning and the value of scalars."""
+    """Return the meaning and the value of scalars."""
     chosen = [str(name) for name in dataset.data_vars] if names is None else names
     return [
         (
@@ -64,7 +64,7 @@ def table_of(
 def extremes_of(
     dataset: xr.Dataset, names: Iterable[str], units: ReaderUnits
 ) -> list[tuple[str, str, str, str]]:
-    """Give the name, unit, least and largest value of histories, at each of several points."""
+    """Return the name, unit, least and largest value of histories, at each of several points."""
     found = list[tuple[str, str, str, str]]()
     for name in names:
         values = dataset[name]

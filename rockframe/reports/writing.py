@@ -208,7 +208,7 @@ def _of_run(
     units: ReaderUnits,
     aim: Aim | None = None,
 ) -> list[str]:
-    """Give the sections on a run that follow its verdict."""
+    """Return the sections on a run that follow its verdict."""
     motion = None if system is None else system.motion
     return [
         page.section("Response", sections.response_section(dataset, units)),
@@ -221,7 +221,7 @@ def _of_run(
 def _of_study(
     dataset: xr.Dataset, motions: Mapping[str, GroundMotion], about: Project, units: ReaderUnits
 ) -> list[str]:
-    """Give the sections on a study that follow its motions: its worst case, or its scene."""
+    """Return the sections on a study that follow its motions: its worst case, or its scene."""
     words, worst = studies.worst_case(dataset, motions, units)
     if worst is not None:
         run, system = worst
@@ -258,7 +258,7 @@ def _is_run(dataset: xr.Dataset) -> bool:
 
 
 def _system_of(dataset: xr.Dataset, motion: GroundMotion | None) -> System | None:
-    """Give the system of a result with its motion; None if the result does not describe it."""
+    """Return the system of a result with its motion; None if the result does not describe it."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RecordWarning)  # the page mentions them

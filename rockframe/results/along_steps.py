@@ -47,11 +47,11 @@ class AlongSteps:
     inside: Callable[[Integers], Values]
 
     def largest(self, quantity: Callable[[Values], Array]) -> tuple[Array, Array]:
-        """Give the peaks of the rows of a quantity, and their times [s]."""
+        """Return the peaks of the rows of a quantity, and their times [s]."""
         return self.each_largest(quantity)[0]
 
     def each_largest(self, *quantities: Callable[[Values], Array]) -> list[tuple[Array, Array]]:
-        """Give the peaks of the rows of each of several quantities, and their times [s]."""
+        """Return the peaks of the rows of each of several quantities, and their times [s]."""
         shown = [quantity(self.shown) for quantity in quantities]
         if len(self.steps.time) < 2:  # no step was made
             return [(np.zeros(len(one)), np.full(len(one), np.nan)) for one in shown]
@@ -66,7 +66,7 @@ class AlongSteps:
     def _peaks(
         self, shown: Array, which: Integers, inside: Array, place: Integers
     ) -> tuple[Array, Array]:
-        """Give the peaks of rows in the steps `which`, evaluated inside at `place` of `inside`."""
+        """Return peaks of rows in the steps `which`, evaluated inside at `place` of `inside`."""
         inner = inside.reshape(len(shown), -1, len(FRACTIONS))[:, place]
         both_ends = shown[:, which - 1, None], shown[:, which, None]
         known = np.concatenate([both_ends[0], inner, both_ends[1]], axis=-1)
@@ -77,7 +77,7 @@ class AlongSteps:
         return peak[row, best], time
 
     def above(self, quantity: Callable[[Values], Array], level: float) -> tuple[float, float]:
-        """Give since when and for how long in all a quantity is above a level; NaN, 0 if never."""
+        """Return since when and how long in all a quantity is above a level; NaN, 0 if never."""
         shown = quantity(self.shown)
         beyond = np.maximum(shown[:-1], shown[1:]) > level
         which = 1 + np.flatnonzero(beyond & (self.steps.length[1:] > 0.0))
@@ -106,13 +106,13 @@ class AlongSteps:
 
 @inlined
 def greater(a: float, b: float) -> float:
-    """Give the greater of two numbers, ignoring NaN."""
+    """Return the greater of two numbers, ignoring NaN."""
     return a if a >= b or b != b else b
 
 
 @inlined
 def slope_in(shown: Matrix, row: int, i: int, per_length: Vector) -> float:
-    """Give the mean slope of a row in the step that ends at `i`; NaN where steps begin anew."""
+    """Return the mean slope of a row in the step that ends at `i`; NaN where steps begin anew."""
     if i == len(per_length):
         return math.nan
     return (shown[row, i] - shown[row, i - 1]) * per_length[i]
@@ -146,7 +146,7 @@ def _largest(promise: Array, top: float) -> Integers:
 
 
 def _tops(known: Array) -> tuple[Array, Array]:
-    """Give the maximum of each row of values, and its place: by a parabola where that fits.
+    """Return the maximum of each row of values, and its place: by a parabola where that fits.
 
     It does not where the second differences beside a maximum differ much from the one at it: there
     is a kink, as where a base begins to press.

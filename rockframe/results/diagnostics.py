@@ -78,7 +78,7 @@ class Diagnostic:
         )
 
     def of(self, state: State) -> Array:
-        """Give its values at some instants.
+        """Return its values at some instants.
 
         Parameters
         ----------

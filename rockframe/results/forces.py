@@ -33,7 +33,7 @@ the square root of h/g, h the height of the centre of mass."""
 
 
 def force_histories(values: Values, ground: Array, load: BaseLoad) -> dict[str, Generic]:
-    """Give absolute accelerations, :eq:`eq-base-moment`, and the friction demand."""
+    """Return absolute accelerations, :eq:`eq-base-moment`, and the friction demand."""
     small = load.options.small
     on_base = next((values[name] for name in ON_BASE if name in values), values["rotation"])
     sine, cosine = sines_cosines(on_base, small=small)
@@ -46,7 +46,7 @@ def force_histories(values: Values, ground: Array, load: BaseLoad) -> dict[str, 
 
 
 def friction_demands(values: Values, load: BaseLoad) -> dict[str, Generic]:
-    """Give the friction demand of the bases, by their names in the schema."""
+    """Return the friction demand of the bases, by their names in the schema."""
     least = NO_FORCE * load.weight
     found: dict[str, Generic] = {
         "friction_demand": friction_demand(
@@ -61,7 +61,7 @@ def friction_demands(values: Values, load: BaseLoad) -> dict[str, Generic]:
 
 
 def friction_demand(thrust: Array, press: Array, least: float) -> Array:
-    """Give the coefficient of friction that holds a body, :eq:`eq-friction-demand`.
+    """Return the coefficient of friction that holds a body, :eq:`eq-friction-demand`.
 
     A thrust or a pressing force up to `least` counts as zero.
     """
@@ -83,7 +83,7 @@ class EventStates:
     after: Values
 
     def those(self, kept: NDArray[np.bool_]) -> "EventStates":
-        """Give some of the events."""
+        """Return some of the events."""
         before, after = (
             {name: values[kept] for name, values in side.items()}
             for side in (self.before, self.after)
@@ -91,7 +91,7 @@ class EventStates:
         return EventStates(self.time[kept], self.is_impact[kept], before, after)
 
     def impulses(self, mass: float) -> dict[str, Generic]:
-        """Give the impulses of the base on the body at the events [N s].
+        """Return the impulses of the base on the body at the events [N s].
 
         Their ratio at an impact on rigid ground is :eq:`eq-impact-friction`.
         """
@@ -103,7 +103,7 @@ class EventStates:
         return found
 
     def impulses_on_base(self, load: BaseLoad) -> tuple[Array, Array]:
-        """Give the impulses along and normal to what the base stands on, which may lean [N s]."""
+        """Return the impulses along and normal to what the base stands on, which may lean [N s]."""
         found = self.impulses(load.body.mass)
         across, up = found["event_horizontal_impulse"], found["event_vertical_impulse"]
         if "vertical_velocity_on_base" in self.after:  # under a second stage nothing leans
@@ -119,7 +119,7 @@ class EventStates:
 def peaks_along(
     along: AlongSteps, events: EventStates, load: BaseLoad
 ) -> tuple[dict[str, float], dict[str, float]]:
-    """Give peaks of forces with times and durations, and the peak settlement, by their names."""
+    """Return peaks of forces with times and durations, and the peak settlement, by their names."""
     ((shear, most), (_, when)), ((deepest,), _) = along.each_largest(
         lambda values: np.stack([np.abs(values["base_shear"]), values["friction_demand"]]),
         lambda values: _settlement(values, load)[None],
@@ -139,7 +139,7 @@ def peaks_along(
 
 
 def residuals(last: Values, load: BaseLoad) -> dict[str, float]:
-    """Give residual rotation, settlement and displacement, by their names in the schema."""
+    """Return residual rotation, settlement and displacement, by their names in the schema."""
     left = {
         "residual_rotation": float(last["rotation"][0]),
         "residual_settlement": float(_settlement(last, load)[0]),
@@ -150,6 +150,6 @@ def residuals(last: Values, load: BaseLoad) -> dict[str, float]:
 
 
 def _settlement(values: Values, load: BaseLoad) -> Array:
-    """Give how much lower than at rest the middle of the base is, :eq:`eq-settlement`."""
+    """Return how much lower than at rest the middle of the base is, :eq:`eq-settlement`."""
     small = load.options.small
     return load.body.sunk(values["rotation"], values["vertical_displacement"], small=small)

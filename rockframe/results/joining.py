@@ -193,7 +193,7 @@ def _with_all_places(rows: Sequence[xr.Dataset], dim: str) -> list[xr.Dataset]:
 
 
 def _type_flags(joined: xr.Dataset) -> None:
-    """Give `flag_values` the type of their variables, which missing runs have made floats."""
+    """Return `flag_values` the type of their variables, which missing runs have made floats."""
     for name, values in [*joined.data_vars.items()]:
         if "flag_values" in values.attrs and values.dtype.kind == "f":
             flags = np.asarray(values.attrs["flag_values"], np.float64)
@@ -220,7 +220,7 @@ def _with_motions(rows: Sequence[xr.Dataset], dim: str) -> list[xr.Dataset]:
 
 
 def _shared(values: Sequence[Mapping[Any, Any]], context: object = None) -> dict[Any, Any]:
-    """Give the attributes that are equal in all runs, without those of the outcome of one run."""
+    """Return the attributes that are equal in all runs, without those of the outcome of one run."""
     del context
     first, *others = values
     return {
@@ -240,7 +240,7 @@ _ALIKE: Final = (
 
 
 def _as_one_sweep(values: Sequence[xr.Dataset], dim: str, joined: xr.Dataset) -> dict[str, Any]:
-    """Give the attributes of one sweep to sweeps that differ only along `dim`; else none."""
+    """Return the attributes of one sweep to sweeps that differ only along `dim`; else none."""
     attributes = [run.attrs for run in values]
     if not all(name in one for one in attributes for name in _OF_A_SWEEP):
         return {}

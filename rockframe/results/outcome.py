@@ -50,7 +50,7 @@ Values = Mapping[str, "Generic | float | int | bool"]
 
 
 def peak_share(run: Summary, angles: OverturningAngles) -> float:
-    """Give the largest ratio of a peak rotation to the overturning angle of its side and body."""
+    """Return the largest ratio of a peak rotation to the overturning angle of its side and body."""
     own = largest(run.peak_right / angles.right, run.peak_left / angles.left)
     return largest(own, run.other_share)
 
@@ -58,7 +58,7 @@ def peak_share(run: Summary, angles: OverturningAngles) -> float:
 def body_histories(
     model: ContactModel, run: Trajectory, values: Mapping[str, Generic]
 ) -> dict[str, Generic]:
-    """Give histories, those of all bodies and of all restrainers stacked in one array each."""
+    """Return histories, those of all bodies and of all restrainers stacked in one array each."""
     kept = {name: each for name, each in values.items() if name in SCHEMA}
     if model.links:
         links = range(model.links)
@@ -82,7 +82,7 @@ def body_histories(
 
 
 def broken_links(model: ContactModel, ending: Ending) -> list[int]:
-    """Give the numbers of the restrainers that are broken at the end of a run, from 0."""
+    """Return the numbers of the restrainers that are broken at the end of a run, from 0."""
     system = cast("Any", model.system)
     rows = [system.row_of_link(i) for i in range(model.links)]
     return [
@@ -91,7 +91,7 @@ def broken_links(model: ContactModel, ending: Ending) -> list[int]:
 
 
 def relative_histories(values: Mapping[str, Generic], setting: Setting) -> dict[str, Generic]:
-    """Give the rotation over the overturning angle, and vertical displacement over settlement."""
+    """Return the rotation over the overturning angle, and vertical displacement over settlement."""
     left, right = setting.overturning_angles
     rotation = values["rotation"]
     limit = np.where(rotation < 0.0, left, right) if left != right else left
@@ -104,7 +104,7 @@ def relative_histories(values: Mapping[str, Generic], setting: Setting) -> dict[
 
 
 def ground_histories(ground: Array, *, has_vertical_motion: bool) -> dict[str, Generic]:
-    """Give the ground acceleration at the output times."""
+    """Return the ground acceleration at the output times."""
     values: dict[str, Generic] = {"ground_acceleration": ground[:, 0].copy()}
     if has_vertical_motion:
         values["vertical_ground_acceleration"] = ground[:, 1].copy()
@@ -112,7 +112,7 @@ def ground_histories(ground: Array, *, has_vertical_motion: bool) -> dict[str, G
 
 
 def sines_cosines(rotation: Array, *, small: bool) -> tuple[Array, Array]:
-    """Give the sine and cosine of rotations, or their small-rotation forms."""
+    """Return the sine and cosine of rotations, or their small-rotation forms."""
     if small:
         return rotation, np.ones_like(rotation)
     return np.sin(rotation), np.cos(rotation)
@@ -121,7 +121,7 @@ def sines_cosines(rotation: Array, *, small: bool) -> tuple[Array, Array]:
 def cap_histories(
     values: Mapping[str, Generic], setting: Setting, offset: float
 ) -> dict[str, Generic]:
-    """Give the motion of a cap that is a part of the body, :eq:`eq-carried`."""
+    """Return the motion of a cap that is a part of the body, :eq:`eq-carried`."""
     rotation = values["rotation"]
     small, beside = setting.options.small, setting.body.eccentricity
     sine, cosine = sines_cosines(rotation, small=small)
@@ -143,7 +143,7 @@ def cap_histories(
 def energy_histories(
     model: ContactModel, run: Trajectory, displacement: Array, slope: Slope
 ) -> dict[str, Generic]:
-    """Give the energies at the output times by their names in the schema [J].
+    """Return the energies at the output times by their names in the schema [J].
 
     The work of gravity along an inclined base, by the displacement along it, counts as potential
     energy, and not as input, :eq:`eq-incline-energy`.
@@ -169,7 +169,7 @@ def energy_histories(
 
 
 def event_columns(model: ContactModel, run: Trajectory) -> dict[str, Generic]:
-    """Give the table of events by its names in the schema."""
+    """Return the table of events by its names in the schema."""
     events, size, weights = run.events, len(model.rotation_weights), model.rotation_weights
     shown = events.kind != SILENT
     contacts: dict[str, Generic] = {
@@ -198,7 +198,7 @@ def event_columns(model: ContactModel, run: Trajectory) -> dict[str, Generic]:
 def scalars(
     run: Summary, setting: Setting, *, uplift_angle: float
 ) -> dict[str, Generic | float | int | bool]:
-    """Give the scalars of a run by their names in the schema, also those of each body."""
+    """Return the scalars of a run by their names in the schema, also those of each body."""
     angles = setting.overturning_angles
     # peaks of a body that did not move have no negative zeros
     sides: dict[str, Generic | float] = {}
@@ -235,19 +235,19 @@ def scalars(
 
 
 def overturns(runs: xr.Dataset) -> xr.DataArray:
-    """Give the verdicts of runs, from their status: 1 for overturned, 0 for not, NaN for none."""
+    """Return the verdicts of runs, from their status: 1 for overturned, 0 for not, NaN for none."""
     status = runs["status"]
     return status.copy(data=overturned_by(status.to_numpy()), deep=False).drop_attrs()
 
 
 def verdict_of(run: xr.Dataset) -> bool | None:
-    """Give the verdict of one run, see :func:`overturns`; None if it has none."""
+    """Return the verdict of one run, see :func:`overturns`; None if it has none."""
     found = float(overturns(run))
     return None if math.isnan(found) else bool(found)
 
 
 def overturned_by(status: Generic) -> Array:
-    """Give the verdicts of statuses: 1, 0, or NaN where there is none."""
+    """Return the verdicts of statuses: 1, 0, or NaN where there is none."""
     found = np.full(np.shape(status), np.nan)
     for one in Status:
         if one.overturned is not None:
@@ -346,7 +346,7 @@ OF_WHAT_IT_STANDS_ON = ("cap_acceleration",)
 
 
 def slope_attributes(slope: Slope) -> dict[str, str]:
-    """Give the attributes of a result that describe its axes."""
+    """Return the attributes of a result that describe its axes."""
     axes = "horizontal and vertical"
     if not slope.level:
         side = "right" if slope.inclination > 0.0 else "left"
@@ -359,7 +359,7 @@ def slope_attributes(slope: Slope) -> dict[str, str]:
 
 
 def ground_on_slope(ground: Array, slope: Slope) -> tuple[Array, Array]:
-    """Give the ground's acceleration along and normal to the base, without and with gravity."""
+    """Return the ground's acceleration along and normal to the base, without and with gravity."""
     if slope.level:
         return ground, ground
     moved = np.column_stack(slope.turned(ground[:, 0], ground[:, 1]))
@@ -375,7 +375,7 @@ def without_gravity(shown: Mapping[str, Generic], slope: Slope) -> dict[str, Gen
 
 
 def _of_carrier(model: ContactModel, run: Trajectory) -> Array | float:
-    """Give what a lower body adds to the displacement, weighted by mass, in the work of gravity."""
+    """Return what a lower body adds to the mass-weighted displacement in the work of gravity."""
     from rockframe.dynamics.cascade.system import Cascade
     from rockframe.dynamics.coupled.system import Coupled
     from rockframe.dynamics.stacked import LOWER

@@ -28,7 +28,7 @@ class BodyPoint:
 def rotated_points(
     right: Array, up: Array, rotation: Array, *, small_rotation: bool
 ) -> tuple[Array, Array]:
-    """Give the displacements of points in a rotation about the origin, :eq:`eq-point-motion`."""
+    """Return the displacements of points in a rotation about the origin, :eq:`eq-point-motion`."""
     if small_rotation:
         half = 0.5 * rotation
         return up * rotation, -right * rotation - up * (2.0 * half * half)
@@ -39,7 +39,7 @@ def rotated_points(
 
 
 def point_labels(points: Sequence[BodyPoint]) -> dict[str, Generic]:
-    """Give names and places of points, by their names in the schema."""
+    """Return names and places of points, by their names in the schema."""
     return {
         "point": np.array([point.name for point in points]),
         "point_x": np.array([point.x for point in points]),
@@ -50,7 +50,7 @@ def point_labels(points: Sequence[BodyPoint]) -> dict[str, Generic]:
 def point_histories(
     points: Sequence[BodyPoint], values: Mapping[str, Generic], load: BaseLoad
 ) -> dict[str, Generic]:
-    """Give displacements and absolute accelerations of points."""
+    """Return displacements and absolute accelerations of points."""
     rotation, rate = values["rotation"], values["angular_velocity"]
     angular = values["angular_acceleration"]
     body, small = load.body, load.options.small
@@ -79,7 +79,7 @@ def point_histories(
 def point_peaks(
     points: Sequence[BodyPoint], along: AlongSteps, load: BaseLoad
 ) -> dict[str, Generic]:
-    """Give peaks of displacements and absolute accelerations of points."""
+    """Return peaks of displacements and absolute accelerations of points."""
 
     def sizes(values: Mapping[str, Generic]) -> Array:
         return np.abs(np.concatenate([*point_histories(points, values, load).values()]))
@@ -92,7 +92,7 @@ def point_peaks(
 
 
 def _ends(state: float) -> tuple[bool, bool]:
-    """Give whether the left and whether the right end bears in a contact state."""
+    """Return whether the left and whether the right end bears in a contact state."""
     full = state == ContactState.FULL
     return full or state == ContactState.LEFT, full or state == ContactState.RIGHT
 
@@ -119,7 +119,7 @@ class Placement:
     contacts: Array | None = None  # contact state of each body of a stack; None at rest
 
     def block(self, points: Array) -> Array:
-        """Give where points of the block are, or of anything that is one body with it."""
+        """Return where points of the block are, or of anything that is one body with it."""
         values = self.values
         if self.geometry.columns:
             return self._about_corner(points)
@@ -127,7 +127,7 @@ class Placement:
         return self._moved(points, self.geometry.moved, values["rotation"], moves)
 
     def _about_corner(self, points: Array) -> Array:
-        """Give where points of a column are, as if it stood in the middle of the frame.
+        """Return where points of a column are, as if it stood in the middle of the frame.
 
         Points above the column belong to the beam, which moves with the upper corner that bears it.
         """
@@ -142,17 +142,17 @@ class Placement:
         return points + np.column_stack(moves)
 
     def beam(self, points: Array) -> Array:
-        """Give where points of the beam on the columns are."""
+        """Return where points of the beam on the columns are."""
         above = np.array([(0.0, 2.0 * self.geometry.height)])
         return points + self._about_corner(above) - above
 
     def lower(self, k: int, points: Array) -> Array:
-        """Give where points of a body of a stack are, the `k`-th beneath the block."""
+        """Return where points of a body of a stack are, the `k`-th beneath the block."""
         rotation, right, up = np.zeros(3) if self.bodies is None else self.bodies[k + 1]
         return self._moved(points, self.geometry.lower[k].centre, float(rotation), (right, up))
 
     def cap(self, points: Array) -> Array:
-        """Give where points of the cap are, as :meth:`block` does."""
+        """Return where points of the cap are, as :meth:`block` does."""
         if not self.geometry.stacked or self.geometry.cap is None:
             return self.block(points)
         half_width, height = self.geometry.cap
@@ -175,17 +175,17 @@ class Placement:
         return self.values.get("cap_rotation", 0.0) if self.geometry.stacked else 0.0
 
     def bearing(self, name: str = "contact_state") -> tuple[bool, bool]:
-        """Give whether the left and whether the right end of a base bears."""
+        """Return whether the left and whether the right end of a base bears."""
         return _ends(self.values.get(name, float(ContactState.FULL)))
 
     def bearing_of(self, body: int) -> tuple[bool, bool]:
-        """Give the same for the base of a body of a stack, counted from 0 at the top."""
+        """Return the same for the base of a body of a stack, counted from 0 at the top."""
         if not self.geometry.lower:
             return self.bearing()
         return _ends(ContactState.FULL if self.contacts is None else self.contacts[body])
 
     def _held_side(self, rotation: float) -> float:
-        """Give -1, 0 or 1 for the left end, the middle or the right end of the cap's base."""
+        """Return -1, 0 or 1 for the left end, the middle or the right end of the cap's base."""
         left, right = self.bearing("soil_contact_state")
         if not (left or right):
             return 0.0

@@ -69,7 +69,7 @@ SCHEMA: Final = {row.name: row for table in _TABLES for row in table}
 
 
 def schema_row(name: str) -> Variable:
-    """Give the row of a variable."""
+    """Return the row of a variable."""
     row = SCHEMA.get(name)
     if row is None:
         msg = f"{name!r} is not in the schema of results"
@@ -167,7 +167,7 @@ def without_fill_values(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def fitting(values: Mapping[str, Any], sizes: Mapping[str, int]) -> dict[str, NDArray[Any]]:
-    """Give the results of users' functions as arrays; refuse shapes that differ from the schema."""
+    """Return results of users' functions as arrays; refuse shapes that differ from the schema."""
     sizes, found = dict(sizes), {name: np.asarray(value) for name, value in values.items()}
     for name, data in found.items():
         dims = schema_row(name).dims
@@ -179,6 +179,6 @@ def fitting(values: Mapping[str, Any], sizes: Mapping[str, int]) -> dict[str, ND
 
 
 def dated(done: str) -> str:
-    """Give a line for a dataset's history: when something was done, and by which version."""
+    """Return a line for a dataset's history: when something was done, and by which version."""
     now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
     return f"{now} {done} by rockframe {__version__}"

@@ -159,7 +159,7 @@ def _keys(runs: Mapping[Any, xr.Dataset]) -> pd.Index:
 
 
 def _labels(runs: Sequence[xr.Dataset]) -> pd.Index:
-    """Give index labels of runs: motions, scalar coordinates and, if these repeat, their number."""
+    """Return index labels of runs: motions, scalar coordinates and, if these repeat, a number."""
     levels: dict[str, list[Any]] = {}
     motions = [run.attrs.get(MOTION) for run in runs]
     if all(isinstance(name, str) for name in motions) and MOTION not in runs[0].coords:
@@ -176,7 +176,7 @@ def _labels(runs: Sequence[xr.Dataset]) -> pd.Index:
 
 
 def _rows(run: xr.Dataset, kind: Contents) -> pd.DataFrame:
-    """Give the rows of a dataset, without the labels that all of them share."""
+    """Return the rows of a dataset, without the labels that all of them share."""
     names = _names(run, kind)
     if not names:
         msg = f"{_OWNER}: the dataset holds no {kind}; {_MISSING[kind]}"
@@ -208,7 +208,7 @@ def _together(run: xr.Dataset, names: Sequence[str]) -> list[list[str]]:
 
 
 def _rows_of(run: xr.Dataset, kind: Contents, names: list[str]) -> pd.DataFrame:
-    """Give the rows of a group of variables."""
+    """Return the rows of a group of variables."""
     dims = _dimensions(run, names)
     variables = run.variables
     if not dims:
@@ -251,7 +251,7 @@ def _names(run: xr.Dataset, kind: Contents) -> list[str]:
 
 
 def _dimensions(run: xr.Dataset, names: Sequence[str]) -> tuple[Hashable, ...]:
-    """Give the dimensions of variables, those of time and events last."""
+    """Return the dimensions of variables, those of time and events last."""
     dims = dict.fromkeys(dim for name in names for dim in run.variables[name].dims)
     return tuple(sorted(dims, key=lambda dim: dim in (*TIME, *EVENT)))
 
@@ -261,17 +261,17 @@ def _head(name: Hashable, values: xr.Variable) -> str:
 
 
 def head_of(name: str) -> str:
-    """Give the head of the column of a variable of the schema."""
+    """Return the head of the column of a variable of the schema."""
     return head(name, SCHEMA[name].attributes().get("units", Unit.ONE))
 
 
 def head(name: str, unit: object) -> str:
-    """Give the head of a column: its name, and its unit where that is not 1."""
+    """Return the head of a column: its name, and its unit where that is not 1."""
     return name if unit == Unit.ONE else f"{name} [{unit}]"
 
 
 def _in_words(column: Any, values: xr.Variable) -> pd.Series:
-    """Give flags as words, and truth values with gaps as nullable booleans."""
+    """Return flags as words, and truth values with gaps as nullable booleans."""
     words = words_of_flags(values.attrs)
     if values.dtype == bool or not words:
         return column

@@ -121,7 +121,7 @@ class Tried:
 
 
 def motions_with(record: NamedRecord | None) -> dict[str, str]:
-    """Give the motions of the page; the record, if there is one, comes first."""
+    """Return the motions of the page; the record, if there is one, comes first."""
     own = {} if record is None else {RECORD: f"Record: {record.motion.name}"}
     return {**own, **PULSES, EXAMPLE: "Example record (Loma Prieta 1989)"}
 

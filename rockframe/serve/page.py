@@ -27,7 +27,7 @@ class ToldOutcome:
 
 
 def trial_page(choice: Tried, motions: Mapping[str, str], outcome: str) -> str:
-    """Give the whole page."""
+    """Return the whole page."""
     groups = [
         _group("Body", "", _numbers(choice, "", without=("scale",))),
         _group("Base", "", [_choices("base", BASES, choice.base)]),
@@ -52,7 +52,7 @@ def trial_page(choice: Tried, motions: Mapping[str, str], outcome: str) -> str:
 
 
 def told(outcome: ToldOutcome, query: Mapping[str, str]) -> str:
-    """Give the part of the page with the outcome of a run."""
+    """Return the part of the page with the outcome of a run."""
     address = escape(urlencode(query))
     cautions = "".join(banner("To be used with care", one, "doubt") for one in outcome.warnings)
     return (
@@ -67,7 +67,7 @@ def told(outcome: ToldOutcome, query: Mapping[str, str]) -> str:
 
 
 def refused(faults: Sequence[str]) -> str:
-    """Give the part of the page with faults."""
+    """Return the part of the page with faults."""
     lines = "".join(f"<li>{escape(one)}</li>" for one in faults)
     return f'<div class="verdict doubt" role="alert"><strong>Not run</strong><ul>{lines}</ul></div>'
 

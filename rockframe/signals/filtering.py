@@ -131,7 +131,7 @@ def _follow(steps: _Steps, period: float, damping: float, state: Array, greatest
 
 
 def _states(steps: _Steps, period: float, damping: float, state: Array) -> Array:
-    """Give u, V and W at starts and ends of steps, shape (3, 2, n); update `state` (SI)."""
+    """Return u, V and W at starts and ends of steps, shape (3, 2, n); update `state` (SI)."""
     length = steps.length
     kappa = 2.0 * np.pi * length / period
     step = np.empty((2, 2 + steps.pieces.shape[1]))
@@ -158,7 +158,7 @@ def _march(step: Array, driven: Array, start: Array) -> Array:
 
 
 def _peak(value: Array, slope: Array, bend: Array) -> float:
-    """Give the greatest absolute value in all steps, from arrays of shape (2, n)."""
+    """Return the greatest absolute value in all steps, from arrays of shape (2, n)."""
     peak = float(np.abs(value).max())
     turns = (slope[0] * slope[1] < 0.0) & (bound_of(value[1], slope[1], *bend) > peak)
     inside = np.abs(_turning(value[:, turns], slope[:, turns], bend[:, turns]))

@@ -26,13 +26,13 @@ from rockframe.signals.spectra import spectral_peaks
 
 
 def ground_path(signal: Signal) -> tuple[Array, Array]:
-    """Give velocity and displacement of ground that starts from rest, polynomials [m s^-1], [m]."""
+    """Return velocity and displacement of ground from rest, as polynomials [m s^-1], [m]."""
     velocity = integral_of(signal.pieces, signal.time_step)
     return velocity, integral_of(velocity, signal.time_step)
 
 
 def arias_history(signal: Signal, gravity: float) -> Array:
-    """Give the Arias intensity up to every sample, :eq:`eq-arias`; starts at zero [m s^-1]."""
+    """Return the Arias intensity up to every sample, :eq:`eq-arias`; starts at zero [m s^-1]."""
     if signal.analytic:
         exponents = np.arange(signal.pieces.shape[1])
         weights = 1.0 / (exponents[:, None] + exponents + 1.0)  # integral of x^j x^k
@@ -43,7 +43,7 @@ def arias_history(signal: Signal, gravity: float) -> Array:
 
 
 def absolute_velocity_history(signal: Signal) -> Array:
-    """Give the cumulative absolute velocity up to every sample, :eq:`eq-cav` [m s^-1]."""
+    """Return the cumulative absolute velocity up to every sample, :eq:`eq-cav` [m s^-1]."""
     if not signal.analytic:
         return _summed(_trapezoids(np.abs(signal.samples))) * signal.time_step
     # the total variation of the velocity, its extrema between samples included
@@ -89,7 +89,7 @@ def _summed(steps: Array) -> Array:
 
 
 def time_between_shares(history: Array, time_step: float, start: float, end: float) -> float:
-    """Give the time in which a growing history goes from one share of its last value to another.
+    """Return the time in which a growing history goes from one share of its last value to another.
 
     In seconds; zero for a history of zeros.
     """
@@ -106,7 +106,7 @@ def time_between_shares(history: Array, time_step: float, start: float, end: flo
 
 
 def exceedance(signal: Signal, level: float) -> tuple[float, float]:
-    """Give the time from first to last exceedance of a level [m s^-2], and the total time [s]."""
+    """Return the time from first to last exceedance of a level [m s^-2], and the total time [s]."""
     first, last, total = np.inf, -np.inf, 0.0
     pieces, starts, lengths = _split_at_extrema(signal.pieces)
     for side in (1.0, -1.0):
@@ -216,7 +216,7 @@ PREDOMINANT_PERIODS: Final = 10.0 ** (np.arange(-100, 131) / 100.0)
 
 
 def mean_period(signal: Signal) -> float:
-    """Give the mean period, :eq:`eq-mean-period`; NaN without power in its band [s]."""
+    """Return the mean period, :eq:`eq-mean-period`; NaN without power in its band [s]."""
     frequency, transform = transform_of(signal, MEAN_PERIOD_RESOLUTION)
     low, high = MEAN_PERIOD_BAND
     inside = (frequency >= low) & (frequency <= high)
@@ -234,7 +234,7 @@ def housner_intensity(signal: Signal, damping_ratio: float) -> float:
 
 
 def predominant_period(signal: Signal, damping_ratio: float) -> float:
-    """Give the period of the peak of pseudo-velocity, 0.1 s to 20 s; NaN for still ground [s]."""
+    """Return the period of the peak of pseudo-velocity, 0.1 s to 20 s; NaN for still ground [s]."""
     velocity = _pseudo_velocity(signal, PREDOMINANT_PERIODS, damping_ratio)
     if not velocity.max() > 0.0:
         return math.nan

@@ -225,7 +225,7 @@ class Motion:
 
     @classmethod
     def of_samples(cls, time_step: float, horizontal: Array, vertical: Array | None = None) -> Self:
-        """Give the motion of a record, whose samples are joined by straight lines.
+        """Return the motion of a record, whose samples are joined by straight lines.
 
         Parameters
         ----------
@@ -310,12 +310,12 @@ class Slope:
         )
 
     def turned(self, across: Array, up: Array) -> tuple[Array, Array]:
-        """Give the components along and normal to the base of horizontal and vertical ones."""
+        """Return the components along and normal to the base of horizontal and vertical ones."""
         sine, cosine = math.sin(self.inclination), math.cos(self.inclination)
         return across * cosine + up * sine, up * cosine - across * sine
 
     def resolved(self, motion: Motion | None, *, duration: float, interval: float) -> Motion:
-        """Give the motion along and normal to the base, with the part of gravity along it.
+        """Return the motion along and normal to the base, with the part of gravity along it.
 
         Parameters
         ----------
@@ -347,7 +347,7 @@ class Slope:
 
 
 def _signal(step: float, pieces: Array, name: str) -> Signal:
-    """Give a component that may jump between its intervals."""
+    """Return a component that may jump between its intervals."""
     return Signal(step, np.append(pieces[:, 0], pieces[-1].sum()), pieces, name)
 
 
@@ -360,12 +360,12 @@ def values_at(pieces: Array, place: Array | float) -> Array:
 
 
 def slopes_of(pieces: Array) -> Array:
-    """Give the coefficients of the derivatives by x."""
+    """Return the coefficients of the derivatives by x."""
     return pieces[:, 1:] * np.arange(1.0, pieces.shape[1])
 
 
 def integral_of(pieces: Array, time_step: float) -> Array:
-    """Give the integral over time, continuous and zero at the start, :eq:`eq-ground-velocity`."""
+    """Return the integral over time, continuous and zero at the start, :eq:`eq-ground-velocity`."""
     rising = pieces * (time_step / np.arange(1.0, pieces.shape[1] + 1.0))
     start = np.concatenate([[0.0], np.cumsum(rising.sum(axis=1))[:-1]])
     return np.column_stack([start, rising])
@@ -386,12 +386,12 @@ def divided(pieces: Array, parts: int) -> Array:
 
 
 def knots_of(pieces: Array) -> Array:
-    """Give the values at the starts of all intervals and at the end of the last, shape (n + 1,)."""
+    """Return values at the starts of all intervals and at the end of the last, shape (n + 1,)."""
     return np.append(pieces[:, 0], pieces[-1].sum())
 
 
 def roots_of(pieces: Array) -> Array:
-    """Give the x at which each row crosses zero; the signs at its ends must differ [1]."""
+    """Return the x at which each row crosses zero; the signs at its ends must differ [1]."""
     low, high = np.zeros(len(pieces)), np.ones(len(pieces))
     if pieces.shape[1] == 2:
         return -pieces[:, 0] / pieces[:, 1]
@@ -415,19 +415,19 @@ def split_at(pieces: Array, place: Array) -> tuple[Array, Array]:
 
 
 def turning_points(pieces: Array) -> tuple[NDArray[np.intp], Array]:
-    """Give the intervals whose slopes at both ends differ in sign, and the extrema in them."""
+    """Return the intervals whose slopes at both ends differ in sign, and the extrema in them."""
     slopes = slopes_of(pieces)
     rows = turned_in(slopes)
     return rows, values_at(pieces[rows], roots_of(slopes[rows]))
 
 
 def turned_in(values: Array) -> NDArray[np.intp]:
-    """Give the intervals at whose ends values differ in sign."""
+    """Return the intervals at whose ends values differ in sign."""
     return np.flatnonzero(values[:, 0] * values.sum(axis=1) < 0.0)
 
 
 def greatest(pieces: Array) -> float:
-    """Give the greatest absolute value, also between the ends of intervals."""
+    """Return the greatest absolute value, also between the ends of intervals."""
     found = [pieces[:, 0], pieces.sum(axis=1), turning_points(pieces)[1]]
     if pieces.shape[1] > 3:
         # the slope may be zero twice, or once and at an end: once on each side of its extremum

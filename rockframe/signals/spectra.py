@@ -70,7 +70,7 @@ def spectral_peaks(signal: Signal, periods: Array, damping_ratio: float) -> Arra
 def pseudo_spectra(
     signal: Signal, periods: Array, spectral_displacement: Array
 ) -> tuple[Array, Array]:
-    """Give pseudo-velocity [m s^-1] and pseudo-acceleration [m s^-2], :eq:`eq-pseudo-spectra`."""
+    """Return pseudo-velocity [m s^-1] and pseudo-acceleration [m s^-2], :eq:`eq-pseudo-spectra`."""
     rigid = periods == 0.0
     frequency = 2.0 * np.pi / np.where(rigid, 1.0, periods)
     velocity = np.where(rigid, 0.0, frequency * spectral_displacement)
@@ -105,7 +105,7 @@ _FEW: Final = 16
 
 
 def unit_vectors(count: int) -> Array:
-    """Give directions evenly spaced over half a circle, from the first component on."""
+    """Return directions evenly spaced over half a circle, from the first component on."""
     angles = np.pi * np.arange(count) / count
     vectors = np.column_stack([np.cos(angles), np.sin(angles)])
     vectors[count // 2] = 0.0, 1.0

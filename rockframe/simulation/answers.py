@@ -68,7 +68,7 @@ class Answers:
 
 
 def ground_at(motion: GroundMotion | None, time: Array) -> Array:
-    """Give the horizontal and vertical ground accelerations, shape (times, 2) [m s^-2]."""
+    """Return the horizontal and vertical ground accelerations, shape (times, 2) [m s^-2]."""
     still = np.zeros_like(time)
     components = () if motion is None else (motion.si.horizontal, motion.si.vertical)
     found = [still if signal is None else signal.at(time) for signal in components]
@@ -76,7 +76,7 @@ def ground_at(motion: GroundMotion | None, time: Array) -> Array:
 
 
 def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]) -> Answers:
-    """Give what follows from the samples of a run: histories, if they are kept, peaks and points.
+    """Return what follows from the samples of a run: histories, if they are kept, peaks and points.
 
     What cannot be computed is named in `missing`.
     """
@@ -155,7 +155,7 @@ class _Observed:
         self.ground, self.moved = ground[:count], moved[:count]
 
     def histories(self) -> dict[str, Generic]:
-        """Give the histories of a run, without those at points and those that take events."""
+        """Return the histories of a run, without those at points and those that take events."""
         plan, run, setting, model = self.plan, self.run, self.system.setting, self.system.model
         values = dict(self.values)
         # energies are computed apart; other requested values that are no columns follow from these
@@ -175,7 +175,7 @@ class _Observed:
         return values
 
     def at_the_end(self) -> dict[str, Generic]:
-        """Give the model's columns at the end of a run, which need not be a sample."""
+        """Return the model's columns at the end of a run, which need not be a sample."""
         run, ending, slope = self.run, self.run.ending, self.system.options.slope
         ground = ground_at(self.plan.motion, np.array([run.end_time]))
         return observe_states(
@@ -184,7 +184,7 @@ class _Observed:
         )  # fmt: skip
 
     def along(self, until: float) -> AlongSteps:
-        """Give the quantities along the steps up to a time, from the columns along all steps.
+        """Return the quantities along the steps up to a time, from the columns along all steps.
 
         Steps in which friction stops the small slip left by an impact or a change of the held
         point are left out: there a base that holds takes an impulse instead of a force.
@@ -223,7 +223,7 @@ class _Observed:
     def _further(
         self, shown: dict[str, Generic], time: Array, ground: Array, moved: Array
     ) -> dict[str, Generic]:
-        """Give columns with what follows from them, and with the state that diagnostics take."""
+        """Return columns with what follows from them, and with the state that diagnostics take."""
         shown = shown | force_histories(shown, moved, self.system.setting.load)
         return shown | _state_of(shown, time, ground)
 
@@ -235,7 +235,7 @@ def _of_users(
     along: AlongSteps,
     missing: list[str],
 ) -> dict[str, Any]:
-    """Give the results of user-defined bases, scenes and diagnostics for a run."""
+    """Return the results of user-defined bases, scenes and diagnostics for a run."""
     plan, system, found = seen.plan, seen.system, dict[str, Any]()
     for own in (system.setting, *system.parts.structural()) if plan.histories else ():
         if isinstance(own, OwnAnswers):
@@ -260,7 +260,7 @@ def _of_users(
 
 
 def _peak_of(one: Diagnostic, along: AlongSteps) -> float:
-    """Give the largest absolute value of a diagnostic along the steps."""
+    """Return the largest absolute value of a diagnostic along the steps."""
     return along.largest(lambda state: np.abs(one.of(state))[None])[0].item()
 
 
@@ -275,12 +275,12 @@ def forces_of_links(links: int) -> tuple[str, ...]:
 
 
 def _peaks_of(names: tuple[str, ...], along: AlongSteps) -> Array:
-    """Give the greatest absolute values of columns."""
+    """Return the greatest absolute values of columns."""
     return along.largest(lambda shown: np.abs([shown[name] for name in names]))[0]
 
 
 def _stops(run: Trajectory, events: EventStates, within: float) -> Integers:
-    """Give the numbers, from 1, of events whose small slip velocity friction stops `within` [m]."""
+    """Return numbers, from 1, of events whose small slip velocity friction stops `within` [m]."""
     kind = run.events.kind
     changes = ~np.isin(kind[:-1], OF_SLIPS) & (kind[1:] == STICK)
     of_caps = ("slip", "cap_slip")
@@ -290,7 +290,7 @@ def _stops(run: Trajectory, events: EventStates, within: float) -> Integers:
 
 
 def _state_of(values: dict[str, Generic], time: Array, ground: Array) -> dict[str, Generic]:
-    """Give the state that diagnostics take: values at some times, and the ground there."""
+    """Return the state that diagnostics take: values at some times, and the ground there."""
     known = {name: each for name, each in values.items() if name in SCHEMA}
     return {
         **{name: each for name, each in known.items() if SCHEMA[name].dims == TIME},
@@ -300,7 +300,7 @@ def _state_of(values: dict[str, Generic], time: Array, ground: Array) -> dict[st
 
 
 def _level(moved: Array, slope: Slope) -> Array:
-    """Give horizontal and vertical components of those along and normal to the base."""
+    """Return horizontal and vertical components of those along and normal to the base."""
     back = replace(slope, inclination=-slope.inclination)
     return np.column_stack(back.turned(moved[:, 0], moved[:, 1]))
 

@@ -38,7 +38,7 @@ EXAMPLE: Final = 'points={"roof": ("0 m", "18 m")}'
 
 
 def listed(outputs: object) -> list[object]:
-    """Give the argument ``outputs`` as a list."""
+    """Return the argument ``outputs`` as a list."""
     if outputs is None:
         return []
     if iterates(outputs) and not isinstance(outputs, str | Mapping):
@@ -93,7 +93,7 @@ NEEDED: Final = {
 
 
 def lacking(system: Assembly, names: Iterable[str]) -> list[str]:
-    """Give a fault for each requested output that the scene does not have."""
+    """Return a fault for each requested output that the scene does not have."""
     depend = [name for name in names if name in NEEDED]
     if not depend:
         return []
@@ -144,7 +144,7 @@ Beginning: TypeAlias = InitialState | Ending
 
 
 def start_of(beginning: Beginning) -> Start | Ending:
-    """Give a beginning as the integrator takes it."""
+    """Return a beginning as the integrator takes it."""
     if isinstance(beginning, Ending):
         return beginning
     si = beginning.si
@@ -197,7 +197,7 @@ def _came_back(dataset: xr.Dataset, system: Assembly, ending: Ending) -> bool:
 
 
 def ending_as_json(ending: Ending) -> dict[str, Any]:
-    """Give the end of a run as plain values."""
+    """Return the end of a run as plain values."""
     return {
         "mode": ending.mode,
         "state": ending.state.tolist(),
@@ -226,7 +226,7 @@ class _Requested:
     stop_at_overturning: bool
 
     def _described(self) -> dict[str, Any]:
-        """Give these arguments as :meth:`rockframe.System.simulate` takes them, fit for JSON."""
+        """Return these arguments as :meth:`rockframe.System.simulate` takes them, fit for JSON."""
         return {
             "accuracy": vars(self.accuracy),
             "output_step": _time(self.output_step),
@@ -252,7 +252,7 @@ class RunRequest(_Requested):
     initial: "InitialState | xr.Dataset"
 
     def to_dict(self) -> dict[str, Any]:
-        """Give all arguments as :meth:`rockframe.System.simulate` takes them, fit for JSON."""
+        """Return all arguments as :meth:`rockframe.System.simulate` takes them, fit for JSON."""
         return {
             "duration": _time(self.duration),
             "free_vibration": _time(self.free_vibration),
@@ -289,11 +289,11 @@ class Plan(_Requested):
         return self.motion is not None and self.motion.si.vertical is not None
 
     def bare(self) -> "Plan":
-        """Give the same run without samples."""
+        """Return the same run without samples."""
         return replace(self, output_step=None, requested=(), diagnostics=(), points=())
 
     def to_json(self) -> str:
-        """Give the plan as JSON, without the motion."""
+        """Return the plan as JSON, without the motion."""
         initial = (
             {"type": "Continuation", "ending": ending_as_json(self.initial)}
             if isinstance(self.initial, Ending)
@@ -408,7 +408,7 @@ def _motion_hint(value: object) -> str:
 def _beginning(
     system: Assembly, value: "InitialState | xr.Dataset", faults: list[str]
 ) -> Beginning:
-    """Give the start of the run; add to faults what does not fit the system."""
+    """Return the start of the run; add to faults what does not fit the system."""
     if isinstance(value, xr.Dataset):
         return continuation_of(value, system, faults)
     start = value.si
@@ -426,12 +426,12 @@ def _beginning(
 
 
 def usual_output_step(motion: GroundMotion | None) -> float:
-    """Give the default spacing of histories [s]."""
+    """Return the default spacing of histories [s]."""
     return _STILL_GROUND_OUTPUT_STEP if motion is None else motion.si.time_step
 
 
 def run_length(arguments: RunRequest, motion: GroundMotion | None) -> float:
-    """Give the length of a run under a motion; 0 without a motion and a duration [s]."""
+    """Return the length of a run under a motion; 0 without a motion and a duration [s]."""
     if arguments.duration is not None:
         return arguments.duration
     return (0.0 if motion is None else motion.si.duration) + (arguments.free_vibration or 0.0)

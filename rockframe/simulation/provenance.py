@@ -38,7 +38,7 @@ OF_SCENES: Final = (Changes.PART, Changes.OPTION, Changes.ARGUMENT)
 
 
 def motion_attributes(motion: GroundMotion | None) -> dict[str, str | float | int]:
-    """Give attributes by which a motion can be recognised and, where possible, rebuilt."""
+    """Return attributes by which a motion can be recognised and, where possible, rebuilt."""
     if motion is None:
         return {"motion": "none"}
     return {
@@ -52,7 +52,7 @@ def motion_attributes(motion: GroundMotion | None) -> dict[str, str | float | in
 
 
 def motion_words(attributes: Mapping[str, Any]) -> str:
-    """Give the name of a result's motion, and the factor by which it was scaled."""
+    """Return the name of a result's motion, and the factor by which it was scaled."""
     history = str(attributes.get("motion_history", "")).split(_NEXT_STEP)
     return shown_name(str(attributes["motion"]), history)
 
@@ -78,7 +78,7 @@ def check_own_system(dataset: xr.Dataset) -> None:
 def motion_after_end(
     motion: GroundMotion | None, histories: Mapping[str, NDArray[Any]]
 ) -> dict[str, NDArray[Any]]:
-    """Give the samples of a motion that the histories lack since the run ended early.
+    """Return the samples of a motion that the histories lack since the run ended early.
 
     With them the result contains a motion that is given by samples alone.
     """
@@ -102,7 +102,7 @@ def _on_samples(time: NDArray[Any], step: float) -> int:
 
 
 def motion_from_dataset(dataset: xr.Dataset) -> GroundMotion | None:
-    """Give the motion of a result: rebuilt from its description, or read from the histories."""
+    """Return the motion of a result: rebuilt from its description, or read from the histories."""
     text = dataset.attrs.get("motion_json")
     if text is None:
         return None
@@ -151,7 +151,7 @@ def _from_histories(dataset: xr.Dataset) -> tuple[GroundMotion | None, str]:
 
 
 def _joined(dataset: xr.Dataset, name: str, count: int) -> NDArray[Any]:
-    """Give a component of a motion: samples of the histories, and those after their end."""
+    """Return a component of a motion: samples of the histories, and those after their end."""
     parts = [dataset[name].to_numpy()[:count]]
     if f"{name}{_AFTER_END}" in dataset:
         parts.append(dataset[f"{name}{_AFTER_END}"].to_numpy())
@@ -159,14 +159,14 @@ def _joined(dataset: xr.Dataset, name: str, count: int) -> NDArray[Any]:
 
 
 def description_by_names(value: object) -> Mapping[str, Any]:
-    """Give the description of a system as a mapping; refuse anything else."""
+    """Return the description of a system as a mapping; refuse anything else."""
     return by_names(value, owner="System", name="description", example="that of to_dict()")
 
 
 def parts_and_options(
     description: Mapping[str, Any], arguments: Iterable[str]
 ) -> tuple[list[Component], dict[str, Any]]:
-    """Give the parts and options in a description of a system, which takes these arguments."""
+    """Return the parts and options in a description of a system, which takes these arguments."""
     if "parts" not in description_by_names(description):
         msg = "found no 'parts'; expected a list of them, as to_dict() gives it"
         raise SchemaError(msg)
@@ -183,7 +183,7 @@ def parts_and_options(
 
 
 def arguments_of_run(dataset: xr.Dataset) -> dict[str, Any]:
-    """Give the arguments of the run that made a result, without `outputs`."""
+    """Return the arguments of the run that made a result, without `outputs`."""
     try:
         described = json.loads(dataset.attrs["run_json"])
         initial, accuracy = described["initial"], Accuracy(**described["accuracy"])

@@ -103,7 +103,7 @@ class Response:
         return ambiguities(model, model.system, self.trajectory)
 
     def summary(self) -> RunSummary:
-        """Give the summary of the run that certificates are made from."""
+        """Return the summary of the run that certificates are made from."""
         share = peak_share(self.trajectory, self.system.setting.overturning_angles)
         shown = run_summary(
             self.trajectory, self.events, share, self.plan.duration, in_motion=self.in_motion
@@ -115,7 +115,7 @@ class Response:
         return replace(shown, slides=slides, slip=slip)
 
     def cautions(self) -> list[Caution]:
-        """Give the warnings about the run."""
+        """Return the warnings about the run."""
         summary, plan, missing = self.trajectory, self.plan, self.missing
         setting = self.system.setting
         moving = [STILL_MOVING] if self.in_motion else []
@@ -151,7 +151,7 @@ def in_motion(system: Assembly, summary: Summary, missing: list[str]) -> bool:
 def scalars_of(
     system: Assembly, summary: Summary, missing: list[str]
 ) -> dict[str, Generic | float | int | bool]:
-    """Give the scalars of a run by their names in the schema, without those of its samples."""
+    """Return the scalars of a run by their names in the schema, without those of its samples."""
     setting = system.setting
     uplift = or_missing(lambda: setting.uplift_angle, math.nan, "the uplift angle", missing)
     found = scalars(summary, setting, uplift_angle=uplift)
@@ -227,7 +227,7 @@ def run(
 
 
 def _looked_again(system: Assembly, plan: Plan, summary: Summary) -> tuple[float, list[Caution]]:
-    """Give the error of the peak from a second run with more steps, and the doubts it raises."""
+    """Return the error of the peak from a second run with more steps, and the doubts it raises."""
     second = respond(system, second_look(system, plan)).trajectory
     found = doubts(system.setting, plan, summary, second)
     return peak_error(summary, second), [(SolverWarning, text) for text in found]

@@ -55,7 +55,7 @@ energies of such small motion are no larger than the errors that a step may have
 
 
 def doubtful_residual(system: Assembly) -> float:
-    """Give the energy residual beyond which fixed steps are compared with steps by tolerance."""
+    """Return the energy residual beyond which fixed steps are compared with steps by tolerance."""
     return DOUBTFUL if system.setting.settlement is None else DOUBTFUL_ON_SPRINGS
 
 
@@ -136,7 +136,7 @@ def may_overturn_later(system: Assembly, summary: Summary) -> bool:
 
 
 def most_stored(system: Assembly, rotation: float) -> float:
-    """Give an upper bound of the energy stored at a rotation, which is costly to compute [J].
+    """Return an upper bound of the energy stored at a rotation, which is costly to compute [J].
 
     The restoring moment on a level base is at most the weight times its distance from a corner.
     Infinite where a slope, links, a wall, a beam or a user's own part may add to it.
@@ -164,7 +164,7 @@ def _whole_may_fall(system: Assembly, ending: Ending) -> bool:
 
 
 def _kinetic_energy(system: Assembly, ending: Ending) -> float:
-    """Give the kinetic energy of the body relative to the ground [J]."""
+    """Return the kinetic energy of the body relative to the ground [J]."""
     model, body = system.model, system.setting.body
     ground = Ground(system.options.slope.along_gravity, 0.0)
     slope = model.system.accelerate(ending.mode, ending.state, ground)
@@ -297,7 +297,7 @@ def _sliding(along: AlongSteps, name: str, friction: float, body: str) -> Slidin
 
 
 def sliding_scalars(found: Sequence[SlidingCheck]) -> dict[str, float | bool]:
-    """Give the scalars of sliding checks, by their names in the schema; none without a check."""
+    """Return the scalars of sliding checks, by their names in the schema; none without a check."""
     if not found:
         return {}
     slides = [each for each in found if each.slides]
@@ -336,7 +336,7 @@ def friction_words(scalars: Mapping[str, Generic | float], found: Sequence[Slidi
 
 
 def slips(found: Sequence[SlidingCheck]) -> Iterator[str]:
-    """Give a caution for each base that has less friction than a run needs."""
+    """Return a caution for each base that has less friction than a run needs."""
     for each in found:
         if each.slides:
             yield f"{each.body} {each.words}; the model holds it"
@@ -357,12 +357,12 @@ def slip_words(slips: Generic, *, runs: str = "runs") -> str:
 
 
 def counts_of_slides(would_slide: Generic) -> tuple[int, int]:
-    """Give how many runs slide and how many do not; NaN counts as neither."""
+    """Return how many runs slide and how many do not; NaN counts as neither."""
     return int((would_slide == 1.0).sum()), int((would_slide == 0.0).sum())
 
 
 def _frictions(system: Assembly) -> Iterator[tuple[str, float, str]]:
-    """Give name of the friction demand, given coefficient and body, for each base that holds."""
+    """Return name of the friction demand, given coefficient and body, for each base that holds."""
     parts = system.parts
     if system.setting.slides:
         return

@@ -16,7 +16,7 @@ from rockframe.units import ANGLE, to_si_values
 
 
 def equilibrium(system: Assembly) -> xr.Dataset:
-    """Give settlements and reactions at rest, and the bounds of full contact."""
+    """Return settlements and reactions at rest, and the bounds of full contact."""
     setting = system.setting
     values: dict[str, float] = {
         name: value for name, value in setting.equilibrium().items() if name in SCHEMA
@@ -36,7 +36,7 @@ def equilibrium(system: Assembly) -> xr.Dataset:
 
 
 def moment_rotation(system: Assembly, angles: object) -> xr.Dataset:
-    """Give the quasi-static moments at given rotations."""
+    """Return the quasi-static moments at given rotations."""
     held_at = to_si_values(angles, ANGLE, owner="moment_rotation", name="angles")
     if not len(held_at):
         msg = f"moment_rotation: angles must be one or more, got {shown(angles)}"
@@ -64,7 +64,7 @@ def _column(numbers: Iterable[float]) -> Generic:
 
 
 def frequencies(system: Assembly) -> xr.Dataset:
-    """Give the modes of small motion about rest."""
+    """Return the modes of small motion about rest."""
     motion = system.setting.small_motion()
     if motion is None:
         raise AssemblyError([system.setting.without_small_motion()])

@@ -262,7 +262,7 @@ class System(SystemValue):
         return above.to_opensees(self, motion, path, **options)
 
     def frequencies(self) -> xr.Dataset:
-        """Give the modes of small motion about rest, in full contact.
+        """Return the modes of small motion about rest, in full contact.
 
         Returns
         -------
@@ -289,7 +289,7 @@ class System(SystemValue):
         return frequencies(self._assembly)
 
     def moment_rotation(self, angles: object) -> xr.Dataset:
-        """Give the moments that hold the body at given rotations in vertical equilibrium.
+        """Return the moments that hold the body at given rotations in vertical equilibrium.
 
         Parameters
         ----------
@@ -321,7 +321,7 @@ class System(SystemValue):
         return moment_rotation(self._assembly, angles)
 
     def equilibrium(self) -> xr.Dataset:
-        """Give settlements and reactions at rest, and where full contact ends.
+        """Return settlements and reactions at rest, and where full contact ends.
 
         Returns
         -------
@@ -342,7 +342,7 @@ class System(SystemValue):
         return equilibrium(self._assembly)
 
     def to_dict(self) -> dict[str, object]:
-        """Give parts, options and gravity as plain values, fit for JSON.
+        """Return parts, options and gravity as plain values, fit for JSON.
 
         Returns
         -------

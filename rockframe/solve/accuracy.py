@@ -113,7 +113,7 @@ LEVELS = {
 
 
 def accuracy_of(choice: "str | float | Accuracy", *, owner: str = "simulate") -> Accuracy:
-    """Give the settings that a user means by a named level, a tolerance or an `Accuracy`."""
+    """Return the settings that a user means by a named level, a tolerance or an `Accuracy`."""
     if isinstance(choice, Accuracy):
         return choice
     if isinstance(choice, float):
@@ -142,13 +142,13 @@ WHOLE: Final = 1e-9
 
 
 def fastest_rate(model: ContactModel) -> float:
-    """Give the rate of the fastest vibration with its damping, which limits the step [s^-1]."""
+    """Return the rate of the fastest vibration with its damping, which limits the step [s^-1]."""
     half = 0.5 * model.damping_rate
     return half + hypot(model.fastest_frequency, half)
 
 
 def substeps_of(accuracy: Accuracy, model: ContactModel, interval: float) -> int:
-    """Give the number of fixed steps in each interval of a motion; 0 for steps by tolerance.
+    """Return the number of fixed steps in each interval of a motion; 0 for steps by tolerance.
 
     Parameters
     ----------

@@ -104,7 +104,7 @@ def work_until(
     span: Span,
     w: Workspace,
 ) -> Work:
-    """Give the work up to a fraction of a step, so that all of the step has the given work.
+    """Return the work up to a fraction of a step, so that all of the step has the given work.
 
     Within the step it grows by the powers of the dense solution.
     """
@@ -181,7 +181,7 @@ def follow_peak(
 def peaks_in_step(
     row: int, size: int, count: int, h: float, left: float, right: float, w: Workspace
 ) -> tuple[float, float]:
-    """Give the peaks of a rotation to both sides, raised by a step; `row` is where its limits are.
+    """Return peaks of a rotation to both sides, raised by a step; `row` is where its limits are.
 
     Peaks are absolute values [rad].
     """

@@ -26,7 +26,7 @@ class Crossing(NamedTuple):
 def quintic(
     x0: float, v0: float, a0: float, x1: float, v1: float, a1: float
 ) -> tuple[float, float, float, float, float, float]:
-    """Give the coefficients of the quintic in u = t/h, from values and derivatives by u."""
+    """Return the coefficients of the quintic in u = t/h, from values and derivatives by u."""
     rise = x1 - x0 - v0 - 0.5 * a0
     change = v1 - v0 - a0
     bend = a1 - a0
@@ -42,7 +42,7 @@ def quintic(
 
 @kernel
 def cubic(x0: float, v0: float, x1: float, v1: float, u: float) -> tuple[float, float]:
-    """Give value and rate per u of the cubic through values and rates at u = 0 and 1."""
+    """Return value and rate per u of the cubic through values and rates at u = 0 and 1."""
     rise, bend = x1 - x0 - v0, v1 - v0
     c2, c3 = 3.0 * rise - bend, bend - 2.0 * rise
     return x0 + u * (v0 + u * (c2 + u * c3)), v0 + u * (2.0 * c2 + u * 3.0 * c3)
@@ -85,7 +85,7 @@ def interpolate(
 
 @kernel
 def extremum(x0: float, v0: float, a0: float, x1: float, v1: float, a1: float) -> float:
-    """Give the extremum of a quintic whose slope changes sign (arguments as of `quintic`)."""
+    """Return the extremum of a quintic whose slope changes sign (arguments as of `quintic`)."""
     c0, c1, c2, c3, c4, c5 = quintic(x0, v0, a0, x1, v1, a1)
     low = 0.0
     high = 1.0
@@ -129,7 +129,7 @@ def earliest_crossing(
     tolerance: Vector,
     w: Workspace,
 ) -> Crossing:
-    """Give the guard that falls through zero first.
+    """Return the guard that falls through zero first.
 
     A guard is evaluated at the end of the step and, where its cubic dips towards zero, in that
     dip, whether it begins positive or at zero.
@@ -161,7 +161,7 @@ def earliest_crossing(
 def _cubic_of(
     which: int, h: float, tolerance: Vector, w: Workspace
 ) -> tuple[float, float, float, float]:
-    """Give the coefficients of the cubic through a guard's values and rates at both ends."""
+    """Return the coefficients of the cubic through a guard's values and rates at both ends."""
     guards = len(tolerance)
     start, c1 = w.before[which], h * w.before[guards + which]
     rise, bend = w.after[which] - start - c1, h * w.after[guards + which] - c1
@@ -170,7 +170,7 @@ def _cubic_of(
 
 @kernel
 def _dip(c1: float, c2: float, c3: float) -> tuple[float, float, float]:
-    """Give the place of a cubic's minimum, and a bracket of it inside the step.
+    """Return the place of a cubic's minimum, and a bracket of it inside the step.
 
     Without a minimum, the place where the falling cubic is flattest. Without that either, a place
     outside the step.
@@ -202,7 +202,7 @@ def _guard_inside(
     tolerance: Vector,
     w: Workspace,
 ) -> float:
-    """Give a guard's value at a fraction of the step, from the dense solution."""
+    """Return a guard's value at a fraction of the step, from the dense solution."""
     interpolate(equations, count, fraction, span.h, w)
     ground = ground_in(fraction, span, w.ground)
     equations.guarding.call(
@@ -224,7 +224,7 @@ def _point_below_zero(
     tolerance: Vector,
     w: Workspace,
 ) -> float:
-    """Give a place in a predicted dip at which a guard is negative; -1 if there is none.
+    """Return a place in a predicted dip at which a guard is negative; -1 if there is none.
 
     Bisection by the guard's rate. For a guard that starts at zero, within its rounding noise,
     values must be below that noise.
@@ -248,7 +248,7 @@ def _point_below_zero(
 
 @kernel
 def _root_of_cubic(c0: float, c1: float, c2: float, c3: float, end: float) -> float:
-    """Give a place before `end` at which a cubic that is positive at 0 falls through zero."""
+    """Return a place before `end` at which a cubic that is positive at 0 falls through zero."""
     low, high, place = 0.0, end, 0.5 * end
     for _ in range(GUESSING):
         value = c0 + place * (c1 + place * (c2 + place * c3))
@@ -273,7 +273,7 @@ def _first_root(
     tolerance: Vector,
     w: Workspace,
 ) -> float:
-    """Give the first root of a guard before `end`, where it is negative.
+    """Return the first root of a guard before `end`, where it is negative.
 
     Newton's method from the root of the cubic through the guard's values and rates at both ends
     of the step, kept inside its bracket by bisection. A guard that starts at zero, within its

@@ -66,7 +66,7 @@ TIME_NOISE: Final = 8.0 * ROUNDING
 
 @inlined
 def time_of(progress: Progress) -> float:
-    """Give the present time of a run [s]."""
+    """Return the present time of a run [s]."""
     began = progress.counters[at.INTERVAL] * progress.controls[at.TIME_STEP]
     return began + progress.clock[at.INTO_INTERVAL]
 
@@ -97,7 +97,7 @@ def evaluate_anew(
 
 @inlined
 def span_of(h: float, progress: Progress) -> Span:
-    """Give a step of length h [s] from the present time of a run."""
+    """Return a step of length h [s] from the present time of a run."""
     clock, counters, time_step = progress.clock, progress.counters, progress.controls[at.TIME_STEP]
     return Span(
         h, clock[at.INTO_INTERVAL] / time_step, h / time_step, counters[at.DEGREE_X],

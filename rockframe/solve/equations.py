@@ -170,17 +170,17 @@ class Called(NamedTuple):
 
     @inlined
     def coordinates(self) -> int:
-        """Give the number of coordinates."""
+        """Return the number of coordinates."""
         return self.equations.coordinate_count
 
     @inlined
     def variables(self) -> int:
-        """Give the number of variables of first order."""
+        """Return the number of variables of first order."""
         return self.equations.variable_count
 
     @inlined
     def guards(self) -> int:
-        """Give the number of guards."""
+        """Return the number of guards."""
         return self.equations.guard_count
 
     @inlined

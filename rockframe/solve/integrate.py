@@ -100,7 +100,7 @@ def begun(
     output_step: float | None,
     stop_at_overturning: bool,
 ) -> Begun:
-    """Give the arrays of a run as they are before its first step.
+    """Return the arrays of a run as they are before its first step.
 
     Parameters
     ----------
@@ -184,7 +184,7 @@ def begun(
 
 
 def _filled(size: int, numbers: Mapping[int, float]) -> Vector:
-    """Give an array with numbers at some places, and zeros elsewhere."""
+    """Return an array with numbers at some places, and zeros elsewhere."""
     return np.array([numbers.get(place, 0.0) for place in range(size)])
 
 
@@ -220,7 +220,7 @@ STILL_INTERVAL = 0.01
 
 
 def _steps_at_once(equations: BoundEquations) -> int:
-    """Give how many steps are made before the run pauses."""
+    """Return how many steps are made before the run pauses."""
     if has_machine_code(equations):
         return STEPS_UNHEARD
     return STEPS_CALLING_BACK if steps_as_machine_code(equations) else STEPS_AT_ONCE
@@ -280,14 +280,14 @@ class Tables:
         return grows
 
     def close(self, counters: Integers, *, complete: bool = True) -> Steps:
-        """Give the steps, and keep no more; say whether they are those of the whole run."""
+        """Return the steps, and keep no more; say whether they are those of the whole run."""
         if self._closed is None:
             found = steps_of(self.steps, counters, self._width, exact=self._exact)
             self._closed, self.steps = replace(found, complete=complete), NO_STEPS
         return self._closed
 
     def events_so_far(self, counters: Integers) -> Events:
-        """Give the events by their columns."""
+        """Return the events by their columns."""
         count, width = int(counters[at.EVENTS]), self._width
         values, codes = self.events.values[:count], self.events.codes[:count]
         return Events(
@@ -302,7 +302,7 @@ class Tables:
 
 
 def _longer(values: Matrix, codes: Integers) -> tuple[Matrix, Integers]:
-    """Give the arrays of a table, twice as long."""
+    """Return the arrays of a table, twice as long."""
     return (
         np.concatenate([values, np.empty_like(values)]),
         np.concatenate([codes, np.empty_like(codes)]),
@@ -438,7 +438,7 @@ def make_workspace(
 
 
 def pieces_of(motion: Motion | None) -> Pieces:
-    """Give the polynomials of the ground acceleration in both directions."""
+    """Return the polynomials of the ground acceleration in both directions."""
     if motion is None:
         return Pieces(_STILL, _STILL)
     vertical = _STILL if motion.vertical is None else motion.vertical.pieces

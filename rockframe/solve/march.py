@@ -99,17 +99,17 @@ class CompiledIn(NamedTuple):
 
     @inlined
     def coordinates(self) -> int:
-        """Give the number of coordinates."""
+        """Return the number of coordinates."""
         return self.system.coordinates()
 
     @inlined
     def variables(self) -> int:
-        """Give the number of variables of first order."""
+        """Return the number of variables of first order."""
         return self.system.variables()
 
     @inlined
     def guards(self) -> int:
-        """Give the number of guards."""
+        """Return the number of guards."""
         return self.system.guards()
 
     @inlined
@@ -128,7 +128,7 @@ class CompiledIn(NamedTuple):
 
     @inlined
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
-        """Give the powers of a state whose slope at other rates is known."""
+        """Return the powers of a state whose slope at other rates is known."""
         return self.system.powers(mode, state, slope, ground)
 
 
@@ -175,7 +175,7 @@ class RotationInStep(NamedTuple):
 def rotation_in_step(
     row: int, size: int, limits: Vector, state: Vector, new: Vector
 ) -> RotationInStep:
-    """Give the rotation whose limits stand in `limits` from `row` on, at both ends of a step."""
+    """Return the rotation whose limits stand in `limits` from `row` on, at both ends of a step."""
     r0 = v0 = r1 = v1 = 0.0
     for i in range(size):
         r0 += limits[row + WEIGHTS + i] * state[i]
@@ -202,7 +202,7 @@ def other_may_peak(
 
 @inlined
 def other_share(size: int, limits: Vector, state: Vector) -> float:
-    """Give the largest ratio of another body's rotation to its limit; 0 without other bodies."""
+    """Return the largest ratio of another body's rotation to its limit; 0 without other bodies."""
     share, row = 0.0, WEIGHTS + size
     while row < len(limits):
         rotation = 0.0
@@ -241,7 +241,7 @@ def jumps(now: float, before: float) -> bool:
 
 @inlined
 def fit_step(h: float, remaining: float) -> float:
-    """Give the step h, changed so that it ends with the interval or leaves no tiny rest of it."""
+    """Return the step h, changed so that it ends with the interval or leaves no tiny rest of it."""
     if h >= 0.999999 * remaining:
         return remaining
     return min(h, 0.5 * remaining)
@@ -249,7 +249,7 @@ def fit_step(h: float, remaining: float) -> float:
 
 @inlined
 def interval_length(index: int, intervals: int, controls: Vector) -> float:
-    """Give the length of an interval of the motion, or of the rest of the run after the motion."""
+    """Return length of an interval of the motion, or of the rest of the run after the motion."""
     rest = controls[at.DURATION] - index * controls[at.TIME_STEP]
     return min(controls[at.TIME_STEP], rest) if index < intervals else rest
 

@@ -110,7 +110,7 @@ def energy_rows(
 
 
 def memory_at_outputs(trajectory: Trajectory) -> tuple[Matrix, Integers]:
-    """Give the memories of a run, and for each output time the number of the one that is valid.
+    """Return the memories of a run, and for each output time the number of the one that is valid.
 
     At the time of an event it is the memory before the event; at the start of the run, the one
     after all events at the start.
@@ -132,7 +132,7 @@ def observe_states(
     memory_row: Integers,
     ground: Matrix,
 ) -> dict[str, Vector]:
-    """Give the model's columns for any states.
+    """Return the model's columns for any states.
 
     Parameters
     ----------
@@ -189,7 +189,7 @@ def _observe(
 def observe_run(
     model: ContactModel, run: Trajectory, names: tuple[str, ...] | None, ground: Matrix
 ) -> tuple[dict[str, Vector], dict[str, Vector]]:
-    """Give some columns along the steps of a run, and all columns at its samples and events.
+    """Return some columns along the steps of a run, and all columns at its samples and events.
 
     Parameters
     ----------
@@ -247,7 +247,7 @@ def _room(model: ContactModel, memory: Matrix) -> Room:
 
 
 def _named(model: ContactModel, columns: Sequence[Column], out: Matrix) -> dict[str, Vector]:
-    """Give columns by their names, in the units of the schema: multiplied by masses."""
+    """Return columns by their names, in the units of the schema: multiplied by masses."""
     found: dict[str, Vector] = {}
     for column, values in zip(columns, out, strict=True):
         if column.per_mass:
@@ -257,7 +257,7 @@ def _named(model: ContactModel, columns: Sequence[Column], out: Matrix) -> dict[
 
 
 def energies_of(model: ContactModel, trajectory: Trajectory) -> Matrix:
-    """Give kinetic, gravity and elastic energy, and elastic energy less that at rest.
+    """Return kinetic, gravity and elastic energy, and elastic energy less that at rest.
 
     Returns
     -------

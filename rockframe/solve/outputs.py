@@ -32,7 +32,7 @@ class OutputRows:
             counters[at.OUTPUTS] = 1
 
     def output(self, steps: StepTable) -> Output:
-        """Give the arrays that the steps fill."""
+        """Return the arrays that the steps fill."""
         return Output(self.state, self.mode, self.work, steps)
 
     def expect_in_steps(self, pieces: Pieces, interval: float) -> None:
@@ -65,7 +65,7 @@ class OutputRows:
         self._expected = 0
 
     def end(self, events: Events, clock: Vector, state: Vector, *, finished: bool) -> Vector:
-        """Give the output times [s], and drop the rows behind the end of the run.
+        """Return the output times [s], and drop the rows behind the end of the run.
 
         The history of an unfinished run includes the instant at which it ended.
         """

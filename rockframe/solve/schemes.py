@@ -42,15 +42,15 @@ class Counted(Protocol):
     """The sizes of a system of equations."""
 
     def coordinates(self) -> int:
-        """Give the number of coordinates."""
+        """Return the number of coordinates."""
         ...
 
     def variables(self) -> int:
-        """Give the number of variables of first order."""
+        """Return the number of variables of first order."""
         ...
 
     def guards(self) -> int:
-        """Give the number of guards."""
+        """Return the number of guards."""
         ...
 
 
@@ -70,7 +70,7 @@ class Evaluated(Counted, Protocol):
         ...
 
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
-        """Give the powers of a state, from a slope at the same coordinates but other rates."""
+        """Return the powers of a state, from a slope at the same coordinates but other rates."""
         ...
 
 
@@ -181,7 +181,7 @@ EASY: Final = 0.5
 
 @kernel
 def next_step(h: float, h_next: float, excess: float) -> float:
-    """Give the next step after a step h, planned was h_next, by its error over that allowed."""
+    """Return the next step after a step h, planned was h_next, by its error over that allowed."""
     growth = LARGEST_FACTOR
     if excess > 0.0:
         growth = min(growth, max(SMALLEST_FACTOR, SAFETY * excess ** (-1.0 / ORDER)))
@@ -248,14 +248,14 @@ def fixed_step(
 
 @inlined
 def rest_of(requested: float, h: float, shortest: float, controls: Vector) -> float:
-    """Give the next fixed step: the rest of the sub-step if only a part of it has been made."""
+    """Return the next fixed step: the rest of the sub-step if only a part of it has been made."""
     rest = requested - h
     return rest if rest > shortest else controls[at.MAX_STEP]
 
 
 @inlined
 def adapted(h: float, h_next: float, excess: float, controls: Vector) -> float:
-    """Give the next step after an accepted step h, planned was h_next, by the error of h."""
+    """Return the next step after an accepted step h, planned was h_next, by the error of h."""
     if excess > EASY or h < controls[at.TIME_STEP] or h >= h_next:
         return next_step(h, h_next, excess)
     return h_next
@@ -271,7 +271,7 @@ class FixedSteps(NamedTuple):
         self, system: Evaluated, mode: int, count: int, half: float, state: Vector, first: Vector,
         stage: Vector, slope: Vector, ground: Ground,
     ) -> tuple[float, float]:  # fmt: skip
-        """Give the powers dissipated and put in at the middle stage, which its slope contains."""
+        """Return the powers dissipated and put in at the middle stage, which its slope contains."""
         powers = system.coordinates() + system.variables()
         return slope[powers], slope[powers + 1]
 
@@ -280,7 +280,7 @@ class FixedSteps(NamedTuple):
         self, system: Evaluated, mode: int, new: Vector, stage: Vector, slope: Vector,
         ground: Ground,
     ) -> tuple[float, float]:  # fmt: skip
-        """Give the powers dissipated and put in at the last stage, which its slope contains."""
+        """Return the powers dissipated and put in at the last stage, which its slope contains."""
         powers = system.coordinates() + system.variables()
         return slope[powers], slope[powers + 1]
 
@@ -301,7 +301,7 @@ class FixedSteps(NamedTuple):
         self, system: Counted, count: int, done: bool, scale: float, new: Vector, works: Vector,
         reference: Vector, controls: Vector,
     ) -> float:  # fmt: skip
-        """Give 0, or infinity where the end of the step is not finite."""
+        """Return 0, or infinity where the end of the step is not finite."""
         return 0.0 if done else math.inf
 
 
@@ -315,7 +315,7 @@ class FixedStepsByRates(FixedSteps):
         self, system: Evaluated, mode: int, count: int, half: float, state: Vector,
         first: Vector, stage: Vector, slope: Vector, ground: Ground,
     ) -> tuple[float, float]:  # fmt: skip
-        """Give the powers at the middle stage, with the rates of :eq:`eq-fixed-powers`."""
+        """Return the powers at the middle stage, with the rates of :eq:`eq-fixed-powers`."""
         size = system.coordinates()
         for i in range(size):
             own_half = half if i < count else 0.0
@@ -327,7 +327,7 @@ class FixedStepsByRates(FixedSteps):
         self, system: Evaluated, mode: int, new: Vector, stage: Vector, slope: Vector,
         ground: Ground,
     ) -> tuple[float, float]:  # fmt: skip
-        """Give the powers at the last stage, with the rates at the end of the step."""
+        """Return the powers at the last stage, with the rates at the end of the step."""
         size = system.coordinates()
         for i in range(size):
             stage[size + i] = new[size + i]
@@ -373,7 +373,7 @@ class StepsByTolerance(NamedTuple):
         self, system: Counted, count: int, done: bool, scale: float, new: Vector, works: Vector,
         reference: Vector, controls: Vector,
     ) -> float:  # fmt: skip
-        """Give the largest error of a step, of the state or of its works, over the error allowed.
+        """Return the largest error of a step, of the state or of its works, over the error allowed.
 
         The error of the works is relative to `scale`, the largest energy of the run so far.
         """

@@ -55,14 +55,14 @@ class Steps:
         )  # fmt: skip
 
     def until(self, time: float) -> "Steps":
-        """Give the steps that end up to a time [s]."""
+        """Return the steps that end up to a time [s]."""
         count = int(np.searchsorted(self.time, time, side="right"))
         if count and self.length[count - 1] == 0.0:  # a start without its step
             count -= 1
         return replace(self, values=self.values[:count], codes=self.codes[:count])
 
     def inside(self, which: Integers, model: ContactModel, fraction: Vector) -> Matrix:
-        """Give states inside steps by their dense solution, :eq:`eq-hermite`."""
+        """Return states inside steps by their dense solution, :eq:`eq-hermite`."""
         size, u = model.system.coordinates(), fraction[:, None]
         h = self.length[which, None, None]
         state, new, first, last = (
@@ -85,7 +85,7 @@ class Steps:
 
 
 def steps_of(table: StepTable, counters: Integers, width: int, *, exact: bool) -> Steps:
-    """Give the steps that a run has kept, whose states have `width` numbers."""
+    """Return the steps that a run has kept, whose states have `width` numbers."""
     codes, count = table.codes.reshape(-1, CODES), int(counters[at.STEPS_KEPT])
     values = table.values.reshape(len(codes), -1)
     return Steps(values[:count], codes[:count], width, exact).until(np.inf)
@@ -193,7 +193,7 @@ class Trajectory(Summary):
 
 
 def run_counts(clock: Vector, counters: Integers) -> dict[str, Any]:
-    """Give the fields of a summary that follow from the progress of a finished run."""
+    """Return the fields of a summary that follow from the progress of a finished run."""
     reals, wholes = clock.tolist(), counters.tolist()
     moved, residual = reals[at.LARGEST_MOVED], reals[at.RESIDUAL]
     return {

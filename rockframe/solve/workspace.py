@@ -226,7 +226,7 @@ class Workspace(NamedTuple):
 
     @inlined
     def of_steps(self) -> StepArrays:
-        """Give those arrays that the loop of steps reads and writes."""
+        """Return those arrays that the loop of steps reads and writes."""
         return StepArrays(
             self.both_ends, self.stages, self.works, self.reference, self.limits, self.ground
         )
@@ -262,7 +262,7 @@ def has_no_room(codes: Integers, counters: Integers) -> bool:
 
 @inlined
 def swapped(w: Workspace) -> Workspace:
-    """Give the workspace with both ends exchanged: the end of a step is the start of the next."""
+    """Return the workspace with both ends exchanged: the end of a step is the start of the next."""
     return Workspace(
         w.both_ends, w.new, w.last, w.after, w.state, w.first, w.before, w.stages, w.works,
         w.reference,
@@ -315,7 +315,7 @@ def polynomial(u: float, degree: int, first: int, coefficients: Vector) -> float
 
 @inlined
 def ground_in(fraction: float, span: Span, coefficients: Vector) -> Ground:
-    """Give the ground acceleration at a fraction of a step."""
+    """Return the ground acceleration at a fraction of a step."""
     u = span.u + fraction * span.du
     return Ground(
         polynomial(u, span.degree_x, 0, coefficients),

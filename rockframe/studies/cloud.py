@@ -125,7 +125,7 @@ class Cloud:
         return (self.responses > 0.0) & np.isfinite(self.responses)
 
     def log_likelihoods(self) -> Array:
-        """Give the logarithm of the likelihood of each run, :eq:`eq-cloud-likelihood`."""
+        """Return the logarithm of the likelihood of each run, :eq:`eq-cloud-likelihood`."""
         if self.line is None:
             return np.full(len(self.logs), np.nan)
         falls, moves = self.overturning.at(self.logs), self.moving.at(self.logs)
@@ -140,7 +140,7 @@ class Cloud:
         return found
 
     def probabilities(self, logs: Array, level: float) -> Array:
-        """Give the probability that a level is exceeded, :eq:`eq-cloud-fragility`."""
+        """Return the probability that a level is exceeded, :eq:`eq-cloud-fragility`."""
         line = self.line
         of_line = None if line is None else (line.intercept, line.slope, line.dispersion)
         return _beyond(self.overturning.at(logs), self.moving.at(logs), of_line, logs, level)
@@ -157,7 +157,7 @@ class Cloud:
 def _beyond(
     falls: Array, moves: Array, of_line: Sequence[Any] | None, logs: Array, level: float
 ) -> Array:
-    """Give the probability beyond a level: of overturning, of moving, and by the line."""
+    """Return the probability beyond a level: of overturning, of moving, and by the line."""
     from scipy.special import ndtr
 
     if math.isinf(level):
@@ -329,7 +329,7 @@ def _read_level(value: Any, values: xr.DataArray, owner: str, name: str) -> floa
 def _curve(
     cloud: Cloud, level: float, along: Array, confidence: float, seed: int
 ) -> tuple[FragilityStatus, Array, Array, Array]:
-    """Give status, probabilities at some intensities, median and dispersion of a level.
+    """Return status, probabilities at some intensities, median and dispersion of a level.
 
     Each with its bounds, NaN where confidence is.
     """
@@ -359,7 +359,7 @@ def _curve(
 
 
 def _status(cloud: Cloud, level: float) -> FragilityStatus:
-    """Give whether a limit state has a fragility, or why not."""
+    """Return whether a limit state has a fragility, or why not."""
     if math.isinf(level):
         rises = cloud.overturning.status is not FragilityStatus.FITTED
         rises = rises or cloud.overturning.coefficients[1] > 0.0
@@ -372,7 +372,7 @@ def _status(cloud: Cloud, level: float) -> FragilityStatus:
 
 
 def _parameters(curves: Array, logs: Array) -> tuple[Array, Array]:
-    """Give the logarithms at which curves reach one half, and their dispersions."""
+    """Return the logarithms at which curves reach one half, and their dispersions."""
     from scipy.special import ndtri
 
     eta = ndtri(np.clip(curves, 1e-300, 1.0 - 1e-16))
@@ -381,7 +381,7 @@ def _parameters(curves: Array, logs: Array) -> tuple[Array, Array]:
 
 
 def _crossing(eta: Array, logs: Array, level: float) -> Array:
-    """Give where curves first rise above a level; NaN where they do not."""
+    """Return where curves first rise above a level; NaN where they do not."""
     above = eta >= level
     right = np.argmax(above, axis=1)
     found = above.any(axis=1) & (right > 0)
@@ -453,7 +453,7 @@ def _labelled(
 
 
 def _sentence(found: xr.Dataset, repeated: bool) -> str:
-    """Give the verdict in words: the line, and how many runs overturned."""
+    """Return the verdict in words: the line, and how many runs overturned."""
     words = measure_words(str(found.attrs["intensity"]), found.attrs.get(PERIOD_OF))
     count, fell = found.sizes["run"], int(found["cloud_overturned_count"])
     rest = int(found["resting_count"])

@@ -109,7 +109,7 @@ def subset_levels(
 
 
 def _threshold(demands: Array, share: float, limit: float) -> float:
-    """Give the demand that a share of the samples reaches, halfway between two of them.
+    """Return the demand that a share of the samples reaches, halfway between two of them.
 
     Equal demands are not separated; the possible share with the nearest logarithm is used. If all
     demands are equal, the limit is returned.
@@ -124,19 +124,19 @@ def _threshold(demands: Array, share: float, limit: float) -> float:
 
 
 def probability_of(levels: Sequence[Level]) -> float:
-    """Give the probability that the last threshold is exceeded, :eq:`eq-subset-product` [1]."""
+    """Return the probability that the last threshold is exceeded, :eq:`eq-subset-product` [1]."""
     return math.prod(level.share for level in levels)
 
 
 def family_shares(levels: Sequence[Level]) -> Array:
-    """Give the share of each first sample's descendants in those beyond the last threshold [1]."""
+    """Return share of each first sample's descendants in those beyond the last threshold [1]."""
     last = levels[-1]
     count = np.bincount(last.families[last.exceeds], minlength=len(levels[0].demands))
     return count[~np.isnan(levels[0].demands)] / max(int(count.sum()), 1)
 
 
 def variation_of(levels: Sequence[Level]) -> float:
-    """Give the coefficient of variation of the probability, :eq:`eq-subset-variation` [1]."""
+    """Return the coefficient of variation of the probability, :eq:`eq-subset-variation` [1]."""
     if not probability_of(levels) > 0.0:
         return math.inf
     shares = family_shares(levels)
@@ -145,7 +145,7 @@ def variation_of(levels: Sequence[Level]) -> float:
 
 
 def bounds_of(levels: Sequence[Level], confidence: float) -> tuple[float, float]:
-    """Give bounds of the probability, :eq:`eq-subset-bounds` [1].
+    """Return bounds of the probability, :eq:`eq-subset-bounds` [1].
 
     For a single level they are those of independent cases. Where no sample exceeds the last
     threshold the upper bound comes from the probability of the threshold before.
@@ -168,7 +168,7 @@ def bounds_of(levels: Sequence[Level], confidence: float) -> tuple[float, float]
 
 
 def weights_of(levels: Sequence[Level]) -> list[Array]:
-    """Give the probability that each sample represents, :eq:`eq-subset-weights` [1].
+    """Return the probability that each sample represents, :eq:`eq-subset-weights` [1].
 
     Samples beyond a threshold have none: the next level represents them.
     """

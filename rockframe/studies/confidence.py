@@ -27,7 +27,7 @@ def read_shares(value: object, name: str, *, owner: str) -> Array:
 
 
 def clopper_pearson(exceeded: Generic, trials: Generic, confidence: float) -> tuple[Array, Array]:
-    """Give the exact bounds of shares (Clopper and Pearson, 1934)."""
+    """Return the exact bounds of shares (Clopper and Pearson, 1934)."""
     from scipy.special import betaincinv
 
     tail = 0.5 * (1.0 - confidence)

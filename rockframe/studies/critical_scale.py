@@ -214,7 +214,7 @@ def critical_scale(
 
 
 def _uplift_scale(system: System, plan: Plan) -> float:
-    """Give the scale up to which a block at rest on rigid ground stays so; NaN otherwise."""
+    """Return the scale up to which a block at rest on rigid ground stays so; NaN otherwise."""
     setting, motion = system.setting, plan.motion
     if not isinstance(setting, RigidGroundSetting) or plan.initial != InitialState():
         return math.nan

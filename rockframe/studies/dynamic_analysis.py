@@ -221,7 +221,7 @@ def verdict_of_analysis(dataset: xr.Dataset) -> str:
 
 
 def _sentence(found: xr.Dataset, structures: Mapping[str, int]) -> str:
-    """Give the verdict in words: how many motions overturned, and from which scale on."""
+    """Return the verdict in words: how many motions overturned, and from which scale on."""
     of_overturning = found.isel(limit_state=-1)
     capacity = of_overturning["capacity_scale"].to_numpy()
     count, some = capacity.size, np.isfinite(capacity)

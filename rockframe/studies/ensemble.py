@@ -131,7 +131,7 @@ def _values(runs: Any, name: str) -> xr.DataArray:
 
 
 def _dependent(values: xr.DataArray, attributes: Mapping[Any, Any], pooled: Sequence[str]) -> bool:
-    """Give whether members of a sweep depend on one another; refuse axes not named in `pooled`."""
+    """Whether members of a sweep depend on one another; refuses axes not named in `pooled`."""
     if "axes_json" not in attributes or SAMPLED in attributes:
         return False
     wide = [str(dim) for dim, size in values.sizes.items() if size > 1 and dim != MOTION]
@@ -150,7 +150,7 @@ def _dependent(values: xr.DataArray, attributes: Mapping[Any, Any], pooled: Sequ
 
 
 def _sentence(count: int, left_out: int, requested: float, level: float) -> str:
-    """Give the verdict in words: the number of members, and the bounds."""
+    """Return the verdict in words: the number of members, and the bounds."""
     lacking = f"; {left_out} without a result are left out" if left_out else ""
     bounds = (
         "no bounds, for several members are of one motion"
@@ -161,7 +161,7 @@ def _sentence(count: int, left_out: int, requested: float, level: float) -> str:
 
 
 def _distribution(ordered: Array, level: float) -> dict[str, Array]:
-    """Give the share of members up to each value, and its bounds."""
+    """Return the share of members up to each value, and its bounds."""
     from scipy.stats import kstwo
 
     count = len(ordered)
@@ -180,7 +180,7 @@ def _distribution(ordered: Array, level: float) -> dict[str, Array]:
 
 
 def _quantile_bounds(ordered: Array, shares: Array, level: float) -> Array:
-    """Give the members between which quantiles lie: the number below one is binomial."""
+    """Return the members between which quantiles lie: the number below one is binomial."""
     from scipy.stats import binom
 
     if np.isnan(level):

@@ -43,7 +43,7 @@ class Followed:
     whole: bool = True  # False after an interrupt (Ctrl-C)
 
     def flips(self) -> list[Flip]:
-        """Give all changes of the verdict, from low to high."""
+        """Return all changes of the verdict, from low to high."""
         return list(_flips(self.shown))
 
     @property
@@ -101,7 +101,7 @@ def follow(
 def _wide(
     side: Side, resolution: float, *, may_slide: bool, beyond: bool = False
 ) -> Iterator[tuple[float, float]]:
-    """Give the intervals that are wider than the resolution, where the base lifts.
+    """Return the intervals that are wider than the resolution, where the base lifts.
 
     Those below the least scale that overturns, or also those beyond it.
     """
@@ -135,7 +135,7 @@ def _halve(side: Side, look: Look, most: int, *, up_to_first: bool) -> bool:
 
 
 def _suspects(side: Side, *, up_to_first: bool) -> Iterator[tuple[float, float]]:
-    """Give the intervals in which flips may hide, from low to high.
+    """Return the intervals in which flips may hide, from low to high.
 
     With `up_to_first`, the interval before the first scale that overturns is included too: flips
     may hide on both sides of the known flip.
@@ -156,7 +156,7 @@ def _suspects(side: Side, *, up_to_first: bool) -> Iterator[tuple[float, float]]
 
 
 def _clearance(side: Side, near: float, far: float) -> float:
-    """Give the smaller clearance of both runs to the overturning angle; 0 if it was passed."""
+    """Return the smaller clearance of both runs to the overturning angle; 0 if it was passed."""
     ends = side.shown[near], side.shown[far]
     return min(one.clearances[0] if one.within_the_angle else 0.0 for one in ends)
 
@@ -197,7 +197,7 @@ _MOST_GAPS: Final = 3
 
 
 def flips_sentence(found: Followed, *, width: float, resolution: float = 1.0) -> str:
-    """Give in words from which scale the block overturns, where it stands again, and the gaps."""
+    """Return in words from which scale the block overturns, where it stands again, and the gaps."""
     digits = max(_FEWEST_DIGITS, 1 + math.ceil(-math.log10(width)))
 
     def number(scale: float) -> str:
@@ -246,19 +246,19 @@ def flips_sentence(found: Followed, *, width: float, resolution: float = 1.0) ->
 
 
 def unfinished(undecided: Sequence[float]) -> str:
-    """Give in words how many runs have no verdict."""
+    """Return in words how many runs have no verdict."""
     if len(undecided) == 1:
         return "1 run could not be finished and has no verdict"
     return f"{len(undecided)} runs could not be finished and have no verdict"
 
 
 def least_overturning(shown: dict[float, RunSummary]) -> float:
-    """Give the least scale that overturned; NaN if none did."""
+    """Return the least scale that overturned; NaN if none did."""
     return next((scale for scale, run in shown.items() if run.overturned), math.nan)
 
 
 def _gaps(flips: Sequence[Flip], largest: float) -> list[tuple[float, float]]:
-    """Give the ranges where the block stands again: their least and greatest scale of a run."""
+    """Return the ranges where the block stands again: their least and greatest scale of a run."""
     starts = [flip.above for flip in flips if not flip.overturns_above]
     ends = [flip.below for flip in flips if flip.overturns_above]
     if flips and flips[0].overturns_above:

@@ -160,14 +160,14 @@ class _Line:
     falls: tuple[tuple[float, float], ...]  # ranges where it overturns, ends included
 
     def at(self, intensities: Array) -> Array:
-        """Give the response at intensities, infinite where the block overturns."""
+        """Return the response at intensities, infinite where the block overturns."""
         found = np.interp(intensities, self.points, self.values)
         for first, last in self.falls:
             found[(intensities >= first) & (intensities <= last)] = np.inf
         return found
 
     def first(self, levels: Array) -> Array:
-        """Give the least intensities at which levels are reached; infinite where they are not."""
+        """Return the least intensities at which levels are reached; infinite where they are not."""
         highest = np.maximum.accumulate(self.values)
         place = np.searchsorted(highest, levels, side="left")
         found = np.full(levels.shape, self.falls[0][0] if self.falls else np.inf)
@@ -183,7 +183,7 @@ class _Line:
 
 
 def _lines(runs: xr.Dataset, measure: xr.DataArray, values: xr.DataArray) -> list[_Line]:
-    """Give the line of each motion."""
+    """Return the line of each motion."""
     verdict = overturns(runs)
     wide = [str(dim) for dim, size in verdict.sizes.items() if size > 1 and dim != MOTION]
     if len(wide) != 1 or MOTION not in verdict.dims:
@@ -221,7 +221,7 @@ def _lines(runs: xr.Dataset, measure: xr.DataArray, values: xr.DataArray) -> lis
 def _falls(
     runs: xr.Dataset, motion: int, intensities: Array, along: str
 ) -> list[tuple[float, float]] | None:
-    """Give the ranges that overturn, by the brackets of a dynamic analysis; None for a sweep."""
+    """Return the ranges that overturn, by the brackets of a dynamic analysis; None for a sweep."""
     if along != SCALE or not all(one in runs for one in ("scale_above", "exceeds_above")):
         return None
     last = runs.isel({"limit_state": -1, MOTION: motion}, missing_dims="ignore").squeeze()
@@ -249,7 +249,7 @@ def _falls(
 def _line(
     name: str, along: Array, values: Array, fell: Generic, told: list[tuple[float, float]] | None
 ) -> _Line:
-    """Give the line through runs of ascending intensity, some of which may have overturned."""
+    """Return the line through runs of ascending intensity, some of which may have overturned."""
     if not told:  # from the first of neighbours that overturned to the last
         edges = np.diff(np.concatenate([[False], fell, [False]]).astype(int))
         firsts, lasts = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) - 1
@@ -276,7 +276,7 @@ def _line(
 
 
 def fractiles_of(rows: Array, shares: Array) -> Array:
-    """Give the least values up to which at least these shares of the rows lie, :eq:`eq-fractiles`.
+    """Return least values up to which at least these shares of the rows lie, :eq:`eq-fractiles`.
 
     Sorting avoids arithmetic with infinite values.
     """
@@ -305,7 +305,7 @@ def _levels(value: Any, values: xr.DataArray, lines: Sequence[_Line]) -> Array:
 
 
 def _sentence(lines: Sequence[_Line], low: float, high: float, measure: xr.DataArray) -> str:
-    """Give the verdict in words: how many motions overturned, and from where half of them do."""
+    """Return the verdict in words: how many motions overturned, and from where half of them do."""
     falls = [
         [(max(first, low), last) for first, last in one.falls if last >= low and first <= high]
         for one in lines
@@ -324,7 +324,7 @@ def _sentence(lines: Sequence[_Line], low: float, high: float, measure: xr.DataA
 
 
 def _left_out(lines: Sequence[_Line], runs: xr.Dataset) -> str:
-    """Give in words how many runs were left out of the lines."""
+    """Return in words how many runs were left out of the lines."""
     every = overturns(runs).size
     lacking = every - sum(len(one.along) for one in lines)
     if not lacking:

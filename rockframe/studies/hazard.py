@@ -47,11 +47,11 @@ class HazardCurve:
     rates: Array  # descending [1/year]
 
     def slopes(self) -> Array:
-        """Give the exponents of the power laws between the points [1]."""
+        """Return the exponents of the power laws between the points [1]."""
         return -np.diff(np.log(self.rates)) / np.diff(np.log(self.intensities))
 
     def beyond(self) -> tuple["HazardCurve", "HazardCurve"]:
-        """Give extrapolations of the curve below and above, by its first and last power law."""
+        """Return extrapolations of the curve below and above, by its first and last power law."""
         first, last = (float(one) for one in self.slopes()[[0, -1]])
         reach = math.exp(_FAR)
         least, most = float(self.intensities[0]), float(self.intensities[-1])
@@ -219,7 +219,7 @@ def _intensities(value: object, name: str, unit: str) -> Array:
 
 
 def _rates(table: Mapping[str, Any]) -> Array:
-    """Give rates; from probabilities in some years by a Poisson process."""
+    """Return rates; from probabilities in some years by a Poisson process."""
     if "rate" in table:
         return np.asarray(table["rate"], dtype=np.float64)
     years = to_ratio(table["years"], owner=_OWNER, name="years", condition=POSITIVE, example="50")
@@ -231,7 +231,7 @@ def _rates(table: Mapping[str, Any]) -> Array:
 
 
 def _measure(dataset: xr.Dataset) -> str:
-    """Give the one measure of a fragility."""
+    """Return the one measure of a fragility."""
     if "exceedance_probability" not in dataset or "fragility_status" not in dataset:
         msg = f"{_OWNER}: found no fragility; expected one of rf.fragility or rf.cloud_analysis"
         raise SchemaError(msg)
@@ -246,7 +246,7 @@ _KNOWN: Final = (FragilityStatus.FITTED, FragilityStatus.SEPARATED)
 
 
 def _of_one(one: xr.Dataset, curve: HazardCurve, measure: str) -> dict[str, Any]:
-    """Give rate and contributions of one limit state; NaN without a fragility."""
+    """Return rate and contributions of one limit state; NaN without a fragility."""
     names = (
         "annual_rate", "annual_rate_lower_bound", "annual_rate_upper_bound",
         "unreached_rate_below", "unreached_rate_above", "outside_trials_share",
@@ -274,7 +274,7 @@ def _of_one(one: xr.Dataset, curve: HazardCurve, measure: str) -> dict[str, Any]
 
 
 def _of_trials(one: xr.Dataset, measure: str) -> tuple[float, float]:
-    """Give the least and the greatest intensity of trials.
+    """Return the least and the greatest intensity of trials.
 
     The curve is drawn over the range of all structures; a stripe may be a group of intensities
     around its own.
@@ -293,7 +293,7 @@ def _edges(curve: HazardCurve) -> Array:
 
 
 def contributions(one: xr.Dataset, curve: HazardCurve, measure: str) -> tuple[Array, Array]:
-    """Give intensities, and the contributions to the rate between them [1/year]."""
+    """Return intensities, and the contributions to the rate between them [1/year]."""
     edges, rates, slopes = _finely(curve)
     if "median_intensity" in one and "logistic_slope" not in one:
         median, spread = float(one["median_intensity"]), float(one["dispersion"])
@@ -304,7 +304,7 @@ def contributions(one: xr.Dataset, curve: HazardCurve, measure: str) -> tuple[Ar
 
 
 def of_lognormal(median: float, spread: float, edges: Array, rates: Array, slopes: Array) -> Array:
-    """Give the rate of a lognormal capacity in parts of a power law, :eq:`eq-rate-of-part`."""
+    """Return the rate of a lognormal capacity in parts of a power law, :eq:`eq-rate-of-part`."""
     from scipy.special import ndtr
 
     with np.errstate(divide="ignore"):
@@ -349,7 +349,7 @@ def _by_points(
 
 
 def _interpolated(curve: xr.DataArray, along: xr.DataArray) -> Callable[[Array], Array]:
-    """Give a function of log intensity: the probability, linear in normal scores, extrapolated."""
+    """Return the probability by log intensity: linear in normal scores, extrapolated."""
     from scipy.special import ndtr, ndtri
 
     values = curve.to_numpy()
@@ -395,7 +395,7 @@ def _warn_beyond_curve(found: xr.Dataset, curve: HazardCurve) -> None:
 
 
 def _sentence(found: xr.Dataset) -> str:
-    """Give the verdict in words: rate of the last limit state, and contributing intensities."""
+    """Return the verdict in words: rate of the last limit state, and contributing intensities."""
     last = found.isel(limit_state=-1) if "limit_state" in found.dims else found
     state = str(last["limit_state"].item()) if "limit_state" in last.coords else "what was counted"
     rates = np.atleast_1d(last["annual_rate"].to_numpy()).ravel()

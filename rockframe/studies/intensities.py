@@ -79,7 +79,7 @@ _SPECTRAL: Final = (*OSCILLATORS, AVERAGE)
 
 
 def spelled(value: object) -> object:
-    """Give the name of a measure for an abbreviation, or another spelling."""
+    """Return the name of a measure for an abbreviation, or another spelling."""
     written = " ".join(value.split()).casefold() if isinstance(value, str) else ""
     return _SPELLED.get(written, value)
 
@@ -96,12 +96,12 @@ def measure_words(name: str, period: Any) -> str:
 
 
 def of_study(name: str, period: Periods) -> dict[str, Any]:
-    """Give the attributes in which a dataset records its measure."""
+    """Return the attributes in which a dataset records its measure."""
     return {"intensity": name} | of_period(period)
 
 
 def of_period(period: Periods) -> dict[str, Any]:
-    """Give the attribute in which a dataset records period or periods of a measure."""
+    """Return the attribute in which a dataset records period or periods of a measure."""
     if period is None:
         return {}
     return {PERIOD_OF: np.array(period) if isinstance(period, tuple) else period}
@@ -137,7 +137,7 @@ class Intensity:
         return cls(name, periods)
 
     def of(self, motion: GroundMotion) -> float:
-        """Give the measure of a motion, in SI units."""
+        """Return the measure of a motion, in SI units."""
         if isinstance(self.period, tuple):
             return float(average_spectral_acceleration(motion, (self.period, "s"))[self.name])
         if self.period is not None:
@@ -150,14 +150,14 @@ class Intensity:
         return measure_of_ground(motion, self.name)
 
     def attributes(self) -> dict[str, Any]:
-        """Give the CF attributes of its values."""
+        """Return the CF attributes of its values."""
         return SCHEMA[self.name].attributes()
 
 
 def measure_in(
     runs: xr.Dataset, value: object, period: PeriodLike | None, motions: object, *, owner: str
 ) -> xr.DataArray:
-    """Give a measure of the motion of each case: a known one, a column, or given numbers.
+    """Return a measure of the motion of each case: a known one, a column, or given numbers.
 
     A column is any coordinate or variable of the runs, along their dimensions, by its name.
     """
@@ -185,7 +185,7 @@ def measure_in(
 
 
 def _of_these_runs(runs: xr.Dataset, array: xr.DataArray, owner: str) -> xr.DataArray:
-    """Give the user's numbers in the order of the runs' labels; NaN where one is missing."""
+    """Return the user's numbers in the order of the runs' labels; NaN where one is missing."""
     for dim in array.dims:
         twice = dim in array.indexes and not array.indexes[dim].is_unique
         if twice and dim in runs.indexes and array.indexes[dim].equals(runs.indexes[dim]):
@@ -203,7 +203,7 @@ def _of_these_runs(runs: xr.Dataset, array: xr.DataArray, owner: str) -> xr.Data
 
 
 def named_column(runs: xr.Dataset, value: object) -> object:
-    """Give a column of the runs by its name, unless a known measure has this name."""
+    """Return a column of the runs by its name, unless a known measure has this name."""
     known = spelled(value)
     if isinstance(known, str) and known not in POWERS and known in runs.variables:
         return runs[known]
@@ -211,7 +211,7 @@ def named_column(runs: xr.Dataset, value: object) -> object:
 
 
 def _same_period(runs: xr.Dataset, name: str, period: PeriodLike | None, owner: str) -> bool:
-    """Give whether the runs have a spectral measure of the requested period."""
+    """Return whether the runs have a spectral measure of the requested period."""
     known = runs.attrs.get(PERIOD_OF, runs.attrs.get("spectral_period"))
     if period is None:
         return True
@@ -222,7 +222,7 @@ def _same_period(runs: xr.Dataset, name: str, period: PeriodLike | None, owner: 
 def period_attribute(
     runs: xr.Dataset | None, measures: Iterable[object], period: PeriodLike | None, *, owner: str
 ) -> dict[str, Any]:
-    """Give the period of a spectral measure, or those of an average, as an attribute."""
+    """Return the period of a spectral measure, or those of an average, as an attribute."""
     named = [spelled(one) for one in measures if not isinstance(one, xr.DataArray)]
     if period is not None:
         several = AVERAGE if AVERAGE in named else SPECTRAL
@@ -235,7 +235,7 @@ def period_attribute(
 def intensity_in(
     runs: xr.Dataset, intensity: Intensity, motions: object, *, owner: str
 ) -> xr.DataArray:
-    """Give an intensity measure of the motion of each case of a sweep."""
+    """Return an intensity measure of the motion of each case of a sweep."""
     if intensity.name in runs.coords and intensity.period is None:
         return runs[intensity.name]
     before = motions_of_runs(runs, motions, owner=owner)
@@ -246,7 +246,7 @@ def intensity_in(
 
 
 def motions_of_runs(runs: xr.Dataset, value: object, *, owner: str) -> dict[str, GroundMotion]:
-    """Give the motions of a sweep by their names, as they were before they were scaled."""
+    """Return the motions of a sweep by their names, as they were before they were scaled."""
     if MOTION not in runs.coords:
         msg = f"{owner}: found runs without the coordinate {MOTION!r}; expected it, as sweeps have"
         raise SchemaError(msg)
@@ -272,7 +272,7 @@ def motions_of_runs(runs: xr.Dataset, value: object, *, owner: str) -> dict[str,
 def of_motions(
     runs: xr.Dataset, motions: Mapping[str, GroundMotion], value: Callable[[GroundMotion], float]
 ) -> xr.DataArray:
-    """Give a number of each case by a function of its motion."""
+    """Return a number of each case by a function of its motion."""
     numbers = {name: value(motion) for name, motion in motions.items()}
     names = runs[MOTION]
     values = np.array([numbers[str(name)] for name in names.to_numpy().ravel()])
@@ -280,7 +280,7 @@ def of_motions(
 
 
 def _factors(runs: xr.Dataset, motions: Mapping[str, GroundMotion], owner: str) -> xr.DataArray:
-    """Give the factor by which the motion of each case was multiplied."""
+    """Return the factor by which the motion of each case was multiplied."""
     axes = [one for one in json.loads(runs.attrs["axes_json"]) if one["changes"] == MOTION]
     if not axes:
         return xr.DataArray(1.0)
@@ -290,7 +290,7 @@ def _factors(runs: xr.Dataset, motions: Mapping[str, GroundMotion], owner: str) 
         return labels
 
     def of_unit(motion: GroundMotion) -> float:
-        """Give the factor that reaches the unit of the target."""
+        """Return the factor that reaches the unit of the target."""
         one = motion_of_case(motion, name, 1.0, runs.attrs.get("spectral_period"))
         at = int(np.argmax(np.abs(motion.si.horizontal.samples)))
         return abs(float(one.si.horizontal.samples[at] / motion.si.horizontal.samples[at]))
@@ -332,7 +332,7 @@ class ScaledIntensity:
         self.name = str(name)
 
     def at(self, scale: float) -> xr.DataArray:
-        """Give the measure of the scaled motion; NaN unless the scale is above zero."""
+        """Return the measure of the scaled motion; NaN unless the scale is above zero."""
         motion = self._motion.scaled(scale) if scale > 0.0 else self._motion
         found = self._measures(motion)[self.name].isel(dict.fromkeys(SCHEMA[self.name].dims, 0))
         return found if scale > 0.0 else xr.full_like(found, np.nan)

@@ -80,7 +80,7 @@ def limit_states(
 
 
 def listed_limits(value: object, *, owner: str, name: str = "limits") -> list[Any]:
-    """Give the given limit states as a list, also a single one."""
+    """Return the given limit states as a list, also a single one."""
     if isinstance(value, str | int | float):
         return [value]
     return several(value, owner=owner, name=name, of="limit states")
@@ -134,7 +134,7 @@ def read_in_unit(
 
 
 def labels_of_states(states: Sequence[LimitState]) -> dict[str, Generic]:
-    """Give the labels along limit states."""
+    """Return the labels along limit states."""
     return {
         "limit_state": np.array([state.name for state in states], dtype=object),
         "rotation_limit": np.array([state.rotation for state in states]),
@@ -147,7 +147,7 @@ def states_json(states: Sequence[LimitState]) -> str:
 
 
 def states_of(analysis: xr.Dataset) -> tuple[LimitState, ...]:
-    """Give the limit states that a dynamic analysis, or a part of it, still has."""
+    """Return the limit states that a dynamic analysis, or a part of it, still has."""
     names = np.atleast_1d(analysis["limit_state"].to_numpy()).tolist()
     every = [LimitState(*one) for one in json.loads(analysis.attrs[STATES])]
     return tuple(state for state in every if state.name in names)
@@ -176,7 +176,7 @@ def check_runs(value: object, *, owner: str) -> xr.Dataset:
 
 
 def exceeds(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
-    """Give which runs exceed a limit state."""
+    """Return which runs exceed a limit state."""
     overturned = overturns(runs)
     if state.rotation == 1.0:
         return overturned
@@ -195,7 +195,7 @@ def exceeds(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
 
 
 def _beyond_all(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
-    """Give which runs exceed a limit state for any value of its variable.
+    """Return which runs exceed a limit state for any value of its variable.
 
     A block that passed the overturning angle and stands in the end has not overturned; but scalars
     up to the overturning angle say nothing about later motion.
@@ -205,7 +205,7 @@ def _beyond_all(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
 
 
 def demands(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
-    """Give the response over its limit, infinite where the block overturned.
+    """Return the response over its limit, infinite where the block overturned.
 
     A run exceeds from 1 on; for overturning, where it is infinite. NaN without a verdict.
     """
@@ -219,7 +219,7 @@ def demands(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
 
 
 def scalar_of(runs: xr.Dataset, name: str, label: object = None, *, owner: str) -> xr.DataArray:
-    """Give a scalar of runs, for one point, body or restrainer if it has several."""
+    """Return a scalar of runs, for one point, body or restrainer if it has several."""
     known = isinstance(cast("Any", name), str)
     if not known or name not in runs or runs[name].dtype.kind not in "biuf":
         msg = f"{owner}: the runs have no {shown(name)}{_instead(runs, name) if known else ''}"

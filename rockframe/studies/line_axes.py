@@ -32,7 +32,7 @@ class LineAxes:
     def columns(
         self, rows: Mapping[str, tuple[Generic, str]] = MappingProxyType({})
     ) -> dict[str, tuple[Generic, str]]:
-        """Give a table of all combinations of values, for each of some rows; last axis fastest."""
+        """Return a table of all combinations of values for each of some rows; last axis fastest."""
         places = np.indices(tuple(self.sizes.values()))
         count = math.prod(self.sizes.values())
         repeats = max((len(each) for each, _ in rows.values()), default=1)
@@ -50,14 +50,14 @@ class LineAxes:
         }
 
     def arranged(self, runs: xr.Dataset) -> xr.Dataset:
-        """Give the runs with the dimensions of the axes instead of the rows of the table."""
+        """Return the runs with the dimensions of the axes instead of the rows of the table."""
         return over_rows(runs, self.sizes, self.labels) if self.axes else runs
 
 
 def over_rows(
     runs: xr.Dataset, sizes: Mapping[str, int], labels: Mapping[str, xr.Variable]
 ) -> xr.Dataset:
-    """Give a dataset with several dimensions in place of the rows of a table."""
+    """Return a dataset with several dimensions in place of the rows of a table."""
     found: dict[Hashable, xr.Variable] = {}
     for name, one in runs.variables.items():
         if name == CASE or name in labels:

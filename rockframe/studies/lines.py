@@ -134,7 +134,7 @@ class Bracket:
         return 0.5 * (self.below + self.above)
 
     def halved(self, shown: float) -> Iterator["Bracket"]:
-        """Give the part that remains by the verdict of its middle; both parts by a third one."""
+        """Return the part that remains by the verdict of its middle; both parts by a third one."""
         if shown != self.before:
             yield replace(self, above=self.middle, after=shown)
         if shown != self.after:
@@ -224,7 +224,7 @@ class Seen:
         return Seen(every, known, moved)
 
     def gaps(self, verdict: int, line: int) -> tuple[Array, Array]:
-        """Give the intervals between runs, up to the one that ends at the first exceedance.
+        """Return the intervals between runs, up to the one that ends at the first exceedance.
 
         Without those at whose upper end nothing moves: a base that holds with elastic parts holds
         at any lesser scale too.
@@ -238,7 +238,7 @@ class Seen:
         return self.scales[known[there]], self.scales[far[there]]
 
     def middles(self, resolution: float) -> Wanted:
-        """Give lines and the middles of those of their gaps that are wider than the resolution."""
+        """Return lines and the middles of their gaps that are wider than the resolution."""
         found = set[tuple[int, float]]()
         for verdict, line in np.ndindex(self.verdicts.shape[:2]):
             near, far = self.gaps(verdict, line)
@@ -277,7 +277,7 @@ class FollowedLines:
     brackets: list[Bracket]
 
     def capacities(self, shape: tuple[int, ...]) -> dict[str, Array]:
-        """Give the variables of capacities in a dataset, over verdicts and lines in some shape."""
+        """Return variables of capacities in a dataset, over verdicts and lines in some shape."""
         _, above, _, after = self.arrays(shape)
         rising = np.where(after == 1.0, above, np.inf).min(axis=-1, initial=np.inf)
         return {
@@ -286,7 +286,7 @@ class FollowedLines:
         }
 
     def flips(self, shape: tuple[int, ...]) -> dict[str, Array]:
-        """Give the variables of changes of verdicts in a dataset."""
+        """Return the variables of changes of verdicts in a dataset."""
         below, above, _, after = self.arrays(shape)
         count = np.isfinite(below).sum(axis=-1)
         return {
@@ -294,7 +294,7 @@ class FollowedLines:
         }  # fmt: skip
 
     def arrays(self, shape: tuple[int, ...]) -> Iterator[Array]:
-        """Give lower and upper scales of brackets, and the verdicts there."""
+        """Return lower and upper scales of brackets, and the verdicts there."""
         every = bracket_arrays(self.brackets, self.seen.verdicts.shape[:2])
         return (one.reshape((*shape, -1)) for one in every)
 
@@ -348,7 +348,7 @@ class Lines:
         return FollowedLines(scan, seen, found)
 
     def _seen(self, runs: xr.Dataset) -> Seen:
-        """Give the verdicts of the scan."""
+        """Return the verdicts of the scan."""
         order = ([CASE] if self.columns else []) + [MOTION, SCALE]
         shown = self.verdicts(runs).transpose(VERDICT, *order).to_numpy()
         shown = shown.reshape(len(shown), -1, shown.shape[-1])
@@ -391,7 +391,7 @@ class Lines:
 
 
 def _moves(runs: xr.Dataset) -> xr.DataArray:
-    """Give in which runs a base lifted or slid, also one of a lower body."""
+    """Return in which runs a base lifted or slid, also one of a lower body."""
     moves = runs["first_uplift_time"].notnull() | (runs["impact_count"] > 0)
     moves |= runs["overturned"] == 1
     for slip in (runs[name] for name in PEAK_SLIPS if name in runs):

@@ -19,7 +19,7 @@ class Logistic:
     covariance: Array
 
     def at(self, logs: Array) -> Array:
-        """Give the probability at logarithms of intensities."""
+        """Return the probability at logarithms of intensities."""
         return self._of(self.coefficients, logs)
 
     def drawn(self, logs: Array, rng: np.random.Generator, count: int) -> Array:

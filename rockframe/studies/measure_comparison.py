@@ -182,7 +182,7 @@ def _covariates(runs: xr.Dataset, values: Sequence[str] | Covariates) -> dict[st
 
 
 def _of_motions(runs: xr.Dataset, name: str, value: Any) -> xr.DataArray:
-    """Give the numbers of the motions to the runs."""
+    """Return the numbers of the motions to the runs."""
     if isinstance(value, xr.DataArray):
         return value
     labels = runs[MOTION].to_numpy().astype(str)
@@ -208,7 +208,7 @@ def _of_motions(runs: xr.Dataset, name: str, value: Any) -> xr.DataArray:
 def _compared(
     named: Sequence[str], clouds: Sequence[Cloud], beside: Mapping[str, Array]
 ) -> xr.Dataset:
-    """Give a dataset of the results of all measures."""
+    """Return a dataset of the results of all measures."""
     lines = [one.line for one in clouds if one.line is not None]
     likely = np.stack([one.log_likelihoods() for one in clouds])
     more = (likely - likely[0]) / math.log(2.0)
@@ -242,7 +242,7 @@ def _compared(
 
 
 def _dependence(cloud: Cloud, covariate: Array) -> tuple[float, float]:
-    """Give the slope of the residuals over a covariate, and its p-value."""
+    """Return the slope of the residuals over a covariate, and its p-value."""
     from scipy.stats import linregress
 
     along = covariate[cloud.between]
@@ -254,7 +254,7 @@ def _dependence(cloud: Cloud, covariate: Array) -> tuple[float, float]:
 
 
 def _sentence(found: xr.Dataset) -> str:
-    """Give the verdict in words: the most efficient measure, and those not sufficient."""
+    """Return the verdict in words: the most efficient measure, and those not sufficient."""
     ratio = found["efficiency_ratio"]
     best = str(found["measure"][int(np.argmin(ratio.to_numpy()))].item())
     text = f"Of {found.sizes['measure']} measures {best} is the most efficient, with "

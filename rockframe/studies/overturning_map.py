@@ -145,7 +145,7 @@ def overturning_map(
 
 
 def _made(pulse: object, frequency: float) -> GroundMotion:
-    """Give the pulse of a frequency, with an amplitude of one."""
+    """Return the pulse of a frequency, with an amplitude of one."""
     if isinstance(pulse, GroundMotion):
         described = pulse.to_dict()
         if not {"amplitude", "frequency"} <= set(described) or "operations" in described:
@@ -181,7 +181,7 @@ def _without_stands(counts: Array) -> Array:
 def _labels(
     system: System, levels: Array, frequencies: Array, pulses: Iterable[GroundMotion]
 ) -> dict[str, Any]:
-    """Give the coordinates; on rigid ground also those without a dimension."""
+    """Return the coordinates; on rigid ground also those without a dimension."""
     rows = [("amplitude", SCALE, levels), ("frequency", MOTION, frequencies)]
     setting = system.setting
     if isinstance(setting, RigidGroundSetting):

@@ -216,7 +216,7 @@ class Matters(NamedTuple):
 
 
 def ranked(columns: Mapping[str, Generic], verdict: Array) -> dict[str, Matters]:
-    """Give the sensitivity of the verdict to each parameter, the greatest first.
+    """Return the sensitivity of the verdict to each parameter, the greatest first.
 
     The index is the correlation ratio of groups of equal size, minus its expectation without
     dependence (the adjusted ratio, Kelley 1935): a first-order Sobol index from given data, within

@@ -185,18 +185,18 @@ def _joined(first: GroundMotion, second: GroundMotion | None, rest: float) -> Gr
 
 
 def _steps(motion: GroundMotion, rest: float) -> int:
-    """Give the number of time steps in which the ground stands still."""
+    """Return the number of time steps in which the ground stands still."""
     return max(1, round(rest / motion.si.time_step))
 
 
 def _pause(motion: GroundMotion, rest: float) -> float:
-    """Give the pause in a sequence; exactly the given one where it is whole time steps."""
+    """Return the pause in a sequence; exactly the given one where it is whole time steps."""
     found = _steps(motion, rest) * motion.si.time_step
     return rest if math.isclose(found, rest, rel_tol=_SAME_STEP) else found
 
 
 def _level(horizontal: Signal) -> Signal:
-    """Give a vertical component that is zero, of the length of the horizontal one."""
+    """Return a vertical component that is zero, of the length of the horizontal one."""
     still = np.zeros(horizontal.samples.size)
     return replace(horizontal, samples=still, polynomials=None, name="vertical")
 
@@ -215,7 +215,7 @@ def _six(pieces: Array) -> Array:
 
 
 def _arranged(runs: xr.Dataset, there: Generic) -> xr.Dataset:
-    """Give the runs with dimensions of sequence and earthquake instead of motion."""
+    """Return the runs with dimensions of sequence and earthquake instead of motion."""
     found: dict[str, xr.Variable] = {}
     gaps = not there.all()
     for name, one in runs.data_vars.items():

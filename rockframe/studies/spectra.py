@@ -82,12 +82,12 @@ class BlockSizes:
         self._labels = {str(name): labels[name].variable for name in labels.coords} | further.labels
 
     def arranged(self, runs: xr.Dataset) -> xr.Dataset:
-        """Give the runs with the dimensions of the sizes instead of the rows of the table."""
+        """Return the runs with the dimensions of the sizes instead of the rows of the table."""
         return over_rows(runs, self._sizes, self._labels)
 
 
 def _by_shape_factor(system: System, owner: str) -> System:
-    """Give a system whose block keeps its shape factor where width and height change.
+    """Return a system whose block keeps its shape factor where width and height change.
 
     An inertia and a height of the centre of mass that were given would not change with them.
     """

@@ -264,7 +264,7 @@ class _Sampler:
         return demands(self.runs[-1], self._state).to_numpy()
 
     def _table(self, scores: Array) -> dict[str, Any]:
-        """Give the cases of samples, :eq:`eq-gaussian-copula`."""
+        """Return the cases of samples, :eq:`eq-gaussian-copula`."""
         from scipy.special import ndtr
 
         count = len(self._spreads)
@@ -286,7 +286,7 @@ class _Sampler:
 
 
 def _collected(every: Iterator[Level], *, kept: bool) -> tuple[list[Level], bool]:
-    """Give the levels, and whether sampling was completed."""
+    """Return the levels, and whether sampling was completed."""
     found: list[Level] = []
     try:
         found.extend(every)
@@ -303,7 +303,7 @@ def _collected(every: Iterator[Level], *, kept: bool) -> tuple[list[Level], bool
 def _labelled(
     sampler: _Sampler, found: Sequence[Level], confidence: float, *, whole: bool
 ) -> xr.Dataset:
-    """Give a dataset of the samples of all levels with their runs, and of the probability."""
+    """Return a dataset of the samples of all levels with their runs, and of the probability."""
     first = sampler.runs[0]
     samples = concat(sampler.runs, CASE).isel(
         {CASE: np.concatenate([one.origins for one in found])}
@@ -363,7 +363,7 @@ def _warn_of_uncertain_probability(found: xr.Dataset) -> None:
 def _sentence(
     found: xr.Dataset, state: LimitState, confidence: float, motions: int, *, whole: bool
 ) -> str:
-    """Give the verdict in words: the probability, and the number of runs."""
+    """Return the verdict in words: the probability, and the number of runs."""
     does = "Overturns" if state.rotation == 1.0 else f"Exceeds {state.name}"
     lower, upper = (
         float(found[f"exceedance_probability_{end}_bound"]) for end in ("lower", "upper")

@@ -60,12 +60,12 @@ class Candidates:
     attributes: dict[str, str | float | int]  # attributes of results
 
     def residuals(self, factors: Array) -> Array:
-        """Give the logarithms of scaled spectra over the target, shape (n, k)."""
+        """Return the logarithms of scaled spectra over the target, shape (n, k)."""
         return self.logarithms + np.log(factors)[:, None] - self.target
 
     @property
     def within(self) -> "NDArray[np.bool_]":
-        """Give whether each factor lies within the bounds, shape (n,)."""
+        """Return whether each factor lies within the bounds, shape (n,)."""
         low, high = self.bounds
         return (self.factors >= low) & (self.factors <= high)
 
@@ -118,7 +118,7 @@ def candidates_of(
 
 
 def usual_periods(target: TargetSpectrum) -> Array:
-    """Give the periods at which spectra are compared with a target by default [s]."""
+    """Return the periods at which spectra are compared with a target by default [s]."""
     low, high = (float(np.clip(one, *target.limits)) for one in _USUAL_BAND)
     return np.geomspace(low, high, _USUAL_COUNT) if high > low else np.array([low])
 

@@ -102,7 +102,7 @@ def eurocode_8(
     *,
     owner: str,
 ) -> tuple[str, Shape, float]:
-    """Give name, shape and damping ratio of the horizontal elastic spectrum of Eurocode 8."""
+    """Return name, shape and damping ratio of the horizontal elastic spectrum of Eurocode 8."""
     peak = to_si(
         ground_acceleration,
         ACCELERATION,
@@ -135,7 +135,7 @@ def asce_7(
     *,
     owner: str,
 ) -> tuple[str, Shape]:
-    """Give name and shape of the design response spectrum of ASCE 7."""
+    """Return name and shape of the design response spectrum of ASCE 7."""
     named = {
         "short_period_acceleration": short_period_acceleration,
         "one_second_acceleration": one_second_acceleration,

@@ -26,7 +26,7 @@ COLUMNS: Final = (*(row.name for row in RECORDS), "peak_ground_acceleration")
 
 
 def column(name: str, motion: GroundMotion) -> Any:
-    """Give the metadata of a motion."""
+    """Return the metadata of a motion."""
     if name in _COMPUTED:
         return _computed(name, motion)
     value = motion.metadata.get(name)
@@ -39,7 +39,7 @@ def column(name: str, motion: GroundMotion) -> Any:
 
 
 def known_columns(motions: Mapping[str, GroundMotion]) -> dict[str, np.ndarray]:
-    """Give the columns of the schema for which some motion has a value."""
+    """Return the columns of the schema for which some motion has a value."""
     found: dict[str, np.ndarray] = {}
     for name in COLUMNS:
         values = [column(name, motion) for motion in motions.values()]
@@ -52,7 +52,7 @@ def known_columns(motions: Mapping[str, GroundMotion]) -> dict[str, np.ndarray]:
 
 
 def other_columns(motions: Mapping[str, GroundMotion]) -> dict[str, list[Any]]:
-    """Give other metadata of the files, by their keys, None where a motion has none."""
+    """Return other metadata of the files, by their keys, None where a motion has none."""
     keys = dict.fromkeys(key for one in motions.values() for key in one.metadata)
     return {
         key: [one.metadata.get(key) for one in motions.values()]
@@ -89,7 +89,7 @@ Test = Callable[[Any], bool]
 
 
 def chosen(motions: Mapping[str, GroundMotion], criteria: Mapping[str, object]) -> list[str]:
-    """Give the labels of the motions that meet all criteria."""
+    """Return the labels of the motions that meet all criteria."""
     for name in criteria:
         check_column(motions, name, owner=_OWNER)
     tests = {name: _test(name, given) for name, given in criteria.items()}
@@ -110,7 +110,7 @@ def check_column(motions: Mapping[str, GroundMotion], name: object, *, owner: st
 
 
 def order(motions: Mapping[str, GroundMotion], name: str, *, descending: bool) -> list[str]:
-    """Give the labels in the order of a column; motions without a value come last."""
+    """Return the labels in the order of a column; motions without a value come last."""
     known = {label: column(name, motion) for label, motion in motions.items()}
     there = [label for label, value in known.items() if not _missing(value)]
     as_text = any(isinstance(known[label], str) for label in there)
@@ -166,7 +166,7 @@ _SHOWN: Final = 8
 
 
 def suite_html(suite: "LabelledMotions") -> str:
-    """Give a suite as HTML: its size, and curves of its first motions."""
+    """Return a suite as HTML: its size, and curves of its first motions."""
     rows = {"motions": str(len(suite))}
     if suite.verticals:
         rows["vertical ones beside them"] = str(len(suite.verticals))

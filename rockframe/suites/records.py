@@ -44,7 +44,7 @@ class RecordedComponent:
         return {**self.known, **self.motion.metadata, **own}
 
     def finished(self) -> GroundMotion:
-        """Give the motion with its label and all metadata."""
+        """Return the motion with its label and all metadata."""
         one = self.motion
         return GroundMotion(
             one.si, name=self.label, metadata=self.metadata, history=one.history, recipe=one.recipe
@@ -52,7 +52,7 @@ class RecordedComponent:
 
 
 def number_in_name(file: str) -> int | None:
-    """Give the record sequence number that PEER writes before the names of its files."""
+    """Return the record sequence number that PEER writes before the names of its files."""
     found = _RSN.match(file)
     return None if found is None else int(found.group(1))
 
@@ -134,7 +134,7 @@ def _at_one_time(members: list[RecordedComponent]) -> list[list[RecordedComponen
 
 
 def _start(component: RecordedComponent) -> float | None:
-    """Give the start time of a component whose earthquake is not known [s], else None."""
+    """Return the start time of a component whose earthquake is not known [s], else None."""
     metadata = component.metadata
     if not _named_by_station(metadata) or any(metadata.get(key) for key in _WHEN):
         return None
@@ -147,7 +147,7 @@ def _named_by_station(metadata: Mapping[str, Any]) -> bool:
 
 
 def _group_of(component: RecordedComponent) -> tuple[str, ...]:
-    """Give the metadata common to components that belong together."""
+    """Return the metadata common to components that belong together."""
     metadata = component.metadata
     if "record_sequence_number" in metadata or _named_by_station(metadata):
         return _record_of(component)
@@ -189,7 +189,7 @@ def _event_and_station(component: RecordedComponent) -> tuple[str, ...]:
 
 
 def _instrument(component: RecordedComponent) -> tuple[str, ...]:
-    """Give the codes of band and instrument, and the processing, as far as they are known."""
+    """Return the codes of band and instrument, and the processing, as far as they are known."""
     metadata = component.metadata
     found = _INSTRUMENT.search(str(metadata.get("component", "")))
     return ("" if found is None else found.group(1), str(metadata.get("processing", "")))
@@ -201,7 +201,7 @@ def _is_one(members: list[RecordedComponent]) -> bool:
 
 
 def _why_apart(members: list[RecordedComponent]) -> list[str]:
-    """Give in words why components of one station and time are no pair."""
+    """Return in words why components of one station and time are no pair."""
     if len(members) < len(HORIZONTAL):
         return []
     statements = {

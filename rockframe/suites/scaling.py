@@ -111,7 +111,7 @@ def scaled_set(
     title: str,
     **attributes: str | float,
 ) -> xr.Dataset:
-    """Give a labelled dataset of a set of scaled motions and its target."""
+    """Return a labelled dataset of a set of scaled motions and its target."""
     residuals = candidates.residuals(factors)[places]
     logarithms = residuals + candidates.target
     low, high = candidates.bounds
@@ -155,7 +155,7 @@ def scaled_set(
 
 
 def compared_target(found: xr.Dataset) -> TargetSpectrum | None:
-    """Give the target of scaled motions, known at the periods that were compared."""
+    """Return the target of scaled motions, known at the periods that were compared."""
     periods = found["period"].to_numpy()
     if periods.size < 2:
         return None
@@ -170,7 +170,7 @@ def compared_target(found: xr.Dataset) -> TargetSpectrum | None:
 
 
 def spread_of(logarithms: "Array") -> "Array":
-    """Give the standard deviation over a set, shape (k,); zero of a single motion."""
+    """Return the standard deviation over a set, shape (k,); zero of a single motion."""
     if len(logarithms) < 2:
         return np.zeros(logarithms.shape[1])
     return logarithms.std(axis=0, ddof=1)

@@ -191,7 +191,7 @@ class _Search:
         return np.sqrt(squares.mean(axis=1))
 
     def _allowed(self, others: list[int]) -> "NDArray[np.bool_]":
-        """Give which candidates may be added to a set, shape (n,)."""
+        """Return which candidates may be added to a set, shape (n,)."""
         free = np.ones(len(self.residuals), dtype=bool)
         free[others] = False
         numbers, counts = np.unique(self.events[others], return_counts=True)

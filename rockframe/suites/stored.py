@@ -132,7 +132,7 @@ def stored_motions(dataset: xr.Dataset) -> tuple[dict[str, GroundMotion], dict[s
 
 
 def _table_of(target: TargetSpectrum) -> dict[str, Any]:
-    """Give a target as a table: at its own periods, or at many if it is a formula."""
+    """Return a target as a table: at its own periods, or at many if it is a formula."""
     own = getattr(getattr(target.shape, "logarithm", None), "logarithms", None)
     low, high = np.clip(target.limits, *_BAND)
     seconds = np.geomspace(low, high, _PERIODS) if own is None else np.exp(np.array(own))
@@ -154,7 +154,7 @@ def _target_of(table: Mapping[str, Any]) -> TargetSpectrum:
 
 
 def is_stored_suite(source: "Source") -> bool:
-    """Give whether a file is a netCDF file of a suite."""
+    """Return whether a file is a netCDF file of a suite."""
     if not is_netcdf(source):
         return False
     import netCDF4

@@ -305,7 +305,7 @@ class TargetSpectrum(metaclass=Proposing):
         )  # fmt: skip
 
     def at(self, periods: ArrayLike | Iterable[QuantityLike]) -> Array:
-        """Give the accelerations at periods.
+        """Return the accelerations at periods.
 
         Parameters
         ----------
@@ -335,7 +335,7 @@ class TargetSpectrum(metaclass=Proposing):
         )
 
     def at_seconds(self, seconds: Array, *, owner: str) -> Array:
-        """Give the accelerations at periods.
+        """Return the accelerations at periods.
 
         Parameters
         ----------
@@ -365,7 +365,7 @@ class TargetSpectrum(metaclass=Proposing):
         return self.shape(seconds)
 
     def deviations_at(self, seconds: Array) -> Array:
-        """Give the standard deviations of the logarithm at periods.
+        """Return the standard deviations of the logarithm at periods.
 
         Parameters
         ----------

@@ -46,7 +46,7 @@ class AloneSetting(Setting):
         )
 
     def contact_model(self) -> "ContactModel":
-        """Give the equations of a body on its base."""
+        """Return the equations of a body on its base."""
         from rockframe.dynamics.alone import alone
 
         body, base = self.load.rigid_body, self.support.base_numbers
@@ -78,24 +78,24 @@ class AloneSetting(Setting):
         return f"the {base} for a body{whose}: it falls to the {side} by its own weight"
 
     def small_motion(self) -> SmallMotion:
-        """Give the equations of small motion about rest, in the contact of the body at rest."""
+        """Return the equations of small motion about rest, in the contact of the body at rest."""
         standing = self.support.standing
         stands = standing.rest or standing.upright
         turned = [matrix[::-1, ::-1] for matrix in standing.small_motion(stands)]
         return SmallMotion(("vertical_displacement", "rotation"), *turned)
 
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
-        """Give the vertical equilibrium at some rotations, :eq:`eq-incline-held`."""
+        """Return the vertical equilibrium at some rotations, :eq:`eq-incline-held`."""
         return self.support.standing.held(rotations)
 
     def upright(self) -> dict[str, float]:
-        """Give settlement, reactions and moment at uplift of the upright body, by schema names."""
+        """Return settlement, reactions and uplift moment of the upright body, by schema names."""
         uplift = self.uplift_angle
         moment = math.nan if isnan(uplift) else self.statics(uplift).base_moment
         return {"uplift_moment": moment, **self.support.at_rest()}
 
     def equilibrium(self) -> dict[str, float]:
-        """Give settlement, reactions at rest and moment at uplift, by their names in the schema."""
+        """Return settlement, reactions at rest and moment at uplift, by names in the schema."""
         found = self.upright()
         if self.rest_rotation != 0.0:
             found |= static_values(self.statics(self.rest_rotation).reactions)
@@ -122,7 +122,7 @@ class SlidingAloneSetting(AloneSetting):
         return sliding_words(held, friction, restraint=restraint)
 
     def contact_model(self) -> "ContactModel":
-        """Give the equations of slip, rotation and rise: those of a chain of one body."""
+        """Return the equations of slip, rotation and rise: those of a chain of one body."""
         from rockframe.dynamics.chain.model import AtRest, ChainBody, chain
 
         body, rest = self.load.rigid_body, None
@@ -133,5 +133,5 @@ class SlidingAloneSetting(AloneSetting):
         return chain([one], self.body.mass, rest, frictions=[self.friction])
 
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
-        """Give how far the body slipped."""
+        """Return how far the body slipped."""
         return chain_slips(self, 1, ending)

@@ -203,7 +203,7 @@ _OWN: Final[dict[str, Scene]] = {}
 
 
 def scenes() -> tuple[Scene, ...]:
-    """Give all scenes, user-defined scenes last."""
+    """Return all scenes, user-defined scenes last."""
     return (*_SHIPPED, *_OWN.values())
 
 
@@ -220,7 +220,7 @@ def add_scene(kind: type[OwnScene]) -> None:
 
 
 def twin_of(kind: type[OwnScene]) -> str | None:
-    """Give the title of another scene that is made of the same parts, if there is one."""
+    """Return the title of another scene that is made of the same parts, if there is one."""
     own = f"{kind.__module__}.{kind.__qualname__}"
     titles = (
         scene.title
@@ -287,7 +287,7 @@ class Assembly:
         return (Assembly, (self.parts, self.options, self.scene))
 
     def to_dict(self) -> dict[str, object]:
-        """Give parts and options as plain values, fit for JSON; without the motion."""
+        """Return parts and options as plain values, fit for JSON; without the motion."""
         parts = [part.to_dict() for part in self.parts.structural()]
         return {"parts": parts, **self.options.to_dict()}
 

@@ -27,14 +27,14 @@ class Restitutions(NamedTuple):
     right: float
 
     def words(self) -> str:
-        """Give the coefficients in words; one number where they are equal."""
+        """Return the coefficients in words; one number where they are equal."""
         if self.left == self.right:
             return f"{self.left:.6g}"
         return f"{self.left:.6g} (onto the left corner), {self.right:.6g} (onto the right one)"
 
 
 def restitution_on(base: Component | None, greatest: Restitutions) -> Restitutions:
-    """Give the restitutions on a base: eps_max of Eq. (4) unless the user chose one."""
+    """Return the restitutions on a base: eps_max of Eq. (4) unless the user chose one."""
     value = None if base is None else base.si.restitution
     return greatest if value is None else Restitutions(value, value)
 
@@ -83,7 +83,7 @@ class SupportedBody(BodyGeometry):
     def base_moment(
         self, values: Mapping[str, Any], sine: Array, cosine: Array, *, small: bool
     ) -> Array:
-        """Give the moment of the base about its middle, :eq:`eq-base-moment` [N m]."""
+        """Return the moment of the base about its middle, :eq:`eq-base-moment` [N m]."""
         beside, lift = self.eccentricity * cosine, self.eccentricity * sine
         if small:  # widths to first order
             lift = np.zeros_like(sine)
@@ -96,7 +96,7 @@ class SupportedBody(BodyGeometry):
         return moment + values[LINK_MOMENT] if LINK_MOMENT in values else moment
 
     def sunk(self, rotation: Array, height: Array, *, small: bool) -> Array:
-        """Give how much lower than at rest the middle of the base is, :eq:`eq-settlement` [m]."""
+        """Return how much lower than at rest the middle of the base is, :eq:`eq-settlement` [m]."""
         half, beside = 0.5 * rotation, self.eccentricity * rotation
         if not small:
             half = np.sin(half)
@@ -104,7 +104,7 @@ class SupportedBody(BodyGeometry):
         return -height - beside - 2.0 * self.centre_height * half**2
 
     def arms(self, x: Array, y: Array, values: Mapping[str, Any]) -> tuple[Array, Array]:
-        """Give x and y of points from the centre of mass; given from the middle of the base [m]."""
+        """Return x and y of points from the centre of mass, not from the middle of the base [m]."""
         return x - self.eccentricity, y - self.centre_height
 
     @property
@@ -113,7 +113,7 @@ class SupportedBody(BodyGeometry):
         return self.inertia + self.mass * self.centre_height**2
 
     def gyration_square_about(self, distance: float) -> float:
-        """Give inertia over mass about a point of the base [m^2].
+        """Return inertia over mass about a point of the base [m^2].
 
         `distance` is from the point below the centre of mass. About a corner of a symmetric body
         it is R0^2 (1 + 1/mu).
@@ -134,13 +134,13 @@ class OnCorners(SupportedBody):
     def base_moment(
         self, values: Mapping[str, Any], sine: Array, cosine: Array, *, small: bool
     ) -> Array:
-        """Give the moment of the base about its middle, by the corners that bear [N m]."""
+        """Return the moment of the base about its middle, by the corners that bear [N m]."""
         shift = values["right_reaction"] - values["left_reaction"]
         lift = 0.0 if small else values["horizontal_reaction"] * np.abs(sine)
         return self.foot * (shift * cosine + lift)
 
     def sunk(self, rotation: Array, height: Array, *, small: bool) -> Array:
-        """Give how much lower than at rest the middle of the base is: it rises [m]."""
+        """Return how much lower than at rest the middle of the base is: it rises [m]."""
         return -self.foot * np.abs(rotation if small else np.sin(rotation))
 
 
@@ -151,7 +151,7 @@ class OverturningAngles(NamedTuple):
     right: float
 
     def on_side_of(self, rotation: float) -> float:
-        """Give the overturning angle of the side to which a body is rotated."""
+        """Return the overturning angle of the side to which a body is rotated."""
         return self.left if rotation < 0.0 else self.right
 
 
@@ -166,7 +166,7 @@ class Cap:
 
 
 def body_of_block(block: BlockSI, kind: type[SupportedBody] = SupportedBody) -> SupportedBody:
-    """Give a block as a body."""
+    """Return a block as a body."""
     return kind(
         block.half_width, block.centre_height, block.mass, block.inertia, block.shape_factor,
         block.eccentricity,
@@ -178,26 +178,26 @@ _Mass = tuple[float, float, float, float]
 
 
 def with_mass(body: SupportedBody, mass: float, x: float, y: float) -> SupportedBody:
-    """Give a body with an added point mass [kg] at x and y from the middle of its base [m]."""
+    """Return a body with an added point mass [kg] at x and y from the middle of its base [m]."""
     own = (body.mass, body.inertia, body.eccentricity, body.centre_height)
     return _two_as_one(body.half_width, own, (mass, 0.0, x, y))
 
 
 def cap_under(block: BlockSI, cap: CushionCapSI) -> Cap:
-    """Give a cap in SI units; it is as wide as the block unless its width is given."""
+    """Return a cap in SI units; it is as wide as the block unless its width is given."""
     width = cap.width if cap.width is not None else block.width
     return Cap(0.5 * width, 0.5 * cap.height, cap.mass_at(width), cap.inertia_at(width))
 
 
 def one_body(block: BlockSI, cap: Cap) -> SupportedBody:
-    """Give block and cap as one body, :eq:`eq-one-body`."""
+    """Return block and cap as one body, :eq:`eq-one-body`."""
     block_height = 2.0 * cap.half_height + block.centre_height
     upper = (block.mass, block.inertia, block.eccentricity, block_height)
     return _two_as_one(cap.half_width, upper, (cap.mass, cap.inertia, 0.0, cap.half_height))
 
 
 def _two_as_one(half_width: float, one: _Mass, other: _Mass) -> SupportedBody:
-    """Give the body on a base that two rigidly joined masses make."""
+    """Return the body on a base that two rigidly joined masses make."""
     (m1, own1, x1, y1), (m2, own2, x2, y2) = one, other
     mass = m1 + m2
     height, beside = (m1 * y1 + m2 * y2) / mass, (m1 * x1 + m2 * x2) / mass
@@ -249,7 +249,7 @@ class BaseLoad:
         return self.law(self.body.mass)
 
     def law(self, mass: float) -> Body:
-        """Give the body as the equations take it, per unit of a reference mass [kg]."""
+        """Return the body as the equations take it, per unit of a reference mass [kg]."""
         from rockframe.dynamics.alone import rigid_body
 
         return rigid_body(
@@ -264,7 +264,7 @@ class BaseLoad:
 
 
 def load_of(block: BlockSI, options: Options) -> BaseLoad:
-    """Give a block as a load; one object for all scenes that differ only in their bases."""
+    """Return a block as a load; one object for all scenes that differ only in their bases."""
     numbers = (*vars(block).values(), options.gravity, options.inclination)
     if any(isinstance(number, Many) for number in numbers):
         return BaseLoad(body_of_block(block), options)

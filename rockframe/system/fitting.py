@@ -36,7 +36,7 @@ _AT_THE_EDGE: Final = 1.01
 
 
 def misfits(parts: Parts) -> list[str]:
-    """Give the faults of a combination of parts, whatever their sizes."""
+    """Return the faults of a combination of parts, whatever their sizes."""
     block, pads, cap, soil = parts.block, parts.pads, parts.cap, parts.soil
     faults: list[str] = []
     if parts.own:  # parts of a user's own scene, which checks them itself
@@ -73,7 +73,7 @@ def misfits(parts: Parts) -> list[str]:
 
 
 def _misfits_of_stiff_wall(wall: RearWall, parts: Parts) -> list[str]:
-    """Give the faults of a stiff wall with other parts: its laws are impacts on rigid ground."""
+    """Return the faults of a stiff wall with other parts: its laws are impacts on rigid ground."""
     base = parts.pads or parts.soil
     behind = (parts.pads, parts.soil, parts.cap, parts.stack, parts.frame, *parts.links)
     others = [type(part).__name__ for part in behind if part is not None]
@@ -104,7 +104,7 @@ def _misfits_of_stiff_wall(wall: RearWall, parts: Parts) -> list[str]:
 
 
 def _misfits_of_links(parts: Parts) -> list[str]:
-    """Give the faults of links with other parts."""
+    """Return the faults of links with other parts."""
     faults: list[str] = []
     base = next((one for one in (parts.pads, parts.soil) if one is not None), None)
     if parts.cap is not None:
@@ -128,7 +128,7 @@ def _misfits_of_links(parts: Parts) -> list[str]:
 
 
 def _misfits_of_frame(parts: Parts) -> list[str]:
-    """Give the faults of columns under a beam with other parts."""
+    """Return the faults of columns under a beam with other parts."""
     faults = [
         "a Tendon of a RockingFrame goes along the axis of each column, bent below and above it: "
         f"{name} must not be given"
@@ -150,7 +150,7 @@ def _misfits_of_frame(parts: Parts) -> list[str]:
 
 
 def _misfits_of_stack(stack: Stack, parts: Parts) -> list[str]:
-    """Give the faults of a stack with other parts."""
+    """Return the faults of a stack with other parts."""
     faults: list[str] = []
     if parts.block is not None:
         name = type(parts.block).__name__
@@ -196,7 +196,7 @@ def contradictions(parts: Parts) -> list[str]:
 
 
 def _bodies_of(parts: Parts) -> tuple[BlockSI, ...]:
-    """Give the bodies that links may be on, from the top down; none of a frame."""
+    """Return the bodies that links may be on, from the top down; none of a frame."""
     if parts.stack is not None:
         return parts.stack.si.bodies
     return () if parts.block is None else (parts.block.si,)
@@ -230,7 +230,7 @@ def _outside_bodies(parts: Parts) -> list[str]:
 
 
 def _beyond_bodies(parts: Parts) -> list[str]:
-    """Give the faults of tendons and walls that miss their bodies."""
+    """Return the faults of tendons and walls that miss their bodies."""
     faults = list[str]()
     bodies = _bodies_of(parts)
     for name, link in zip(link_labels(parts.links), parts.links, strict=True):
@@ -299,7 +299,7 @@ class BaseFriction(NamedTuple):
     impulsive: float
 
     def words(self) -> str:
-        """Give the coefficients at rest and of slip in words."""
+        """Return the coefficients at rest and of slip in words."""
         if math.isinf(self.static):
             return "held"
         sticks = ", held in impacts" if math.isinf(self.impulsive) else ""
@@ -314,7 +314,7 @@ that are lost in the rounding of weights."""
 
 
 def friction_under(part: Component, options: Options) -> BaseFriction | None:
-    """Give the friction of a base; None where the base holds what is on it."""
+    """Return the friction of a base; None where the base holds what is on it."""
     static = getattr(part.si, "friction", None)
     if static is None or options.sliding is Sliding.CHECKED or isinstance(part, OwnBase):
         return None
@@ -337,7 +337,7 @@ def _slides(parts: Parts, options: Options) -> bool:
 
 
 def missizes(parts: Parts, options: Options) -> list[str]:
-    """Give the faults of the sizes of parts that are together."""
+    """Return the faults of the sizes of parts that are together."""
     block, cap = parts.block, parts.cap
     faults: list[str] = []
     # a squat body may land flat if it slides, or stands in a stack

@@ -100,13 +100,13 @@ class Geometry:
 
 
 def rectangle(half_width: float, height: float, x: float = 0.0, y: float = 0.0) -> Array:
-    """Give the corners of a rectangle that stands on the middle of its lower side [m]."""
+    """Return the corners of a rectangle that stands on the middle of its lower side [m]."""
     left, right, top = x - half_width, x + half_width, y + height
     return np.array([(left, y), (right, y), (right, top), (left, top)])
 
 
 def geometry_of(scene: Assembly) -> Geometry:
-    """Give the geometry of a scene."""
+    """Return the geometry of a scene."""
     parts, setting = scene.parts, scene.setting
     if parts.stack is not None:
         return _of_stack(parts.stack, scene)
@@ -136,7 +136,7 @@ def geometry_of(scene: Assembly) -> Geometry:
 def _of_wall(
     wall: RearWall | None, body: BlockSI, place: tuple[float, float] = (0.0, 0.0)
 ) -> Array | None:
-    """Give the outline by which a wall is drawn: as high as its body, and as thick as its base.
+    """Return the outline by which a wall is drawn: as high as its body, and as thick as its base.
 
     `place` is the middle of the body's base, from the middle of the lowest one.
     """
@@ -147,7 +147,7 @@ def _of_wall(
 
 
 def _ties_of(setting: Setting) -> tuple[LinkedPoints, ...]:
-    """Give the points that restrainers link."""
+    """Return the points that restrainers link."""
     if isinstance(setting, TiedFrameSetting):  # along the axis of each column
         top = setting.frame.column.height + setting.frame.beam_height
         axes = column_places(setting.frame)
@@ -164,7 +164,7 @@ def _ties_of(setting: Setting) -> tuple[LinkedPoints, ...]:
 
 
 def _of_stack(stack: Stack, scene: Assembly) -> Geometry:
-    """Give the geometry of a stack; bases between its bodies are not drawn."""
+    """Return the geometry of a stack; bases between its bodies are not drawn."""
     lower: list[LowerBody] = []
     beside = level = 0.0
     bodies, offsets = stack.si.bodies, stack.si.offsets
@@ -192,7 +192,7 @@ def _of_stack(stack: Stack, scene: Assembly) -> Geometry:
 
 
 def members_of(block: object) -> tuple[Array, ...]:
-    """Give the outlines of a frame's members whose sizes are known [m]."""
+    """Return the outlines of a frame's members whose sizes are known [m]."""
     if not isinstance(block, FrameEquivalent):
         return ()
     return tuple(
@@ -207,7 +207,7 @@ _PAD: Final = 0.06
 
 
 def system_html(scene: Assembly, name: str) -> str:
-    """Give a drawing and the numbers of a scene as HTML."""
+    """Return a drawing and the numbers of a scene as HTML."""
     setting, options = scene.setting, scene.options
     rows = {"model": setting.model}
     pieces = [one for part in scene.parts.structural() for one in _pieces(part)]
@@ -230,7 +230,7 @@ def system_html(scene: Assembly, name: str) -> str:
 
 
 def _pieces(part: Component) -> list[tuple[str, Component]]:
-    """Give a part, behind the bodies and bases that it is made of, with what they are called."""
+    """Return a part, behind the bodies and bases that it is made of, with what they are called."""
     found: list[tuple[str, Component]] = [(type(part).__name__, part)]
     if isinstance(part, RockingFrame):
         return [("column", part.column), *found]
@@ -242,7 +242,7 @@ def _pieces(part: Component) -> list[tuple[str, Component]]:
 
 
 def shapes_of(geometry: Geometry) -> list[Polygon]:
-    """Give the shapes of a scene's parts, upright and at rest, from back to front."""
+    """Return the shapes of a scene's parts, upright and at rest, from back to front."""
     half, width = geometry.base_half_width, 2.0 * geometry.half_width
     pad = 0.0 if geometry.pads_sink is None else _PAD * width
     lift = np.array([0.0, pad])

@@ -48,7 +48,7 @@ class OwnLink(PointLink):
 
     @abstractmethod
     def law(self, mass: float) -> LinkNumbers:
-        """Give the law as the equations take it.
+        """Return the law as the equations take it.
 
         Parameters
         ----------
@@ -94,7 +94,7 @@ class PlacedLink:
         return math.hypot(*self.apart)
 
     def numbers(self, mass: float) -> LinkNumbers:
-        """Give the law, per unit of a mass [kg]."""
+        """Return the law, per unit of a mass [kg]."""
         from rockframe.dynamics.links import Bumper, LinkNumbers, SteadyForce
 
         if isinstance(self.part, Restrainer | Tendon):
@@ -115,7 +115,7 @@ class PlacedLink:
         return self.part.si.horizontal, -self.part.si.vertical
 
     def chain_link(self, mass: float) -> "ChainLink":
-        """Give the link as the equations take it."""
+        """Return the link as the equations take it."""
         from rockframe.dynamics.chain.link_rows import ChainLink
 
         to_point = self.to_point if self.to >= 0 else (0.0, 0.0)
@@ -177,7 +177,7 @@ def tie_words(part: Restrainer | Tendon) -> list[str]:
 
 
 def tie_of(part: Restrainer | Tendon, mass: float) -> LinkNumbers:
-    """Give the law of a restrainer, :eq:`eq-tie`, or of a tendon, per unit of a mass [kg]."""
+    """Return the law of a restrainer, :eq:`eq-tie`, or of a tendon, per unit of a mass [kg]."""
     from rockframe.dynamics.links import LinkNumbers, Tie
 
     numbers = part.si
@@ -200,7 +200,7 @@ def placed(
     tops: Sequence[float],
     offsets: Sequence[float],
 ) -> tuple[PlacedLink, ...]:
-    """Give the places of links on stacked bodies; bodies are listed from the top down."""
+    """Return the places of links on stacked bodies; bodies are listed from the top down."""
     names, faults = link_labels(parts), called_alike(parts)
     found = list[PlacedLink]()
     for part, name in zip(parts, names, strict=True):
@@ -240,7 +240,7 @@ def placed(
 
 
 def _other_body(part: Link, count: int) -> int:
-    """Give the body of a link's other point, counted from 0 at the top; -1 for the ground."""
+    """Return the body of a link's other point, counted from 0 at the top; -1 for the ground."""
     if isinstance(part, PointLink):
         return -1 if part.si.to_body is None else part.si.to_body - 1
     # a tendon ends in the body below its own; the other point of a load or wall is on the ground
@@ -250,7 +250,7 @@ def _other_body(part: Link, count: int) -> int:
 def _ends_of(
     part: Link, base: Point, other: Point, body: SupportedBody, top: float
 ) -> tuple[Point, Point]:
-    """Give both points of a link from the middle of the lowest base [m].
+    """Return both points of a link from the middle of the lowest base [m].
 
     `base` and `other` are the middles of the bases of its two bodies.
     """
@@ -270,7 +270,7 @@ def _ends_of(
 
 
 def link_labels(parts: Sequence[Link]) -> list[str]:
-    """Give the names of links in results: their own, or a number."""
+    """Return the names of links in results: their own, or a number."""
     return [
         part.si.name or f"{'load' if isinstance(part, Load) else 'restrainer'} {i}"
         for i, part in enumerate(parts, 1)
@@ -278,12 +278,12 @@ def link_labels(parts: Sequence[Link]) -> list[str]:
 
 
 def in_one_word(name: str) -> str:
-    """Give the name of a link in axes: restrainer_1 for "restrainer 1"."""
+    """Return the name of a link in axes: restrainer_1 for "restrainer 1"."""
     return re.sub(r"\W", "_", name)
 
 
 def called_alike(parts: Sequence[Link]) -> list[str]:
-    """Give a fault for each name that several links have."""
+    """Return a fault for each name that several links have."""
     by_word: dict[str, list[str]] = {}
     for name in link_labels(parts):
         by_word.setdefault(in_one_word(name), []).append(repr(name))
@@ -298,7 +298,7 @@ def called_alike(parts: Sequence[Link]) -> list[str]:
 def base_of(
     k: int, bodies: Sequence[SupportedBody], tops: Sequence[float], offsets: Sequence[float]
 ) -> tuple[float, float]:
-    """Give the middle of the base of upright body `k`, from the middle of the lowest base [m]."""
+    """Return the middle of the base of upright body `k`, from the middle of the lowest base [m]."""
     below = range(k + 1, len(bodies))
     return math.fsum(offsets[k : len(bodies) - 1]), math.fsum(
         bodies[j].centre_height + tops[j] for j in below

@@ -104,7 +104,7 @@ class Options:
         vars(self).update(slope=slope, small=self.rotation is Rotation.SMALL)
 
     def to_dict(self) -> dict[str, str]:
-        """Give the options as texts that a system reads back exactly.
+        """Return the options as texts that a system reads back exactly.
 
         A level base and computed sliding, the defaults, are left out.
         """
@@ -124,7 +124,7 @@ Option = TypeVar("Option", bound=StrEnum)
 
 
 def read_option(kind: type[Option], value: object, name: str, faults: list[str]) -> Option:
-    """Give the option that a string names; if it names none, add to faults and give the first."""
+    """Return the option that a string names; if it names none, add to faults and give the first."""
     try:
         return kind(value)  # type: ignore[arg-type]
     except ValueError:
@@ -135,7 +135,7 @@ def read_option(kind: type[Option], value: object, name: str, faults: list[str])
 
 
 def read_measured(argument: object, name: str, faults: list[str]) -> float:
-    """Give an option that is a number; if it is wrong, add to faults and give the default."""
+    """Return an option that is a number; if it is wrong, add to faults and give the default."""
     one = MEASURED[name]
     if argument is None:
         return one.otherwise

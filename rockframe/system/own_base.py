@@ -16,7 +16,7 @@ class OwnAnswers:
     def answers(
         self, histories: Mapping[str, Any], before: Mapping[str, Any], after: Mapping[str, Any]
     ) -> dict[str, Any]:
-        """Give the registered columns that are not among those of the equations.
+        """Return the registered columns that are not among those of the equations.
 
         Parameters
         ----------
@@ -62,7 +62,7 @@ class OwnBase(OwnAnswers, Component):
     slot: ClassVar[str] = ""
 
     def support(self, load: BaseLoad) -> Support:
-        """Give the base as it is under a body.
+        """Return the base as it is under a body.
 
         Parameters
         ----------
@@ -76,7 +76,7 @@ class OwnBase(OwnAnswers, Component):
         raise NotImplementedError
 
     def simpler(self) -> tuple[Component, ...]:
-        """Give simpler bases to compare it with, the simplest first.
+        """Return simpler bases to compare it with, the simplest first.
 
         Returns
         -------
@@ -86,7 +86,7 @@ class OwnBase(OwnAnswers, Component):
         return ()
 
     def misfits(self, parts: Mapping[str, Component]) -> list[str]:
-        """Give the faults of its combination with other parts.
+        """Return the faults of its combination with other parts.
 
         Parameters
         ----------

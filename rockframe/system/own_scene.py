@@ -37,7 +37,7 @@ class OwnScene(OwnAnswers, Setting):
     """Slots and classes of the parts, one of them a block; shipped parts fill their own slots."""
 
     def misfits(self) -> list[str]:
-        """Give the faults of parts and options; none unless overridden.
+        """Return the faults of parts and options; none unless overridden.
 
         Returns
         -------
@@ -62,11 +62,11 @@ class OwnScene(OwnAnswers, Setting):
         return least_overturning_energy(self)
 
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
-        """Give the quasi-static states at rotations [rad]; refused unless overridden."""
+        """Return the quasi-static states at rotations [rad]; refused unless overridden."""
         self._lacks("tells no quasi-static states", "curve(rotations)")
 
     def equilibrium(self) -> dict[str, float]:
-        """Give settlements and reactions at rest; refused unless overridden."""
+        """Return settlements and reactions at rest; refused unless overridden."""
         self._lacks("tells nothing of rest", "equilibrium()")
 
     def without_small_motion(self) -> str:
@@ -84,7 +84,7 @@ class OwnScene(OwnAnswers, Setting):
         raise AssemblyError([f"{self.model} {words}; it is for its class to give {method}"])
 
     def compile(self) -> ContactModel:
-        """Give the equations, ready for the integrator.
+        """Return the equations, ready for the integrator.
 
         Raises
         ------

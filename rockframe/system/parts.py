@@ -63,7 +63,7 @@ SHIPPED: Final = tuple(dict.fromkeys(kind.slot for kind in _KINDS.values()))
 
 
 def slots() -> tuple[str, ...]:
-    """Give all slots in a fixed order: slots of user-defined scenes come before `motion`."""
+    """Return all slots in a fixed order: slots of user-defined scenes come before `motion`."""
     own = sorted({kind.slot for kind in _KINDS.values()} - set(SHIPPED))
     return (*SHIPPED[:-1], *own, SHIPPED[-1])
 
@@ -74,34 +74,34 @@ def add_kind(of: type, kind: Kind) -> None:
 
 
 def numbered(slot: str, number: int) -> str:
-    """Give the slot of the part with a number, from 1, among several parts of one slot."""
+    """Return the slot of the part with a number, from 1, among several parts of one slot."""
     return slot if number == 1 else f"{slot}_{number}"
 
 
 def kind_of_slot(slot: str) -> str:
-    """Give a slot without its number: `restrainer` for `restrainer_2`."""
+    """Return a slot without its number: `restrainer` for `restrainer_2`."""
     head, _, number = slot.rpartition("_")
     return head if head == RESTRAINER and number.isdigit() else slot
 
 
 def known_kind(of: type) -> type | None:
-    """Give the nearest class, among a class and its ancestors, that scenes know."""
+    """Return the nearest class, among a class and its ancestors, that scenes know."""
     return next((kind for kind in of.__mro__ if kind in _KINDS), None)
 
 
 def slot_of_kind(of: type) -> str | None:
-    """Give the slot that parts of a class fill; None if they are not parts."""
+    """Return the slot that parts of a class fill; None if they are not parts."""
     kind = known_kind(of)
     return None if kind is None else _KINDS[kind].slot
 
 
 def usual_kind(slot: str) -> type:
-    """Give the class of parts that fills a slot unless another is named."""
+    """Return the class of parts that fills a slot unless another is named."""
     return next(kind for kind, known in _KINDS.items() if known.slot == slot)
 
 
 def support_of(part: Component, load: BaseLoad) -> Support:
-    """Give the support that a base forms under a body."""
+    """Return the support that a base forms under a body."""
     kind = known_kind(type(part))
     make = None if kind is None else _KINDS[kind].support
     if make is None:  # only bases are in the slots of bases
@@ -110,7 +110,7 @@ def support_of(part: Component, load: BaseLoad) -> Support:
 
 
 def _beyond_models(part: Component, known: type) -> list[str]:
-    """Give the faults of a part of a derived class whose additions no scene would use."""
+    """Return the faults of a part of a derived class whose additions no scene would use."""
     own = type(part)
     # declared parameters only: a property of the same name is none
     declared, expected = (
@@ -201,7 +201,7 @@ class Parts:
         return cls(tuple((slot, by_slot[slot]) for slot in values))  # type: ignore[misc]
 
     def __getitem__(self, slot: str) -> Component:
-        """Give the part in a slot; LabelError if it is empty."""
+        """Return the part in a slot; LabelError if it is empty."""
         found = dict(self.filled)
         if slot not in found:
             known = ", ".join(map(repr, found))
@@ -211,22 +211,22 @@ class Parts:
         return cast("Component", found[slot])
 
     def __iter__(self) -> Iterator[Component | GroundMotion]:
-        """Give the parts, in a fixed order."""
+        """Return the parts, in a fixed order."""
         return (part for _, part in self.filled)
 
     def __len__(self) -> int:
         return len(self.filled)
 
     def changed(self, **by_slot: Component | GroundMotion | None) -> "Parts":
-        """Give the parts with others in some slots."""
+        """Return the parts with others in some slots."""
         return Parts.of({**dict(self.filled), **by_slot})
 
     def structural(self) -> list[Component]:
-        """Give the parts other than motions, in a fixed order."""
+        """Return the parts other than motions, in a fixed order."""
         return list(self.components.values())
 
     def standing(self) -> "Parts":
-        """Give the parts with the rigid ground on which bodies stand when no base is given."""
+        """Return the parts with the rigid ground on which bodies stand when no base is given."""
         bases = {"pads", "soil", "ground"}.intersection(self.components)
         return self if bases or self.own else self.changed(ground=RigidGround())
 

@@ -70,26 +70,26 @@ class RearWallSetting(RigidGroundSetting):
         return (math.inf, right) if self.direction > 0.0 else (left, math.inf)
 
     def friction_to_rock(self) -> dict[str, float]:
-        """Give the friction below which it slides before it rocks away from the wall."""
+        """Return the friction below which it slides before it rocks away from the wall."""
         half = self.body.right if self.direction > 0.0 else self.body.left
         return {f"{TO_ROCK} b/h": half / self.body.centre_height}
 
     def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
-        """Give the faults of an initial state; a rotation into the wall is one."""
+        """Return the faults of an initial state; a rotation into the wall is one."""
         found = super().start_faults(rotation, has_vertical_start)
         if rotation * self.direction < 0.0:
             found.append(f"InitialState: a rotation to the {self.wall.given.side} {_INTO_WALL}")
         return found
 
     def faults_of_velocity(self, rotation: float, angular_velocity: float) -> list[str]:
-        """Give the fault of an upright body that would start with a velocity into the wall."""
+        """Return the fault of an upright body that would start with a velocity into the wall."""
         if rotation == 0.0 and angular_velocity * self.direction < 0.0:
             side = self.wall.given.side
             return [f"InitialState: an angular velocity to the {side} at no rotation {_INTO_WALL}"]
         return []
 
     def contact_model(self) -> "ContactModel":
-        """Give Housner's equations, with the wall on its side."""
+        """Return Housner's equations, with the wall on its side."""
         model = super().contact_model()
         share = self.body.centre_height / self.height
         system = model.system._replace(  # type: ignore[attr-defined]
@@ -98,14 +98,14 @@ class RearWallSetting(RigidGroundSetting):
         return replace(model, system=system)
 
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
-        """Give the quasi-static states at rotations; none in the wall."""
+        """Return the quasi-static states at rotations; none in the wall."""
         return [
             None if rotation * self.direction < 0.0 else state
             for rotation, state in zip(rotations, super().curve(rotations), strict=True)
         ]
 
     def held_at(self, rotations: Sequence[float]) -> list[Statics]:
-        """Give the quasi-static states at rotations [rad]; refuse those in the wall."""
+        """Return the quasi-static states at rotations [rad]; refuse those in the wall."""
         for rotation in rotations:
             if rotation * self.direction < 0.0:
                 msg = (
@@ -161,7 +161,7 @@ def rear_wall_setting(parts: Parts, options: Options) -> RearWallSetting:
 def _rebound(
     wall: RearWall, body: SupportedBody, restitution: Restitutions, height: float
 ) -> float:
-    """Give the ratio of the angular velocities at an impact, :eq:`eq-wall-impact`."""
+    """Return the ratio of the angular velocities at an impact, :eq:`eq-wall-impact`."""
     law = wall.given.restitution
     if law is WallImpact.NEWTON:
         return -restitution.left * restitution.right * float(wall.given.wall_restitution)
@@ -187,7 +187,7 @@ class YieldingWall(NamedTuple):
 
 
 def yielding_wall(wall: RearWall, block: BlockSI) -> YieldingWall:
-    """Give the elastic wall of an impact of :data:`IMPACT_TIME`, :eq:`eq-yielding-wall`."""
+    """Return the elastic wall of an impact of :data:`IMPACT_TIME`, :eq:`eq-yielding-wall`."""
     law, body = wall.given.restitution, body_of_block(block)
     share = -law if isinstance(law, float) else -wall_factor(body, wall.given.side, block.height)
     if law is WallImpact.NEWTON:
@@ -203,7 +203,7 @@ def yielding_wall(wall: RearWall, block: BlockSI) -> YieldingWall:
 
 
 def wall_factor(body: SupportedBody, side: WallSide, height: float) -> float:
-    """Give the ratio from rocking about the rear base corner to that about the rear top one."""
+    """Return the ratio from rocking about the rear base corner to that about the rear top one."""
     beside = body.left if side is WallSide.LEFT else body.right
     below, inertia = height - body.centre_height, body.inertia / body.mass
     kept = inertia + beside * beside - body.centre_height * below

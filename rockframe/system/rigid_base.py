@@ -43,7 +43,7 @@ class RigidBase(Support):
         return 0.0
 
     def law(self, body: "Body", mass: float, load_mass: float) -> "BaseNumbers":
-        """Give the base as the equations take it."""
+        """Return the base as the equations take it."""
         from rockframe.dynamics.base_numbers import rigid_numbers
 
         return rigid_numbers(body)
@@ -80,7 +80,7 @@ class Pressed(NamedTuple):
 
 
 def pressed(setting: "StackSetting", k: int, tied: "Sequence[Tied]") -> Pressed:
-    """Give the load on the rigid base under body `k`, :eq:`eq-link-rest`.
+    """Return the load on the rigid base under body `k`, :eq:`eq-link-rest`.
 
     It carries all bodies above it, and the forces of links on them in the upright position.
     """
@@ -114,7 +114,7 @@ class Lifting(NamedTuple):
 
 
 def lifting(setting: "StackSetting", k: int, tied: "Sequence[Tied]") -> Lifting:
-    """Give what lifts a corner of the rigid base under body `k`, with the forces of links at rest.
+    """Return what lifts a corner of the rigid base under body `k`, with link forces at rest.
 
     Without links it is :eq:`eq-rigid-together`, and the friction b/h.
     """
@@ -125,7 +125,7 @@ def lifting(setting: "StackSetting", k: int, tied: "Sequence[Tied]") -> Lifting:
 
 
 def rocking_moment(setting: "StackSetting", k: int, rotation: float) -> "tuple[float, list[Tied]]":
-    """Give the restoring moment [N m] of all above base `k`, rotated as one, and its ties."""
+    """Return the restoring moment [N m] of all above base `k`, rotated as one, and its ties."""
     from rockframe.dynamics.tied import rocked
 
     load, (middle, foot) = setting.bases[k].load, setting.base_of(k)
@@ -140,7 +140,7 @@ def rocking_moment(setting: "StackSetting", k: int, rotation: float) -> "tuple[f
 
 
 def rocking_energy(setting: "StackSetting", k: int) -> float:
-    """Give the energy that overturns all above the base of body `k` as one [J]."""
+    """Return the energy that overturns all above the base of body `k` as one [J]."""
     left, right = setting.bases[k].load.body.overturning_angles
     return min(
         work_against(lambda some: [rocking_moment(setting, k, one)[0] for one in some], end)
@@ -149,7 +149,7 @@ def rocking_energy(setting: "StackSetting", k: int) -> float:
 
 
 def rocked_statics(setting: "StackSetting", rotation: float) -> Statics:
-    """Give the equilibrium on rigid bases only: everything above the weakest one rocks."""
+    """Return the equilibrium on rigid bases only: everything above the weakest one rocks."""
     from rockframe.dynamics.tied import at_rest
 
     right, mass = rotation > 0.0, setting.body.mass
@@ -196,7 +196,7 @@ def rocked_statics(setting: "StackSetting", rotation: float) -> Statics:
 def beyond_lift(
     setting: "StackSetting", rotations: Sequence[float], closed: Sequence[Statics | None]
 ) -> list[Statics | None]:
-    """Give the equilibria with the highest body held at rotations, where joints may lift.
+    """Return the equilibria with the highest body held at rotations, where joints may lift.
 
     `closed` are the equilibria with all rigid bases in full contact. Beyond the rotation at which
     a corner first lifts from a rigid base, all bodies above rotate about the other corner.
@@ -229,7 +229,7 @@ class _Lift(NamedTuple):
 
 
 def _first_lift(joints: "Sequence[_Joint]", before: float, rotation: float) -> _Lift | None:
-    """Give the first lift between two rotations of the highest body, if there is one."""
+    """Return the first lift between two rotations of the highest body, if there is one."""
     from scipy.optimize import brentq
 
     first: _Lift | None = None
@@ -260,18 +260,18 @@ class _Joint:
         self.side = side
 
     def rotations(self, stands: "Sequence[Stand]") -> list[float]:
-        """Give the rotations of all bodies on their bases; 0 for the body on this base."""
+        """Return the rotations of all bodies on their bases; 0 for the body on this base."""
         found = [one.state.rotation for one in stands]
         return [*found[: self.place], 0.0, *found[self.place :]]
 
     def lifted_from(self, rotation: float) -> Balance:
-        """Give the equilibrium in which the corner lifts."""
+        """Return the equilibrium in which the corner lifts."""
         chain, (stands,) = self.bodies.chain, self.closed.curve([rotation])
         found = chain.settled(self.rotations(stands or [])) or []
         return Balance.of(chain, found)
 
     def spare(self, rotation: float) -> float:
-        """Give by how much the couple that holds the highest body is too small to lift a corner."""
+        """Return how much the couple that holds the highest body lacks to lift a corner."""
         (stands,) = self.closed.curve([rotation])
         if stands is None:
             return math.inf  # there is no equilibrium with this joint closed

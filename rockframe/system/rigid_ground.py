@@ -57,7 +57,7 @@ class RigidGroundSetting(Setting):
         return self.uplift_accelerations
 
     def _reached_at(self, left: float, right: float) -> tuple[float, float]:
-        """Give the ground accelerations at which the resultant force has some slopes [m s^-2].
+        """Return the ground accelerations at which the resultant force has some slopes [m s^-2].
 
         `left` and `right` are tangents of its angle to the normal of the base.
         """
@@ -79,7 +79,7 @@ class RigidGroundSetting(Setting):
         return tan(left), tan(right)
 
     def cautions(self) -> list[str]:
-        """Give warnings about the restitution."""
+        """Return warnings about the restitution."""
         found = restitution_cautions(self.restitution, self.body.maximum_restitution)
         left, right = (
             self.body.gyration_square_about(d) for d in (self.body.left, self.body.right)
@@ -96,7 +96,7 @@ class RigidGroundSetting(Setting):
         return found
 
     def contact_model(self) -> "ContactModel":
-        """Give Housner's equations."""
+        """Return Housner's equations."""
         from rockframe.dynamics.rigid_ground import corner_of, rigid_ground
 
         body, small = self.body, self.options.small
@@ -115,11 +115,11 @@ class RigidGroundSetting(Setting):
         )
 
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
-        """Give the quasi-static states at rotations [rad]."""
+        """Return the quasi-static states at rotations [rad]."""
         return [self._held(rotation) for rotation in rotations]
 
     def _held(self, rotation: float) -> Statics:
-        """Give the equilibrium at a rotation: the bearing corner carries the weight."""
+        """Return the equilibrium at a rotation: the bearing corner carries the weight."""
         body, weight, thrust = self.body, self.load.weight, self.load.thrust
         if rotation == 0.0:
             # the moments of weight and reactions about the middle of the base
@@ -154,7 +154,7 @@ class RigidGroundSetting(Setting):
         )
 
     def equilibrium(self) -> dict[str, float]:
-        """Give the reactions at rest and the moment at uplift, by their names in the schema."""
+        """Return the reactions at rest and the moment at uplift, by their names in the schema."""
         uplift = self.load.weight * self.body.half_width * self.body.base_ratio
         shares = dict(zip(REACTIONS, self.shares, strict=True))
         return {"uplift_moment": uplift, **static_values(shares)}

@@ -55,7 +55,7 @@ class FrameBody(OnCorners):
         return self.frame.column.half_width
 
     def arms(self, x: Array, y: Array, values: Mapping[str, Any]) -> tuple[Array, Array]:
-        """Give x and y of points of a column, or of the beam, from the centre of mass [m].
+        """Return x and y of points of a column, or of the beam, from the centre of mass [m].
 
         Points above the top of the columns belong to the beam, which moves with the upper corner
         that bears it. The side follows from the corners that bear: where rocking begins and at
@@ -70,7 +70,7 @@ class FrameBody(OnCorners):
 
 
 def body_of_frame(si: RockingFrameSI) -> FrameBody:
-    """Give columns and beam as a body, :eq:`eq-rocking-frame-body`."""
+    """Return columns and beam as a body, :eq:`eq-rocking-frame-body`."""
     column, beam = si.column, si.beam_mass
     columns = si.columns * column.mass
     mass = columns + beam
@@ -148,14 +148,14 @@ class TiedFrameSetting(RockingFrameSetting):
         return tuple(tie_of(one, self.body.mass) for one in self.tendons)
 
     def contact_model(self) -> "ContactModel":
-        """Give the equations of the columns and their tendons."""
+        """Return the equations of the columns and their tendons."""
         from rockframe.dynamics.tendons import tied_frame
 
         half, columns = self.frame.column.half_width, self.frame.columns
         return tied_frame(super().contact_model(), self.laws, half_width=half, columns=columns)
 
     def forces(self, rotation: float) -> list[float]:
-        """Give the force of each tendon, :eq:`eq-rocking-frame-tendon` [N]."""
+        """Return the force of each tendon, :eq:`eq-rocking-frame-tendon` [N]."""
         from rockframe.dynamics.links import Stretch
 
         longer = 4.0 * self.frame.column.half_width * math.sin(0.5 * abs(rotation))
@@ -167,7 +167,7 @@ class TiedFrameSetting(RockingFrameSetting):
         return found
 
     def pull(self, rotation: float) -> float:
-        """Give the force of all tendons of all columns [N]."""
+        """Return the force of all tendons of all columns [N]."""
         return self.frame.columns * math.fsum(self.forces(rotation))
 
     @property
@@ -179,12 +179,12 @@ class TiedFrameSetting(RockingFrameSetting):
         return left + more, right + more
 
     def friction_to_rock(self) -> dict[str, float]:
-        """Give the friction below which the columns slide before they rock against the preload."""
+        """Return friction below which the columns slide before they rock against the preload."""
         pressed = self.body.mass * self.gravity + self.pull(0.0)
         return {TO_ROCK: self.body.mass * self.uplift_acceleration / pressed}
 
     def _held(self, rotation: float) -> Statics:
-        """Give the equilibrium at a rotation, with the tendons."""
+        """Return the equilibrium at a rotation, with the tendons."""
         found, half = super()._held(rotation), self.frame.column.half_width
         pull, cosine = self.pull(rotation), math.cos(0.5 * rotation)
         side = math.copysign(1.0, rotation) if rotation else 0.0
@@ -201,7 +201,7 @@ class TiedFrameSetting(RockingFrameSetting):
         )
 
     def equilibrium(self) -> dict[str, Any]:
-        """Give reactions, moment at uplift, and the tendons at rest."""
+        """Return reactions, moment at uplift, and the tendons at rest."""
         pull, found = self.pull(0.0), super().equilibrium()
         found["uplift_moment"] += pull * self.frame.column.half_width
         for name in ("static_left_reaction", "static_right_reaction"):

@@ -37,7 +37,7 @@ class SlipRange(NamedTuple):
 
 
 def chain_slips(setting: "Setting", count: int, ending: Ending) -> tuple[SlipRange, ...]:
-    """Give the slips of the `count` highest bodies of a chain."""
+    """Return the slips of the `count` highest bodies of a chain."""
     chain = cast("SlippingBodies", setting.compile().system)
     return tuple(SlipRange(*chain.slips(k, ending)) for k in range(count))
 
@@ -142,7 +142,7 @@ class Setting(ABC):
         return self.supports[0].settlement if self.supports else None
 
     def small_motion(self) -> SmallMotion | None:
-        """Give the linear equations of small motion about rest; None on a rigid base."""
+        """Return the linear equations of small motion about rest; None on a rigid base."""
         return None
 
     def without_small_motion(self) -> str:
@@ -154,19 +154,19 @@ class Setting(ABC):
 
     @abstractmethod
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
-        """Give the quasi-static states at rotations [rad]; None where nothing holds the body."""
+        """Return the quasi-static states at rotations [rad]; None where nothing holds the body."""
 
     def held_at(self, rotations: Sequence[float]) -> list[Statics]:
-        """Give the quasi-static states at rotations [rad]; see :func:`required_states`."""
+        """Return the quasi-static states at rotations [rad]; see :func:`required_states`."""
         return required_states(rotations, self.curve(rotations))
 
     def statics(self, rotation: float) -> Statics:
-        """Give the quasi-static state at a rotation [rad]."""
+        """Return the quasi-static state at a rotation [rad]."""
         return self.held_at([rotation])[0]
 
     @abstractmethod
     def equilibrium(self) -> dict[str, float]:
-        """Give settlements and reactions at rest, by their names in the schema."""
+        """Return settlements and reactions at rest, by their names in the schema."""
 
     @abstractmethod
     def words(self) -> Words:
@@ -178,7 +178,7 @@ class Setting(ABC):
         return {f"{TO_ROCK} b/h": min(body.left, body.right) / body.centre_height}
 
     def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
-        """Give the faults of an initial state, by the rotation and the base of the body.
+        """Return the faults of an initial state, by the rotation and the base of the body.
 
         On rigid ground, which has no support, a vertical start is a fault.
         """
@@ -187,15 +187,15 @@ class Setting(ABC):
         return self.supports[0].start_faults(rotation, has_vertical_start)
 
     def faults_of_velocity(self, rotation: float, angular_velocity: float) -> list[str]:
-        """Give the faults of an initial angular velocity; none unless overridden."""
+        """Return the faults of an initial angular velocity; none unless overridden."""
         return []
 
     def cautions(self) -> list[str]:
-        """Give warnings about values near or beyond the model's validity."""
+        """Return warnings about values near or beyond the model's validity."""
         return [*(text for each in self.supports for text in each.cautions()), *self._leaning()]
 
     def _leaning(self) -> list[str]:
-        """Give a warning about a body that leans far at rest."""
+        """Return a warning about a body that leans far at rest."""
         lean = abs(self.rest_rotation)
         share = lean / self.overturning_angles.on_side_of(self.rest_rotation)
         if share <= LARGE_LEAN:
@@ -213,7 +213,7 @@ class Setting(ABC):
         ]
 
     def slips_of(self, ending: Ending) -> tuple[SlipRange, ...]:
-        """Give how far each body slipped, from the end of a run; empty if all are held."""
+        """Return how far each body slipped, from the end of a run; empty if all are held."""
         return ()
 
     def beyond_edges(self, ending: Ending) -> list[str]:
@@ -222,12 +222,12 @@ class Setting(ABC):
 
     @abstractmethod
     def contact_model(self) -> ContactModel:
-        """Give the equations; :meth:`compile` sets the limits of the rotation for a slope."""
+        """Return the equations; :meth:`compile` sets the limits of the rotation for a slope."""
 
     @cached_property
     def _model(self) -> ContactModel:
         return replace(self.contact_model(), rotation_limits=self.overturning_angles)
 
     def compile(self) -> ContactModel:
-        """Give the equations, ready for the integrator, which does not change them."""
+        """Return the equations, ready for the integrator, which does not change them."""
         return self._model

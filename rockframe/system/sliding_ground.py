@@ -47,7 +47,7 @@ class SlidingSetting(RigidGroundSetting):
         return max(left, 0.0), max(right, 0.0)
 
     def contact_model(self) -> "ContactModel":
-        """Give the equations of slip, rotation and rise."""
+        """Return the equations of slip, rotation and rise."""
         from rockframe.dynamics.slide_rock_model import slide_rock
 
         gravity = self.slope.normal_gravity
@@ -55,11 +55,11 @@ class SlidingSetting(RigidGroundSetting):
         return slide_rock(system, mass=self.body.mass)
 
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
-        """Give how far the block slipped."""
+        """Return how far the block slipped."""
         return (slips_on_ground(ending),)
 
     def cautions(self) -> list[str]:
-        """Give warnings about the restitution, and about a block that slides by its weight."""
+        """Return warnings about the restitution, and about a block that slides by its weight."""
         along = abs(self.slope.along_gravity)
         if along <= self.friction.static * self.slope.normal_gravity:
             return super().cautions()
@@ -121,7 +121,7 @@ def rigid_ground_setting(parts: Parts, options: Options) -> RigidGroundSetting:
 def slide_rock_of(
     body: SupportedBody, friction: BaseFriction, restitutions: Sequence[float], gravity: float
 ) -> "SlideRock":
-    """Give the equations of a block that slides and rocks, with the restitutions of its corners."""
+    """Return equations of a block that slides and rocks, with the restitutions of its corners."""
     from rockframe.dynamics.slide_rock import SlideRock
     from rockframe.dynamics.slide_rock_model import impulse_lever
 
@@ -149,7 +149,7 @@ def slide_rock_of(
 
 
 def slips_on_ground(ending: "Ending") -> SlipRange:
-    """Give how far a block slipped on rigid ground."""
+    """Return how far a block slipped on rigid ground."""
     from rockframe.dynamics.slide_motion import (
         BEARINGS,
         FLIES_RIGHT,
@@ -167,7 +167,7 @@ def slips_on_ground(ending: "Ending") -> SlipRange:
 
 
 def friction_to_roll_over(body: SupportedBody) -> float:
-    """Give the least friction at which no corner slips in an impact [1], :eq:`eq-slide-housner`."""
+    """Return least friction at which no corner slips in an impact [1], :eq:`eq-slide-housner`."""
     square = body.base_inertia / body.mass
     return max(body.centre_height * own / square for own in (body.left, body.right))
 
@@ -180,7 +180,7 @@ def impact_words(impact: Impact) -> str:
 
 
 def ill_posed(body: SupportedBody, kinetic: float) -> list[str]:
-    """Give a fault for friction with which a slipping corner may jam, :eq:`eq-slide-painleve`."""
+    """Return a fault for friction with which a slipping corner may jam, :eq:`eq-slide-painleve`."""
     from rockframe.dynamics.slide_rock_model import ill_posed_friction
 
     limit = ill_posed_friction(

@@ -41,7 +41,7 @@ class SlidingStackSetting(StackSetting):
         return f"{super().model}-sliding"
 
     def cautions(self) -> list[str]:
-        """Give warnings, also about bodies that slide at rest under their restrainers."""
+        """Return warnings, also about bodies that slide at rest under their restrainers."""
         names = [f"body {k}" for k in range(1, len(self.bodies) + 1)]
         return [*super().cautions(), *self.slides_at_rest(*names)]
 
@@ -53,7 +53,7 @@ class SlidingStackSetting(StackSetting):
         ))  # fmt: skip
 
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
-        """Give how far each body slipped."""
+        """Return how far each body slipped."""
         return chain_slips(self, len(self.bodies), ending)
 
     def beyond_edges(self, ending: "Ending") -> list[str]:
@@ -85,7 +85,7 @@ def beyond_edge(
 
 
 def stack_on(bases: Sequence[Component], held: StackSetting) -> StackSetting:
-    """Give the setting of stacked bodies: one with slip where bases have friction."""
+    """Return the setting of stacked bodies: one with slip where bases have friction."""
     slips = any(getattr(one.si, "friction", None) is not None for one in bases)
     _refuse_many_modes(bases, slips)
     if not slips:
@@ -112,7 +112,7 @@ def stack_on(bases: Sequence[Component], held: StackSetting) -> StackSetting:
 
 
 def _same(held: StackSetting) -> dict[str, Any]:
-    """Give the fields that settings of the same bodies, bases and links share."""
+    """Return the fields that settings of the same bodies, bases and links share."""
     names = ("load", "bodies", "tops", "offsets", "bases", "ties")
     return {name: getattr(held, name) for name in names}
 
@@ -138,7 +138,7 @@ def _refuse_many_modes(bases: Sequence[Component], slips: bool) -> None:
 
 
 def sheared(held: StackSetting) -> list[str]:
-    """Give faults for tendons without depth below a joint: a slip would shear them there."""
+    """Return faults for tendons without depth below a joint: a slip would shear them there."""
     return [
         f"{one.name}: a Tendon is bent over the edges of a duct that goes through, and a block "
         "that slides shears it there: give the depth below the base at which it is held"
@@ -157,7 +157,7 @@ class TiedSetting(StackSetting):
         return self.frictions[0] if self.frictions else HELD
 
     def contact_model(self) -> "ContactModel":
-        """Give the equations of slip, rotation and rise, with links."""
+        """Return the equations of slip, rotation and rise, with links."""
         from rockframe.dynamics.slide_rock_model import slide_rock
         from rockframe.dynamics.tied_slide_rock import tied_slide_rock
 
@@ -181,7 +181,7 @@ class TiedSlidingSetting(TiedSetting):
         return "rigid-restrained-sliding"
 
     def cautions(self) -> list[str]:
-        """Give warnings, also about a block that slides at rest under its restrainers."""
+        """Return warnings, also about a block that slides at rest under its restrainers."""
         return [*super().cautions(), *self.slides_at_rest("the block")]
 
     def words(self) -> Words:
@@ -209,12 +209,12 @@ class TiedSlidingSetting(TiedSetting):
         )  # fmt: skip
 
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
-        """Give how far the block slipped."""
+        """Return how far the block slipped."""
         return (slips_on_ground(ending),)
 
 
 def tied_on_ground(ground: RigidGround, held: StackSetting) -> StackSetting:
-    """Give the setting of a block with links: one with sliding where the ground has friction."""
+    """Return the setting of a block with links: one with sliding where the ground has friction."""
     found = friction_under(ground, held.options)
     if found is None:
         return TiedSetting(**_same(held))

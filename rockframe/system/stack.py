@@ -121,7 +121,7 @@ class StackSetting(Setting):
         return tuple(one.name for one in self.ties if not isinstance(one.part, Load))
 
     def cautions(self) -> list[str]:
-        """Give the warnings of all bases, each with the number of the body on it."""
+        """Return the warnings of all bases, each with the number of the body on it."""
         found = [
             f"under body {k}: {text}" if len(self.bodies) > 1 else text
             for k, base in enumerate(self.bases, 1)
@@ -130,7 +130,7 @@ class StackSetting(Setting):
         return [*found, *self._leaning()]
 
     def friction_to_rock(self) -> dict[str, float]:
-        """Give the friction to rock of all bodies above each base, as one.
+        """Return the friction to rock of all bodies above each base, as one.
 
         Links stretch before an end lifts from a deformable base; for these bases it is not given.
         """
@@ -209,7 +209,7 @@ class StackSetting(Setting):
     def standing_in(
         self, groups: Sequence[range], lifted: int = -1, side: int = 0
     ) -> StandingBodies:
-        """Give the statics of groups of joined bodies; one may have lifted from a rigid base.
+        """Return the statics of groups of joined bodies; one may have lifted from a rigid base.
 
         `lifted` is the lowest body of that group, -1 for none; `side` is the side of its corner.
         """
@@ -240,7 +240,7 @@ class StackSetting(Setting):
         return StandingBodies(chain, mass, tuple(numbers))
 
     def _between_groups(self, tie: PlacedLink, groups: Sequence[range]) -> "ChainLink":
-        """Give a tie between groups of joined bodies; a point on the ground stays there."""
+        """Return a tie between groups of joined bodies; a point on the ground stays there."""
         found = tie.chain_link(self.body.mass)
         if not any(self.rigid):
             return found
@@ -254,11 +254,11 @@ class StackSetting(Setting):
         return found._replace(on=which[0], on_point=points[0], to=which[1], to_point=points[1])
 
     def base_of(self, k: int) -> tuple[float, float]:
-        """Give the middle of the base of upright body `k`, from that of the lowest one [m]."""
+        """Return the middle of the base of upright body `k`, from that of the lowest one [m]."""
         return base_of(k, self.bodies, self.tops, self.offsets)
 
     def _joined(self, some: range) -> SupportedBody:
-        """Give the one body that a range of joined bodies makes."""
+        """Return the one body that a range of joined bodies makes."""
         first, last = some[0], some[-1] + 1
         if len(some) == 1:
             return self.bodies[first]
@@ -283,7 +283,7 @@ class StackSetting(Setting):
         return found
 
     def _placed_at_rest(self) -> "list[AtRest]":
-        """Give where each body is at rest on its base; on rigid bases, in full contact."""
+        """Return where each body is at rest on its base; on rigid bases, in full contact."""
         from rockframe.dynamics.chain.model import AtRest
 
         placed = [AtRest(0.0, 0.0) for _ in self.bodies]
@@ -312,7 +312,7 @@ class StackSetting(Setting):
         return min((one for one in found if not math.isnan(one)), default=math.nan)
 
     def small_motion(self) -> SmallMotion | None:
-        """Give the equations of small motion about rest, of each body relative to its base."""
+        """Return the equations of small motion about rest, of each body relative to its base."""
         if not self.groups:
             return None
         if len(self.bodies) == 1:
@@ -342,7 +342,7 @@ class StackSetting(Setting):
         return min(rocking_energy(self, k) for k, rigid in enumerate(self.rigid) if rigid)
 
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
-        """Give the equilibria with the highest body held at rotations [rad].
+        """Return the equilibria with the highest body held at rotations [rad].
 
         With rigid and deformable bases, also where a corner has lifted from a rigid base.
         """
@@ -356,7 +356,7 @@ class StackSetting(Setting):
         return [None if one is None else replace(one, reactions={}) for one in found]
 
     def equilibrium(self) -> dict[str, Any]:
-        """Give the values of ties and, of a single body, of its base at rest, by schema names."""
+        """Return the values of ties and, of a single body, of its base at rest, by schema names."""
         found = dict[str, Any]()
         if len(self.bodies) == 1 and not self.groups:
             carried = pressed(self, 0, self._tied_at_rest)
@@ -388,7 +388,7 @@ class StackSetting(Setting):
         return self.standing.chain.tied(self.standing.rest or [])
 
     def contact_model(self) -> "ContactModel":
-        """Give the equations of stacked bodies."""
+        """Return the equations of stacked bodies."""
         from rockframe.dynamics.chain.model import chain
 
         rest = self._placed_at_rest()
@@ -400,7 +400,7 @@ class StackSetting(Setting):
         )  # fmt: skip
 
     def _held_height(self, rotation: float) -> float:
-        """Give the height at which a single body with ties starts at a rotation [m]."""
+        """Return the height at which a single body with ties starts at a rotation [m]."""
         stands = self.standing.chain.settled([rotation])
         if stands is None:
             raise AssemblyError([NO_REST + PULLED])
@@ -410,7 +410,7 @@ class StackSetting(Setting):
 def combined_body(
     bodies: Sequence[SupportedBody], tops: Sequence[float], offsets: Sequence[float]
 ) -> SupportedBody:
-    """Give stacked bodies, listed from the top down, as one body on the base of the lowest."""
+    """Return stacked bodies, listed from the top down, as one body on the base of the lowest."""
     lowest = bodies[-1]
     places, base, beside = [(lowest, lowest.centre_height, 0.0)], 0.0, 0.0
     for k in range(len(bodies) - 2, -1, -1):
@@ -446,7 +446,7 @@ def stack_setting(
     options: Options,
     links: Sequence[Link],
 ) -> StackSetting:
-    """Give the setting of stacked blocks, listed from the top down, on bases and with links."""
+    """Return the setting of stacked blocks, listed from the top down, on bases and with links."""
     found = [body_of_block(one) for one in blocks]
     for link in links:  # masses of loads are added to their bodies
         k = link.si.on_body - 1

@@ -67,14 +67,14 @@ class StackedSetting(Setting):
 
     @abstractmethod
     def equations(self, pads: BaseWords, soil: BaseWords) -> list[tuple[str, str]]:
-        """Give each contact state with the equation that governs it."""
+        """Return each contact state with the equation that governs it."""
 
     def left_out(self, pads: BaseWords, soil: BaseWords) -> list[str]:
         """Say what the model does not have."""
         return ["sliding", "elasticity of block and cap", *pads.left_out, *soil.left_out]
 
     def small_motion(self) -> SmallMotion:
-        """Give the equations of small motion of block and cap about rest."""
+        """Return the equations of small motion of block and cap about rest."""
         names = ("cap_vertical_displacement", "cap_rotation", "vertical_displacement", "rotation")
         # from coordinates on the cap, psi = alpha - phi and r = y - Y, to those of the block
         to_own = np.array([[0, -1, 0, 1], [-1, 0, 1, 0], [0, 1, 0, 0], [1, 0, 0, 0]], dtype=float)
@@ -100,11 +100,11 @@ class StackedSetting(Setting):
         return StackRest(block.rotation, block.vertical, cap.rotation, cap.vertical)
 
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
-        """Give the equilibria with the block held at rotations, :eq:`eq-static-stack`."""
+        """Return the equilibria with the block held at rotations, :eq:`eq-static-stack`."""
         return self._standing(self.cap.mass, self.cap.inertia).held(rotations)
 
     def equilibrium(self) -> dict[str, float]:
-        """Give settlements and reactions at rest, by their names in the schema."""
+        """Return settlements and reactions at rest, by their names in the schema."""
         soil = self.lower.equilibrium()
         soil["soil_uplift_moment"] = soil.pop("uplift_moment")
         return {**self.upper.equilibrium(), **soil}
@@ -134,7 +134,7 @@ class StackedSetting(Setting):
         return least, least * cap.half_width**2 / 3.0
 
     def bodies(self) -> "tuple[ChainBody, ChainBody]":
-        """Give block and cap on their bases, as the coupled equations take them."""
+        """Return block and cap on their bases, as the coupled equations take them."""
         return self._stack(*self._moving_cap)
 
     def _stack(self, cap_mass: float, cap_inertia: float) -> "tuple[ChainBody, ChainBody]":
@@ -166,7 +166,7 @@ class CoupledSetting(StackedSetting):
         return "coupled"
 
     def cautions(self) -> list[str]:
-        """Give the warnings of pads and soil, and about a cap that is too light."""
+        """Return the warnings of pads and soil, and about a cap that is too light."""
         found = super().cautions()
         if self.cap.mass < LEAST_CAP_SHARE * self.body.mass:
             found.append(
@@ -176,7 +176,7 @@ class CoupledSetting(StackedSetting):
         return found
 
     def equations(self, pads: BaseWords, soil: BaseWords) -> list[tuple[str, str]]:
-        """Give each contact state with the equation that governs it."""
+        """Return each contact state with the equation that governs it."""
         impact = dict(pads.equations).get("impact", "as on its base alone")
         return [
             ("block: full, left, right", f"four degrees of freedom, one Lagrangian; {pads.law}, "
@@ -188,13 +188,13 @@ class CoupledSetting(StackedSetting):
         ]  # fmt: skip
 
     def contact_model(self) -> "ContactModel":
-        """Give the coupled equations."""
+        """Return the coupled equations."""
         from rockframe.dynamics.coupled.model import coupled
 
         return coupled(*self.bodies(), self.body.mass, self.rest)
 
     def equilibrium(self) -> dict[str, float]:
-        """Give settlements and reactions at rest, by their names in the schema."""
+        """Return settlements and reactions at rest, by their names in the schema."""
         found = super().equilibrium()
         if not self.leans:
             return found
@@ -228,7 +228,7 @@ class SlidingCoupledSetting(CoupledSetting):
         ))  # fmt: skip
 
     def contact_model(self) -> "ContactModel":
-        """Give the equations of two stacked bodies that slip."""
+        """Return the equations of two stacked bodies that slip."""
         from rockframe.dynamics.chain.model import AtRest
         from rockframe.dynamics.chain.on_cap import block_on_cap
 
@@ -238,7 +238,7 @@ class SlidingCoupledSetting(CoupledSetting):
         return block_on_cap(*self.bodies(), self.body.mass, rest, self.frictions)
 
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
-        """Give how far the block slipped on the cap and, if it can slip, the cap on the soil."""
+        """Return how far the block slipped on the cap and, if it can slip, the cap on the soil."""
         return chain_slips(self, 1 if self.frictions[-1] == HELD else 2, ending)
 
     def beyond_edges(self, ending: "Ending") -> list[str]:
@@ -257,7 +257,7 @@ class CascadeSetting(StackedSetting):
         return "cascade"
 
     def equations(self, pads: BaseWords, soil: BaseWords) -> list[tuple[str, str]]:
-        """Give each stage's contact states with the equations that govern them."""
+        """Return each stage's contact states with the equations that govern them."""
         return [
             ("total", "Eq. (20): rotation and displacement of stage 1 plus those of stage 2"),
             *((f"stage 1, {name}", words) for name, words in soil.equations),
@@ -273,7 +273,7 @@ class CascadeSetting(StackedSetting):
         ]
 
     def contact_model(self) -> "ContactModel":
-        """Give the equations of both stages."""
+        """Return the equations of both stages."""
         from rockframe.dynamics.cascade.model import cascade
 
         body = self.lower.body

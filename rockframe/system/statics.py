@@ -44,12 +44,12 @@ class Statics:
 
 
 def static_values(shown: Mapping[str, float]) -> dict[str, float]:
-    """Give values of bases at rest by their names in the schema, which begin with `static_`."""
+    """Return values of bases at rest by their names in the schema, which begin with `static_`."""
     return {f"static_{name}": value for name, value in shown.items()}
 
 
 def required_states(rotations: Sequence[float], states: Sequence[Statics | None]) -> list[Statics]:
-    """Give the states at rotations; SolverError if there is none at one of them."""
+    """Return the states at rotations; SolverError if there is none at one of them."""
     found = list[Statics]()
     for rotation, state in zip(rotations, states, strict=True):
         if state is None:
@@ -71,25 +71,25 @@ _PLACES: Final[list[tuple[float, float]]] = [
 
 
 def stored_energy(setting: "Setting", rotation: float) -> float:
-    """Give the work that slowly brings a body from upright to a rotation [rad] [J]."""
+    """Return the work that slowly brings a body from upright to a rotation [rad] [J]."""
     found = _restoring(setting, [at * rotation for at, _ in _PLACES])
     return rotation * sum(of * one for (_, of), one in zip(_PLACES, found, strict=True))
 
 
 def least_overturning_energy(setting: "Setting") -> float:
-    """Give the work against the restoring moment up to overturning, to the weaker side [J]."""
+    """Return the work against the restoring moment up to overturning, to the weaker side [J]."""
     ends = setting.overturning_rotations
     return min(work_against(lambda some: _restoring(setting, some), end) for end in ends)
 
 
 def work_against(moments: Callable[[list[float]], list[float]], end: float) -> float:
-    """Give the work against restoring moments, a function of rotations, up to a rotation [J]."""
+    """Return the work against restoring moments, a function of rotations, up to a rotation [J]."""
     found = moments([at * end for at, _ in _PLACES])
     return sum(of * max(end * moment, 0.0) for (_, of), moment in zip(_PLACES, found, strict=True))
 
 
 def _restoring(setting: "Setting", rotations: list[float]) -> list[float]:
-    """Give restoring moments at rotations [N m]; zero where there is no equilibrium."""
+    """Return restoring moments at rotations [N m]; zero where there is no equilibrium."""
     states = setting.curve(rotations)
     return [0.0 if state is None else state.restoring_moment for state in states]
 
@@ -116,7 +116,7 @@ class VibrationMode:
 
 
 def modes_of(motion: SmallMotion) -> list[VibrationMode]:
-    """Give the modes of linear equations, from slow to fast; unstable ones first."""
+    """Return the modes of linear equations, from slow to fast; unstable ones first."""
     size = len(motion.coordinates)
     transition = np.block(
         [
@@ -168,5 +168,5 @@ def _pairs(real: list[int], shapes: Array, mass: Array) -> list[tuple[int, int]]
 
 
 def _shape(vector: NDArray[np.complex128]) -> Array:
-    """Give the real part of a complex shape, scaled so that its largest entry is 1."""
+    """Return the real part of a complex shape, scaled so that its largest entry is 1."""
     return np.real(vector / vector[np.argmax(np.abs(vector))])

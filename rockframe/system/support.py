@@ -55,7 +55,7 @@ class StandingBodies:
         return self.chain.settled([0.0] * len(self.bases)) or []
 
     def held(self, rotations: Sequence[float]) -> list[Statics | None]:
-        """Give the states with the highest body held at rotations [rad]; None where none exists."""
+        """Return states with the highest body held at rotations [rad]; None where none exists."""
         curve = self.chain.curve(rotations)
         found = [None if stands is None else self.statics_of(stands) for stands in curve]
         least = LEAST * self.chain.bodies[0].allowed_rotation if self.chain.upright else 0.0
@@ -65,7 +65,7 @@ class StandingBodies:
         return found
 
     def _near_upright(self, rotation: float, state: Statics) -> Statics:
-        """Give a state with moments free of cancellation, by their slope, exact to fourth order."""
+        """Return a state with moments free of cancellation, by their slope, to fourth order."""
         step = SMALL * self.chain.bodies[0].allowed_rotation
         near, far = required_states((step, 2.0 * step), self.held((step, 2.0 * step)))
         share = rotation / (6.0 * step)
@@ -76,7 +76,7 @@ class StandingBodies:
         )
 
     def statics_of(self, stands: list[Stand]) -> Statics:
-        """Give the quasi-static state of bodies from their equilibrium."""
+        """Return the quasi-static state of bodies from their equilibrium."""
         (part, *_), lowest = self.chain.bodies[0], stands[-1]
         body = self.chain.bodies[-1].part.body
         attitude = body.attitude(lowest.state.rotation)
@@ -92,7 +92,7 @@ class StandingBodies:
         )
 
     def reactions(self, stands: list[Stand]) -> dict[str, float]:
-        """Give the columns of the bases in an equilibrium, by the names of the schema."""
+        """Return the columns of the bases in an equilibrium, by the names of the schema."""
         found = dict[str, float]()
         for standing, stand, numbers in zip(self.chain.bodies, stands, self.bases, strict=True):
             if standing.corner:
@@ -106,7 +106,7 @@ class StandingBodies:
         return found
 
     def small_motion(self, stands: list[Stand]) -> "tuple[Array, Array, Array]":
-        """Give mass, damping and stiffness matrix about rest, for rotation and height of each."""
+        """Return mass, damping and stiffness matrix about rest, for rotation and height of each."""
         from rockframe.dynamics.linear import linear
 
         mass, damping, stiffness = linear(self.chain, stands)
@@ -175,7 +175,7 @@ class Support(ABC):
 
     @abstractmethod
     def law(self, body: Body, mass: float, load_mass: float) -> BaseNumbers:
-        """Give the base in the form that the equations need.
+        """Return the base in the form that the equations need.
 
         Parameters
         ----------
@@ -188,7 +188,7 @@ class Support(ABC):
         """
 
     def at_rest(self) -> dict[str, float]:
-        """Give settlement and reactions of the upright body at rest, by their schema names."""
+        """Return settlement and reactions of the upright body at rest, by their schema names."""
         shown = self.standing.reactions(self.standing.upright)
         return {self.settlement_name: self.settlement, **static_values(shown)}
 
@@ -197,11 +197,11 @@ class Support(ABC):
         """Describe the base."""
 
     def cautions(self) -> list[str]:
-        """Give warnings about values near or beyond the model's validity."""
+        """Return warnings about values near or beyond the model's validity."""
         return []
 
     def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
-        """Give faults of an initial state; every state can start a run unless overridden.
+        """Return faults of an initial state; every state can start a run unless overridden.
 
         Parameters
         ----------
@@ -213,7 +213,7 @@ class Support(ABC):
         return []
 
     def held_at(self, rotation: float) -> Statics:
-        """Give the equilibrium under the weight at a rotation [rad]."""
+        """Return the equilibrium under the weight at a rotation [rad]."""
         return required_states([rotation], self.standing.held([rotation]))[0]
 
     @cached_property
@@ -244,7 +244,7 @@ class Support(ABC):
         return sqrt(self._slopes("vertical")[1])
 
     def _slopes(self, name: str) -> tuple[float, float]:
-        """Give moment and force against a unit of a coordinate or rate, of the upright body."""
+        """Return moment and force against a unit of a coordinate or rate, of the upright body."""
         return of_base(self.standing.chain.bodies[0], self.standing.upright[0], name)
 
     def vibrations(self, vertical: str, rocking: str) -> list[tuple[str, str]]:
@@ -284,7 +284,7 @@ class PadSupport(Support):
         return "two-spring"
 
     def cautions(self) -> list[str]:
-        """Give warnings about restitution and stability."""
+        """Return warnings about restitution and stability."""
         found = restitution_cautions(self.restitution, self.load.body.maximum_restitution)
         if self.rocking_stiffness <= 0.0:
             found.append(
@@ -294,7 +294,7 @@ class PadSupport(Support):
         return found
 
     def law(self, body: Body, mass: float, load_mass: float) -> BaseNumbers:
-        """Give the pads as the equations take them."""
+        """Return the pads as the equations take them."""
         return pads_numbers(
             body,
             stiffness=self.stiffness / mass,
@@ -333,7 +333,7 @@ class PadSupport(Support):
 
 
 def pads_under(pads: TwoSpringSupport, load: BaseLoad) -> PadSupport:
-    """Give pads under a block: stiffness and damping of one pad by Eqs. (7) and (8)."""
+    """Return pads under a block: stiffness and damping of one pad by Eqs. (7) and (8)."""
     numbers, body = pads.si, load.body
     if numbers.stiffness is not None:
         stiffness = numbers.stiffness
@@ -380,7 +380,7 @@ class BedSupport(Support):
         return "Winkler"
 
     def cautions(self) -> list[str]:
-        """Give warnings about stability."""
+        """Return warnings about stability."""
         if self.rocking_stiffness > 0.0:
             return []
         return [
@@ -389,7 +389,7 @@ class BedSupport(Support):
         ]
 
     def law(self, body: Body, mass: float, load_mass: float) -> BaseNumbers:
-        """Give the bed as the equations take it."""
+        """Return the bed as the equations take it."""
         return bed_numbers(
             body,
             stiffness=self.stiffness / mass,
@@ -438,7 +438,7 @@ class BedSupport(Support):
 
 
 def bed_under(soil: WinklerSoil, load: BaseLoad) -> BedSupport:
-    """Give a bed under a body; a damping ratio is that of the vertical motion of all its mass.
+    """Return a bed under a body; a damping ratio is that of the vertical motion of all its mass.
 
     Parameters
     ----------

@@ -47,7 +47,7 @@ class Words:
 
 
 def sliding_words(held: Words, *frictions: tuple[str, str], restraint: str | None = None) -> Words:
-    """Give the description of a scene that slips from that of the held one, with its frictions."""
+    """Return description of a scene that slips from that of the held one, with its frictions."""
     return Words(
         equations=[*held.equations, SLIPS],
         restraint=held.restraint if restraint is None else restraint,

@@ -43,7 +43,7 @@ class Measure:
     example: str
 
     def like(self, example: str) -> "Measure":
-        """Give the same kind with another example."""
+        """Return the same kind with another example."""
         return replace(self, example=example)
 
     @property
@@ -52,7 +52,7 @@ class Measure:
         return self.name if self.unit == Unit.ONE else f"{self.name} with a unit"
 
     def example_of(self, argument: str) -> str:
-        """Give an example of how to write an argument."""
+        """Return an example of how to write an argument."""
         written = self.example if self.unit == Unit.ONE else repr(self.example)
         return f"write for example {argument}={written}"
 

@@ -66,7 +66,7 @@ def _plain_spelling(text: str) -> str | None:
 
 
 def foreign_sign(text: str) -> str | None:
-    """Give the first character that occurs in no number and no unit; None if there is none."""
+    """Return the first character that occurs in no number and no unit; None if there is none."""
     found = _FOREIGN.search(text.translate(_SPELLINGS))
     if found is not None:
         return found[0]
@@ -160,7 +160,7 @@ def _subgrade(value: Any, measure: Measure) -> str:
 
 
 def _period(value: Any, measure: Measure) -> str:
-    """Give the frequency of a period that was given for a frequency."""
+    """Return the frequency of a period that was given for a frequency."""
     if measure.unit != FREQUENCY.unit or not _is_in(value, TIME.unit):
         return ""
     seconds = float(value.m_as(str(TIME.unit)))
@@ -264,7 +264,7 @@ def to_si_values(value: object, measure: Measure, *, owner: str, name: str) -> l
 
 
 def own_unit(values: object) -> str | None:
-    """Give the unit that an array carries: as a Quantity, or in an attribute ``units``."""
+    """Return the unit that an array carries: as a Quantity, or in an attribute ``units``."""
     held: Any = values
     attributes = getattr(held, "attrs", None)
     # arrays of numpy have data too, which those of dates do not give

@@ -99,15 +99,15 @@ class ReaderUnits:
     words: Mapping[str, str] = field(default_factory=dict[str, str])  # argument of the reader
 
     def of(self, unit: str) -> Shown:
-        """Give the unit in which values in an SI unit are shown."""
+        """Return the unit in which values in an SI unit are shown."""
         return self.chosen.get(unit, Shown(unit, 1.0))
 
     def chose(self, measure: Measure) -> Shown | None:
-        """Give the unit that was chosen for a kind, or None."""
+        """Return the unit that was chosen for a kind, or None."""
         return self.chosen.get(str(measure.unit))
 
     def of_all(self, dataset: "xr.Dataset") -> "xr.Dataset":
-        """Give a dataset with its values and their attributes ``units`` in these units."""
+        """Return a dataset with its values and their attributes ``units`` in these units."""
         found: dict[str, Any] = {}
         for name, values in dataset.variables.items():
             unit = self.chosen.get(str(values.attrs.get("units")))

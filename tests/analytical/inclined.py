@@ -28,19 +28,19 @@ class Stone:
     beside: float = 0.0
 
     def seen_from(self, point, rotation):
-        """Give the centre of mass as seen from a point of the base, in a rotated block."""
+        """Return the centre of mass as seen from a point of the base, in a rotated block."""
         right, up = self.beside - point, self.height
         s, c = math.sin(rotation), math.cos(rotation)
         return np.array([c * right + s * up, c * up - s * right])
 
 
 def clockwise(arm, force):
-    """Give the moment of a force."""
+    """Return the moment of a force."""
     return arm[1] * force[0] - arm[0] * force[1]
 
 
 def rocking(stone, inclination, ground, end, times):
-    """Give rotations relative to the ground at some times, of a block that starts at rest.
+    """Return rotations relative to the ground at some times, of a block that starts at rest.
 
     `ground(t)` is the acceleration of the ground, horizontal and vertical.
     """
@@ -60,7 +60,7 @@ def rocking(stone, inclination, ground, end, times):
         return side * clockwise(stone.seen_from(corners[side], level), load(time))
 
     def next_start(time):
-        """Give when a block at rest begins to tip, and to which side."""
+        """Return when a block at rest begins to tip, and to which side."""
         found = []
         for side in (1, -1):
             fine = np.arange(time, end, 1e-3)
@@ -119,7 +119,7 @@ class OnPads:
         return np.array([c, s]), np.array([-s, c])
 
     def placed(self, place, velocity):
-        """Give corners and the middle of the base: seen from the centre of mass, and their rates.
+        """Return corners and the middle of the base: seen from the centre of mass, and their rates.
 
         `place` is that of the centre of mass on the unloaded pads, and the rotation in space.
         """
@@ -131,13 +131,13 @@ class OnPads:
         return arms, turning
 
     def pad(self, place, velocity, corner):
-        """Give how deep a corner stands in its pad, and how fast it rises."""
+        """Return how deep a corner stands in its pad, and how fast it rises."""
         _, normal = self.axes
         arms, rates = self.placed(place, velocity)
         return -normal @ (place[:2] + arms[corner]), normal @ rates[corner]
 
     def pull(self, place, velocity, corner):
-        """Give the force of a pad that touches."""
+        """Return the force of a pad that touches."""
         depth, rate = self.pad(place, velocity, corner)
         return self.stiffness * depth - self.damping * rate
 
@@ -163,7 +163,7 @@ class OnPads:
         return np.linalg.solve(matrix, right)
 
     def rest(self):
-        """Give where the block is at rest, both pads bearing."""
+        """Return where the block is at rest, both pads bearing."""
         along, _ = self.axes
 
         def lack(place):
@@ -176,7 +176,7 @@ class OnPads:
         return root(lack, guess, tol=1e-13).x
 
     def response(self, ground, end, times):
-        """Give rotation, and displacements along and off the slope, from rest."""
+        """Return rotation, and displacements along and off the slope, from rest."""
         start, touching = self.rest(), [True, True]
         time, state = 0.0, np.concatenate([start, np.zeros(3)])
         out = np.zeros((len(times), 3))

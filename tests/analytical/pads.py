@@ -109,7 +109,7 @@ def oscillator(frequency, damping, force, step, start=(0.0, 0.0)):
 
 
 def rough_record(count, step, peak, seed):
-    """Give a record with content at all frequencies, from rest to rest."""
+    """Return a record with content at all frequencies, from rest to rest."""
     rng = np.random.default_rng(seed)
     samples = rng.normal(size=count)
     samples[:5] *= np.linspace(0.0, 1.0, 5)
@@ -118,7 +118,7 @@ def rough_record(count, step, peak, seed):
 
 
 def zero_crossings(time, value, rate):
-    """Give the times at which a sampled oscillation crosses zero, to fourth order."""
+    """Return the times at which a sampled oscillation crosses zero, to fourth order."""
     found = []
     for i in np.flatnonzero(value[:-1] * value[1:] < 0.0):
         h = time[i + 1] - time[i]

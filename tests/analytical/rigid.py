@@ -42,12 +42,12 @@ def free(system, share, periods, **options):
 
 
 def impact_times(response):
-    """Give p t of the impacts."""
+    """Return p t of the impacts."""
     return P * response.event_time.values[response.event_kind.values == 2]
 
 
 def peaks_between_impacts(response):
-    """Give the largest |alpha|/theta of each rock after an impact.
+    """Return the largest |alpha|/theta of each rock after an impact.
 
     The samples nearest to the peak and a parabola through rotation and rate
     leave an error of fourth order in the output step.
@@ -69,7 +69,7 @@ def peaks_between_impacts(response):
 
 
 def half_sine_threshold(ratio):
-    """Give the amplitude over g theta of a half sine that overturns, its ratio to p given."""
+    """Return the amplitude over g theta of a half sine that overturns, its ratio to p given."""
 
     def excess(psi):
         left = ratio * math.sin(psi) - math.cos(psi)
@@ -79,7 +79,7 @@ def half_sine_threshold(ratio):
 
 
 def one_sine_threshold(ratio):
-    """Give that of one sine that overturns without an impact."""
+    """Return that of one sine that overturns without an impact."""
 
     def excess(psi):
         left = math.cos(psi) - ratio * math.sin(psi)

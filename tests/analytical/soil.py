@@ -83,7 +83,7 @@ class Bed:
 
 
 def at_rest(model, rotation, height):
-    """Give the mode and the state of a body that stands still, and its accelerations."""
+    """Return the mode and the state of a body that stands still, and its accelerations."""
     mode, state, _ = model.initial(Start(rotation, 0.0, height, 0.0))
     return mode, state, accelerations(model, mode, state)
 

@@ -49,7 +49,7 @@ def acceleration(displacement):
 
 
 def inside(history):
-    """Give the samples that have an acceleration."""
+    """Return the samples that have an acceleration."""
     return history.to_numpy()[SIDE:-SIDE]
 
 
@@ -71,7 +71,7 @@ def assert_newton(response, force):
 
 
 def force_on(response, mass):
-    """Give the force that moves one body, by its own horizontal displacement."""
+    """Return the force that moves one body, by its own horizontal displacement."""
     sway = acceleration(response.horizontal_displacement.to_numpy())
     return mass * (sway + inside(response.ground_acceleration))
 

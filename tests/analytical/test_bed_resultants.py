@@ -43,7 +43,7 @@ def states(count, seed):
 
 
 def modes(ends):
-    """Give the states of the ends that belong to a state of the base."""
+    """Return the states of the ends that belong to a state of the base."""
     return end_of(ends.u_left), end_of(ends.u_right)
 
 
@@ -53,13 +53,13 @@ def contact_of(ends):
 
 
 def line_of(ends, bed, lever_left=0.0, lever_right=0.0):
-    """Give the base line that presses the bed so."""
+    """Return the base line that presses the bed so."""
     heights = bed.settlement - ends.u_left, bed.settlement - ends.u_right
     return BaseLine(*heights, ends.v_left, ends.v_right, lever_left, lever_right)
 
 
 def resultants(ends, bed, lever_left, lever_right):
-    """Give force, moment and power; heights count from the unloaded bed, to keep their digits."""
+    """Return force, moment and power; heights count from the unloaded bed, to keep their digits."""
     bed = bed._replace(settlement=0.0)
     return bed.force(contact_of(ends), line_of(ends, bed, lever_left, lever_right), ())
 
@@ -179,7 +179,7 @@ def shape(*, small):
 
 
 def body(alpha, y, spin, speed, *, small, damping=45.0, by_pressure=False):
-    """Give a model, its state and the mode that belongs to it."""
+    """Return a model, its state and the mode that belongs to it."""
     block = shape(small=small)
     bed = bed_numbers(block, stiffness=STIFFNESS, damping=damping, by_pressure=by_pressure)
     model = alone("Winkler", block, bed, mass=1.0)

@@ -118,7 +118,7 @@ def test_the_ground_of_the_second_stage_is_the_motion_of_the_cap_s_top():
 
 
 def jumps_of_the_top(first, rule):
-    """Give times and sizes of the jumps of the top's velocity: the first body is re-pinned."""
+    """Return times and sizes of the jumps of the top's velocity: the first body is re-pinned."""
     if rule != "contact-state":
         return []
     held = {FULL: 0.0, 1: -1.6, 2: 1.6}

@@ -28,7 +28,7 @@ def close(found, expected, share):
 
 
 def ground_of(floor, samples=NOISE):
-    """Give the ground at the floor's samples: it stands still after its end."""
+    """Return the ground at the floor's samples: it stands still after its end."""
     return np.append(samples, np.zeros(len(floor) - samples.size))
 
 

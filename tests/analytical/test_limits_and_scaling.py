@@ -16,7 +16,7 @@ RULES = ("contact-state", "leading-corner", "centre")
 
 
 def deviation(slenderness, radius, beta, rule, pulse):
-    """Give the largest difference of alpha/theta between stiff pads and rigid ground.
+    """Return the largest difference of alpha/theta between stiff pads and rigid ground.
 
     The dashpots are strong: a pad of xi = 10 takes a landing corner without
     throwing it back. Weakly damped pads let the block hop, however stiff they

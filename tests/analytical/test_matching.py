@@ -94,7 +94,7 @@ def test_no_wavelet_moves_the_ground_for_good(peak_time, period):
 
 
 def noise(seed=3):
-    """Give noise that is resolved by its samples, as records are."""
+    """Return noise that is resolved by its samples, as records are."""
     white = np.random.default_rng(seed).normal(size=COUNT)
     return 2.0 * np.convolve(white, np.hanning(9) / 2.0, "same") * np.hanning(COUNT)
 

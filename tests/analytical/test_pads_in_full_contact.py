@@ -19,7 +19,7 @@ STEP = 0.005
 
 
 def worst(found, expected):
-    """Give the largest difference over the largest expected value."""
+    """Return the largest difference over the largest expected value."""
     return np.abs(found - expected).max() / np.abs(expected).max()
 
 

@@ -47,7 +47,7 @@ def sines(frequency=FREQUENCY, phase=0.0):
 
 
 def ricker(degree):
-    """Give the displacement of the derivative of degree `degree` of the Gaussian."""
+    """Return the displacement of the derivative of degree `degree` of the Gaussian."""
     scale = 2.0 * math.pi / PERIOD / math.sqrt(degree)
     place = scale * (TIME - CENTRE)
     bell = sp.exp(-(place**2) / 2)

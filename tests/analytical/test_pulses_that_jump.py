@@ -73,7 +73,7 @@ def test_type_b(ratio):
 
 
 def lift_off(height):
-    """Give the place in an impulse, of peak 15 height/8, at which it reaches g theta."""
+    """Return the place in an impulse, of peak 15 height/8, at which it reaches g theta."""
     return brentq(lambda u: height * 30.0 * (u * (1.0 - u)) ** 2 - 1.0, 0.0, 0.5, xtol=1e-15)
 
 

@@ -21,7 +21,7 @@ HISTORIES = (
 
 @pytest.fixture(scope="module", autouse=True)
 def own():
-    """Give the module of the example, its scene registered; compiled it gives the same."""
+    """Return the module of the example, its scene registered; compiled it gives the same."""
     with example(SCENE_FILE) as module, plainly():
         yield module
 
@@ -40,7 +40,7 @@ def noise(sign=1.0):
 
 
 def slid(own, yields, motion):
-    """Give the run of a low block that slides beyond an acceleration."""
+    """Return the run of a low block that slides beyond an acceleration."""
     return standing(own, LOW, yields / GRAVITY).simulate(
         motion, duration="2 s", accuracy="reference", outputs="energy"
     )

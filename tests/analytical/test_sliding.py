@@ -60,7 +60,7 @@ def noise(sign=1.0, size=5.0):
 
 
 def slid(yields, motion, block=LOW):
-    """Give the run of a low block that slides beyond an acceleration."""
+    """Return the run of a low block that slides beyond an acceleration."""
     return standing(block, yields / GRAVITY).simulate(
         motion, duration="2 s", accuracy="reference", outputs="energy"
     )
@@ -262,7 +262,7 @@ def kinds_under(acceleration, friction, kinetic=None):
 
 
 def needed(a, t=0.25):
-    """Give mu_rock, eq-slide-start."""
+    """Return mu_rock, eq-slide-start."""
     return (a + 4.0 * a * t * t + 3.0 * t) / (4.0 + t * t + 3.0 * a * t)
 
 

@@ -183,7 +183,7 @@ def leaving(sign=1.0, duration=0.3):
 
 
 def right_pad(alpha, y, spin, speed):
-    """Give the force of the right pad's law."""
+    """Return the force of the right pad's law."""
     b, h, k, c = SQUAT_B, SQUAT_H, SQUAT_K, SQUAT_C
     rise = y + h * (1.0 - np.cos(alpha)) - b * np.sin(alpha)
     rate = speed + (h * np.sin(alpha) - b * np.cos(alpha)) * spin

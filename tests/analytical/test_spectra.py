@@ -38,7 +38,7 @@ def spectrum(motion, periods, damping_ratio, name):
 
 
 def half_sine_factor(period):
-    """Give the greatest displacement over the static one (Chopra, Dynamics of Structures, 4.8)."""
+    """Return greatest displacement over the static one (Chopra, Dynamics of Structures, 4.8)."""
     ratio = HALF / period
     if ratio == 0.5:
         return 0.5 * math.pi
@@ -76,7 +76,7 @@ def test_after_a_short_pulse_an_oscillator_swings_with_its_impulse(half_sine):
 
 
 def harmonic_response(time, rate, omega, xi):
-    """Give u, v and -(absolute acceleration) from rest under sin(rate t)."""
+    """Return u, v and -(absolute acceleration) from rest under sin(rate t)."""
     gap, drag = omega**2 - rate**2, 2.0 * xi * omega * rate
     size = gap**2 + drag**2
     sine, cosine = -gap / size, drag / size

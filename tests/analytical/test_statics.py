@@ -154,7 +154,7 @@ def stack(name, **options):
 
 @cache
 def held_stack(name, angle, rotation, rule):
-    """Give a held stack, once for all that is asked of it."""
+    """Return a held stack, once for all that is asked of it."""
     return Held(name, angle, rotation, rule)
 
 

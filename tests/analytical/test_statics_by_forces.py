@@ -123,7 +123,7 @@ def test_slopes_of_the_forces_are_the_stiffnesses_that_bases_declare(block, base
 
 
 def printed_matrices(block, cap):
-    """Give the matrices of eq-coupled-small, per unit mass of the block."""
+    """Return the matrices of eq-coupled-small, per unit mass of the block."""
     h, h_c, g, inertia = block.body.height, cap.body.height, block.body.gravity, block.body.inertia
     high = h + 2.0 * h_c
     turning = cap.body.inertia + cap.mass * h_c**2 + inertia + high**2
@@ -222,7 +222,7 @@ def bodies(beside=0.0, along=0.0):
 
 
 def potential(chain, places):
-    """Give the energy of all weights and bases, with bodies placed by rotation and height."""
+    """Return the energy of all weights and bases, with bodies placed by rotation and height."""
     point, turned, energy = np.zeros(2), 0.0, 0.0
     top = 0.0
     for link, (rotation, rise), mass, above in reversed(
@@ -244,7 +244,7 @@ def potential(chain, places):
 
 
 def least(chain, rotation=None):
-    """Give rotations and heights of least energy, with the highest body held or free."""
+    """Return rotations and heights of least energy, with the highest body held or free."""
     sizes = np.array([1e-3, 1e-3] * 3)
 
     def places(scaled):

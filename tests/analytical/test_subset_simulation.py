@@ -21,7 +21,7 @@ SEEDS = 200
 
 
 def one_side(scores):
-    """Give a sum that is standard normal."""
+    """Return a sum that is standard normal."""
     return scores.sum(axis=1) / math.sqrt(scores.shape[1])
 
 

@@ -214,7 +214,7 @@ def test_a_wall_and_a_load_join_in():
 
 
 def stack_with_ties(friction, of_joint, **changed):
-    """Give two blocks with ties, of one to the other and to the ground."""
+    """Return two blocks with ties, of one to the other and to the ground."""
     joint = rf.TwoSpringSupport(frequency_ratio=15, damping_ratio=0.2, friction=of_joint)
     upper = rf.Block(width="0.8 m", height="1.5 m", mass="500 kg")
     stack = rf.Stack(upper, BLOCK.replace(height="1 m"), interfaces=[joint.replace(**changed)])

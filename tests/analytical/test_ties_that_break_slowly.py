@@ -18,7 +18,7 @@ HOLD_DOWN = rf.Restrainer(
 
 
 def pulls(rotation):
-    """Give what the tie pulls while it holds: the pads give way to it, too."""
+    """Return what the tie pulls while it holds: the pads give way to it, too."""
     return TIE * HALF * math.sin(rotation) * 2.0 * PAD / (2.0 * PAD + TIE)
 
 

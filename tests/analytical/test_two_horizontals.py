@@ -110,7 +110,7 @@ def test_that_library_itself_where_it_is_installed():
 
 
 def displacement(samples: np.ndarray, step: float, period: float, damping: float) -> np.ndarray:
-    """Give that of an oscillator under straight lines and then still ground, by SciPy."""
+    """Return that of an oscillator under straight lines and then still ground, by SciPy."""
     omega = 2.0 * np.pi / period
     parts = max(10, math.ceil(200.0 * step / period))
     time = np.arange(0.0, (samples.size - 1) * step + 4.0 * period, step / parts)

@@ -38,7 +38,7 @@ def clean(run) -> bool:
 
 
 def strength(case: Case) -> float:
-    """Give a scale that is well off the edge, to either side."""
+    """Return a scale that is well off the edge, to either side."""
     return float(np.random.default_rng([7, case.number]).uniform(0.6, 1.6))
 
 
@@ -82,20 +82,20 @@ def at_the_boundary(pool: Iterator[Case]) -> Iterator[tuple[float, Row]]:
 
 
 def verdicts(case: Case, scale: float) -> np.ndarray:
-    """Give the verdicts of a dense scan over the reach; -1 where a run is not finished."""
+    """Return the verdicts of a dense scan over the reach; -1 where a run is not finished."""
     changes = np.linspace(-REACH, REACH, SCALES)
     found = [case.summary(scale * (1.0 + change)).overturned for change in changes]
     return np.array([-1 if fell is None else int(fell) for fell in found])
 
 
 def true_margin(fell: bool, scanned: np.ndarray) -> float:
-    """Give the distance of the nearest other verdict of a dense scan."""
+    """Return the distance of the nearest other verdict of a dense scan."""
     changes = np.abs(np.linspace(-REACH, REACH, SCALES))
     return float(changes[scanned != int(fell)].min(initial=REACH))
 
 
 def peak_error(case: Case, scale: float, run) -> tuple[float, float]:
-    """Give the error of a peak, and its estimate, over the overturning angle."""
+    """Return the error of a peak, and its estimate, over the overturning angle."""
     motion = cut(case.motion, TRUTH_CUT) if case.base == "cascade" else case.motion
     exact = case.summary(scale, TRUTH, motion)
     theta = float(run.overturning_angle)

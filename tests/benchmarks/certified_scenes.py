@@ -124,7 +124,7 @@ def draw(rng: np.random.Generator) -> tuple[str, rf.System, rf.GroundMotion, flo
 
 
 def cases(count: int, seed: int = 0) -> Iterator[Case]:
-    """Give the first cases of an endless, fixed list; the scale 1 is an edge of each."""
+    """Return the first cases of an endless, fixed list; the scale 1 is an edge of each."""
     found, number = 0, 0
     while found < count:
         drawn = draw(np.random.default_rng([seed, number]))

@@ -40,7 +40,7 @@ WINDOW = ("5 s", "13 s")
 
 
 def excitation() -> rf.GroundMotion:
-    """Give the motion of the five scenes, unscaled and whole."""
+    """Return the motion of the five scenes, unscaled and whole."""
     return rf.GroundMotion.stochastic(
         6.8, "5 km", seed=29, stress_drop="20 MPa", source="one corner"
     )

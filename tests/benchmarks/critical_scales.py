@@ -45,7 +45,7 @@ SOIL = rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.2)
 
 
 def systems(*, on_soil: bool) -> Iterator[tuple[rf.System, float]]:
-    """Give blocks on rigid ground, pads and soil, with their frequency."""
+    """Return blocks on rigid ground, pads and soil, with their frequency."""
     for radius in (1.0, 2.5):
         block = rf.Block.from_size(radius=f"{radius} m", slenderness=4, mass="50 t")
         bases = [(), (PADS,), (SOIL,)] if on_soil and radius == 1.0 else [(), (PADS,)]
@@ -54,7 +54,7 @@ def systems(*, on_soil: bool) -> Iterator[tuple[rf.System, float]]:
 
 
 def scenes() -> Iterator[tuple[str, rf.System, rf.GroundMotion]]:
-    """Give all scenes by their kind."""
+    """Return all scenes by their kind."""
     for name in RECORDS:
         path = records_folder() / name
         if path.is_file():
@@ -87,7 +87,7 @@ class Dense:
         return [run.overturned for run in self.runs].index(True)
 
     def flips(self) -> set[int]:
-        """Give the numbers of the runs after which the verdict changes."""
+        """Return the numbers of the runs after which the verdict changes."""
         pairs = enumerate(pairwise(self.runs))
         return {k for k, (one, other) in pairs if one.overturned != other.overturned}
 
@@ -111,7 +111,7 @@ def dense(kind: str, system: rf.System, motion: rf.GroundMotion) -> Dense:
 
 
 def scan(truth: Dense, scales: int, most: int) -> tuple[int, float, int, bool]:
-    """Give the flips found, by how much the first is late, the runs, and how far it looked."""
+    """Return the flips found, by how much the first is late, the runs, and how far it looked."""
     row = np.unique(np.round(np.linspace(truth.start, DENSE, scales))).tolist()
     found = follow(lambda place: truth.runs[round(place)], row, most=most, width=WIDTH)
     brackets = [(flip.below - 1.0, flip.above + 1.0) for flip in found.flips()]

@@ -85,12 +85,12 @@ CASES = {
 
 @cache
 def record() -> rf.GroundMotion:
-    """Give the record of El Centro, 1940."""
+    """Return the record of El Centro, 1940."""
     return rf.GroundMotion.read(record_path(RECORD))
 
 
 def excitation(case: Case) -> tuple[rf.GroundMotion, Callable[[float], float]]:
-    """Give the ground's acceleration as rockframe takes it, and as a function of time."""
+    """Return the ground's acceleration as rockframe takes it, and as a function of time."""
     if case.motion == "half sine":
         peak = case.size * GRAVITY
 
@@ -148,12 +148,12 @@ def by_engine(case: Case, step: float, *, meet_changes: bool) -> np.ndarray:
 
 
 def difference(found: np.ndarray, exact: np.ndarray) -> float:
-    """Give the largest difference of two histories over the peak."""
+    """Return the largest difference of two histories over the peak."""
     return float(np.abs(found - exact).max() / np.abs(exact).max())
 
 
 def order(differences: list[float]) -> list[float]:
-    """Give the order of each halving of the step."""
+    """Return the order of each halving of the step."""
     return [math.log2(a / b) for a, b in pairwise(differences)]
 
 
@@ -195,7 +195,7 @@ def measure(case: Case) -> dict:
 
 
 def lines(name: str, found: dict) -> Iterator[str]:
-    """Give a case's part of the table."""
+    """Return a case's part of the table."""
     yield (
         f"{name}: peak {found['peak']:.4f} of the overturning angle, {found['impacts']} impacts, "
         f"{found['returns']} returns without one, {found['flights']} flights of together "

@@ -219,7 +219,7 @@ class Pads:
         data.qvel[:] = rates[0]
 
     def _motion_of_centre(self) -> tuple[np.ndarray, np.ndarray]:
-        """Give the Jacobians of the centre of mass's place and of the block's turn."""
+        """Return the Jacobians of the centre of mass's place and of the block's turn."""
         along, turning = np.zeros((2, 3, self._model.nv))
         mujoco.mj_jacBodyCom(self._model, self._data, along, turning, self._block)
         return along, turning

@@ -38,7 +38,7 @@ OTHER_FALL = 0.05
 
 
 def short(number):
-    """Give a scene, its motion and its arguments."""
+    """Return a scene, its motion and its arguments."""
     rng = np.random.default_rng([1, number])
     if number % 2 == 0:
         _, system, motion, duration = draw(rng)
@@ -49,7 +49,7 @@ def short(number):
 
 
 def long(number):
-    """Give the same, of many impacts."""
+    """Return the same, of many impacts."""
     rng = np.random.default_rng([100, number])
     scene = usual(rng)
     ratio = float(10.0 ** rng.uniform(0.9, 2.2))
@@ -71,7 +71,7 @@ def long(number):
 
 
 def arguments(scene, duration):
-    """Give how long a run is, where it starts, and in which sense it is asked."""
+    """Return how long a run is, where it starts, and in which sense it is asked."""
     start = scene.start * float(np.arctan(1.0 / scene.slenderness))
     return {
         "duration": f"{duration!r} s",

@@ -38,7 +38,7 @@ SCENES = ("rigid ground", "pads", "soil", "coupled", "cascade", "stack")
 
 
 def time_of(scene: str, accuracy: str, folder: str, how: str) -> float:
-    """Give the time of the first run of a process [s]."""
+    """Return the time of the first run of a process [s]."""
     environment = os.environ | {"ROCKFRAME_CACHE_DIR": folder, "ROCKFRAME_COMPILE": how}
     done = subprocess.run(
         [sys.executable, "-c", RUN, scene, accuracy], env=environment, check=True, text=True,

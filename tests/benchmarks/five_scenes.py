@@ -28,7 +28,7 @@ class Scene:
 
 @cache
 def motion() -> rf.GroundMotion:
-    """Give eight seconds of strong motion: in every scene contact changes."""
+    """Return eight seconds of strong motion: in every scene contact changes."""
     drawn = rf.GroundMotion.stochastic(
         6.8, "5 km", seed=29, stress_drop="20 MPa", source="one corner"
     )
@@ -36,7 +36,7 @@ def motion() -> rf.GroundMotion:
 
 
 def scenes() -> dict[str, Scene]:
-    """Give the five by name.
+    """Return the five by name.
 
     The cascade holds the middle of the base in every contact state: the speed of the cap's top
     then does not jump, and its acceleration says all of its motion.

@@ -36,7 +36,7 @@ class Bench:
         return range(self.groups.max() + 1)
 
     def regressed(self, fell: np.ndarray) -> np.ndarray:
-        """Give probabilities by the regression of all other motions' tests."""
+        """Return probabilities by the regression of all other motions' tests."""
         chances = np.zeros(len(fell))
         for motion in self.motions:
             tests, others = self.groups == motion, self.groups != motion
@@ -45,7 +45,7 @@ class Bench:
         return chances
 
     def share_of_others(self, fell: np.ndarray) -> np.ndarray:
-        """Give for each test the share that fell under all other motions."""
+        """Return for each test the share that fell under all other motions."""
         return np.array([fell[self.groups != motion].mean() for motion in self.groups])
 
 

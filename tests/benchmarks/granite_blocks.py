@@ -77,19 +77,19 @@ class Shaking:
 
 
 def overturns(shape: Shape, shakings: Sequence[Shaking]) -> np.ndarray:
-    """Give whether a block overturns, for every motion."""
+    """Return whether a block overturns, for every motion."""
     system = block_of(shape)
     return np.array([one.overturns(system) for one in shakings])
 
 
 def pairs() -> np.ndarray:
-    """Give radii and restitutions that cover their ranges evenly, shape (pairs, 2)."""
+    """Return radii and restitutions that cover their ranges evenly, shape (pairs, 2)."""
     unit = qmc.Sobol(2, scramble=False).random(PAIRS)
     radii = RADII[0] * (RADII[1] / RADII[0]) ** unit[:, 0]
     return np.stack([radii, RESTITUTIONS[0] + np.ptp(RESTITUTIONS) * unit[:, 1]], axis=1)
 
 
 def verdicts(pair: Iterable[float], shakings: Sequence[Shaking]) -> np.ndarray:
-    """Give whether blocks of all angles overturn, shape (angles, motions)."""
+    """Return whether blocks of all angles overturn, shape (angles, motions)."""
     shapes = [Shape.of(pair, angle) for angle in ANGLES.tolist()]
     return np.array([overturns(shape, shakings) for shape in shapes])

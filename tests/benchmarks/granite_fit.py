@@ -25,7 +25,7 @@ Score: TypeAlias = Callable[[np.ndarray, np.ndarray], float]
 
 
 def shares(median: np.ndarray, spread: np.ndarray) -> np.ndarray:
-    """Give the share of blocks about each of `ANGLES`, over a last axis, :eq:`eq-scattering-block`.
+    """Return share of blocks about each of `ANGLES`, over a last axis, :eq:`eq-scattering-block`.
 
     The logarithm of the angle follows the logistic distribution. Beyond the ends of `ANGLES`
     blocks do what those at the ends do.
@@ -37,7 +37,7 @@ def shares(median: np.ndarray, spread: np.ndarray) -> np.ndarray:
 
 
 def log_likelihoods(chances: np.ndarray, fell: np.ndarray) -> np.ndarray:
-    """Give the logarithm of the probability of each outcome."""
+    """Return the logarithm of the probability of each outcome."""
     chances = np.clip(chances, SURELY, 1.0 - SURELY)
     return np.log(np.where(fell, chances, 1.0 - chances))
 
@@ -82,12 +82,12 @@ class Search:
         return cls(pairs, overturned, groups, np.array(likelihood))
 
     def without(self, group: int | None) -> np.ndarray:
-        """Give the likelihood of all motions but one."""
+        """Return the likelihood of all motions but one."""
         total = self.likelihood.sum(axis=-1)
         return total if group is None else total - self.likelihood[..., group]
 
     def best(self, group: int | None = None) -> Fit:
-        """Give the likeliest by all motions but one."""
+        """Return the likeliest by all motions but one."""
         likelihood = self.without(group)
         return self._fit(np.unravel_index(likelihood.argmax(), likelihood.shape))
 
@@ -97,7 +97,7 @@ class Search:
         return Fit(shape, float(SPREADS[spread]), pair)
 
     def chances(self, fit: Fit) -> np.ndarray:
-        """Give every test's probability of overturning."""
+        """Return every test's probability of overturning."""
         return shares(fit.shape.angle, fit.spread) @ self.overturned[fit.pair]
 
     def ensemble(self, group: int | None = None, blocks: int = BLOCKS) -> list[Shape]:
@@ -120,7 +120,7 @@ class Search:
 
 
 def regression(features: np.ndarray, fell: np.ndarray) -> np.ndarray:
-    """Give the coefficients of the likeliest logistic regression; the first is the constant."""
+    """Return the coefficients of the likeliest logistic regression; the first is the constant."""
     matrix = np.column_stack([np.ones(len(fell)), features])
 
     def loss(coefficients: np.ndarray) -> tuple[float, np.ndarray]:
@@ -131,7 +131,7 @@ def regression(features: np.ndarray, fell: np.ndarray) -> np.ndarray:
 
 
 def regressed(coefficients: np.ndarray, features: np.ndarray) -> np.ndarray:
-    """Give probabilities by regression, :eq:`eq-overturning-regression`."""
+    """Return probabilities by regression, :eq:`eq-overturning-regression`."""
     return expit(coefficients[0] + features @ coefficients[1:])
 
 
@@ -151,22 +151,22 @@ class Confusion(NamedTuple):
 
 
 def accuracy(said: np.ndarray, fell: np.ndarray) -> float:
-    """Give the share of right verdicts."""
+    """Return the share of right verdicts."""
     return float((said == fell).mean())
 
 
 def balanced_accuracy(said: np.ndarray, fell: np.ndarray) -> float:
-    """Give the mean of the shares of right verdicts among tests that fell and that stood."""
+    """Return the mean of the shares of right verdicts among tests that fell and that stood."""
     return float(0.5 * (said[fell].mean() + (~said[~fell]).mean()))
 
 
 def log_loss(chances: np.ndarray, fell: np.ndarray) -> float:
-    """Give the mean of minus the logarithm of the outcomes' probabilities."""
+    """Return the mean of minus the logarithm of the outcomes' probabilities."""
     return float(-log_likelihoods(chances, fell).mean())
 
 
 def brier(chances: np.ndarray, fell: np.ndarray) -> float:
-    """Give the mean squared difference of probability and outcome."""
+    """Return the mean squared difference of probability and outcome."""
     return float(((chances - fell) ** 2).mean())
 
 
@@ -184,7 +184,7 @@ def interval(
     drawn: list[np.ndarray],
     beside: np.ndarray | None = None,
 ) -> tuple[float, float]:
-    """Give the 95 % interval of a score, or of how far it is from that of what stands beside."""
+    """Return the 95 % interval of a score, or of how far it is from that of what stands beside."""
     scores = [score(predicted[tests], fell[tests]) for tests in drawn]
     if beside is not None:
         others = [score(beside[tests], fell[tests]) for tests in drawn]
@@ -219,7 +219,7 @@ def calibration(chances: np.ndarray, fell: np.ndarray, edges: np.ndarray) -> lis
 
 
 def fewest_errors(strength: np.ndarray, groups: np.ndarray, fell: np.ndarray) -> int:
-    """Give the errors of the best bound on the strength, chosen for each motion with hindsight."""
+    """Return errors of the best bound on the strength, chosen for each motion with hindsight."""
     errors = 0
     for one in range(groups.max() + 1):
         order = np.argsort(strength[groups == one])

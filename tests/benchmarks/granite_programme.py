@@ -46,7 +46,7 @@ class Programme:
     fell: dict[int, np.ndarray]
 
     def peaks(self) -> tuple[np.ndarray, np.ndarray]:
-        """Give peak accelerations [m s^-2] and peak velocities [m s^-1] of the table."""
+        """Return peak accelerations [m s^-2] and peak velocities [m s^-1] of the table."""
         signals = [motion.si.horizontal for motion in self.motions]
         accelerations = [greatest(signal.pieces) for signal in signals]
         velocities = [greatest(ground_path(signal)[0]) for signal in signals]
@@ -54,7 +54,7 @@ class Programme:
 
 
 def programme_path() -> Path:
-    """Give the path where the file of tests is looked for."""
+    """Return the path where the file of tests is looked for."""
     return Path(os.environ.get(VARIABLE, _BESIDE_THE_PROJECT))
 
 

@@ -39,7 +39,7 @@ these, and the labelled dataset."""
 
 
 def motion(peak: float) -> rf.GroundMotion:
-    """Give a minute of noise in samples of 5 ms, which fades at its end."""
+    """Return a minute of noise in samples of 5 ms, which fades at its end."""
     noise = np.convolve(np.random.default_rng(1).normal(size=SAMPLES), np.hanning(61), "same")
     noise[-FADE:] *= np.linspace(1.0, 0.0, FADE)
     return rf.GroundMotion.from_arrays(
@@ -48,7 +48,7 @@ def motion(peak: float) -> rf.GroundMotion:
 
 
 def scenes() -> dict[str, tuple[rf.System, float]]:
-    """Give scenes by their names, with the peaks of motions that rock and do not overturn them."""
+    """Return scenes by name, with the peaks of motions that rock and do not overturn them."""
     block = rf.Block(width="1 m", height="4 m", mass="2 t")
     return {
         "rigid ground": (rf.System(block), 2.9),
@@ -66,7 +66,7 @@ class Spent:
         self.times: dict[str, float] = defaultdict(float)
 
     def timed(self, name: str, function: Callable[..., object]) -> Callable[..., object]:
-        """Give a function whose time is added up."""
+        """Return a function whose time is added up."""
 
         @wraps(function)
         def call(*arguments, **options):
@@ -80,7 +80,7 @@ class Spent:
 
 
 def measured(system: rf.System, ground: rf.GroundMotion, level: str) -> dict[str, float]:
-    """Give the least times of the loop, of runs and of their parts [ms]."""
+    """Return the least times of the loop, of runs and of their parts [ms]."""
     spent, model = Spent(), system.assembly.model
 
     def loop() -> None:

@@ -27,7 +27,7 @@ TOLERANCES = tuple(10.0**-power for power in range(2, 12))
 
 
 def excitation(factor: float) -> rf.GroundMotion:
-    """Give the motion of the five scenes, by another factor."""
+    """Return the motion of the five scenes, by another factor."""
     drawn = rf.GroundMotion.stochastic(
         6.8, "5 km", seed=29, stress_drop="20 MPa", source="one corner"
     )
@@ -35,7 +35,7 @@ def excitation(factor: float) -> rf.GroundMotion:
 
 
 def system(damping_ratio: float) -> rf.System:
-    """Give the scene; without dashpots a landing corner keeps its speed."""
+    """Return the scene; without dashpots a landing corner keeps its speed."""
     block = rf.Block(width=f"{2 * B} m", height=f"{2 * H} m", mass=f"{MASS} kg")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)  # restitution 1 is meant
@@ -49,7 +49,7 @@ def system(damping_ratio: float) -> rf.System:
 
 
 def arguments(damping_ratio: float, motion: rf.GroundMotion) -> dict:
-    """Give the same scene as OpenSees takes it."""
+    """Return the same scene as OpenSees takes it."""
     vertical = PADS["frequency_ratio"] * math.sqrt(0.75 * GRAVITY / math.hypot(B, H))
     return {
         "half_width": B, "half_height": H, "mass": MASS, "inertia": MASS * (B**2 + H**2) / 3.0,

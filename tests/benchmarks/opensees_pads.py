@@ -127,7 +127,7 @@ def simulate(
 
 
 def _top(b: float, h: float, square: float) -> float:
-    """Give the height of the upper point mass at which the inertia is right.
+    """Return the height of the upper point mass at which the inertia is right.
 
     The masses at the base are a half in the middle and a quarter at either corner; `square` is
     the inertia about the centre of mass over the mass.

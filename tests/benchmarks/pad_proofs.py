@@ -31,7 +31,7 @@ WRITTEN = ROOT / "docs" / "data" / "pad_proofs.json"
 
 
 def motions() -> list[rf.GroundMotion]:
-    """Give the strong parts, each scaled to 0.4 g."""
+    """Return the strong parts, each scaled to 0.4 g."""
     found = []
     for name in RECORDS:
         record = rf.GroundMotion.read(record_path(name))

@@ -23,7 +23,7 @@ STEP, SAMPLES = 0.005, 12_000
 
 
 def motion(peak):
-    """Give a minute of noise in samples of 5 ms."""
+    """Return a minute of noise in samples of 5 ms."""
     noise = np.convolve(np.random.default_rng(1).normal(size=SAMPLES), np.hanning(61), "same")
     return rf.GroundMotion.from_arrays(
         (peak * noise / abs(noise).max(), "m/s^2"), time_step=f"{STEP} s"
@@ -39,7 +39,7 @@ def pads(**friction):
 
 
 def stack(count, joint):
-    """Give a stack as high as one block, which is as high as its pieces are at least."""
+    """Return a stack as high as one block, which is as high as its pieces are at least."""
     return rf.Stack(*[block(high(count) / count)] * count, interfaces=[joint] * (count - 1))
 
 
@@ -58,7 +58,7 @@ def frame():
 
 
 def scenes():
-    """Give each part by its name: the scene without it, that with it, and the motion's peak."""
+    """Return each part by its name: the scene without it, that with it, and the motion's peak."""
     rigid, soft = rf.System(block()), rf.System(block(), pads())
     wall = rf.RearWall(side="left", restitution=-0.5)
     elastic = rf.RearWall(side="left", stiffness="5 MN/m", damping="10 kN s/m", gap="5 mm")
@@ -107,14 +107,14 @@ def scenes():
 
 
 def seconds(system, ground, level):
-    """Give the processor time of a run, and the run."""
+    """Return the processor time of a run, and the run."""
     begun = time.process_time()
     run = system.simulate(ground, accuracy=level, outputs=None, second_look=False)
     return time.process_time() - begun, run
 
 
 def measured(without, having, ground, level):
-    """Give both times, their ratio and the steps."""
+    """Return both times, their ratio and the steps."""
     for one in (without, having):
         seconds(one, ground, level)
     times = [[seconds(one, ground, level)[0] for one in (without, having)] for _ in range(ROUNDS)]

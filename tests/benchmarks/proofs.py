@@ -47,7 +47,7 @@ SETS = ((1e-12, 1), (1e-12, 8), (1e-9, 1), (1e-9, 8), (1e-6, 1))  # tolerance, m
 
 
 def records():
-    """Give the strong part of each record, as it was written."""
+    """Return the strong part of each record, as it was written."""
     found = {}
     for name, (file, component) in RECORDS.items():
         bare = {"time_step": "0.005 s", "unit": "g"} if file.endswith(".txt") else {}

@@ -29,7 +29,7 @@ NOT_UNIQUE = ("impacts_of_several_modes", "impacts_of_no_mode", "corners_held_wi
 
 
 def drawn_base(on, friction, rng):
-    """Give a random base, with friction or without."""
+    """Return a random base, with friction or without."""
     if on == "rigid ground":
         return rf.RigidGround(**friction)
     if on == "pads":
@@ -41,13 +41,13 @@ def drawn_base(on, friction, rng):
 
 
 def drawn_friction(width, height, rng):
-    """Give random coefficients, half of them near what parts sliding from rocking."""
+    """Return random coefficients, half of them near what parts sliding from rocking."""
     static = rng.choice([rng.uniform(0.02, 1.0), width / height * rng.uniform(0.6, 1.5)])
     return {"friction": static, "kinetic_friction": min(static * rng.uniform(0.5, 1.0), 0.6)}
 
 
 def drawn_wall(width, height, rng):
-    """Give a random elastic wall behind a block of 2 t."""
+    """Return a random elastic wall behind a block of 2 t."""
     stiffness = 2e3 * GRAVITY / height * 10.0 ** rng.uniform(0.0, 4.0)
     side, damped = str(rng.choice(["left", "right"])), rng.random() < 0.7
     damping = rng.uniform(0.0, 0.3) * np.sqrt(stiffness * 2e3) * damped
@@ -59,7 +59,7 @@ def drawn_wall(width, height, rng):
 
 
 def drawn_stack(width, height, rng, counts=(2, 2, 3), kinds=BASES, friction=None):
-    """Give blocks upon one another, each on a base of its own."""
+    """Return blocks upon one another, each on a base of its own."""
     shares = rng.dirichlet(np.full(int(rng.choice(counts)), 4.0))
     blocks, bases = [], []
     for share in shares:  # from the ground up
@@ -78,7 +78,7 @@ def drawn_stack(width, height, rng, counts=(2, 2, 3), kinds=BASES, friction=None
 
 
 def drawn_squat(rng):
-    """Give two or three bodies upon one another, most of them too squat to rock, with friction."""
+    """Return a stack of two or three bodies with friction, most of them too squat to rock."""
     width, blocks, bases = rng.uniform(0.5, 3.0), [], []
     for _ in range(int(rng.choice([2, 2, 3]))):  # from the ground up
         low, high = (0.1, 0.7) if rng.random() < 0.7 else (0.75, 4.0)
@@ -97,7 +97,7 @@ def drawn_squat(rng):
 
 
 def drawn(part, rng):
-    """Give a random scene of a part, and a motion."""
+    """Return a random scene of a part, and a motion."""
     height = rng.uniform(1.0, 12.0)
     width = height / rng.uniform(1.6, 12.0)
     block = rf.Block(width=f"{width} m", height=f"{height} m", mass="2 t")

@@ -10,7 +10,7 @@ _FINE = np.linspace(1e-3, 4.0, 4000)
 
 
 def limit(rate: complex) -> float:
-    """Give the largest h |s| at which a decaying motion of the rate s does not grow."""
+    """Return the largest h |s| at which a decaying motion of the rate s does not grow."""
     direction = rate / abs(rate)
     growth = np.abs(np.polyval(_POLYNOMIAL, _FINE * direction))
     beyond = np.nonzero(growth > 1.0 + 1e-9)[0]
@@ -18,7 +18,7 @@ def limit(rate: complex) -> float:
 
 
 def longest_step(rates: list[complex]) -> float:
-    """Give the longest step that is stable for all of these rates [s]."""
+    """Return the longest step that is stable for all of these rates [s]."""
     return min(limit(rate) / abs(rate) for rate in rates if rate.real <= 0.0 and rate != 0.0)
 
 
@@ -30,7 +30,7 @@ def rates_on_pads(
     damping_ratio: float,
     gravity: float,
 ) -> list[complex]:
-    """Give the rates of a rectangular block's small motion on two pads, per unit of mass.
+    """Return the rates of a rectangular block's small motion on two pads, per unit of mass.
 
     Of the vertical and the rocking motion in full contact, and of a corner that bears alone.
     """  # fmt: skip

@@ -12,7 +12,7 @@ ALIKE = 1e-11
 
 
 def fastest(points: list[dict], program: str, wanted: float) -> dict | None:
-    """Give the quickest run of a program that is at least as accurate as wanted."""
+    """Return the quickest run of a program that is at least as accurate as wanted."""
     good = [
         one
         for one in points
@@ -24,7 +24,7 @@ def fastest(points: list[dict], program: str, wanted: float) -> dict | None:
 
 
 def least_ratio(points: list[dict], program: str) -> float:
-    """Give the least ratio of a program's time to ours at its error or better."""
+    """Return the least ratio of a program's time to ours at its error or better."""
     ratios = []
     for one in points:
         if one["program"] != program or one["error"] is None:

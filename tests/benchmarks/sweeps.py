@@ -82,7 +82,7 @@ study.COMPILING_SHARE = math.inf  # lanes are compiled in the first round
 
 
 def costs(motion, axes, accuracy) -> dict[str, float]:
-    """Give the processor time of a case by several ways that take turns [ms]."""
+    """Return the processor time of a case by several ways that take turns [ms]."""
     options = {"outputs": None, "accuracy": accuracy}
 
     def loop():
@@ -106,7 +106,7 @@ def costs(motion, axes, accuracy) -> dict[str, float]:
 
 
 def rate(motion, axes, accuracy) -> float:
-    """Give the cases a second of a whole sweep, from the call to the labelled dataset [s^-1]."""
+    """Return the cases a second of a whole sweep, from the call to the labelled dataset [s^-1]."""
     study.FEWEST_IN_LANES = 1
     begun = time.perf_counter()
     rf.sweep(SYSTEM, motion, axes=axes, accuracy=accuracy, progress=False)
@@ -147,7 +147,7 @@ def monte_carlo(motion, name, accuracy) -> str:
 
 @contextmanager
 def _loops_timed():
-    """Give the processor time that is spent in lanes [s]."""
+    """Return the processor time that is spent in lanes [s]."""
     inside = [0.0]
     loops = lanes.integrate_lanes
 
@@ -166,14 +166,14 @@ def _loops_timed():
 
 
 def share(motion, axes) -> float:
-    """Give the share of a sweep's processor time that is not spent in compiled loops."""
+    """Return the share of a sweep's processor time that is not spent in compiled loops."""
     with _loops_timed() as inside:
         whole = _once(lambda: _swept(motion, axes, threads=1))
     return 1.0 - inside[0] / whole
 
 
 def gain(motion, axes) -> float:
-    """Give how much faster two threads are than one, by the least wall times of rounds in turns."""
+    """Return how much faster two threads are than one, by least wall times of rounds in turns."""
     times = {1: [], 2: []}
     for _ in range(ROUNDS):
         for threads, taken in times.items():

@@ -33,7 +33,7 @@ LEAST = {
 
 
 def systems() -> dict[str, tuple[rf.System, float]]:
-    """Give the scenes, and the factor on the record with which they rock without falling."""
+    """Return the scenes, and the factor on the record with which they rock without falling."""
     block = rf.Block(width="4 m", height="18 m", mass="99 t")
     cap = rf.CushionCap(height="0.9 m", mass="36 t")
     soil = rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.20)

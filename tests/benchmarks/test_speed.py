@@ -104,7 +104,7 @@ def loop_in_c(c_loop):
 
 
 def ratio_of(ours, theirs) -> tuple[float, float]:
-    """Give the least times of two functions that take turns [ms]."""
+    """Return the least times of two functions that take turns [ms]."""
     pairs = []
     for _ in range(40):
         start = time.perf_counter()

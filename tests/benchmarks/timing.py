@@ -11,7 +11,7 @@ PACKAGES = ("rockframe", "numpy", "scipy", "numba", "openseespy")
 
 
 def cost(function: Callable[[], object], repeats: int) -> float:
-    """Give the least processor time of several calls [s].
+    """Return the least processor time of several calls [s].
 
     Processor time: what else runs on the machine does not enter as waiting.
     """

@@ -56,7 +56,7 @@ SCIPY = {
 
 
 def error(found: np.ndarray, exact: np.ndarray) -> float:
-    """Give the largest error of a rotation over its peak; infinite if a run ended early."""
+    """Return the largest error of a rotation over its peak; infinite if a run ended early."""
     if found.shape != exact.shape or not np.isfinite(found).all():
         return float("inf")
     return float(np.abs(found - exact).max() / np.abs(exact).max())

@@ -8,7 +8,7 @@ from contract.scenes import MOTIONS, SCENES
 
 @pytest.fixture(params=list(SCENES))
 def scene(request):
-    """Give the name of a scene; SCENES makes it."""
+    """Return the name of a scene; SCENES makes it."""
     return request.param
 
 
@@ -20,13 +20,13 @@ FEW = ("pulse and vertical", "record")
     params=[name if name in FEW else pytest.param(name, marks=pytest.mark.long) for name in MOTIONS]
 )
 def motion_name(request):
-    """Give the name of a motion; MOTIONS makes it."""
+    """Return the name of a motion; MOTIONS makes it."""
     return request.param
 
 
 @pytest.fixture
 def response(scene, motion_name):
-    """Give the response of a scene to a motion, with everything that can be asked for."""
+    """Return the response of a scene to a motion, with everything that can be asked for."""
     return _run(scene, motion_name).copy(deep=True)
 
 

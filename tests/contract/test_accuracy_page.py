@@ -61,7 +61,7 @@ def test_the_run_of_the_page(level):
 
 
 def least_overturning(system, accuracy, low):
-    """Give the amplitude between `low` and a tenth more at which overturning begins [m/s^2]."""
+    """Return the amplitude between `low` and a tenth more at which overturning begins [m/s^2]."""
 
     def overturns(amplitude):
         pulse = rf.GroundMotion.sine_pulse(f"{-amplitude!r} m/s^2")

@@ -14,7 +14,7 @@ ADDED = ("base", "link", "scene")
 
 
 def section(title: str) -> str:
-    """Give a section, to the next title of any level."""
+    """Return a section, to the next title of any level."""
     return re.split(r"\n##+ ", PAGE.split(f" {title}\n", 1)[1])[0]
 
 

@@ -36,7 +36,7 @@ LEFT_OUT = {
 
 @pytest.fixture(autouse=True)
 def registry():
-    """Give examples the registry that users have: other libraries put theirs in its place."""
+    """Return examples the registry that users have: other libraries put theirs in its place."""
     before = pint.get_application_registry().get()
     pint.set_application_registry(pint.UnitRegistry())
     yield
@@ -44,7 +44,7 @@ def registry():
 
 
 def examples_in(name):
-    """Give the docstrings of a module that have examples."""
+    """Return the docstrings of a module that have examples."""
     module = importlib.import_module(name)
     return [one for one in doctest.DocTestFinder().find(module) if one.examples]
 
@@ -63,7 +63,7 @@ def test_examples_in_docstrings():
 
 
 def found_by(name):
-    """Give what the reference lists by its name below `rockframe`."""
+    """Return what the reference lists by its name below `rockframe`."""
     value = rockframe
     for part in name.split("."):
         try:
@@ -74,13 +74,13 @@ def found_by(name):
 
 
 def run_in(value):
-    """Give the code of a docstring's examples that are run."""
+    """Return the code of a docstring's examples that are run."""
     examples = doctest.DocTestParser().get_examples(inspect.getdoc(value) or "")
     return "".join(one.source for one in examples if not one.options.get(doctest.SKIP))
 
 
 def methods_of(kind):
-    """Give the methods of a class that this package defines, by their names."""
+    """Return the methods of a class that this package defines, by their names."""
     for name in dir(kind):
         value = inspect.getattr_static(kind, name)
         value = getattr(value, "__func__", value)

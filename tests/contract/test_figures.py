@@ -147,7 +147,7 @@ def panels_of(drawn):
 
 
 def spans(drawn, unit):
-    """Give what is read along all axes that have the unit."""
+    """Return what is read along all axes that have the unit."""
     found = []
     for axes in panels_of(drawn):
         for axis, label, ends in (

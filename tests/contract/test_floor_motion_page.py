@@ -15,7 +15,7 @@ HEAD = "| samples per period | harmonic of that period | white noise | earthquak
 
 
 def deviation(motion, period):
-    """Give the deviation from straight lines that the history tells [%]."""
+    """Return the deviation from straight lines that the history tells [%]."""
     floor = motion.through_storeys([f"{period!r} s"], 0.05)
     told = [re.search(r"departs from that by up to (\S+) % of", line) for line in floor.history]
     (value,) = [float(one[1]) for one in told if one]

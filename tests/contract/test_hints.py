@@ -12,14 +12,14 @@ pytestmark = pytest.mark.contract
 
 
 def function_of(thing):
-    """Give what stands behind a method, a property or a function."""
+    """Return what stands behind a method, a property or a function."""
     for attribute in ("__func__", "fget"):
         thing = getattr(thing, attribute, thing)
     return thing.func if isinstance(thing, cached_property) else thing
 
 
 def public():
-    """Give each public class and function, methods and properties too, by its name."""
+    """Return each public class and function, methods and properties too, by its name."""
     for name in rf.__all__:
         one = getattr(rf, name)
         members = getattr(one, "__all__", ()) if inspect.ismodule(one) else ()
@@ -31,7 +31,7 @@ def public():
 
 
 def ours():
-    """Give those that are defined here, not inherited from elsewhere."""
+    """Return those that are defined here, not inherited from elsewhere."""
     for label, thing in public():
         found = function_of(thing)
         defined = inspect.isfunction(found) or inspect.isclass(found)

@@ -45,7 +45,7 @@ runs_in_every_scene = pytest.mark.parametrize(  # coupled and by cascade in plai
 
 @pytest.fixture(scope="module", autouse=True)
 def yielding():
-    """Give the module of the example, its base registered."""
+    """Return the module of the example, its base registered."""
     with example() as module:
         yield module
 

@@ -26,7 +26,7 @@ RUN = {"free_vibration": "1 s"}
 
 @pytest.fixture(scope="module", autouse=True)
 def own():
-    """Give the module of the example, its scene registered."""
+    """Return the module of the example, its scene registered."""
     with example(SCENE_FILE) as module:
         yield module
 
@@ -242,7 +242,7 @@ class TestRegistration:
 
     @pytest.fixture
     def wedged(self, own):
-        """Give the example's scene with another part, not registered."""
+        """Return the example's scene with another part, not registered."""
 
         class Wedged(own.SlidingScene):
             """The same equations on a wedge."""

@@ -15,7 +15,7 @@ OPTIONAL = ("records", "progress", "proof", "distributed", "lazy")
 
 
 def listed(text, head):
-    """Give the entries of a list of the recipe, without what is a setting of its own."""
+    """Return the entries of a list of the recipe, without what is a setting of its own."""
     block = re.search(rf"^  {head}:\n((?:    .*\n)+)", text, re.MULTILINE)[1]
     return {entry for entry in re.findall(r"^    - (.+)$", block, re.MULTILINE) if "$" not in entry}
 

@@ -63,7 +63,7 @@ SECOND_LOOKS = {
     ],
 )
 def run(request):
-    """Give a model, and a run of it."""
+    """Return a model, and a run of it."""
     parts = [part for part in SCENES[request.param] if not isinstance(part, dict)]
     options = [part for part in SCENES[request.param] if isinstance(part, dict)]
     model = rf.System(*parts, **dict(*options)).assembly.model

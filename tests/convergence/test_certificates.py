@@ -24,20 +24,20 @@ COUNT = 3
 
 @lru_cache
 def pool():
-    """Give a few random scenes, each brought to the edge of its verdict."""
+    """Return a few random scenes, each brought to the edge of its verdict."""
     return tuple(cases(COUNT, seed=1))
 
 
 @lru_cache
 def certified(number):
-    """Give a scene of these, the scale at which its verdict is in doubt, and its run."""
+    """Return a scene of these, the scale at which its verdict is in doubt, and its run."""
     case = pool()[number]
     scale = strength(case)
     return case, scale, case.certified(scale)
 
 
 def cascade(width, height, mass, cap, stiffness, ratio, amplitude, frequency):
-    """Give a slender frame on a light cap, whose pads bounce on what the soil carries over."""
+    """Return a slender frame on a light cap, whose pads bounce on what the soil carries over."""
     system = rf.System(
         rf.Block(width=f"{width} m", height=f"{height} m", mass=f"{mass} t"),
         rf.TwoSpringSupport(frequency_ratio=ratio, damping_ratio=0.1),
@@ -51,7 +51,7 @@ def cascade(width, height, mass, cap, stiffness, ratio, amplitude, frequency):
 
 
 def bouncing():
-    """Give a block that re-engages a pad for less than a step."""
+    """Return a block that re-engages a pad for less than a step."""
     time = 0.01 * np.arange(301)
     across, up = 3.5 * np.sin(6.0 * np.pi * time), 7.1 * np.sin(10.0 * np.pi * time)
     block = rf.Block(width="1 m", height="3 m", mass="1000 kg")
@@ -71,7 +71,7 @@ REST = {"free_vibration": "1 s", "outputs": None}
 
 @lru_cache
 def exact_peak(name):
-    """Give the peak of a hard scene by steps far finer than those of any run."""
+    """Return the peak of a hard scene by steps far finer than those of any run."""
     system, motion = HARD[name]
     fine = rf.Accuracy(rtol=1e-12, steps_per_period=100.0)
     return float(system.simulate(cut(motion, 64), accuracy=fine, **REST).peak_relative_rotation)

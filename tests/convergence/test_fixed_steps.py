@@ -16,7 +16,7 @@ SETTLED = 3
 
 
 def record(peak: float = 3.5) -> rf.GroundMotion:
-    """Give five seconds at 10 ms, with kinks at the samples as every record has them."""
+    """Return five seconds at 10 ms, with kinks at the samples as every record has them."""
     noise = np.random.default_rng(4).normal(size=(2, 501))
     across, up = (np.convolve(row, np.hanning(41) / 20.0, "same") for row in noise)
     return rf.GroundMotion.from_arrays(
@@ -105,7 +105,7 @@ def errors(system: rf.System, fewest: int) -> tuple[dict[str, np.ndarray], set[s
 
 
 def slope(error: np.ndarray) -> float:
-    """Give the order of convergence that fits the last halvings of a series."""
+    """Return the order of convergence that fits the last halvings of a series."""
     last = np.log2(error[-SETTLED:])
     return -float(np.polyfit(np.arange(SETTLED), last, 1)[0])
 

@@ -63,7 +63,7 @@ def run(name, accuracy, parts=1):
 
 
 def difference(one, other):
-    """Give the largest difference of two histories over the peak, while both stand."""
+    """Return the largest difference of two histories over the peak, while both stand."""
     end = min(float(one.time[-1]), float(other.time[-1]))
     for each in (one, other):
         if each.overturned:

@@ -43,7 +43,7 @@ class Verdict:
 
 
 def steps_allowed(scene: Scene, events: int, accuracy: str) -> int:
-    """Give the bound of the number of steps, rejected ones included.
+    """Return the bound of the number of steps, rejected ones included.
 
     Explicit steps follow the fastest motion, and dashpots beyond critical the faster for it.
     """

@@ -120,7 +120,7 @@ class Scene:
 
 
 def shake(kind: str, count: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """Give the horizontal and the vertical shape of a ground motion, at most one in size."""
+    """Return the horizontal and the vertical shape of a ground motion, at most one in size."""
     time = np.linspace(0.0, 1.0, count)
     up = np.sin(2.0 * np.pi * 7.0 * time)
     if kind == "constant":
@@ -240,7 +240,7 @@ SUBJECTS: dict[str, Extreme] = {
 
 
 def scenes(subject: str, count: int) -> Iterator[Scene]:
-    """Give the first scenes of a subject's endless, fixed list."""
+    """Return the first scenes of a subject's endless, fixed list."""
     for number in range(count):
         rng = np.random.default_rng([list(SUBJECTS).index(subject), number])
         yield SUBJECTS[subject](usual(rng), rng)

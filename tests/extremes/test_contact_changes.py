@@ -59,7 +59,7 @@ def test_a_slip_that_rises_and_falls_within_a_step_ends_where_it_falls(scale, fr
 
 
 def times_of_slips(run):
-    """Give how long each slip lasts between separation into sliding contact and its end."""
+    """Return how long each slip lasts between separation into sliding contact and its end."""
     kinds, states = run.event_kind.to_numpy(), run.contact_state_after.to_numpy()
     slips = np.flatnonzero((kinds[:-1] == 1) & (states[:-1] != 3) & (kinds[1:] == 4))
     times = run.event_time.to_numpy()

@@ -17,7 +17,7 @@ SETTING_UP = ("python3 -m venv .venv", "pip install")
 
 
 def commands():
-    """Give all commands of blocks marked as shell, with the page that they stand on."""
+    """Return all commands of blocks marked as shell, with the page that they stand on."""
     for page in [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))]:
         for block in BLOCK.findall(page.read_text(encoding="utf-8")):
             for line in block.splitlines():
@@ -26,7 +26,7 @@ def commands():
 
 
 def spoken(command):
-    """Give program and first words of a command, without options."""
+    """Return program and first words of a command, without options."""
     return [word for word in shlex.split(command) if not word.startswith("-")]
 
 

@@ -18,7 +18,7 @@ PACKAGES = [name for name in rf.__all__ if inspect.ismodule(getattr(rf, name))]
 
 
 def public_functions():
-    """Give all public functions and methods by their names."""
+    """Return all public functions and methods by their names."""
     for name in FUNCTIONS:
         yield name, getattr(rf, name)
     for name in PLOTS:

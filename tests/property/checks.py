@@ -29,7 +29,7 @@ def check_flight(response, *, within):
 
 
 def stored_energy(model, mode, state):
-    """Give a model's stored energy, and the size of its parts."""
+    """Return a model's stored energy, and the size of its parts."""
     kinetic, gravity, elastic, from_rest = model.system.energies(int(mode), state)
     return kinetic + gravity + from_rest, max(abs(kinetic), abs(gravity), abs(elastic))
 

@@ -126,7 +126,7 @@ def _ranges(starts):
 
 
 def scenarios(bases=("rigid", *RULES), starts=True):
-    """Give random scenes on the bases named."""
+    """Return random scenes on the bases named."""
     built = st.builds(
         Scenario,
         base=st.sampled_from(bases),
@@ -205,7 +205,7 @@ class SoilScenario(Scenario):
 
 
 def soil_scenarios(scenes=SOIL_SCENES, separations=SEPARATIONS, starts=True):
-    """Give random scenes on soil."""
+    """Return random scenes on soil."""
     built = st.builds(
         SoilScenario,
         scene=st.sampled_from(scenes),

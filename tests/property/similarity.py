@@ -23,13 +23,13 @@ AS_THEY_ARE = ("accuracy", "outputs", "overturning", "second_look")
 
 @cache
 def dimensions(unit):
-    """Give the powers of mass, length and time in a unit."""
+    """Return the powers of mass, length and time in a unit."""
     found = pint.application_registry.Quantity(1.0, unit.replace(" ", "*")).dimensionality
     return [found.get(f"[{name}]", 0) for name in ("mass", "length", "time")]
 
 
 def factor(unit, length, mass):
-    """Give what a number with a unit is multiplied by."""
+    """Return what a number with a unit is multiplied by."""
     if unit in (None, "", "1", "rad"):
         return 1.0
     heavy, long, lasting = dimensions(unit)
@@ -37,7 +37,7 @@ def factor(unit, length, mass):
 
 
 def scaled(value, length, mass):
-    """Give arguments, or what describes parts, with all that has a unit in another size."""
+    """Return arguments, or what describes parts, with all that has a unit in another size."""
     if isinstance(value, dict):
         return {name: scaled(one, length, mass) for name, one in value.items()}
     if isinstance(value, list | tuple):
@@ -52,12 +52,12 @@ def scaled(value, length, mass):
 
 
 def similar_system(system, length, mass):
-    """Give a system in another size."""
+    """Return a system in another size."""
     return rf.System.from_dict(scaled(system.to_dict(), length, mass))
 
 
 def similar_motion(motion, length, nudge=0.0):
-    """Give the same accelerations at steps of another length, or with a nudge."""
+    """Return the same accelerations at steps of another length, or with a nudge."""
     step, vertical = f"{math.sqrt(length) * motion.si.time_step!r} s", motion.si.vertical
     up = {} if vertical is None else {"vertical": (vertical.samples, "m/s^2")}
     across = (1.0 + nudge) * motion.si.horizontal.samples
@@ -65,7 +65,7 @@ def similar_motion(motion, length, nudge=0.0):
 
 
 def similar_arguments(asked, length, mass):
-    """Give the arguments of a run in another size."""
+    """Return the arguments of a run in another size."""
     found = {
         name: one if name in AS_THEY_ARE else scaled(one, length, mass)
         for name, one in asked.items()
@@ -77,12 +77,12 @@ def similar_arguments(asked, length, mass):
 
 
 def without_numbers(text):
-    """Give a text with all numbers struck out."""
+    """Return a text with all numbers struck out."""
     return NUMBER.sub("#", str(text))
 
 
 def differences(one, other, length, mass):
-    """Give what differs in its last bit between two datasets, the other one scaled back.
+    """Return what differs in its last bit between two datasets, the other one scaled back.
 
     By its name, the greatest difference over the greatest value; infinite of what is no number.
     """

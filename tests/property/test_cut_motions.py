@@ -83,7 +83,7 @@ def test_rest_after_a_rebound_within_a_step(accuracy):
 
 
 def cubics(kind, count=4000):
-    """Give values and rates at both ends of random cubics that begin in some way."""
+    """Return values and rates at both ends of random cubics that begin in some way."""
     rng = np.random.default_rng(7)
     start, end = rng.uniform(0.0, 1.0, (2, count))
     change, end_change = 4.0 * rng.normal(size=(2, count))

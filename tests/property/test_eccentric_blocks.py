@@ -63,14 +63,14 @@ CASE = Eccentric(**vars(PADS_CASE), firmness=30.0, cap_width=1.3)
 
 
 def every(**changes):
-    """Give a scene of each kind, of finite and of small rotation."""
+    """Return a scene of each kind, of finite and of small rotation."""
     for scene in SCENES:
         for rotation in ("finite", "small"):
             yield replace(CASE, scene=scene, rotation=rotation, **changes)
 
 
 def begun_and_shaken():
-    """Give scenes that start in all ways, by all rules."""
+    """Return scenes that start in all ways, by all rules."""
     yield from every()
     yield from every(told=True, peak=0.35, eccentricity=-0.15)
     yield from every(start=0.4, rate=-0.3, peak=0.3)

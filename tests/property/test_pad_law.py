@@ -51,12 +51,12 @@ def scene(kind, rule, rng):
 
 
 def block_on_pads(kind, system):
-    """Give the block with its pads; among the bodies of a system it is the first."""
+    """Return the block with its pads; among the bodies of a system it is the first."""
     return system.part if kind == "pads" else system.upper
 
 
 def free_forces(kind, model, run):
-    """Give the law's force in weights at each free corner below its pad's level, at each sample."""
+    """Return law's force in weights at each free corner below its pad's level, at each sample."""
     system = model.system
     body, pads = block_on_pads(kind, system)
     gravity = 9.80665

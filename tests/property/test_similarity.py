@@ -36,7 +36,7 @@ NUDGES, MORE, LEAST = (1e-15, -2e-15, 3e-15), 1e3, 1e-10
 
 
 def drawn(kind, number):
-    """Give a scene of a kind, how it is run, and what its lengths and masses are multiplied by."""
+    """Return a scene of a kind, how it is run, and the factors of its lengths and masses."""
     system, motion, asked = DRAWN[kind](np.random.default_rng([crc32(kind.encode()), number]))
     asked |= {"accuracy": ACCURACIES[number % 3], "outputs": OUTPUTS}
     # a motion as it is made from samples, not from what it was drawn by

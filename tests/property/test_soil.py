@@ -46,7 +46,7 @@ every_kind = pytest.mark.parametrize(
 
 
 def widths(scenario):
-    """Give the width of what stands on the soil, and all weight on it."""
+    """Return the width of what stands on the soil, and all weight on it."""
     size, mass = scenario.block.si, scenario.mass
     if scenario.scene == "soil":
         return size.width, mass * GRAVITY

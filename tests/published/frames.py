@@ -71,7 +71,7 @@ def soil(k0=K0):
 def scene(
     floors, beta, coupling, *, k0=K0, shape="printed", xi=0.10, density=CONCRETE, size=1.0
 ):  # fmt: skip
-    """Give a frame on its foundation; `size` scales both on the same soil, k0 with the depth."""
+    """Return a frame on its foundation; `size` scales both on the same soil, k0 with the depth."""
     return rf.System(
         frame(floors, shape, size=size),
         pads(beta, xi),
@@ -148,7 +148,7 @@ class Free:
         return np.abs(self.vertical[self.passages[0] :]).max()
 
     def _logarithm(self, row):
-        """Give the logarithm of the first peak over the last."""
+        """Return the logarithm of the first peak over the last."""
         return math.log(self.swings[row][0] / self.swings[row][-1])
 
     @property
@@ -178,7 +178,7 @@ def free(system):
 
 
 def free_from_the_soil(floors, beta, k0, shape="printed"):
-    """Give the total of a cascade whose first stage has the initial rotation, and its second stage.
+    """Return total of a cascade whose first stage has the initial rotation, and its second stage.
 
     The acceleration of the cap's top comes from differences of its path in steps of 2 ms.
     """
@@ -244,7 +244,7 @@ def overturns(system, motion, factor=1.0):
 
 
 def overturning_factor(system, motion, *, step=GRID, most=15.0):
-    """Give the least factor found that overturns, on a grid and then by bisection to 1 %.
+    """Return the least factor found that overturns, on a grid and then by bisection to 1 %.
 
     Overturning is not monotone in the factor: between two points of the grid a smaller one may be
     overlooked. The system stands at 0.99 of the factor given, or nearer.

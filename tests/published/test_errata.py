@@ -348,7 +348,7 @@ def energy(q, contact):
 
 
 def energy_drift(contact, printed):
-    """Give the largest change of energy in free motion over the largest kinetic energy."""
+    """Return the largest change of energy in free motion over the largest kinetic energy."""
     equations = (eq_12a, eq_12b) if contact == FULL else (eq_15a, eq_15b)
     block = {"theta": math.atan(0.25), "radius": 5.0, "mu": 3.0, "beta": 20.0, "xi": 0.0}
     still = {"ground_x": 0.0, "ground_y": 0.0}

@@ -78,7 +78,7 @@ def every(rows):
 
 
 def shape_factors_by_kind(frame):
-    """Give the shape factor that each kind of member would have alone."""
+    """Return the shape factor that each kind of member would have alone."""
     table = frame.members_table()
     sums = table[["mass", "inertia_about_middle"]].groupby("kind").sum()
     return frame.si.radius**2 * sums.mass / sums.inertia_about_middle

@@ -39,7 +39,7 @@ every_coupling = pytest.mark.parametrize("coupling", COUPLINGS)
 
 
 def spread(values):
-    """Give the range of values over the largest."""
+    """Return the range of values over the largest."""
     return (max(values) - min(values)) / max(values)
 
 

@@ -169,7 +169,7 @@ def draw_walled_on_base(rng):
 
 
 def with_ties(drawn, rng, links=draw_ties):
-    """Give a scene with ties beside; None on a slope, or if they tip the block."""
+    """Return a scene with ties beside; None on a slope, or if they tip the block."""
     if not drawn.system.options.slope.level:
         return None
     block, *others = drawn.system.parts.structural()

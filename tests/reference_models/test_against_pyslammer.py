@@ -25,7 +25,7 @@ of them its slips below 1e-5 m/s would count."""
 
 
 def downhill(samples, step):
-    """Give a motion along the slope, with no part normal to it."""
+    """Return a motion along the slope, with no part normal to it."""
     c, s = math.cos(SLOPE), math.sin(SLOPE)
     return rf.GroundMotion.from_arrays(
         (c * samples, "m/s^2"), f"{step!r} s", vertical=(s * samples, "m/s^2")

@@ -57,7 +57,7 @@ def read_back(system, rotation, parameters, noise=0.0, seed=0, offset=0.003):
 
 
 def errors(found, truth, offset=0.003):
-    """Give errors of all unknowns over their standard errors."""
+    """Return errors of all unknowns over their standard errors."""
     circumstances = ("initial_rotation", "release_time", "gauge_offset")
     values = [*found.fitted_value.values, *(float(found[name]) for name in circumstances)]
     spread = [

@@ -77,7 +77,7 @@ class ExactRun:
         return MP.sin(rotation), MP.cos(rotation)
 
     def place(self, name, state):
-        """Give height, speed, and the lever of an upward force at a corner."""
+        """Return height, speed, and the lever of an upward force at a corner."""
         sine, cosine = self.turn(state[0])
         rise = self.tall * state[0] ** 2 / 2 if self.small else self.tall * (1 - cosine)
         lever = self.tall * sine - self.corners[name] * cosine
@@ -95,7 +95,7 @@ class ExactRun:
         return self.corners[held[0]] if self.by_contact and len(held) == 1 else self.middle
 
     def sway(self, state):
-        """Give the first and second derivative of the sway of the centre of mass."""
+        """Return the first and second derivative of the sway of the centre of mass."""
         if self.small:
             return self.tall, MP.mpf(0)
         sine, cosine = self.turn(state[0])

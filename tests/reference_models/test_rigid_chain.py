@@ -38,7 +38,7 @@ ENDS = {"none": 0, "left": 1, "right": 2, "both": 3}
 
 
 def alone(block):
-    """Give a block on rigid ground: as Housner's, and as a chain of one body."""
+    """Return a block on rigid ground: as Housner's, and as a chain of one body."""
     setting = assemble((block,)).setting
     law = setting.load.law(setting.body.mass)
     one = ChainBody(law, rigid_numbers(law), 1.0, 0.0, 0.0)
@@ -46,7 +46,7 @@ def alone(block):
 
 
 def model_of(pair: Pair):
-    """Give two blocks on rigid bases, per unit mass of the upper one."""
+    """Return two blocks on rigid bases, per unit mass of the upper one."""
     links, measure = [], pair.upper.mass
     offset = pair.offset + pair.upper.beside - pair.lower.beside
     for one, beside in ((pair.upper, offset), (pair.lower, 0.0)):
@@ -214,7 +214,7 @@ def test_what_was_eliminated_is_forgotten_as_places_or_loads_change(change):
 
 
 def column(count):
-    """Give the equations of equal blocks upon one another, and the mode in which all stand."""
+    """Return the equations of equal blocks upon one another, and the mode in which all stand."""
     stone, block = rf.RigidGround(friction=0.3), rf.Block(width="1 m", height="1 m", mass="1 t")
     model = rf.System(rf.Stack(*[block] * count, interfaces=[stone] * (count - 1)), stone)
     model = model.assembly.model

@@ -215,7 +215,7 @@ def test_the_upper_body_drags_the_lower_one():
 
 
 def rolls_over(slender, friction):
-    """Give rotation and slip rates after and before an impact of a rectangle, from one corner."""
+    """Return rotation and slip rates after and before an impact of a rectangle, from one corner."""
     t, mu = slender, friction
     whole = 1.0 + 4.0 * t**2 - 3.0 * mu * t
     return (1.0 - 2.0 * t**2 + 3.0 * mu * t) / whole, 2.0 * t * (

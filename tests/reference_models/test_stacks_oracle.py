@@ -39,7 +39,7 @@ def block(width: float, height: float, **given) -> Body:
 
 
 def pads(bodies, frequency: float = 60.0, share: float = 0.1, eps: float = 0.6) -> tuple[Pads, ...]:
-    """Give pads of the same frequency and damping ratio under the load of each."""
+    """Return pads of the same frequency and damping ratio under the load of each."""
     loads = np.cumsum([body.mass for body in bodies])
     return tuple(Pads(0.5 * m * frequency**2, share * m * frequency, eps) for m in loads)
 
@@ -118,7 +118,7 @@ def test_bodies_in_flight_fall():
 
 
 def places(scene: Scene, q: np.ndarray) -> np.ndarray:
-    """Give x, y and angle of all bodies that are held at the middles of their bases.
+    """Return x, y and angle of all bodies that are held at the middles of their bases.
 
     `q` are rotations and heights of the centres of mass on what carries them.
     """
@@ -145,7 +145,7 @@ def jacobian(scene: Scene, q: np.ndarray) -> np.ndarray:
 
 @pytest.fixture
 def moving():
-    """Give three eccentric blocks in motion, all their pads pressed, and minimal coordinates."""
+    """Return three eccentric blocks in motion, all their pads pressed, and minimal coordinates."""
     bodies = (
         block(0.8, 1.5, offset=0.05, eccentricity=0.03), block(1.0, 1.5, offset=-0.1),
         block(1.6, 1.0, eccentricity=0.1),

@@ -14,7 +14,7 @@ TIME_STEP, DURATION = 0.05, 1.5
 
 
 def compare(number):
-    """Give how far both are apart over the peak, the balance of energies, and what happens."""
+    """Return how far both are apart over the peak, the balance of energies, and what happens."""
     rng = np.random.default_rng([60, number])
     width = rng.uniform(0.4, 1.5)
     height = width * rng.uniform(1.5, 5.0)

@@ -52,7 +52,7 @@ def draw(number: int) -> dict:
 
 
 def scene_of(drawn: dict) -> tuple[rf.System, rf.GroundMotion]:
-    """Give the scene of a mass of 1 kg."""
+    """Return the scene of a mass of 1 kg."""
     block = rf.Block(width=f"{drawn['width']!r} m", height=f"{drawn['height']!r} m", mass="1 kg")
     parts = []
     for one in drawn["ties"]:
@@ -94,7 +94,7 @@ def by_hand(drawn: dict, times: np.ndarray, **options) -> tied_rigid_block.Found
 
 
 def compare(number: int, **options) -> dict | None:
-    """Give how far both are apart over the peak, and their events; None where it flies."""
+    """Return how far both are apart over the peak, and their events; None where it flies."""
     drawn = draw(number)
     system, motion = scene_of(drawn)
     start = rf.InitialState(rotation=f"{drawn['rotation']!r} rad") if drawn["rotation"] else None

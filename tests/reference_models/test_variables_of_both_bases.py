@@ -77,14 +77,14 @@ class AgeingPad(NamedTuple):
 
 
 def aged(base: BaseNumbers, name: str, rate: float) -> BaseNumbers:
-    """Give pads that age."""
+    """Return pads that age."""
     law = AgeingPad(*base.law.law, rate)
     columns = [Column(f"{side}_{name}") for side in ("left", "right")]
     return pads_over(law, base, columns=columns, variable_scales=[1.0])
 
 
 def stack(above, below):
-    """Give the model of a block on a cap; `above` and `below` make bases of pads."""
+    """Return the model of a block on a cap; `above` and `below` make bases of pads."""
     block, cap = (
         rigid_body(
             left=half_width,

@@ -9,7 +9,7 @@ GRAVITY = 9.80665
 
 
 def drawn(seed):
-    """Give a random block, wall, motion and start."""
+    """Return a random block, wall, motion and start."""
     rng = np.random.default_rng(seed)
     height = rng.uniform(1.0, 12.0)
     width, height_share = height / rng.uniform(1.6, 14.0), rng.uniform(0.4, 0.6)
@@ -29,7 +29,7 @@ def drawn(seed):
 
 
 def compare(seed):
-    """Give the largest difference of rotation over theta, and both runs."""
+    """Return the largest difference of rotation over theta, and both runs."""
     block, wall, noise, step, start = drawn(seed)
     system = rf.System(block, wall)
     corner = system.setting.body

@@ -45,7 +45,7 @@ def edge(low=1.0, high=8.0):
 
 
 def pretended(overturns):
-    """Give a run that overturns where a rule of scene and plan says so; None: is cut off."""
+    """Return a run that overturns where a rule of scene and plan says so; None: is cut off."""
 
     def run(system, plan):
         verdict = overturns(system, plan)

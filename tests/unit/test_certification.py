@@ -38,7 +38,7 @@ from rockframe.solve.accuracy import accuracy_of
 
 
 def combinations():
-    """Give certificates of all that may be found, in the runs of either sense."""
+    """Return certificates of all that may be found, in the runs of either sense."""
     stands, falls = RunSummary(False, 0.1, (0.5,)), RunSummary(True, 0.2, (1.0, 1.0), 1.0, 1)
     back, lost = RunSummary(False, 0.3, (0.5, 0.5)), RunSummary(None, 0.1)
     same = dict.fromkeys((-0.1, 0.1), stands)

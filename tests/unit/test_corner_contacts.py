@@ -38,7 +38,7 @@ LEFT_GUARDS, RIGHT_GUARDS = 0, CORNER_GUARDS
 
 
 def state_with(*, right_force):
-    """Give a state with the left corner up, and the right one at a force of its pad's law."""
+    """Return a state with the left corner up, and the right one at a force of its pad's law."""
     state = np.zeros(2 * DEGREES)
     state[ROTATION] = 0.001
     level = BODY.base_line_at(SYSTEM.state_of(0, state)).right

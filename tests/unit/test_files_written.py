@@ -24,7 +24,7 @@ STUDY = 'scene = "scene.toml"\nmotions = ["record.AT2"]\n[axes]\nscale = [0.5, 1
 
 @pytest.fixture(scope="module")
 def written(tmp_path_factory):
-    """Give all files that commands read, and one of each kind that they write."""
+    """Return all files that commands read, and one of each kind that they write."""
     folder = tmp_path_factory.mktemp("written")
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)

@@ -215,7 +215,7 @@ def test_a_frame_from_parameters_knows_no_members():
 
 
 def by_brute_force(rectangles, width, height, cells=120):
-    """Give mu of rectangles (mass, x, y, width, height), each summed over a grid of points."""
+    """Return mu of rectangles (mass, x, y, width, height), each summed over a grid of points."""
     grid = (np.arange(cells) + 0.5) / cells - 0.5
     mass = inertia = 0.0
     for m, x, y, w, h in rectangles:

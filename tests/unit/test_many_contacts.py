@@ -48,11 +48,11 @@ class Springs(ext.Base, SpringNumbers):
         return self.contacts() - 1
 
     def spring(self, left, which):
-        """Give the number of a spring, counted from an end."""
+        """Return the number of a spring, counted from an end."""
         return which if left else self.count - 1 - which
 
     def along(self, i, left, right):
-        """Give the value at a spring of what is linear along the base."""
+        """Return the value at a spring of what is linear along the base."""
         return left + (right - left) * i / (self.count - 1)
 
     def pressed(self, i, line):
@@ -128,7 +128,7 @@ class SpringSupport(ext.BedSupport):
 
 @contextmanager
 def springs(count):
-    """Give soil of so many springs, registered as long as this lasts."""
+    """Return soil of so many springs, registered as long as this lasts."""
     support = type("Some", (SpringSupport,), {"count": count})
 
     class SpringBed(ext.OwnBase):

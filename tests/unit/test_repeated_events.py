@@ -14,7 +14,7 @@ STATE = (0.1, -0.2)
 
 
 def recorded(rows, modes=(3, 3), memory=(0.0,)):
-    """Give the status after the last of some events: the time of each, and the state before."""
+    """Return the status after the last of some events: the time of each, and the state before."""
     progress = Progress(np.zeros(at.CONTROLS), np.zeros(at.CLOCK), np.zeros(at.COUNTERS, int))
     events = EventTable(np.zeros((9, 6)), np.zeros((9, 3), dtype=np.int64))
     before, after = (KnownMode(mode, 1, int(ContactState.FULL), 1.0) for mode in modes)

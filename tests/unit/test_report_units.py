@@ -31,13 +31,13 @@ PULSE = rf.GroundMotion(rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz").si, name="
 
 
 def words_of(path):
-    """Give what a report says, but for what builds its scene again."""
+    """Return what a report says, but for what builds its scene again."""
     html = path.read_text(encoding="utf-8").split("</style>", 1)[1].split("<h2>Provenance</h2>")[0]
     return unescape(re.sub(r"<[^>]*>", " ", html))
 
 
 def left_in_si(words):
-    """Give numbers in SI units of which others were chosen, with what stands around them."""
+    """Return numbers in SI units of which others were chosen, with what stands around them."""
     words = re.sub(
         r"(?<=[A-Za-z])[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+", lambda one: f"^{one[0].translate(RAISED)}", words
     )

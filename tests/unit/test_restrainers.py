@@ -452,7 +452,7 @@ def test_changes_of_contact_beside_ties_come_to_an_end(number):
 
 
 def out_of_balance(system: rf.System) -> float:
-    """Give the greatest force at rest that nothing holds, over the weight, and moments likewise."""
+    """Return greatest force at rest that nothing holds, over the weight, and moments likewise."""
     chain, stands = system.setting.standing.chain, system.setting.standing.rest
     loads, weights = chain.tie_loads(stands), chain.weights(stands)
     upward = [

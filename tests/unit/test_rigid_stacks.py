@@ -78,7 +78,7 @@ def test_a_corner_leaves_the_ground_while_the_bodies_above_are_apart_from_it():
 
 
 def together(upper, lower) -> float:
-    """Give the acceleration at which two centred blocks rock as one."""
+    """Return the acceleration at which two centred blocks rock as one."""
     one, two = lower.si, upper.si
     moment = one.mass * one.half_height + two.mass * (2.0 * one.half_height + two.half_height)
     return GRAVITY * (one.mass + two.mass) * one.half_width / moment
@@ -438,7 +438,7 @@ def test_a_short_slip_that_a_blow_has_turned_round_ends_against_its_friction(see
 
 
 def sliding_upon_a_landing_body(restitution):
-    """Give the model of a body that slips on one that lands on pads, and its events."""
+    """Return the model of a body that slips on one that lands on pads, and its events."""
     upper = rf.Block(width="0.6 m", height="2 m", mass="15 kg")
     lower = rf.Block(width="0.8 m", height="0.65 m", mass="25 kg")
     pads = rf.TwoSpringSupport(

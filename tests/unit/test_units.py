@@ -59,7 +59,7 @@ MUST_BE_POSITIVE = [
 
 @pytest.fixture(params=range(len(DIMENSIONAL)), ids=NAMES)
 def argument(request):
-    """Give one row of the table, whose value is accepted."""
+    """Return one row of the table, whose value is accepted."""
     maker, name, words, unit, good = DIMENSIONAL[request.param]
     maker(**{name: good})
     return maker, name, words, unit, good

@@ -32,7 +32,7 @@ def released(
 
 
 def second_peak(run: xr.Dataset) -> float:
-    """Give the largest rotation after the first passage of the upright position [rad]."""
+    """Return the largest rotation after the first passage of the upright position [rad]."""
     rotation = run.rotation.to_numpy()
     return float(np.abs(rotation[np.argmax(rotation < 0.0) :]).max())
 

@@ -24,7 +24,7 @@ Coupling: TypeAlias = Literal["coupled", "cascade"]
 
 
 def frame(storeys: int, shape_factors: dict[int, float] = PRINTED) -> rf.FrameEquivalent:
-    """Give a frame of Table 2; the printed shape factor of six storeys brings a warning."""
+    """Return a frame of Table 2; the printed shape factor of six storeys brings a warning."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", rf.errors.ModelWarning)
         return rf.FrameEquivalent(

@@ -40,7 +40,7 @@ circular = 6.0 * p
 
 
 def sine(amplitude):
-    """Give one sine of an amplitude in g, which starts as the block uplifts."""
+    """Return one sine of an amplitude in g, which starts as the block uplifts."""
     phase = math.asin(math.tan(theta) / amplitude)
     time = np.linspace(0.0, (2.0 * math.pi - phase) / circular, 401)
     acceleration = amplitude * gravity * np.sin(circular * time + phase)

@@ -21,7 +21,7 @@ strengths = np.array([0.25, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0, 2.5])
 
 
 def anchored(strength):
-    """Give the cabinet with anchors of a strength, over its weight."""
+    """Return the cabinet with anchors of a strength, over its weight."""
     at = {"left": "-0.3 m", "right": "0.3 m"}
     anchors = [
         rf.Restrainer(
@@ -34,7 +34,7 @@ def anchored(strength):
 
 
 def falls_of(cabinets, **axes):
-    """Give whether each cabinet falls, at each level of its floor's motion."""
+    """Return whether each cabinet falls, at each level of its floor's motion."""
     runs = rf.sweep(
         cabinets, [floor], scale=levels, free_vibration="2 s", accuracy="fast", progress=False,
         **axes,

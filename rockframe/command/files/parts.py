@@ -39,7 +39,7 @@ _INNER: Final[Mapping[type, Mapping[str, InnerParts]]] = {
 
 
 def part_slots() -> tuple[str, ...]:
-    """Give the tables of parts."""
+    """Return the tables of parts."""
     return tuple(slot for slot in slots() if slot != _MOTION)
 
 
@@ -63,7 +63,7 @@ def _each(
 
 
 def inner_parts(kind: type[Component]) -> Mapping[str, InnerParts]:
-    """Give the parts of which a part consists, by the keys of their tables."""
+    """Return the parts of which a part consists, by the keys of their tables."""
     return next((inner for of, inner in _INNER.items() if issubclass(kind, of)), {})
 
 
@@ -122,14 +122,14 @@ def _inner(file: TomlFile, where: Place, wanted: InnerParts, table: dict[str, An
 
 
 def classes_in(slot: str) -> dict[str, type[Component]]:
-    """Give the classes of parts that a table may describe, the usual one first."""
+    """Return the classes of parts that a table may describe, the usual one first."""
     usual = usual_kind(slot)
     fitting = {name: kind for name, kind in kinds().items() if slot_of_kind(kind) == slot}
     return {usual.__name__: fitting[usual.__name__], **fitting}
 
 
 def constructors(kind: type[Component]) -> dict[str, Callable[..., Component]]:
-    """Give the named constructors of a component, besides its class itself."""
+    """Return the named constructors of a component, besides its class itself."""
     return {
         name: one
         for name, one in getmembers(kind, ismethod)

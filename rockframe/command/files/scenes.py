@@ -32,7 +32,7 @@ _RESPONSE: Final = "response"
 
 
 def motion_keys() -> dict[str, bool]:
-    """Give the keys of a motion from a file, and whether each is needed."""
+    """Return the keys of a motion from a file, and whether each is needed."""
     arguments = arguments_of(GroundMotion.read, without=("path",))
     return {_FILE: True, **arguments, _OPERATIONS: False}
 
@@ -134,7 +134,7 @@ PROJECT: Final = "project"
 
 
 def keys() -> tuple[str, ...]:
-    """Give the keys of the file of a scene."""
+    """Return the keys of the file of a scene."""
     return (MODULES, *part_slots(), OPTIONS, MOTION, RUN, PROJECT)
 
 
@@ -185,7 +185,7 @@ def described_scene(file: TomlFile) -> Described | None:
 
 
 def run_keys() -> dict[str, bool]:
-    """Give the keys of the table of a run, and whether each is needed."""
+    """Return the keys of the table of a run, and whether each is needed."""
     return arguments_of(System.simulate, without=("motion",))
 
 

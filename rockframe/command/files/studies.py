@@ -64,7 +64,7 @@ class DescribedStudy:
     source: TomlFile  # the file of the study
 
     def at_lines(self, problem: StudyError) -> FileError:
-        """Give the faults of a study with the lines of its file."""
+        """Return the faults of a study with the lines of its file."""
         arguments = {name: self.source.values.get(name) for name in (AXES, SWEEP)}
         tables = {name: table for name, table in arguments.items() if isinstance(table, dict)}
         for words in problem.faults:
@@ -98,7 +98,7 @@ def read_study(path: str | Path, *, varied: bool = True) -> DescribedStudy:
 
 
 def sweep_keys() -> dict[str, bool]:
-    """Give the keys of the table of a sweep, and whether each is needed."""
+    """Return the keys of the table of a sweep, and whether each is needed."""
     return arguments_of(sweep, without=_NOT_OF_SWEEP)
 
 
@@ -169,7 +169,7 @@ def _axes_of(file: TomlFile) -> dict[str, Any]:
 
 
 def _axis(file: TomlFile, name: str, value: object) -> Any:
-    """Give the values of an axis: a list, or a table of values and their unit."""
+    """Return the values of an axis: a list, or a table of values and their unit."""
     if not isinstance(value, dict):
         return value
     where = (AXES, name)
@@ -195,7 +195,7 @@ def _sweep_of(file: TomlFile) -> dict[str, Any]:
 
 
 def _beside(file: TomlFile, table: dict[str, Any]) -> dict[str, Any]:
-    """Give a table with the paths of known stores, relative to the folder of the file."""
+    """Return a table with the paths of known stores, relative to the folder of the file."""
     if KNOWN not in table:
         return table
     value = table[KNOWN]

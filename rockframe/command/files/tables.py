@@ -42,7 +42,7 @@ _PIECE: Final = re.compile(
 
 
 def lines_of(text: str) -> dict[Place, int]:
-    """Give the lines of tables and keys."""
+    """Return the lines of tables and keys."""
     found: dict[Place, int] = {}
     arrays: dict[Place, int] = {}
     table: Place = ()
@@ -82,7 +82,7 @@ def _statements(text: str) -> Iterator[tuple[int, str]]:
 
 
 def _names(nested: Any) -> Place:
-    """Give the keys of nested tables that have one key each."""
+    """Return the keys of nested tables that have one key each."""
     names: list[str] = []
     while isinstance(nested, dict | list) and nested:
         if isinstance(nested, list):
@@ -94,7 +94,7 @@ def _names(nested: Any) -> Place:
 
 
 def _resolved(names: Place, arrays: dict[Place, int]) -> Place:
-    """Give a path with the numbers of tables in arrays: a header refers to the last one so far."""
+    """Return a path with numbers of tables in arrays: a header refers to the last one so far."""
     place: Place = ()
     for name in names:
         place = (*place, name)
@@ -139,12 +139,12 @@ class TomlFile:
         return cls(place, values, lines_of(text))
 
     def path_relative_to(self, name: str) -> Path:
-        """Give the path of a file to be read, named relative to the folder of this file."""
+        """Return the path of a file to be read, named relative to the folder of this file."""
         self.files.append(self.path_of(name))
         return self.files[-1]
 
     def path_of(self, name: str) -> Path:
-        """Give the path of a name in this file, relative to its folder."""
+        """Return the path of a name in this file, relative to its folder."""
         return self.path.parent / Path(name).expanduser()
 
     def fault(self, where: Place, words: str) -> None:
@@ -164,11 +164,11 @@ class TomlFile:
             raise self.error()
 
     def error(self) -> FileError:
-        """Give the error with all faults, in the order of their lines."""
+        """Return the error with all faults, in the order of their lines."""
         return FileError(str(self.path), sorted(self._faults, key=lambda fault: fault[0] or 0))
 
     def table(self, where: Place, argument: object) -> dict[str, Any] | None:
-        """Give a value that must be a table, or note a fault."""
+        """Return a value that must be a table, or note a fault."""
         if isinstance(argument, dict):
             return {str(name): value for name, value in argument.items()}
         self.fault(
@@ -244,7 +244,7 @@ Made = TypeVar("Made")
 
 
 def arguments_of(function: Callable[..., Any], *, without: tuple[str, ...] = ()) -> dict[str, bool]:
-    """Give the arguments that a function takes by name, and whether each must be given."""
+    """Return the arguments that a function takes by name, and whether each must be given."""
     named = (Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY)
     return {
         name: one.default is Parameter.empty
@@ -306,7 +306,7 @@ def _wanted(one: Declared[Any, Any] | None) -> str:
 
 
 def key_in(words: str, where: Place, table: Mapping[str, Any]) -> Place:
-    """Give the place of the first key of a table that a message names, else of the table."""
+    """Return the place of the first key of a table that a message names, else of the table."""
     found = {name: re.search(rf"\b{re.escape(name)}\b", words) for name in table}
     starts = {name: match.start() for name, match in found.items() if match is not None}
     if starts:

@@ -319,7 +319,7 @@ def _summary(documented: object) -> str:
 
 
 def _meanings(documented: object) -> dict[str, str]:
-    """Give the description of each parameter in a numpydoc docstring."""
+    """Return the description of each parameter in a numpydoc docstring."""
     section = _PARAMETERS.search(getdoc(documented) or "")
     found: dict[str, str] = {}
     for names, words in _ENTRY.findall(section[1] if section else ""):

@@ -17,7 +17,7 @@ _FROM_MEMBERS: Final = "from_members"
 
 
 def tables_of(parts: Iterable[Component]) -> list[tuple[str, list[str]]]:
-    """Give the tables of parts: the head of each, and its keys with their values.
+    """Return the tables of parts: the head of each, and its keys with their values.
 
     One below the other they are a file of the same parts.
     """
@@ -27,7 +27,7 @@ def tables_of(parts: Iterable[Component]) -> list[tuple[str, list[str]]]:
 
 
 def _tables(part: Component, *, several: bool) -> Iterator[tuple[str, list[str]]]:
-    """Give the table of a part, and those of the parts of which it consists."""
+    """Return the table of a part, and those of the parts of which it consists."""
     slot, inner = slot_of_kind(type(part)) or type(part).__name__, inner_parts(type(part))
     values: dict[str, Any] = dict(part.to_dict())
     head = f"[[{slot}]]" if several and slot == RESTRAINER else f"[{slot}]"

@@ -28,7 +28,7 @@ _THIN: Final = 1e-12  # thickness over size below which an outline has no area
 
 
 def polygon(points: Array) -> tuple[float, float, float, float]:
-    """Give area, centroid and mean square distance from it, from :eq:`eq-polygon-area` on.
+    """Return area, centroid and mean square distance from it, from :eq:`eq-polygon-area` on.
 
     The points are the corners in order, clockwise or anticlockwise. The sums follow from Green's
     theorem and are exact (Steger 1996). They use coordinates from the middle of the polygon,
@@ -48,7 +48,7 @@ def polygon(points: Array) -> tuple[float, float, float, float]:
 
 
 def extent_of(points: Array) -> float:
-    """Give the greater of width and height [m]."""
+    """Return the greater of width and height [m]."""
     return float(np.ptp(points, axis=0).max())
 
 
@@ -96,14 +96,14 @@ def crossing(points: Array) -> tuple[int, int] | None:
 
 
 def _squares(x: Array) -> Array:
-    """Give six times the mean square over the triangle of the origin and each edge."""
+    """Return six times the mean square over the triangle of the origin and each edge."""
     # in an order that gives the same rounding in both directions
     ahead = np.roll(x, -1)
     return (x * x + ahead * ahead) + x * ahead
 
 
 def _twice(x: Array, y: Array) -> Array:
-    """Give twice the area between the origin and each edge."""
+    """Return twice the area between the origin and each edge."""
     return x * np.roll(y, -1) - np.roll(x, -1) * y
 
 

@@ -48,14 +48,14 @@ Mass = TypeVar("Mass", bound=PlaneMass)
 
 
 def mean_by_mass(masses: Sequence[Mass], value: Callable[[Mass], float]) -> float:
-    """Give the mean of a value, weighted by mass."""
+    """Return the mean of a value, weighted by mass."""
     # every fraction is at most 1, so that masses of any magnitude do not overflow
     total = sum(one.mass for one in masses)
     return math.fsum(value(one) * (one.mass / total) for one in masses)
 
 
 def centre_of_mass(masses: Sequence[PlaneMass]) -> tuple[float, float]:
-    """Give the coordinates of the common centre of masses, :eq:`eq-parts-centre` [m]."""
+    """Return the coordinates of the common centre of masses, :eq:`eq-parts-centre` [m]."""
     return mean_by_mass(masses, lambda one: one.x), mean_by_mass(masses, lambda one: one.y)
 
 
@@ -182,7 +182,7 @@ class Stance:
         return 0.5 * (self.left + self.right)
 
     def touching_angle(self, corner: OutlineCorner, side: float) -> float:
-        """Give the rotation at which a corner touches the ground, :eq:`eq-touching-angle` [rad].
+        """Return the rotation at which a corner touches the ground, :eq:`eq-touching-angle` [rad].
 
         It holds for a corner beyond the end of the base about which the body rocks; no other
         corner touches the ground before a rotation by a right angle.
@@ -194,7 +194,7 @@ class Stance:
         return math.atan2(corner.y - self.ground, beyond)
 
     def overturning_angle(self, whole: PlaneMass, side: float) -> float:
-        """Give the rotation at which the centre of mass is above an end of the base [rad]."""
+        """Return the rotation at which the centre of mass is above an end of the base [rad]."""
         end = self.right if side > 0.0 else self.left
         return math.atan2(side * (end - whole.x), whole.y - self.ground)
 

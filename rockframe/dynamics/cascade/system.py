@@ -73,7 +73,7 @@ class Cascade(Stacked, Stages):
 
     @inlined
     def moving_in(self, mode: int) -> int:
-        """Give the number of coordinates that move: all, or all but both horizontal ones."""
+        """Return the number of coordinates that move: all, or all but both horizontal ones."""
         modes = self.modes_in(mode)
         free = self.upper.is_free(modes.upper) or self.lower.is_free(modes.lower)
         return COORDINATES if free else HORIZONTAL
@@ -82,7 +82,7 @@ class Cascade(Stacked, Stages):
     def carried(
         self, mode: Mode, state: BodyState, angular: float, vertical: float, horizontal: float
     ) -> PointMotion:
-        """Give the motion of the middle of the cap's top, :eq:`eq-carried`.
+        """Return the motion of the middle of the cap's top, :eq:`eq-carried`.
 
         `angular`, `vertical` and `horizontal` are the accelerations of the lower body.
         """
@@ -104,19 +104,19 @@ class Cascade(Stacked, Stages):
 
     @inlined
     def lower_rates(self, mode: int, state: Vector, ground: Ground) -> Rates:
-        """Give the accelerations and powers of the lower body."""
+        """Return the accelerations and powers of the lower body."""
         standing, body = self.modes_in(mode).lower, self.state_of(LOWER, state)
         return self.lower.rates_in(standing, body, self.lower_own(state), ground)
 
     @inlined
     def ground_of_upper(self, mode: int, state: Vector, below: Rates, ground: Ground) -> Ground:
-        """Give the absolute acceleration of the cap's top, the ground of the upper body."""
+        """Return the absolute acceleration of the cap's top, the ground of the upper body."""
         top = self.top_motion(mode, state, below)
         return Ground(ground.x + top.acceleration_x, ground.y + top.acceleration_y)
 
     @inlined
     def top_motion(self, mode: int, state: Vector, below: Rates) -> PointMotion:
-        """Give the motion of the middle of the cap's top from the rates of the lower body."""
+        """Return the motion of the middle of the cap's top from the rates of the lower body."""
         return self.carried(
             self.modes_in(mode).lower, self.state_of(LOWER, state), below.rotation, below.vertical,
             below.horizontal,
@@ -124,7 +124,7 @@ class Cascade(Stacked, Stages):
 
     @inlined
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> tuple[float, ...]:
-        """Give accelerations of both bodies, rates of their bases' own variables, and powers."""
+        """Return accelerations of both bodies, rates of their bases' own variables, and powers."""
         modes, states, ratio = self.modes_in(mode), self.states_in(state), self.mass_ratio
         below = self.lower_rates(mode, state, ground)
         on_top = self.ground_of_upper(mode, state, below, ground)
@@ -144,7 +144,7 @@ class Cascade(Stacked, Stages):
 
     @inlined
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
-        """Give the guards of the block on its pads, then of the lower body."""
+        """Return the guards of the block on its pads, then of the lower body."""
         modes, states = self.modes_in(mode), self.states_in(state)
         of_upper, of_lower = IDLE, IDLE
         if modes.upper.slides:
@@ -237,7 +237,7 @@ class Cascade(Stacked, Stages):
     def observe(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> tuple[float, ...]:
-        """Give motion of block and cap, reactions, motion of the cap's top, and both bases."""
+        """Return motion of block and cap, reactions, motion of the cap's top, and both bases."""
         modes, states = self.modes_in(mode), self.states_in(state)
         upper, lower = states
         rates = self.lower_rates(mode, state, ground)
@@ -279,7 +279,7 @@ class Cascade(Stacked, Stages):
 
     @kernel
     def place(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
-        """Give the horizontal displacement of a centre of mass [m].
+        """Return the horizontal displacement of a centre of mass [m].
 
         It follows from the rotation about the held point, or is a coordinate where none is held.
         """
@@ -295,7 +295,7 @@ class Cascade(Stacked, Stages):
     def response(
         self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
     ) -> VelocityChange:
-        """Give the change of a body's velocities by an impulse, or by the restraint of a slip."""
+        """Return the change of a body's velocities by an impulse, or by the restraint of a slip."""
         modes, rotation = self.modes_in(mode), self.state_of(k, state).rotation
         if k == UPPER:
             attitude = self.upper.body.attitude(rotation)
@@ -307,7 +307,7 @@ class Cascade(Stacked, Stages):
     def end_accelerations(
         self, k: int, mode: int, state: Vector, ground: Ground
     ) -> tuple[float, float]:
-        """Give the accelerations of the ends of a base; `ground` is the one under this body."""
+        """Return the accelerations of the ends of a base; `ground` is the one under this body."""
         modes, body = self.modes_in(mode), self.state_of(k, state)
         if k == UPPER:
             rates = self.upper.rates_in(modes.upper, body, self.upper_own(state), ground)
@@ -317,7 +317,7 @@ class Cascade(Stacked, Stages):
 
     @kernel
     def tendency(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
-        """Give the sign of the rotation that the ground under a body, or its contact, begins."""
+        """Return the sign of the rotation that the ground under a body, or its contact, begins."""
         if ground.x != 0.0:
             return -ground.x
         if k == UPPER:

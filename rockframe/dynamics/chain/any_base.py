@@ -41,7 +41,7 @@ class AnyBase(Base, LawNumbers):
 
     @inlined
     def pads(self) -> ElasticPads:
-        """Give the pads."""
+        """Return the pads."""
         return ElasticPads(
             Viscoelastic(self.n0, self.n1), self.n2, self.n3, self.n4, self.n5, self.n6, self.n7,
             self.n8, self.n9, self.n10, self.n11,
@@ -49,22 +49,22 @@ class AnyBase(Base, LawNumbers):
 
     @inlined
     def bed(self) -> Bed:
-        """Give the bed."""
+        """Return the bed."""
         return Bed(self.n0, self.n1, self.n2, self.n3, self.n4 != 0.0)
 
     @kernel
     def contacts(self) -> int:
-        """Give the number of contacts, the larger of the two laws."""
+        """Return the number of contacts, the larger of the two laws."""
         return max(self.pads().contacts(), self.bed().contacts())
 
     @kernel
     def end_guards(self) -> int:
-        """Give the number of guards of an end on pads; those of a bed are idle except the first."""
+        """Return number of guards of an end on pads; those of a bed are idle except the first."""
         return CORNER_GUARDS
 
     @inlined
     def guards_of(self, contact: int, left: bool, line: BaseLine, own: Variables) -> Guards:
-        """Give the guards of an end, and their rates; those of a bed are idle except the first."""
+        """Return guards of an end, and their rates; those of a bed are idle except the first."""
         if self.which == ON_PADS:
             return self.pads().guards_of(contact, left, line, own)
         found = self.bed().guards_of(contact, left, line, own)
@@ -72,12 +72,12 @@ class AnyBase(Base, LawNumbers):
 
     @inlined
     def in_flight(self) -> int:
-        """Give the contact of a bed in which no end is held."""
+        """Return the contact of a bed in which no end is held."""
         return self.bed().in_flight()
 
     @kernel
     def observed(self, contact: int, line: BaseLine, own: Variables) -> Variables:
-        """Give the values of the base's columns in the results, with 0 where pads have none."""
+        """Return the values of the base's columns in the results, with 0 where pads have none."""
         if self.which == ON_PADS:
             left, right = self.pads().observed(contact, line, own)
             return left, right, 0.0
@@ -99,21 +99,21 @@ class AnyBase(Base, LawNumbers):
 
     @kernel
     def tilt(self, contact: int) -> float:
-        """Give the sign of the rotation that begins in a contact from upright rest, or 0."""
+        """Return the sign of the rotation that begins in a contact from upright rest, or 0."""
         if self.which == ON_PADS:
             return self.pads().tilt(contact)
         return self.bed().tilt(contact)
 
     @inlined
     def force(self, contact: int, line: BaseLine, own: Variables) -> BaseForce:
-        """Give force, moment and dissipated power of the base."""
+        """Return force, moment and dissipated power of the base."""
         if self.which == ON_PADS:
             return self.pads().force(contact, line, own)
         return self.bed().force(contact, line, own)
 
     @kernel
     def energy(self, line: BaseLine, own: Variables) -> tuple[float, float]:
-        """Give the elastic energy, and how much more that is than at rest."""
+        """Return the elastic energy, and how much more that is than at rest."""
         if self.which == ON_PADS:
             return self.pads().energy(line, own)
         return self.bed().energy(line, own)
@@ -122,14 +122,14 @@ class AnyBase(Base, LawNumbers):
     def switch(
         self, contact: int, left: bool, which: int, line: BaseLine, own: Variables
     ) -> EndEvent:
-        """Give what follows when the guard `which` of an end falls through zero."""
+        """Return what follows when the guard `which` of an end falls through zero."""
         if self.which == ON_PADS:
             return self.pads().switch(contact, left, which, line, own)
         return self.bed().switch(contact, left, which, line, own)
 
     @kernel
     def level(self, left: bool, line: BaseLine, own: Variables) -> float:
-        """Give how far below its level of separation from the base an end is [m]."""
+        """Return how far below its level of separation from the base an end is [m]."""
         if self.which == ON_PADS:
             return self.pads().level(left, line, own)
         return self.bed().level(left, line, own)
@@ -143,28 +143,28 @@ class AnyBase(Base, LawNumbers):
 
     @inlined
     def follows(self, contact: int, left: bool) -> int:
-        """Give the contact with an end in sliding contact: it touches the base without force."""
+        """Return the contact with an end in sliding contact: it touches the base without force."""
         if self.which == ON_PADS:
             return self.pads().follows(contact, left)
         return self.bed().follows(contact, left)
 
     @inlined
     def following_rate(self) -> float:
-        """Give the rate at which a base without force returns to its level [s^-1]."""
+        """Return the rate at which a base without force returns to its level [s^-1]."""
         if self.which == ON_PADS:
             return self.pads().following_rate()
         return self.bed().following_rate()
 
     @kernel
     def least_landing(self) -> float:
-        """Give the speed of a landing below which the base's force is rounding noise [m s^-1]."""
+        """Return the speed of a landing below which the base's force is rounding noise [m s^-1]."""
         if self.which == ON_PADS:
             return self.pads().least_landing()
         return self.bed().least_landing()
 
     @kernel
     def released(self, contact: int, left: bool, line: BaseLine, own: Variables) -> int:
-        """Give the contact after an end that touched the base without force has lifted off."""
+        """Return the contact after an end that touched the base without force has lifted off."""
         if self.which == ON_PADS:
             return self.pads().released(contact, left, line, own)
         return self.bed().released(contact, left, line, own)
@@ -185,56 +185,56 @@ class AnyBase(Base, LawNumbers):
 
     @kernel
     def held(self, contact: int, left: bool) -> int:
-        """Give the contact with an end that lifted off but touches again, pressed by the base."""
+        """Return the contact with an end that lifted off but touches again, pressed by the base."""
         if self.which == ON_PADS:
             return self.pads().held(contact, left)
         return self.bed().held(contact, left)
 
     @kernel
     def waiting(self, contact: int, left: bool) -> int:
-        """Give the contact with an end that has lifted off while the base still presses it."""
+        """Return the contact with an end that has lifted off while the base still presses it."""
         if self.which == ON_PADS:
             return self.pads().waiting(contact, left)
         return self.bed().waiting(contact, left)
 
     @kernel
     def unpressed(self, contact: int, left: bool) -> int:
-        """Give the contact with an end that stays held though the base no longer presses it."""
+        """Return the contact with an end that stays held though the base no longer presses it."""
         if self.which == ON_PADS:
             return self.pads().unpressed(contact, left)
         return self.bed().unpressed(contact, left)
 
     @kernel
     def engaged(self, contact: int, left: bool, line: BaseLine, own: Variables) -> int:
-        """Give the contact after an end has landed and the restraint has caught its body."""
+        """Return the contact after an end has landed and the restraint has caught its body."""
         if self.which == ON_PADS:
             return self.pads().engaged(contact, left, line, own)
         return self.bed().engaged(contact, left, line, own)
 
     @kernel
     def disturbed(self, contact: int) -> int:
-        """Give the contact after an event elsewhere has changed the speeds of the ends."""
+        """Return the contact after an event elsewhere has changed the speeds of the ends."""
         if self.which == ON_PADS:
             return self.pads().disturbed(contact)
         return self.bed().disturbed(contact)
 
     @kernel
     def rebound(self, left: bool) -> float:
-        """Give the coefficient of restitution of an end that lands with an impact [1]."""
+        """Return the coefficient of restitution of an end that lands with an impact [1]."""
         if self.which == ON_PADS:
             return self.pads().rebound(left)
         return self.bed().rebound(left)
 
     @kernel
     def starting(self, line: BaseLine, own: Variables) -> int:
-        """Give the contact at the start of a run."""
+        """Return the contact at the start of a run."""
         if self.which == ON_PADS:
             return self.pads().starting(line, own)
         return self.bed().starting(line, own)
 
     @kernel
     def resting_height(self, left: float, right: float, own: Variables) -> float:
-        """Give the height at which the base carries the body at rest [m]."""
+        """Return the height at which the base carries the body at rest [m]."""
         if self.which == ON_PADS:
             return self.pads().resting_height(left, right, own)
         return self.bed().resting_height(left, right, own)

@@ -48,12 +48,12 @@ class RigidCorners(Chain):
 
     @inlined
     def band(self) -> int:
-        """Give the half-width of the band of the matrix: those farther apart share no body."""
+        """Return the half-width of the band of the matrix: those farther apart share no body."""
         return 5
 
     @kernel
     def bearing(self, mode: int) -> int:
-        """Give the set of corners on rigid bases that bear in a mode."""
+        """Return the set of corners on rigid bases that bear in a mode."""
         found = 0
         for k in range(self.body_count):
             if self.is_rigid(k):
@@ -64,7 +64,7 @@ class RigidCorners(Chain):
 
     @kernel
     def pulled(self, mode: int) -> int:
-        """Give the set of corners that are held in a mode though they do not press."""
+        """Return the set of corners that are held in a mode though they do not press."""
         found, bearing = 0, self.bearing(mode)
         for k in range(self.body_count):
             if self.is_rigid(k) and self.part_mode(mode, k).contact & PULLED != 0:
@@ -79,7 +79,7 @@ class RigidCorners(Chain):
 
     @kernel
     def with_bearing(self, mode: int, corners: int, pulled: int) -> int:
-        """Give the mode in which `corners` bear; those in `pulled` are held without pressing."""
+        """Return the mode in which `corners` bear; those in `pulled` are held without pressing."""
         new = mode
         for k in range(self.body_count):
             if self.is_rigid(k):
@@ -99,7 +99,7 @@ class RigidCorners(Chain):
 
     @kernel
     def standing_state(self, k: int, standing: Mode, state: Vector) -> BodyState:
-        """Give placement and rates of a body, with those that its contacts prescribe computed."""
+        """Return placement and rates of a body, with those that its contacts prescribe computed."""
         body, part = self.state_of(k, state), self.on_base(k)
         if not self.is_rigid(k) or part.flies(standing.contact):
             return body
@@ -144,12 +144,12 @@ class RigidCorners(Chain):
 
     @inlined
     def slip_sense(self, k: int) -> float:
-        """Give the sense of slip of a body on its rigid base in the trial at hand: 0, held."""
+        """Return the sense of slip of a body on its rigid base in the trial at hand: 0, held."""
         return 0.0
 
     @inlined
     def sense_in(self, mode: int, k: int) -> float:
-        """Give the sense of slip of a body on its rigid base in a mode: 0, none slips here."""
+        """Return the sense of slip of a body on its rigid base in a mode: 0, none slips here."""
         return 0.0
 
     @inlined
@@ -163,12 +163,12 @@ class RigidCorners(Chain):
     def lost_by_friction(
         self, k: int, which: int, state: Vector, room: Vector, rows: Vector
     ) -> float:
-        """Give the energy that friction takes in an impact at a corner that slips: 0."""
+        """Return the energy that friction takes in an impact at a corner that slips: 0."""
         return 0.0
 
     @inlined
     def standing_on(self, k: int, bears: int, mode: int) -> int:
-        """Give the mode in which a body slips on its base, if it does: it does not."""
+        """Return the mode in which a body slips on its base, if it does: it does not."""
         return mode
 
     @inlined
@@ -192,12 +192,12 @@ class RigidCorners(Chain):
 
     @inlined
     def go_on(self, mode: int, state: Vector, memory: Vector) -> int:
-        """Give the mode in which these slip on, or are held."""
+        """Return the mode in which these slip on, or are held."""
         return mode
 
     @inlined
     def as_tried(self, mode: int, state: Vector, memory: Vector) -> int:
-        """Give the mode in which these slip as was tried with the corners."""
+        """Return the mode in which these slip as was tried with the corners."""
         return mode
 
     @inlined
@@ -244,7 +244,7 @@ class RigidCorners(Chain):
 
     @kernel
     def corner_force(self, k: int, left: bool) -> float:
-        """Give the normal force, or impulse, of a corner on a rigid base in the last solution."""
+        """Return the normal force, or impulse, of a corner on a rigid base in the last solution."""
         i = k * PLACES + (at.LEFT_CORNER if left else at.RIGHT_CORNER)
         which = self.places()[i]
         if which == NONE:
@@ -253,7 +253,7 @@ class RigidCorners(Chain):
 
     @kernel
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> Vector:
-        """Give accelerations and powers, solved without the bodies at rest on the ground."""
+        """Return accelerations and powers, solved without the bodies at rest on the ground."""
         moving = self.moving_bodies(mode)
         if moving == self.body_count:
             return self.find_forces(mode, state, ground)
@@ -266,7 +266,7 @@ class RigidCorners(Chain):
 
     @inlined
     def moving_bodies(self, mode: int) -> int:
-        """Give how many bodies, from the top, may move: those below rest on the ground."""
+        """Return how many bodies, from the top, may move: those below rest on the ground."""
         moving, bearing = self.body_count, self.bearing(mode)
         for k in range(self.body_count - 1, -1, -1):
             if bearing >> 2 * k & BOTH != BOTH or self.part_mode(mode, k).slides:
@@ -282,7 +282,7 @@ class RigidCorners(Chain):
 
     @inlined
     def observed_base(self, k: int, standing: Mode, body: BodyState) -> Variables:
-        """Give the base's columns in the results: of a rigid one, the forces of its corners."""
+        """Return the base's columns in the results: of a rigid one, the forces of its corners."""
         if self.is_rigid(k):
             return self.corner_force(k, True), self.corner_force(k, False), 0.0
         return self.observed_on(k, standing, body)
@@ -318,7 +318,7 @@ class RigidCorners(Chain):
 
     @kernel
     def most_pull(self, mode: int) -> float:
-        """Give the largest tension in a corner that bears in the last solution, over FORCE_SIZE."""
+        """Return largest tension in a corner that bears in the last solution, over FORCE_SIZE."""
         most = -math.inf
         for k in range(self.body_count):
             if self.is_rigid(k) and self.part_mode(mode, k).contact & PULLED == 0:
@@ -330,7 +330,7 @@ class RigidCorners(Chain):
 
     @kernel
     def fall_if_let_go(self, k: int, left: bool, mode: int, state: Vector, ground: Ground) -> float:
-        """Give the downward acceleration of a held corner if it were released, over gravity.
+        """Return the downward acceleration of a held corner if it were released, over gravity.
 
         Maximum over this corner and those that practically touch their bases but do not bear.
         """
@@ -388,12 +388,12 @@ class RigidCorners(Chain):
 
     @inlined
     def let_slip_if_amiss(self, mode: int, state: Vector, ground: Ground) -> int:
-        """Give the mode in which bodies slip that friction cannot hold: it holds all here."""
+        """Return the mode in which bodies slip that friction cannot hold: it holds all here."""
         return mode
 
     @inlined
     def sway_at(self, k: int, standing: Mode, held: float, state: Vector) -> tuple[float, float]:
-        """Give place of a body along its base, and its rate, from the place of its held point."""
+        """Return place of a body along its base, and its rate, from the place of its held point."""
         part, body = self.on_base(k), self.standing_state(k, standing, state)
         pin, attitude = part.body.pin(standing.pivot), part.body.attitude(body.rotation)
         reach = part.body.reach(pin, attitude)
@@ -432,7 +432,7 @@ class RigidCorners(Chain):
 
     @kernel
     def resting_corners(self, mode: int, state: Vector) -> int:
-        """Give the set of corners on rigid bases that touch their base and are at rest."""
+        """Return the set of corners on rigid bases that touch their base and are at rest."""
         found = 0
         for k in range(self.body_count):
             if self.is_rigid(k):
@@ -442,12 +442,12 @@ class RigidCorners(Chain):
 
     @inlined
     def closed_corners(self, mode: int, state: Vector) -> int:
-        """Give the closed corners: those that bear, and others that touch their base at rest."""
+        """Return the closed corners: those that bear, and others that touch their base at rest."""
         return self.bearing(mode) | self.resting_corners(mode, state)
 
     @kernel
     def level_corners(self, k: int, body: BodyState) -> int:
-        """Give the set of corners of a body that touch its base and are at rest, bits 1 and 2."""
+        """Return the set of corners of a body that touch its base and are at rest, bits 1 and 2."""
         law, found = self.on_base(k).body, 0
         line, size = law.base_line_at(body), law.size()
         level, speed = LEVEL * size, LEVEL * math.sqrt(law.gravity * size)

@@ -31,7 +31,7 @@ class SlippingChain(SlipperyBases):
     def guards_on_base(
         self, k: int, slides: bool, mode: int, state: Vector, slope: Slope, ground: Ground
     ) -> Guards:
-        """Give the guards of a body: of contacts, of the friction that holds it, of its slip."""
+        """Return the guards of a body: of contacts, of the friction that holds it, of its slip."""
         part, standing, body = self.on_base(k), self.part_mode(mode, k), self.state_of(k, state)
         first, press, sliding = BEFORE_HORIZONTAL * k, k * PLACES + at.PRESS, IDLE
         if k == 0:
@@ -84,7 +84,7 @@ class SlippingChain(SlipperyBases):
     def let_slip(
         self, lets_go: int, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Give the mode in which friction can hold all held bodies, and opposes the slip of others.
+        """Return mode in which friction can hold all held bodies, and opposes the slip of others.
 
         Where no mode satisfies that with static friction, kinetic friction decides what is held.
         """
@@ -109,14 +109,14 @@ class SlippingChain(SlipperyBases):
 
     @kernel
     def end_short_slips(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Give the mode in which bodies are held whose slip would stop within a negligible way."""
+        """Return mode in which bodies are held whose slip would stop within a negligible way."""
         for k in range(self.body_count):
             mode = self.end_short_slip(k, mode, state, ground, memory)
         return self.let_slip(-1, mode, state, ground, memory)
 
     @kernel
     def held_in_vain(self, lets_go: int, holding: int, mode: int) -> tuple[int, float]:
-        """Give a body that friction `holding` cannot hold, or -1, and the force that would."""
+        """Return a body that friction `holding` cannot hold, or -1, and the force that would."""
         room = self.places()
         for j in range(self.body_count):
             if not self.on_base(j).is_free(self.part_mode(mode, j)):
@@ -128,7 +128,7 @@ class SlippingChain(SlipperyBases):
 
     @kernel
     def starts_back(self, near: float, mode: int, state: Vector, slope: Slope) -> int:
-        """Give a body at the start of a slip whose acceleration is against its sense, or -1.
+        """Return a body at the start of a slip whose acceleration is against its sense, or -1.
 
         Accelerations up to `near` times gravity do not count.
         """

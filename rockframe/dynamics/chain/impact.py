@@ -71,7 +71,7 @@ class Found(NamedTuple):
 
 @kernel
 def size_of(corners: int) -> int:
-    """Give the number of corners in a set."""
+    """Return the number of corners in a set."""
     rest, count = corners, 0
     while rest > 0:
         count += rest & 1
@@ -89,7 +89,7 @@ class Near(NamedTuple):
 
 @kernel
 def next_set(start: int, near: Near) -> int:
-    """Give the highest number of a set that is not above `start`; -1 if there is none.
+    """Return the highest number of a set that is not above `start`; -1 if there is none.
 
     `start` is the number of all closed corners, or that of a set less one.
     """
@@ -111,7 +111,7 @@ def next_set(start: int, near: Near) -> int:
 
 @inlined
 def trial_of(bears: int, holds: int, sense: float, impulsive: bool) -> float:
-    """Give the code of a body's constraints in a trial, by which equal trials are recognized."""
+    """Return the code of a body's constraints in a trial, by which equal trials are recognized."""
     return bears + 4.0 * holds + 16.0 * (sense + 1.0) + (64.0 if impulsive else 0.0)
 
 
@@ -218,7 +218,7 @@ def write_corners(system: Any, impulsive: bool, state: Vector) -> None:
 def first_fault(
     system: Any, some: int, closed: int, impulsive: bool, least: float, noise: float
 ) -> int:
-    """Give the first corner that is at fault by :eq:`eq-admissible`; -1 if none is."""
+    """Return the first corner that is at fault by :eq:`eq-admissible`; -1 if none is."""
     room, rows, above = system.places(), system.constraints(), 0.0
     for corner in range(2 * system.body_count):
         k, side = corner // 2, corner % 2
@@ -242,7 +242,7 @@ def first_fault(
 
 @kernel
 def free_rise(system: Any, k: int, side: int) -> float:
-    """Give upward velocity, or acceleration, of a free corner by the last solution."""
+    """Return upward velocity, or acceleration, of a free corner by the last solution."""
     room, rows, i = system.places(), system.constraints(), k * PLACES + side
     keeps = (MOST_CONSTRAINTS * system.body_count - 1) * CONSTRAINT + at.KEEPS  # a row without use
     write_direction(system, k, 0.0, 1.0, room[i + at.LEVERS], keeps, room, rows)
@@ -251,7 +251,7 @@ def free_rise(system: Any, k: int, side: int) -> float:
 
 @kernel
 def noise_of(system: Any, closed: int, impulsive: bool, state: Vector) -> float:
-    """Give the rounding noise of the speeds of corners, or of their accelerations."""
+    """Return the rounding noise of the speeds of corners, or of their accelerations."""
     room, scale = system.places(), 0.0
     if not impulsive:
         return NEARLY_ZERO * system.number(0, at.GRAVITY)
@@ -380,7 +380,7 @@ def all_press(system: Any, corners: int) -> bool:
 def with_sticking(
     system: Any, mode: int, closed: int, impulsive: bool, noise: float, state: Vector
 ) -> int:
-    """Give the set of corners that bear by :eq:`eq-sticking`, found by least-index pivoting."""
+    """Return the set of corners that bear by :eq:`eq-sticking`, found by least-index pivoting."""
     some = closed
     for _ in range(MOST_PIVOTS):
         found = attempt(system, mode, some, closed, True, impulsive, noise, state)

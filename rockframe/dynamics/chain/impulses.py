@@ -141,7 +141,7 @@ class RigidImpulses(RigidCorners):
 
     @inlined
     def landed(self, k: int, left: bool, mode: int, new: int) -> int:
-        """Give the set of ends that have landed on a deformable base in an event.
+        """Return the set of ends that have landed on a deformable base in an event.
 
         Both ends of a body that flew may have landed together.
         """
@@ -168,7 +168,7 @@ class RigidImpulses(RigidCorners):
 
     @kernel
     def shares_of_blow(self, k: int, ends: int, mode: int, closed: int, state: Vector) -> Shares:
-        """Give the shares of a blow, and of its friction, as the impulses are found again.
+        """Return the shares of a blow, and of its friction, as the impulses are found again.
 
         The blow is such that one end has the speed that restitution leaves it, and none a higher
         one; its friction does not reverse the slip.
@@ -197,7 +197,7 @@ class RigidImpulses(RigidCorners):
     def share_along(
         self, k: int, rubs: bool, press: float, mode: int, closed: int, state: Vector
     ) -> float:
-        """Give the share of friction beside a share `press` of the blow: it must oppose the slip.
+        """Return the share of friction beside a share `press` of the blow: it must oppose the slip.
 
         It is 1 if friction did not oppose the slip in the first solution (`rubs` is false). The
         slip is linear in the share as long as the same corners bear.
@@ -224,7 +224,7 @@ class RigidImpulses(RigidCorners):
     def try_blow(
         self, k: int, ends: int, blow: Shares, mode: int, closed: int, state: Vector
     ) -> Met:
-        """Give velocities, with impulses found again for shares of a blow; restores the state."""
+        """Return velocities, with impulses found again for shares of a blow; restores the state."""
         part, n, before = self.on_base(k), self.coordinates(), self.velocities(state)
         left, noise_left = end_speed(part, True, self.state_of(k, state))
         right, noise_right = end_speed(part, False, self.state_of(k, state))
@@ -249,7 +249,7 @@ class RigidImpulses(RigidCorners):
 
     @kernel
     def driven_slip(self, k: int, mode: int, state: Vector) -> float:
-        """Give the velocity of slip of a body, positive in the sense of its blow's friction."""
+        """Return the velocity of slip of a body, positive in the sense of its blow's friction."""
         part, body = self.on_base(k), self.state_of(k, state)
         pin = part.body.pin(self.part_mode(mode, k).pivot)
         reach = part.body.reach(pin, part.body.attitude(body.rotation))

@@ -62,7 +62,7 @@ class LinkPoints(LinkRows):
 
     @inlined
     def moved(self, k: int, x: float, y: float, room: Vector) -> Moved:
-        """Give displacement and velocity of a point of a body, or of the ground."""
+        """Return displacement and velocity of a point of a body, or of the ground."""
         if k == GROUND:
             return Moved(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         lies, i, j = self.lies(), k * PLACES, k * LIES
@@ -76,7 +76,7 @@ class LinkPoints(LinkRows):
 
     @inlined
     def upward(self, k: int) -> tuple[float, float]:
-        """Give the unit vector that points up on a body, or on the ground."""
+        """Return the unit vector that points up on a body, or on the ground."""
         if k == GROUND:
             return 0.0, 1.0
         lies = self.lies()
@@ -84,13 +84,13 @@ class LinkPoints(LinkRows):
 
     @inlined
     def points_of(self, row: Vector, room: Vector) -> tuple[Moved, Moved]:
-        """Give displacements and velocities of both points of a link."""
+        """Return displacements and velocities of both points of a link."""
         on = self.moved(int(row[ON]), row[ON_X], row[ON_Y], room)
         return on, self.moved(int(row[TO]), row[TO_X], row[TO_Y], room)
 
     @inlined
     def drawn(self, row: Vector, on: Moved, to: Moved) -> StretchedLink:
-        """Give elongation, rate and direction of a link, :eq:`eq-link`, but no acceleration.
+        """Return elongation, rate and direction of a link, :eq:`eq-link`, but no acceleration.
 
         Where its points meet it acts along their relative velocity, in its upward sense.
         """
@@ -125,7 +125,7 @@ class LinkPoints(LinkRows):
 
     @inlined
     def accelerated_point(self, k: int, point: Moved, room: Vector) -> tuple[float, float]:
-        """Give the acceleration of a point of a body, or of the ground."""
+        """Return the acceleration of a point of a body, or of the ground."""
         if k == GROUND:
             return 0.0, 0.0
         i, rate = k * PLACES, self.lies()[k * LIES + OWN_RATE]
@@ -137,7 +137,7 @@ class LinkPoints(LinkRows):
 
     @inlined
     def watched(self, row: Vector, room: Vector, idle: bool) -> Stretch:
-        """Give elongation of a link, rate and acceleration, from the accelerations of its bodies.
+        """Return elongation of a link, rate and acceleration, from the accelerations of its bodies.
 
         The acceleration of an idle link is left 0.
         """

@@ -83,27 +83,27 @@ class Linkable:
     if TYPE_CHECKING:
 
         def coordinates(self) -> int:
-            """Give the number of coordinates."""
+            """Return the number of coordinates."""
             raise NotImplementedError
 
         def moving_in(self, mode: int) -> int:
-            """Give the number of coordinates that move in a mode."""
+            """Return the number of coordinates that move in a mode."""
             raise NotImplementedError
 
         def places(self) -> Vector:
-            """Give the workspace of all bodies: places, velocities, loads and accelerations."""
+            """Return the workspace of all bodies: places, velocities, loads and accelerations."""
             raise NotImplementedError
 
         def behind_bodies(self) -> int:
-            """Give the index behind rows and workspace of the bodies."""
+            """Return the index behind rows and workspace of the bodies."""
             raise NotImplementedError
 
         def own_guards(self) -> int:
-            """Give the number of guards of all bodies."""
+            """Return the number of guards of all bodies."""
             raise NotImplementedError
 
         def own_columns(self) -> int:
-            """Give the number of columns of all bodies and their bases."""
+            """Return the number of columns of all bodies and their bases."""
             raise NotImplementedError
 
         def lay(self, mode: int, state: Vector, room: Vector) -> None:
@@ -135,11 +135,11 @@ class Linkable:
             raise NotImplementedError
 
         def link_place(self) -> int:
-            """Give the index, in the memory, of the number of the last event's link."""
+            """Return the index, in the memory, of the number of the last event's link."""
             raise NotImplementedError
 
         def energies_of_bodies(self, mode: int, state: Vector) -> Energies:
-            """Give the energies of bodies and bases, and leave their places in the workspace."""
+            """Return the energies of bodies and bases, and leave their places in the workspace."""
             raise NotImplementedError
 
         def observe_bodies(
@@ -158,90 +158,90 @@ class LinkRows(Linkable):
 
     @inlined
     def link_width(self) -> int:
-        """Give the length of the row of a link."""
+        """Return the length of the row of a link."""
         return NUMBERS + self.law.number_count()
 
     @inlined
     def behind_links(self) -> int:
-        """Give the index behind the rows of links."""
+        """Return the index behind the rows of links."""
         return self.behind_bodies() + self.link_count * self.link_width()
 
     @inlined
     def row_of_link(self, i: int) -> Vector:
-        """Give the row of a link."""
+        """Return the row of a link."""
         return stretch(self.rows, self.behind_bodies() + i * self.link_width(), self.link_width())
 
     @inlined
     def law_of(self, row: Vector) -> Any:
-        """Give the law of a link, by its row."""
+        """Return the law of a link, by its row."""
         return self.law.with_numbers(part_of(row, NUMBERS))
 
     @inlined
     def link_state(self, mode: int, row: Vector) -> int:
-        """Give the state of a link, by its row."""
+        """Return the state of a link, by its row."""
         return mode // int(row[PLACE_VALUE]) % int(row[STATES])
 
     @inlined
     def of_link(self, i: int, state: Vector) -> Vector:
-        """Give the variables of a link in a state."""
+        """Return the variables of a link in a state."""
         each = self.law.variables()
         return stretch(state, 2 * self.coordinates() + i * each, each)
 
     @inlined
     def lies(self) -> Vector:
-        """Give the room for displacements of bodies, and for the loads of links on them."""
+        """Return the room for displacements of bodies, and for the loads of links on them."""
         return stretch(self.rows, self.behind_links(), LIES * self.body_count)
 
     @inlined
     def slopes(self) -> Vector:
-        """Give the room for accelerations, rates of the links' variables, and powers."""
+        """Return the room for accelerations, rates of the links' variables, and powers."""
         first = self.behind_links() + LIES * self.body_count
         return stretch(self.rows, first, self.coordinates() + self.variables() + POWERS)
 
     @inlined
     def behind_slopes(self) -> int:
-        """Give the index behind the room for slopes."""
+        """Return the index behind the room for slopes."""
         lies = LIES * self.body_count + self.coordinates()
         return self.behind_links() + lies + self.variables() + POWERS
 
     @inlined
     def guard_room(self, which: int) -> Vector:
-        """Give the room for guards (0) or their rates (1)."""
+        """Return the room for guards (0) or their rates (1)."""
         return stretch(self.rows, self.behind_slopes() + which * self.guards(), self.guards())
 
     @inlined
     def columns(self) -> int:
-        """Give the number of columns."""
+        """Return the number of columns."""
         return self.own_columns() + LINK_COLUMNS * self.link_count + 1
 
     @inlined
     def column_room(self) -> Vector:
-        """Give the room for columns."""
+        """Return the room for columns."""
         return stretch(self.rows, self.behind_slopes() + 2 * self.guards(), self.columns())
 
     def behind_room(self) -> int:
-        """Give the index behind the whole array, that is its length."""
+        """Return the index behind the whole array, that is its length."""
         return self.behind_slopes() + 2 * self.guards() + self.columns()
 
     @kernel
     def variables(self) -> int:
-        """Give the number of variables of all links."""
+        """Return the number of variables of all links."""
         return self.link_count * self.law.variables()
 
     @kernel
     def guards(self) -> int:
-        """Give the number of guards, of each body and then of each link in turn."""
+        """Return the number of guards, of each body and then of each link in turn."""
         return self.own_guards() + GUARDS * self.link_count
 
     @kernel
     def modes(self) -> int:
-        """Give the number of modes; some of these numbers do not occur."""
+        """Return the number of modes; some of these numbers do not occur."""
         last = self.row_of_link(self.link_count - 1)
         return int(last[PLACE_VALUE] * last[STATES])
 
 
 def numbers_of_link(link: ChainLink, law: Any, value: int) -> Vector:
-    """Give the row of a link; `value` is the place value of its state in the system's mode.
+    """Return the row of a link; `value` is the place value of its state in the system's mode.
 
     `law` is the law of the class of all links, with the numbers of this link.
     """
@@ -255,5 +255,5 @@ def numbers_of_link(link: ChainLink, law: Any, value: int) -> Vector:
 
 
 def room_of_states(states: int) -> int:
-    """Give the least power of two that counts all states."""
+    """Return the least power of two that counts all states."""
     return 1 << max(states - 1, 0).bit_length()

@@ -88,17 +88,17 @@ class Linked(LinkPoints):
 
     @inlined
     def pulled_x(self, k: int) -> float:
-        """Give the last resultant of links on a body, to the right, over the reference mass."""
+        """Return the last resultant of links on a body, to the right, over the reference mass."""
         return float(self.lies()[k * LIES + PULLED_X])
 
     @inlined
     def pulled_y(self, k: int) -> float:
-        """Give the last resultant of links on a body, upwards, over the reference mass."""
+        """Return the last resultant of links on a body, upwards, over the reference mass."""
         return float(self.lies()[k * LIES + PULLED_Y])
 
     @kernel
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
-        """Give the guards of the bodies, then of each link in turn, and their rates."""
+        """Return the guards of the bodies, then of each link in turn, and their rates."""
         found, idle = self.guards_of_bodies(mode, state, slope, ground), self.all_idle(mode)
         room, values, changes = self.places(), self.guard_room(0), self.guard_room(1)
         if idle and self.moving_in(mode) == 0:
@@ -153,7 +153,7 @@ class Linked(LinkPoints):
 
     @kernel
     def energies(self, mode: int, state: Vector) -> Energies:
-        """Give the energies of all bodies, bases and links."""
+        """Return the energies of all bodies, bases and links."""
         found, room = self.energies_of_bodies(mode, state), self.places()
         self.lay(mode, state, room)
         gravity, elastic, change = found.gravity, found.elastic, found.from_rest
@@ -175,7 +175,7 @@ class Linked(LinkPoints):
     def observe(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> Vector:
-        """Give the columns of the bodies, then those of each link, and the moment of all links."""
+        """Return columns of the bodies, then those of each link, and the moment of all links."""
         out, room = self.observe_bodies(mode, state, slope, ground, memory), self.places()
         moment = 0.0
         for i in range(self.link_count):
@@ -205,7 +205,7 @@ class Linked(LinkPoints):
 
     @kernel
     def start_links(self, mode: int, state: Vector) -> int:
-        """Give the mode with the states in which links start; sets their variables."""
+        """Return the mode with the states in which links start; sets their variables."""
         room = self.places()
         self.set_out(mode, state, room)
         for i in range(self.link_count):
@@ -217,7 +217,7 @@ class Linked(LinkPoints):
 
 
 def rows_of_links(links: Sequence[ChainLink], modes: int, bodies: int) -> tuple[Any, list[Vector]]:
-    """Give one law for all links, whose numbers are placeholders, and the row of each link.
+    """Return one law for all links, whose numbers are placeholders, and the row of each link.
 
     `modes` is the number of modes of the bodies without links.
     """
@@ -235,7 +235,7 @@ def rows_of_links(links: Sequence[ChainLink], modes: int, bodies: int) -> tuple[
 
 
 def with_room(system: Any, filled: Vector) -> Any:
-    """Give a system with its workspace, added as zeros behind the filled part of its array."""
+    """Return a system with its workspace, added as zeros behind the filled part of its array."""
     return system._replace(
         rows=np.concatenate([filled, np.zeros(system.behind_room() - len(filled))])
     )

@@ -45,27 +45,27 @@ class ChainLinks(Linked, Chain):
 
     @inlined
     def behind_bodies(self) -> int:
-        """Give the index behind rows and workspace of the bodies."""
+        """Return the index behind rows and workspace of the bodies."""
         return self.behind_chain()
 
     @inlined
     def own_guards(self) -> int:
-        """Give the number of guards of all bodies."""
+        """Return the number of guards of all bodies."""
         return GUARDS * self.body_count
 
     @inlined
     def own_columns(self) -> int:
-        """Give the number of columns of all bodies and their bases."""
+        """Return the number of columns of all bodies and their bases."""
         return COLUMNS * self.body_count
 
     @kernel
     def moving_in(self, mode: int) -> int:
-        """Give the number of coordinates that move in a mode: all."""
+        """Return the number of coordinates that move in a mode: all."""
         return DEGREES * self.body_count
 
     @inlined
     def lowest_place(self, mode: int, body: BodyState, state: Vector) -> float:
-        """Give the horizontal place of the lowest body's centre of mass [m]."""
+        """Return the horizontal place of the lowest body's centre of mass [m]."""
         return body.horizontal
 
     @kernel
@@ -122,12 +122,12 @@ class RestOnGround(ChainLinks):
 
     @kernel
     def moving_in(self, mode: int) -> int:
-        """Give the number of coordinates that move: not the lowest body's where ground holds it."""
+        """Return number of coordinates that move: not the lowest body's where ground holds it."""
         return DEGREES * self.body_count - (1 if self.rests_on_ground(mode) else 0)
 
     @inlined
     def lowest_place(self, mode: int, body: BodyState, state: Vector) -> float:
-        """Give the horizontal place of the lowest body, where held from that of the held point."""
+        """Return horizontal place of the lowest body, where held from that of the held point."""
         if not self.rests_on_ground(mode):
             return body.horizontal
         k = self.body_count - 1
@@ -154,7 +154,7 @@ class RestOnGround(ChainLinks):
 
     @inlined
     def hold_again(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Give the mode in which bodies slip that friction cannot hold: none slips here."""
+        """Return the mode in which bodies slip that friction cannot hold: none slips here."""
         return mode
 
 
@@ -171,12 +171,12 @@ class LinkedSlips(ChainLinks, SlippingBodies):
 
     @inlined
     def behind_bodies(self) -> int:
-        """Give the index behind rows, workspace and friction of the bodies."""
+        """Return the index behind rows, workspace and friction of the bodies."""
         return self.behind_friction()
 
     @inlined
     def own_columns(self) -> int:
-        """Give the number of columns of all bodies, their bases and slips."""
+        """Return the number of columns of all bodies, their bases and slips."""
         return (COLUMNS + SLIP_COLUMNS) * self.body_count
 
 
@@ -198,7 +198,7 @@ class LinkedSlippingRigidChain(  # pyright: ignore[reportGeneralTypeIssues]
 
     @inlined
     def hold_again(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Give the mode in which bodies slip that friction cannot hold after an event of a link."""
+        """Return mode in which bodies slip that friction cannot hold after an event of a link."""
         self.begin_slips(mode, state, memory)
         new = self.hold_as_far(mode, state, ground, memory)
         self.end_slips(new, state, memory)
@@ -206,7 +206,7 @@ class LinkedSlippingRigidChain(  # pyright: ignore[reportGeneralTypeIssues]
 
 
 def linked(chain: Chain, links: Sequence[ChainLink]) -> ChainLinks:
-    """Give the system of a chain with links."""
+    """Return the system of a chain with links."""
     law, rows = rows_of_links(links, chain.modes(), chain.body_count)
     if isinstance(chain, SlippingRigidChain):
         kind: Any = LinkedSlippingRigidChain

@@ -54,7 +54,7 @@ class AtRest(NamedTuple):
 
 
 def chain_of(links: Sequence[ChainBody], ties: Sequence[ChainLink] = ()) -> Chain:
-    """Give the system of stacked bodies, from the top down, without their ties."""
+    """Return the system of stacked bodies, from the top down, without their ties."""
     kind = RigidChain if some_rigid(links) else Chain
     rows = [row_of(one.body, one.base, one.mass, one.top, one.beside) for one in links]
     for row in rows:
@@ -63,7 +63,7 @@ def chain_of(links: Sequence[ChainBody], ties: Sequence[ChainLink] = ()) -> Chai
 
 
 def slipping(bare: Chain, frictions: Sequence[tuple[float, float, float]]) -> Chain:
-    """Give the system `bare`, of bases without slip, with friction on the bases."""
+    """Return the system `bare`, of bases without slip, with friction on the bases."""
     gives = not isinstance(bare, RigidChain) and all(math.isfinite(one[0]) for one in frictions)
     kind = SlippingChain if gives else SlippingRigidChain
     return kind(bare.body_count, np.concatenate([bare.rows, coefficients(frictions)]))
@@ -172,7 +172,7 @@ def chain(
 
 
 def _weights(count: int, k: int) -> Vector:
-    """Give the weights of the coordinates in the rotation of body `k`: its own and those below."""
+    """Return weights of the coordinates in the rotation of body `k`: its own and those below."""
     weights = np.zeros(DEGREES * count)
     first = BEFORE_HORIZONTAL * k + ROTATION
     weights[first : BEFORE_HORIZONTAL * count : BEFORE_HORIZONTAL] = 1.0
@@ -180,7 +180,7 @@ def _weights(count: int, k: int) -> Vector:
 
 
 def _tolerance(base: BaseNumbers, carried: float) -> Vector:
-    """Give the rounding noise of a body's guards; each end of a bed uses one guard."""
+    """Return the rounding noise of a body's guards; each end of a bed uses one guard."""
     if is_rigid(base):
         return np.full(GUARDS, ROUNDING_OF_FORCES * carried)
     found = part_tolerance(base)
@@ -193,7 +193,7 @@ def _tolerance(base: BaseNumbers, carried: float) -> Vector:
 
 
 def _columns(base: BaseNumbers, k: int) -> tuple[Column, ...]:
-    """Give the columns of body `k`; those of body 0 have the names of any scene."""
+    """Return the columns of body `k`; those of body 0 have the names of any scene."""
     own = (*BODY_COLUMNS, Column("rotation_on_base"), Column("vertical_displacement_on_base"))
     unused = tuple(Column(f"unused_{i}") for i in range(OBSERVED - len(base.columns)))
     return tuple(
@@ -203,22 +203,22 @@ def _columns(base: BaseNumbers, k: int) -> tuple[Column, ...]:
 
 
 def rounding_of_ties(ties: Sequence[ChainLink]) -> float:
-    """Give the noise in forces of corners from the rounding of the lengths of stiff ties."""
+    """Return the noise in forces of corners from the rounding of the lengths of stiff ties."""
     return ROUNDING * sum(one.numbers.stiffness * reach_of(one) for one in ties)
 
 
 def reach_of(tie: ChainLink) -> float:
-    """Give the length that the rounding noise of a link's elongation is proportional to [m]."""
+    """Return the length that the rounding noise of a link's elongation is proportional to [m]."""
     return math.hypot(*tie.apart) + math.hypot(*tie.on_point) + math.hypot(*tie.to_point)
 
 
 def links_shown(ties: Sequence[ChainLink]) -> int:
-    """Give the number of links in the results: all but loads, which come last."""
+    """Return the number of links in the results: all but loads, which come last."""
     return sum(not isinstance(one.numbers.law, SteadyForce) for one in ties)
 
 
 def scales_of_links(system: Linked, ties: Sequence[ChainLink]) -> list[float]:
-    """Give typical sizes of the variables of links.
+    """Return typical sizes of the variables of links.
 
     Each link has as many variables as the law that has the most.
     """
@@ -227,12 +227,12 @@ def scales_of_links(system: Linked, ties: Sequence[ChainLink]) -> list[float]:
 
 
 def tie_tolerance(tie: ChainLink) -> Vector:
-    """Give the rounding noise of a link's guards."""
+    """Return the rounding noise of a link's guards."""
     return np.full(GUARDS_OF_LINK, ROUNDING * reach_of(tie))
 
 
 def columns_of_ties(ties: int, shown: int) -> Iterator[Column]:
-    """Give the columns of links; users do not see those of loads, which come last."""
+    """Return the columns of links; users do not see those of loads, which come last."""
     for i in range(ties):
         kind = "restrainer" if i < shown else "unused_load"
         yield Column(column_of(f"{kind}_force", i), per_mass=True)
@@ -275,7 +275,7 @@ class Starts(NamedTuple):
 
 
 def _placed(highest: OnBase, starts: Starts, start: Start) -> list[AtRest]:
-    """Give rotations and heights of all bodies: at rest, but of the highest as `start` says."""
+    """Return rotations and heights of all bodies: at rest, but of the highest as `start` says."""
     placed = list(starts.rest or [AtRest(0.0, 0.0)] * len(starts.links))
     if start.rotation is None and start.vertical_displacement is None:
         return placed
@@ -323,7 +323,7 @@ def _write_start(
 
 
 def _initial(system: Chain, starts: Starts, start: Start) -> tuple[int, Vector, Vector]:
-    """Give mode, state and memory at the start: all at rest but body 0, as `start` says."""
+    """Return mode, state and memory at the start: all at rest but body 0, as `start` says."""
     count = len(starts.links)
     state, memory = (
         np.zeros(2 * DEGREES * count + system.variables()),

@@ -72,7 +72,7 @@ def place_bodies(system: Rows, mode: int, state: Vector, room: Vector) -> None:
 
 @kernel
 def input_power(system: Rows, state: Vector, ground: Ground, room: Vector) -> float:
-    """Give the power of the ground at the rates of a state, for the places in the workspace."""
+    """Return the power of the ground at the rates of a state, for the places in the workspace."""
     count, supplied, rate, speed_x, speed_y = system.body_count, 0.0, 0.0, 0.0, 0.0
     for k in range(count - 1, -1, -1):
         i, mass, body = k * PLACES, system.number(k, at.MASS), system.state_of(k, state)
@@ -133,14 +133,14 @@ def load_along(system: Rows, k: int, thrust: float, room: Vector) -> None:
 
 @inlined
 def coriolis_along(i: int, room: Vector) -> float:
-    """Give the Coriolis and centripetal acceleration, from the body below, along the frame."""
+    """Return the Coriolis and centripetal acceleration, from the body below, along the frame."""
     rate = room[i + at.FRAME_RATE]
     return 2.0 * room[i + at.RISE] * rate - room[i + at.ACROSS] * rate * rate
 
 
 @inlined
 def coriolis_normal(i: int, room: Vector) -> float:
-    """Give the Coriolis and centripetal acceleration along the inward normal of the frame."""
+    """Return the Coriolis and centripetal acceleration along the inward normal of the frame."""
     rate = room[i + at.FRAME_RATE]
     return (2.0 * room[i + at.SWAY] + room[i + at.ARM] * rate) * rate
 
@@ -196,7 +196,7 @@ def add_constraint(
 
 @inlined
 def of_both(moving: int, k: int, direction: int, room: Vector, rows: Vector) -> float:
-    """Give a combination of the accelerations of a body and, if it moves, of the one below."""
+    """Return a combination of the accelerations of a body and, if it moves, of the one below."""
     i = k * PLACES
     found = (
         rows[direction] * room[i + at.X]
@@ -215,7 +215,7 @@ def of_both(moving: int, k: int, direction: int, room: Vector, rows: Vector) -> 
 
 @inlined
 def through(system: Rows, k: int, one: int, other: int, rows: Vector) -> float:
-    """Give the product of two directions of one body over its mass and inertia."""
+    """Return the product of two directions of one body over its mass and inertia."""
     per_mass, per_inertia = system.number(k, at.PER_MASS), system.number(k, at.PER_INERTIA)
     moved = rows[one] * rows[other] + rows[one + 1] * rows[other + 1]
     return per_mass * moved + per_inertia * rows[one + 2] * rows[other + 2]
@@ -223,7 +223,7 @@ def through(system: Rows, k: int, one: int, other: int, rows: Vector) -> float:
 
 @inlined
 def answer(system: Rows, moving: int, kept: int, force: int, rows: Vector) -> float:
-    """Give the response of constraint `kept` to a unit force of `force`: an entry of the matrix."""
+    """Return response of constraint `kept` to a unit force of `force`: an entry of the matrix."""
     a, b = kept * CONSTRAINT, force * CONSTRAINT
     one, other = int(rows[a + at.BODY]), int(rows[b + at.BODY])
     keeps, holds, found = a + at.KEEPS, b + at.HOLDS, 0.0

@@ -40,12 +40,12 @@ class MovingBodies(Rows):
 
     @kernel
     def variables(self) -> int:
-        """Give 0: pads and beds have no variables of their own."""
+        """Return 0: pads and beds have no variables of their own."""
         return 0
 
     @kernel
     def moving_in(self, mode: int) -> int:
-        """Give how many coordinates move: none at rest, else all but a held lowest one."""
+        """Return how many coordinates move: none at rest, else all but a held lowest one."""
         if self.moving_bodies(mode) == 0:
             return 0
         lowest = self.body_count - 1
@@ -54,12 +54,12 @@ class MovingBodies(Rows):
 
     @inlined
     def moving_bodies(self, mode: int) -> int:
-        """Give how many bodies, from the top, may move: all, as none rests on a rigid base."""
+        """Return how many bodies, from the top, may move: all, as none rests on a rigid base."""
         return self.body_count
 
     @kernel
     def relaxation_in(self, mode: int) -> float:
-        """Give the fastest rate at which a sliding end returns to its level [s^-1]."""
+        """Return the fastest rate at which a sliding end returns to its level [s^-1]."""
         fastest = 0.0
         for k in range(self.body_count):
             if not self.is_slippery(k):
@@ -68,7 +68,7 @@ class MovingBodies(Rows):
 
     @inlined
     def own_place(self, k: int) -> int:
-        """Give the index in the state of the own variables of bases, which have none here."""
+        """Return the index in the state of the own variables of bases, which have none here."""
         return 2 * DEGREES * self.body_count
 
     @kernel
@@ -120,7 +120,7 @@ class MovingBodies(Rows):
 
     @inlined
     def band(self) -> int:
-        """Give the half-width of the band of the matrix: those farther apart share no body."""
+        """Return the half-width of the band of the matrix: those farther apart share no body."""
         return 1
 
     @inlined
@@ -161,12 +161,12 @@ class MovingBodies(Rows):
 
     @kernel
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> Vector:
-        """Give the accelerations of all coordinates, then the powers dissipated and supplied."""
+        """Return the accelerations of all coordinates, then the powers dissipated and supplied."""
         return self.accelerate_first(self.body_count, mode, state, ground)
 
     @kernel
     def find_forces(self, mode: int, state: Vector, ground: Ground) -> Vector:
-        """Give what `accelerate` gives, leave all forces, and note for which mode and state."""
+        """Return what `accelerate` gives, leave all forces, and note for which mode and state."""
         found, note = (
             self.accelerate_first(self.body_count, mode, state, ground),
             self.solved_room(),
@@ -193,7 +193,7 @@ class MovingBodies(Rows):
 
     @kernel
     def accelerate_first(self, moving: int, mode: int, state: Vector, ground: Ground) -> Vector:
-        """Give accelerations and powers; bodies from number `moving` on rest on the ground."""
+        """Return accelerations and powers; bodies from number `moving` on rest on the ground."""
         room, out = self.places(), self.slopes()
         place_bodies(self, mode, state, room)
         load_bodies(self, ground.x, self.number(0, at.GRAVITY) + ground.y, room)
@@ -222,13 +222,13 @@ class MovingBodies(Rows):
 
     @kernel
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
-        """Give the power dissipated, of the slope, and that of the ground at the state's rates."""
+        """Return power dissipated, of the slope, and that of the ground at the state's rates."""
         dissipated = slope[DEGREES * self.body_count + self.variables()]
         return dissipated, input_power(self, state, ground, self.places())
 
     @inlined
     def contact_with_force(self, k: int, mode: int) -> int:
-        """Give the contact by which the force of a body's base is computed."""
+        """Return the contact by which the force of a body's base is computed."""
         standing = self.part_mode(mode, k)
         if self.is_slippery(k):  # its base presses whether the body slips or not
             return standing.contact
@@ -241,12 +241,12 @@ class MovingBodies(Rows):
 
     @inlined
     def pulled_x(self, k: int) -> float:
-        """Give the last resultant of links on a body, to the right: there are none here."""
+        """Return the last resultant of links on a body, to the right: there are none here."""
         return 0.0
 
     @inlined
     def pulled_y(self, k: int) -> float:
-        """Give the last resultant of links on a body, upwards: there are none here."""
+        """Return the last resultant of links on a body, upwards: there are none here."""
         return 0.0
 
     @kernel
@@ -284,12 +284,12 @@ class MovingBodies(Rows):
 
     @kernel
     def energies(self, mode: int, state: Vector) -> Energies:
-        """Give the energies of all bodies and bases."""
+        """Return the energies of all bodies and bases."""
         return self.energies_of_bodies(mode, state)
 
     @kernel
     def energies_of_bodies(self, mode: int, state: Vector) -> Energies:
-        """Give the energies of all bodies and bases; leaves the bodies' places in the workspace."""
+        """Return energies of all bodies and bases; leaves the bodies' places in the workspace."""
         room = self.places()
         place_bodies(self, mode, state, room)
         kinetic = gravity = elastic = change = rise = rate = 0.0
@@ -308,7 +308,7 @@ class MovingBodies(Rows):
 
     @inlined
     def rise_of(self, k: int, below: float, vertical: float, room: Vector) -> float:
-        """Give the rise of a centre of mass, from that of the body below, without cancellation."""
+        """Return rise of a centre of mass, from that of the body below, without cancellation."""
         i = k * PLACES
         sine, cosine = room[i + at.SINE], room[i + at.COSINE]
         fixed = room[i + at.ARM] - vertical if k + 1 < self.body_count else 0.0
@@ -318,7 +318,7 @@ class MovingBodies(Rows):
 
     @kernel
     def place(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
-        """Give the place of a body's centre of mass along the body below, or along the ground."""
+        """Return the place of a body's centre of mass along the body below, or along the ground."""
         if k + 1 < self.body_count:
             return state[self.horizontal_of(k)]
         part, body = self.on_base(k), self.state_of(k, state)
@@ -331,7 +331,7 @@ class MovingBodies(Rows):
     def response(
         self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
     ) -> VelocityChange:
-        """Give the changes of velocities by an impulse of a base, or by a hold that stops a slip.
+        """Return the changes of velocities by an impulse of a base, or by a hold that stops a slip.
 
         The changes of all velocities are in the room for slopes until the next solution.
         """
@@ -383,7 +383,7 @@ class MovingBodies(Rows):
 
     @kernel
     def velocities(self, state: Vector) -> Vector:
-        """Give a copy of all velocities, in a room that the next call overwrites."""
+        """Return a copy of all velocities, in a room that the next call overwrites."""
         out, n = self.velocity_room(), self.coordinates()
         for i in range(n):
             out[i] = state[n + i]
@@ -393,14 +393,14 @@ class MovingBodies(Rows):
     def end_accelerations(
         self, k: int, mode: int, state: Vector, ground: Ground
     ) -> tuple[float, float]:
-        """Give the accelerations of the left and right end away from the body below."""
+        """Return the accelerations of the left and right end away from the body below."""
         slope, first = self.find_forces(mode, state, ground), BEFORE_HORIZONTAL * k
         body = self.state_of(k, state)
         return self.on_base(k).end_rises(body, slope[first + VERTICAL], slope[first + ROTATION])
 
     @kernel
     def tendency(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
-        """Give the sign of the rotation that will follow; at rest it is a guess."""
+        """Return the sign of the rotation that will follow; at rest it is a guess."""
         if ground.x != 0.0:
             return -ground.x
         if self.body_count == 1:

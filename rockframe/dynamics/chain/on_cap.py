@@ -78,6 +78,6 @@ def block_on_cap(
 
 
 def _filled(columns: Sequence[Column], count: int, whose: str) -> tuple[Column, ...]:
-    """Give columns, filled up to a number by columns that users do not see."""
+    """Return columns, filled up to a number by columns that users do not see."""
     unseen = (Column(f"unused_{i}_of_{whose}") for i in range(count - len(columns)))
     return (*columns, *unseen)

@@ -55,7 +55,7 @@ class RigidChain(RigidImpulses):
 
     @inlined
     def behind_events(self) -> int:
-        """Give the index in the memory behind the numbers of the last event."""
+        """Return the index in the memory behind the numbers of the last event."""
         return HELD_PLACE + self.body_count + 1 + len(KEPT)
 
     @inlined

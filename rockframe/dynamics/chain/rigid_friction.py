@@ -183,7 +183,7 @@ class SlippingRigidChain(TriedSlips):
 
     @kernel
     def hold_as_far(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Give the mode in which friction can hold the held bodies, and opposes other slips."""
+        """Return the mode in which friction can hold the held bodies, and opposes other slips."""
         new, event = mode, memory[LAST_EVENT]
         for _ in range(self.body_count):
             self.find_forces(new, state, ground)
@@ -217,7 +217,7 @@ class SlippingRigidChain(TriedSlips):
 
     @kernel
     def let_slip_if_amiss(self, mode: int, state: Vector, ground: Ground) -> int:
-        """Give the mode in which bodies slip that friction cannot hold."""
+        """Return the mode in which bodies slip that friction cannot hold."""
         room = self.places()
         for _ in range(self.body_count):
             self.find_forces(mode, state, ground)
@@ -230,7 +230,7 @@ class SlippingRigidChain(TriedSlips):
 
     @kernel
     def rearrange(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Give the mode whose corners and slips agree with the forces, found by trial of sets."""
+        """Return the mode whose corners and slips agree with the forces, found by trial of sets."""
         kept, before = HELD_PLACE + self.body_count, self.bearing(mode)
         self.write_contacts(mode, state, memory)  # of bodies that were held and may slip
         self.note_slips(mode)

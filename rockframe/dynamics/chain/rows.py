@@ -140,7 +140,7 @@ SOLVED_FOR: Final = 4
 
 @kernel
 def room_of(count: int) -> int:
-    """Give the length of the workspace behind the rows, for a number of bodies."""
+    """Return the length of the workspace behind the rows, for a number of bodies."""
     each = PLACES + MOST_CONSTRAINTS * CONSTRAINT + 4 * DEGREES + 2 * GUARDS + COLUMNS
     return count * each + POWERS + (MOST_CONSTRAINTS * count) ** 2 + SOLVED_FOR
 
@@ -159,74 +159,74 @@ class Rows(InState, CalledBySteps, Lists):
 
     @inlined
     def bodies(self) -> int:
-        """Give the number of bodies."""
+        """Return the number of bodies."""
         return self.body_count
 
     @inlined
     def number(self, k: int, which: int) -> float:
-        """Give a number of a body's row, by its column."""
+        """Return a number of a body's row, by its column."""
         return float(self.rows[k * ROW + which])
 
     @inlined
     def places(self) -> Vector:
-        """Give the workspace of all bodies: frames, forces and accelerations."""
+        """Return the workspace of all bodies: frames, forces and accelerations."""
         return stretch(self.rows, self.body_count * ROW, self.body_count * PLACES)
 
     @inlined
     def constraints(self) -> Vector:
-        """Give the room for constraints."""
+        """Return the room for constraints."""
         width = MOST_CONSTRAINTS * CONSTRAINT
         return stretch(self.rows, self.body_count * (ROW + PLACES), self.body_count * width)
 
     @inlined
     def slopes(self) -> Vector:
-        """Give the room for accelerations and powers."""
+        """Return the room for accelerations and powers."""
         return stretch(self.rows, self.after_constraints(), DEGREES * self.body_count + POWERS)
 
     @inlined
     def after_constraints(self) -> int:
-        """Give the index behind the constraints."""
+        """Return the index behind the constraints."""
         return self.body_count * (ROW + PLACES + MOST_CONSTRAINTS * CONSTRAINT)
 
     @inlined
     def guard_room(self, which: int) -> Vector:
-        """Give the room for guards (0) or their rates (1)."""
+        """Return the room for guards (0) or their rates (1)."""
         first = self.after_constraints() + self.body_count * (DEGREES + which * GUARDS) + POWERS
         return stretch(self.rows, first, GUARDS * self.body_count)
 
     @inlined
     def velocity_room(self) -> Vector:
-        """Give the room for velocities."""
+        """Return the room for velocities."""
         first = self.after_constraints() + self.body_count * (DEGREES + 2 * GUARDS) + POWERS
         return stretch(self.rows, first, DEGREES * self.body_count)
 
     @inlined
     def column_room(self) -> Vector:
-        """Give the room for columns."""
+        """Return the room for columns."""
         first = self.after_constraints() + self.body_count * (2 * DEGREES + 2 * GUARDS) + POWERS
         return stretch(self.rows, first, COLUMNS * self.body_count)
 
     @inlined
     def matrix(self) -> Vector:
-        """Give the room for the matrix of the constraints: what each does to each other one."""
+        """Return the room for the matrix of the constraints: what each does to each other one."""
         room = 2 * DEGREES + 2 * GUARDS + COLUMNS
         first = self.after_constraints() + self.body_count * room + POWERS
         return stretch(self.rows, first, (MOST_CONSTRAINTS * self.body_count) ** 2)
 
     @inlined
     def solved_room(self) -> Vector:
-        """Give the room for the mode, ground acceleration and state of the last solution."""
+        """Return the room for the mode, ground acceleration and state of the last solution."""
         first = self.behind_chain() - SOLVED_FOR - 2 * DEGREES * self.body_count
         return part_of(self.rows, first)
 
     @inlined
     def behind_chain(self) -> int:
-        """Give the index behind rows and workspace."""
+        """Return the index behind rows and workspace."""
         return self.body_count * ROW + room_of(self.body_count)
 
     @inlined
     def on_base(self, k: int) -> OnBase:
-        """Give a body on its base."""
+        """Return a body on its base."""
         r = part_of(self.rows, k * ROW)
         body = Body(r[0], r[1], r[2], r[3], r[4], r[5], int(r[6]), r[7] != 0.0)
         n = part_of(r, BASE)
@@ -237,18 +237,18 @@ class Rows(InState, CalledBySteps, Lists):
 
     @inlined
     def standing_state(self, k: int, standing: Mode, state: Vector) -> BodyState:
-        """Give placement and rates of a body, free of what its contacts rule out."""
+        """Return placement and rates of a body, free of what its contacts rule out."""
         return self.state_of(k, state)
 
     @inlined
     def modes_of_bodies(self) -> int:
-        """Give the number of modes of all bodies together."""
+        """Return the number of modes of all bodies together."""
         k = self.body_count - 1
         return int(self.number(k, PLACE_VALUE)) * int(self.number(k, MODE_COUNT))
 
     @inlined
     def part_mode(self, mode: int, k: int) -> Mode:
-        """Give the mode of a body; as divisions are slow, the one unpacked last is remembered."""
+        """Return the mode of a body; as divisions are slow, the one unpacked last is remembered."""
         room, i, high = self.places(), k * PLACES, mode >> HALF_OF_BITS
         low = mode - (high << HALF_OF_BITS)
         if room[i + HIGH_BITS] != high or room[i + LOW_BITS] != low:
@@ -271,7 +271,7 @@ class Rows(InState, CalledBySteps, Lists):
 
     @kernel
     def with_part(self, mode: int, k: int, part: Mode) -> int:
-        """Give the chain's mode with another mode of a body."""
+        """Return the chain's mode with another mode of a body."""
         value, modes = int(self.number(k, PLACE_VALUE)), int(self.number(k, MODE_COUNT))
         low, high = part.contact % CORNER, part.contact // CORNER
         if self.number(k, LAW) == ON_RIGID:
@@ -283,7 +283,7 @@ class Rows(InState, CalledBySteps, Lists):
 
 
 def row_of(body: Body, base: BaseNumbers, mass: float, top: float, beside: float) -> Vector:
-    """Give a body's row, from its lengths [m] and its mass over the reference mass [1]."""
+    """Return a body's row, from its lengths [m] and its mass over the reference mass [1]."""
     if isinstance(base.law, ElasticPads) and isinstance(base.law.law, Viscoelastic):
         law = ON_PADS
     elif isinstance(base.law, Rigid):
@@ -306,7 +306,7 @@ def row_of(body: Body, base: BaseNumbers, mass: float, top: float, beside: float
 
 
 def lists_of(rows: Sequence[Vector]) -> Lists:
-    """Give the array of a chain from the rows of its bodies, from the top down."""
+    """Return the array of a chain from the rows of its bodies, from the top down."""
     count, value = len(rows), 1
     for row in rows:
         row[PLACE_VALUE] = value

@@ -175,14 +175,14 @@ class SlipperyBases(SlippingBodies):
 
     @inlined
     def turned(self, k: int) -> float:
-        """Give the change of a body's angular velocity in the last response."""
+        """Return the change of a body's angular velocity in the last response."""
         return float(self.slopes()[BEFORE_HORIZONTAL * k + ROTATION])
 
     @kernel
     def answers(
         self, k: int, press: float, moment: float, along: float, mode: int, state: Vector
     ) -> tuple[float, float]:
-        """Give the changes of its body's rate of rise and of slip by impulses of a base.
+        """Return the changes of its body's rate of rise and of slip by impulses of a base.
 
         The changes of all velocities are in the room for slopes until the next solution.
         """
@@ -242,7 +242,7 @@ class SlipperyBases(SlippingBodies):
     def wait(
         self, k: int, left: bool, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Give the mode after an end has lifted off, or is pressed again, and the held point moved.
+        """Return mode after an end has lifted off, or is pressed again, and the held point moved.
 
         If that change would reverse its switch at once the end gets the contact between the two.
         """

@@ -49,34 +49,34 @@ class SlippingBodies(Chain):
 
     @inlined
     def friction_of(self, k: int, which: int) -> float:
-        """Give a coefficient of friction under a body."""
+        """Return a coefficient of friction under a body."""
         return float(self.rows[self.behind_chain() + FRICTIONS * k + which])
 
     @inlined
     def column_room(self) -> Vector:
-        """Give the room for columns."""
+        """Return the room for columns."""
         first = self.behind_chain() + FRICTIONS * self.body_count
         return stretch(self.rows, first, (COLUMNS + SLIP_COLUMNS) * self.body_count)
 
     @inlined
     def behind_friction(self) -> int:
-        """Give the index behind the coefficients of friction and the columns."""
+        """Return the index behind the coefficients of friction and the columns."""
         count = self.body_count
         return self.behind_chain() + (FRICTIONS + COLUMNS + SLIP_COLUMNS) * count
 
     @kernel
     def modes(self) -> int:
-        """Give the number of modes: of contacts and pivots, and of the senses of slips."""
+        """Return the number of modes: of contacts and pivots, and of the senses of slips."""
         return int(self.modes_of_bodies() * 2**self.body_count)
 
     @inlined
     def sense(self, mode: int, k: int) -> float:
-        """Give the sense of the slip of a body that slips."""
+        """Return the sense of the slip of a body that slips."""
         return -1.0 if mode // self.modes_of_bodies() // 2**k % 2 == 1 else 1.0
 
     @inlined
     def slipping(self, mode: int, k: int, sense: float) -> int:
-        """Give the mode in which a body slips in a sense."""
+        """Return the mode in which a body slips in a sense."""
         was, value = self.part_mode(mode, k), self.modes_of_bodies() * 2**k
         new = self.with_part(mode, k, Mode(was.contact, was.pivot, True))
         new -= new // value % 2 * value
@@ -84,7 +84,7 @@ class SlippingBodies(Chain):
 
     @inlined
     def slip_rate(self, k: int, mode: int, state: Vector) -> tuple[float, float]:
-        """Give the velocity of slip of the point named by the mode, and its rounding noise."""
+        """Return the velocity of slip of the point named by the mode, and its rounding noise."""
         part, body = self.on_base(k), self.state_of(k, state)
         pin = part.body.pin(self.part_mode(mode, k).pivot)
         turning = part.body.reach(pin, part.body.attitude(body.rotation)).rate
@@ -94,7 +94,7 @@ class SlippingBodies(Chain):
 
     @inlined
     def point_of(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
-        """Give the place along the base of the point that is held, or slips."""
+        """Return the place along the base of the point that is held, or slips."""
         part, body = self.on_base(k), self.state_of(k, state)
         pin, attitude = (
             part.body.pin(self.part_mode(mode, k).pivot),
@@ -104,12 +104,12 @@ class SlippingBodies(Chain):
 
     @inlined
     def kept(self, k: int) -> int:
-        """Give the index in the memory of the first number of a body's slip."""
+        """Return the index in the memory of the first number of a body's slip."""
         return self.behind_events() + KEPT * k
 
     @inlined
     def link_place(self) -> int:
-        """Give the index in the memory of the last event's link, in a chain with links."""
+        """Return the index in the memory of the last event's link, in a chain with links."""
         return self.kept(self.body_count)
 
     @inlined
@@ -124,12 +124,12 @@ class SlippingBodies(Chain):
 
     @kernel
     def slip_of(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
-        """Give the slip of a body on its base [m]."""
+        """Return the slip of a body on its base [m]."""
         return float(memory[self.kept(k) + OFFSET]) + self.point_of(k, mode, state, memory)
 
     @inlined
     def kind_of(self, k: int, old: int, new: int) -> int:
-        """Give the kind of event by which a body starts, stops or reverses its slip."""
+        """Return the kind of event by which a body starts, stops or reverses its slip."""
         slipped, slips = self.part_mode(old, k).slides, self.part_mode(new, k).slides
         if not slips:
             return events.STICK if slipped else SILENT
@@ -163,7 +163,7 @@ class SlippingBodies(Chain):
     def guards_of_slip(
         self, k: int, mode: int, state: Vector, slope: Slope, press: float, size: float
     ) -> SlidingGuards:
-        """Give the guards of a body's friction, over the force `size`, and of its slip."""
+        """Return the guards of a body's friction, over the force `size`, and of its slip."""
         standing, body = self.part_mode(mode, k), self.state_of(k, state)
         if not standing.slides:
             hold = self.friction_of(k, STATIC) * max(press, 0.0)
@@ -182,7 +182,7 @@ class SlippingBodies(Chain):
 
     @inlined
     def rounding(self, k: int, friction: float) -> float:
-        """Give the rounding noise of the friction force of a base.
+        """Return the rounding noise of the friction force of a base.
 
         It comes from forces of the size of the weight above, and from the friction force itself.
         """
@@ -197,7 +197,7 @@ class SlippingBodies(Chain):
 
     @kernel
     def go_on(self, mode: int, state: Vector, memory: Vector) -> int:
-        """Give the mode in which released bodies on deformable bases slip, or are held again.
+        """Return the mode in which released bodies on deformable bases slip, or are held again.
 
         Those without velocity of slip are held; the bound of friction is not checked here.
         """
@@ -210,7 +210,7 @@ class SlippingBodies(Chain):
 
     @kernel
     def with_slip(self, k: int, sense: float, mode: int, state: Vector, memory: Vector) -> int:
-        """Give the mode in which a body slips in a sense, or, with 0, is held."""
+        """Return the mode in which a body slips in a sense, or, with 0, is held."""
         standing = self.part_mode(mode, k)
         if sense != 0.0:
             return self.slipping(self.let_go(k, mode, state, memory), k, sense)
@@ -257,7 +257,7 @@ class SlippingBodies(Chain):
         out[j + 1] = self.slip_rate(k, mode, state)[0] if moves else 0.0
 
     def slips(self, k: int, ending: Ending) -> tuple[float, float, float]:
-        """Give slip at the end of a run, and largest slips to the left and right [m]."""
+        """Return slip at the end of a run, and largest slips to the left and right [m]."""
         mode, state, memory = ending.mode, ending.state, ending.memory.copy()
         self.keep_peaks(mode, state, memory)
         kept = memory[self.kept(k) :]
@@ -266,6 +266,6 @@ class SlippingBodies(Chain):
 
 
 def coefficients(frictions: Sequence[tuple[float, float, float]]) -> Vector:
-    """Give the coefficients of friction of all bases, then the room for columns."""
+    """Return the coefficients of friction of all bases, then the room for columns."""
     room = (COLUMNS + SLIP_COLUMNS) * len(frictions)
     return np.concatenate([np.ravel(frictions), np.zeros(room)])

@@ -21,17 +21,17 @@ class Chain(MovingBodies):
 
     @kernel
     def guards(self) -> int:
-        """Give the number of guards, of each body in turn."""
+        """Return the number of guards, of each body in turn."""
         return GUARDS * self.body_count
 
     @kernel
     def modes(self) -> int:
-        """Give the number of modes; some of these numbers do not occur."""
+        """Return the number of modes; some of these numbers do not occur."""
         return self.modes_of_bodies()
 
     @kernel
     def contact_state_of(self, mode: int, k: int) -> int:
-        """Give the contact state of a body."""
+        """Return the contact state of a body."""
         return self.on_base(k).shown_contact(self.part_mode(mode, k))
 
     @kernel
@@ -44,12 +44,12 @@ class Chain(MovingBodies):
 
     @kernel
     def without_sliding(self, mode: int) -> int:
-        """Give the mode itself: nothing is compiled for it."""
+        """Return the mode itself: nothing is compiled for it."""
         return mode
 
     @kernel
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
-        """Give the guards of each body in turn, and their rates."""
+        """Return the guards of each body in turn, and their rates."""
         return self.guards_of_bodies(mode, state, slope, ground)
 
     @kernel
@@ -67,7 +67,7 @@ class Chain(MovingBodies):
     def guards_on_base(
         self, k: int, slides: bool, mode: int, state: Vector, slope: Slope, ground: Ground
     ) -> Guards:
-        """Give the guards of a body on a deformable base, and their rates."""
+        """Return the guards of a body on a deformable base, and their rates."""
         part, standing, body = self.on_base(k), self.part_mode(mode, k), self.state_of(k, state)
         first, sliding = BEFORE_HORIZONTAL * k, IDLE
         vertical, angular = slope[first + VERTICAL], slope[first + ROTATION]
@@ -103,12 +103,12 @@ class Chain(MovingBodies):
 
     @inlined
     def behind_events(self) -> int:
-        """Give the index in the memory behind the numbers of the last event."""
+        """Return the index in the memory behind the numbers of the last event."""
         return HELD_PLACE + self.body_count + 1
 
     @inlined
     def link_place(self) -> int:
-        """Give the index in the memory of the last event's link, in a chain with links."""
+        """Return the index in the memory of the last event's link, in a chain with links."""
         return self.behind_events()
 
     @inlined
@@ -148,7 +148,7 @@ class Chain(MovingBodies):
 
     @kernel
     def disturb(self, k: int, mode: int, state: Vector) -> int:
-        """Give the mode after an event of another body has changed the speeds of this one."""
+        """Return the mode after an event of another body has changed the speeds of this one."""
         if self.is_rigid(k):
             return mode
         part, was = self.on_base(k), self.part_mode(mode, k)
@@ -161,7 +161,7 @@ class Chain(MovingBodies):
     def observe(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> Vector:
-        """Give motion and forces of each body in turn, from the top down, and of its base."""
+        """Return motion and forces of each body in turn, from the top down, and of its base."""
         return self.observe_bodies(mode, state, slope, ground, memory)
 
     @kernel
@@ -208,12 +208,12 @@ class Chain(MovingBodies):
 
     @inlined
     def observed_base(self, k: int, standing: Mode, body: BodyState) -> Variables:
-        """Give the base's columns in the results."""
+        """Return the base's columns in the results."""
         return self.observed_on(k, standing, body)
 
     @kernel
     def observed_on(self, k: int, standing: Mode, body: BodyState) -> Variables:
-        """Give the columns of a deformable base in the results."""
+        """Return the columns of a deformable base in the results."""
         part = self.on_base(k)
         if self.is_slippery(k):
             return part.base.observed(standing.contact, part.body.base_line_at(body), ())

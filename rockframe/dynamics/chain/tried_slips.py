@@ -52,12 +52,12 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @inlined
     def slip_sense(self, k: int) -> float:
-        """Give the sense of slip of a body on its base in the trial at hand: 0, held."""
+        """Return the sense of slip of a body on its base in the trial at hand: 0, held."""
         return float(self.places()[k * PLACES + at.SLIPS])
 
     @inlined
     def sense_in(self, mode: int, k: int) -> float:
-        """Give the sense of slip of a body on its base in a mode; 0 if it does not slip."""
+        """Return the sense of slip of a body on its base in a mode; 0 if it does not slip."""
         if (self.is_rigid(k) or self.is_slippery(k)) and self.part_mode(mode, k).slides:
             return self.sense(mode, k)
         return 0.0
@@ -79,7 +79,7 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @kernel
     def standing_on(self, k: int, bears: int, mode: int) -> int:
-        """Give the mode with the slip, on a rigid base, that the last trial gave a body."""
+        """Return the mode with the slip, on a rigid base, that the last trial gave a body."""
         sense = self.slip_sense(k)
         if bears != 0 and sense != 0.0:
             return self.slipping(mode, k, sense)
@@ -88,7 +88,7 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @kernel
     def as_tried(self, mode: int, state: Vector, memory: Vector) -> int:
-        """Give the mode with the slips on deformable bases of the last trial."""
+        """Return the mode with the slips on deformable bases of the last trial."""
         for k in range(self.body_count):
             if self.is_slippery(k) and not self.on_base(k).flies(self.part_mode(mode, k).contact):
                 mode = self.with_slip(k, self.slip_sense(k), mode, state, memory)
@@ -112,19 +112,19 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @inlined
     def pin_on(self, bears: int) -> int:
-        """Give the pivot at corners that bear; where both do they have one velocity."""
+        """Return the pivot at corners that bear; where both do they have one velocity."""
         return PIVOT_LEFT if bears == LEFT_ONLY else PIVOT_RIGHT
 
     @inlined
     def pressed(self, k: int) -> float:
-        """Give the normal force of a body's base on it, or its impulse."""
+        """Return the normal force of a body's base on it, or its impulse."""
         if self.is_rigid(k):
             return self.corner_force(k, True) + self.corner_force(k, False)
         return float(self.places()[k * PLACES + at.PRESS])
 
     @kernel
     def slip_on(self, k: int, pivot: int, state: Vector) -> tuple[float, float]:
-        """Give the velocity of slip of a point of a base, and its rounding noise."""
+        """Return the velocity of slip of a point of a base, and its rounding noise."""
         part, body = self.on_base(k), self.state_of(k, state)
         pin = part.body.pin(pivot)
         about = part.body.reach(pin, part.body.attitude(body.rotation)).rate * body.angular_velocity
@@ -182,7 +182,7 @@ class TriedSlips(SlipperyBases, RigidChain):
     def lost_by_friction(
         self, k: int, which: int, state: Vector, room: Vector, rows: Vector
     ) -> float:
-        """Give the energy that friction takes in an impact at a corner that slips."""
+        """Return the energy that friction takes in an impact at a corner that slips."""
         first, ratio = which * CONSTRAINT, room[k * PLACES + at.RUBS]
         if ratio == 0.0:
             return 0.0
@@ -272,7 +272,7 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @kernel
     def noted_way(self) -> int:
-        """Give the number, in base 3, of the slips of all bodies in the trial at hand."""
+        """Return the number, in base 3, of the slips of all bodies in the trial at hand."""
         way = 0
         for k in range(self.body_count - 1, -1, -1):
             way = 3 * way + int(self.places()[k * PLACES + at.SLIPS]) % 3
@@ -368,7 +368,7 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @inlined
     def tried_at(self, k: int, mode: int, some: int, impulsive: bool) -> int:
-        """Give the pivot at which a body is held or slips in a trial of corners, or `NOWHERE`.
+        """Return the pivot at which a body is held or slips in a trial of corners, or `NOWHERE`.
 
         On a deformable base friction has no part in impacts.
         """
@@ -380,7 +380,7 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @inlined
     def slip_before(self, k: int, pivot: int, mode: int, state: Vector) -> tuple[float, float]:
-        """Give the velocity of slip before a trial of corners, and its rounding noise."""
+        """Return the velocity of slip before a trial of corners, and its rounding noise."""
         if not self.is_rigid(k) and not self.part_mode(mode, k).slides:
             return 0.0, 0.0  # held: the state need not have its velocity
         return self.slip_on(k, pivot, state)
@@ -422,7 +422,7 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @inlined
     def thrust_of(self, k: int) -> float:
-        """Give the force along its base that holds a body in the trial at hand."""
+        """Return the force along its base that holds a body in the trial at hand."""
         which = int(self.places()[k * PLACES + at.HOLDS_ALONG])
         return float(self.constraints()[which * CONSTRAINT + at.FORCE])
 
@@ -438,7 +438,7 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @kernel
     def slips_on(self, k: int, pivot: int, impulsive: bool, state: Vector) -> float:
-        """Give the acceleration of the slip of a point, or its change in an impact."""
+        """Return the acceleration of the slip of a point, or its change in an impact."""
         i, part, body = k * PLACES, self.on_base(k), self.state_of(k, state)
         room, rows, rate = self.places(), self.constraints(), body.angular_velocity
         reach = part.body.reach(part.body.pin(pivot), part.body.attitude(body.rotation))

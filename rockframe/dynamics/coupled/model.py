@@ -48,7 +48,7 @@ UPRIGHT: Final = StackRest(0.0, 0.0, 0.0, 0.0)
 
 
 def system_of(block: ChainBody, cap: ChainBody) -> Coupled:
-    """Give the system of a block on a cap."""
+    """Return the system of a block on a cap."""
     return Coupled(
         OnBase(block.body, block.base.law), OnBase(cap.body, cap.base.law), cap.mass, cap.top,
         block.beside,
@@ -118,7 +118,7 @@ def _rounding(block: ChainBody, cap: ChainBody, fastest: float) -> Callable[[flo
 def state_at(
     system: Coupled, place: StackRest, rate: float = 0.0, vertical_velocity: float = 0.0
 ) -> tuple[int, Vector, Vector]:
-    """Give mode, state and memory of a block on a cap at given places, the cap at rest.
+    """Return mode, state and memory of a block on a cap at given places, the cap at rest.
 
     `rate` and `vertical_velocity` are those of the block.
     """
@@ -153,7 +153,7 @@ def state_at(
 
 
 def _starting(system: Coupled, rest: StackRest) -> Callable[[Start], tuple[int, Vector, Vector]]:
-    """Give the function that makes the initial state: the cap at rest, the block as given."""
+    """Return the function that makes the initial state: the cap at rest, the block as given."""
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:
         place = rest

@@ -78,7 +78,7 @@ class CoupledMotion(NamedTuple):
 def configuration(
     pair: Pair, modes: Modes, states: States, upper: Attitude, lower: Attitude
 ) -> Configuration:
-    """Give the geometry of states, with the held points of modes."""
+    """Return the geometry of states, with the held points of modes."""
     return configuration_with(
         pair, modes, states, upper, lower,
         pair.upper.is_free(modes.upper), pair.lower.is_free(modes.lower),
@@ -90,7 +90,7 @@ def configuration_with(
     pair: Pair, modes: Modes, states: States, upper: Attitude, lower: Attitude, block_free: bool,
     cap_free: bool,
 ) -> Configuration:  # fmt: skip
-    """Give the geometry of states, with each body held at its pivot or free as given."""
+    """Return the geometry of states, with each body held at its pivot or free as given."""
     block, cap = pair.upper.body, pair.lower.body
     sine, cosine = lower.sine, lower.cosine
     if cap.small:  # the frame's rotation is exact even with small-rotation kinematics on the bases
@@ -109,7 +109,7 @@ def configuration_with(
 
 @inlined
 def along_rate(place: Configuration, states: States) -> float:
-    """Give d xi/dt, the block's velocity along the cap."""
+    """Return d xi/dt, the block's velocity along the cap."""
     if place.block_free:
         return states.upper.horizontal_velocity
     return place.block_reach.rate * states.upper.angular_velocity
@@ -117,7 +117,7 @@ def along_rate(place: Configuration, states: States) -> float:
 
 @inlined
 def cap_sway(place: Configuration, states: States) -> float:
-    """Give the horizontal velocity of the cap's centre."""
+    """Return the horizontal velocity of the cap's centre."""
     if place.cap_free:
         return states.lower.horizontal_velocity
     return place.cap_reach.rate * states.lower.angular_velocity
@@ -125,7 +125,7 @@ def cap_sway(place: Configuration, states: States) -> float:
 
 @inlined
 def block_velocity(place: Configuration, states: States) -> tuple[float, float]:
-    """Give the horizontal and vertical velocity of the block's centre of mass."""
+    """Return the horizontal and vertical velocity of the block's centre of mass."""
     cap_rate = states.lower.angular_velocity
     s, c = place.sine, place.cosine
     along = along_rate(place, states) + place.arm * cap_rate
@@ -138,7 +138,7 @@ def block_velocity(place: Configuration, states: States) -> tuple[float, float]:
 
 @inlined
 def block_height(place: Configuration, states: States) -> float:
-    """Give the rise of the block's centre of mass from rest, without cancellation [m]."""
+    """Return the rise of the block's centre of mass from rest, without cancellation [m]."""
     s, c = place.sine, place.cosine
     versine = s * s / (1.0 + c) if c > 0.0 else 1.0 - c
     normal = states.upper.vertical
@@ -189,7 +189,7 @@ def solve_motion(
 
 @inlined
 def normal_change(place: Configuration, motion: CoupledMotion) -> float:
-    """Give what the cap's motion adds to the block's acceleration relative to it, normal to it."""
+    """Return what the cap's motion adds to the block's relative acceleration normal to it."""
     s, c = place.sine, place.cosine
     lift = s * motion.cap_horizontal + c * motion.cap_vertical
     return place.across * motion.cap_angular - lift

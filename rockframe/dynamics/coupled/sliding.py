@@ -44,7 +44,7 @@ class Slips(NamedTuple):
 
 @kernel
 def sliding_end(part: OnBase, mode: Mode, attitude: Attitude, line: BaseLine) -> SlidingEnd:
-    """Give the sliding end of a body; the result has no meaning where none slides."""
+    """Return the sliding end of a body; the result has no meaning where none slides."""
     left = part.base.is_held(mode.contact, True)
     on_left, on_right = part.body.end_accelerations(attitude, 1.0, 0.0, 0.0)
     if left:
@@ -56,7 +56,7 @@ def sliding_end(part: OnBase, mode: Mode, attitude: Attitude, line: BaseLine) ->
 def rises(
     place: Configuration, motion: CoupledMotion, press: float, block: SlidingEnd, cap: SlidingEnd
 ) -> Rises:
-    """Give the contributions of a motion to the accelerations of both sliding ends."""
+    """Return the contributions of a motion to the accelerations of both sliding ends."""
     normal = press + normal_change(place, motion)
     return Rises(
         normal + block.lever * motion.angular, motion.cap_vertical + cap.lever * motion.cap_angular
@@ -68,7 +68,7 @@ def slide_both(
     pair: Pair, modes: Modes, states: States, place: Configuration, block: SlidingEnd,
     cap: SlidingEnd, forces: Forces, known: KnownTerms, normal: float,
 ) -> Slips:  # fmt: skip
-    """Give the slips that keep sliding ends at their levels, :eq:`eq-sliding-contact`.
+    """Return the slips that keep sliding ends at their levels, :eq:`eq-sliding-contact`.
 
     They are given as additions to `swing` and `drift`, with the power of the holds on the slips,
     which is negative. `place` has both bodies held; `normal` is the known part of the block's

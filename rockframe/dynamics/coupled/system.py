@@ -57,24 +57,24 @@ class Coupled(Stacked, Pair):
 
     @inlined
     def moving_in(self, mode: int) -> int:
-        """Give the number of coordinates that move: all, or all but a held cap's horizontal one."""
+        """Return number of coordinates that move: all, or all but a held cap's horizontal one."""
         return COORDINATES if self.lower.is_free(self.modes_in(mode).lower) else LOWER_HORIZONTAL
 
     @inlined
     def attitudes(self, states: States) -> tuple[Attitude, Attitude]:
-        """Give the attitudes of block and cap on their bases."""
+        """Return the attitudes of block and cap on their bases."""
         upper = self.upper.body.attitude(states.upper.rotation)
         return upper, self.lower.body.attitude(states.lower.rotation)
 
     @kernel
     def place_in(self, mode: int, states: States) -> Configuration:
-        """Give the geometry of states, with the held points of a mode."""
+        """Return the geometry of states, with the held points of a mode."""
         upper, lower = self.attitudes(states)
         return configuration(self, self.modes_in(mode), states, upper, lower)
 
     @inlined
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> tuple[float, ...]:
-        """Give accelerations, rates of the bases' own variables, and powers."""
+        """Return accelerations, rates of the bases' own variables, and powers."""
         modes, states = self.modes_in(mode), self.states_in(state)
         upper, lower = self.attitudes(states)
         block_line = self.upper.body.base_line(states.upper, upper)
@@ -136,7 +136,7 @@ class Coupled(Stacked, Pair):
 
     @inlined
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
-        """Give the guards of the block, then of the cap, and their rates."""
+        """Return the guards of the block, then of the cap, and their rates."""
         modes, states = self.modes_in(mode), self.states_in(state)
         of_block, of_cap = IDLE, IDLE
         if modes.upper.slides or modes.lower.slides:
@@ -156,7 +156,7 @@ class Coupled(Stacked, Pair):
 
     @kernel
     def holds(self, mode: int, states: States, slope: Slope, ground: Ground) -> Holding:
-        """Give the forces between ground, cap and block, from the accelerations.
+        """Return the forces between ground, cap and block, from the accelerations.
 
         Equation :eq:`eq-coupled`.
         """
@@ -193,7 +193,7 @@ class Coupled(Stacked, Pair):
 
     @kernel
     def energies(self, mode: int, state: Vector) -> Energies:
-        """Give the energies, :eq:`eq-coupled-energy`."""
+        """Return the energies, :eq:`eq-coupled-energy`."""
         states = self.states_in(state)
         place = self.place_in(mode, states)
         across, up = block_velocity(place, states)
@@ -219,7 +219,7 @@ class Coupled(Stacked, Pair):
     def observe(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> tuple[float, ...]:
-        """Give motion of block and cap, reactions, and the columns of both bases."""
+        """Return motion of block and cap, reactions, and the columns of both bases."""
         states = self.states_in(state)
         place = self.place_in(mode, states)
         across, up = block_velocity(place, states)
@@ -248,7 +248,7 @@ class Coupled(Stacked, Pair):
 
     @kernel
     def place(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
-        """Give the place of a centre of mass: a block's along the cap, a cap's on the ground."""
+        """Return the place of a centre of mass: a block's along the cap, a cap's on the ground."""
         if k == UPPER:
             return state[HORIZONTAL]
         standing, body = self.modes_in(mode).lower, self.state_of(LOWER, state)
@@ -259,7 +259,7 @@ class Coupled(Stacked, Pair):
     def response(
         self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
     ) -> VelocityChange:
-        """Give the changes of velocities by an impulse, or by a hold that stops a slip."""
+        """Return the changes of velocities by an impulse, or by a hold that stops a slip."""
         states = self.states_in(state)
         place = self.place_in(mode, states)
         if k == UPPER:
@@ -299,7 +299,7 @@ class Coupled(Stacked, Pair):
     def end_accelerations(
         self, k: int, mode: int, state: Vector, ground: Ground
     ) -> tuple[float, float]:
-        """Give the accelerations of the left and right end away from the surface beneath them."""
+        """Return the accelerations of the left and right end away from the surface beneath them."""
         slope, states = self.accelerate(mode, state, ground), self.states_in(state)
         if k == UPPER:
             return self.upper.end_rises(states.upper, slope[VERTICAL], slope[ROTATION])
@@ -307,7 +307,7 @@ class Coupled(Stacked, Pair):
 
     @kernel
     def tendency(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
-        """Give the sign of the rotation that will follow; at rest it is a guess."""
+        """Return the sign of the rotation that will follow; at rest it is a guess."""
         if ground.x != 0.0:
             return -ground.x
         other = state[ROTATION] if k == LOWER else -state[COORDINATES + LOWER_ROTATION]

@@ -222,7 +222,7 @@ def _extrapolations(source: PointSource, owner: str) -> list[str]:
 def _arguments(
     source: PointSource, seed: int, vertical: float | None, time_step: float
 ) -> dict[str, str | float | int]:
-    """Give all arguments, so that the motion can be built again after changes of defaults."""
+    """Return all arguments, so that the motion can be built again after changes of defaults."""
     return {
         "magnitude": source.magnitude,
         "distance": f"{source.distance!r} {_DISTANCE.unit}",

@@ -209,7 +209,7 @@ class Oscillators:
         return found
 
     def _lines(self, samples: Array) -> tuple[Array, Array]:
-        """Give start and rise of the lines between the samples, and of zeros after the motion."""
+        """Return start and rise of the lines between the samples, and of zeros after the motion."""
         still = np.zeros(self._after)
         return np.append(samples[:-1], still), np.append(np.diff(samples), still)
 

@@ -97,7 +97,7 @@ class Goal(NamedTuple):
         return np.geomspace(self.shortest, self.longest, count)
 
     def ratios(self, signal: Signal) -> Array:
-        """Give the spectrum over the target at the checked periods, shape (c,) [1]."""
+        """Return the spectrum over the target at the checked periods, shape (c,) [1]."""
         periods = self.checked
         displacement = spectral_peaks(signal, periods, self.damping_ratio)[:, 0]
         return pseudo_spectra(signal, periods, displacement)[1] / self.spectrum(periods)
@@ -209,7 +209,7 @@ class _Run:
         return False
 
     def _size(self, peaks: OscillatorPeaks, chosen: NDArray[np.bool_]) -> float:
-        """Give the mean fourth power of ln(spectrum / target)."""
+        """Return the mean fourth power of ln(spectrum / target)."""
         logarithms = np.log(peaks.spectrum[chosen] / self._targets[chosen])
         return float((np.abs(logarithms) ** _POWER).mean())
 

@@ -216,13 +216,13 @@ def rotated(
 
 
 def _scale(motion: MotionValue) -> float:
-    """Give the absolute product of all scalings [1]."""
+    """Return the absolute product of all scalings [1]."""
     factor = motion.metadata.get("scale_factor")
     return abs(factor) if isinstance(factor, int | float) else 1.0
 
 
 def _azimuths(motion: MotionValue, other: MotionValue, owner: str) -> tuple[float, float]:
-    """Give the azimuth [degree], and 1 if the other component is clockwise from it, else -1.
+    """Return the azimuth [degree], and 1 if the other component is clockwise from it, else -1.
 
     The azimuth is NaN if that of a component is not known.
     """
@@ -240,7 +240,7 @@ def _azimuths(motion: MotionValue, other: MotionValue, owner: str) -> tuple[floa
 
 
 def _direction(turn: float) -> tuple[float, float]:
-    """Give cosine and sine, exact at multiples of a right angle."""
+    """Return cosine and sine, exact at multiples of a right angle."""
     quarters = turn / (0.5 * math.pi)
     nearest = round(quarters)
     if abs(quarters - nearest) <= _ROUNDING:

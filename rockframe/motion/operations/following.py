@@ -43,7 +43,7 @@ def following(
     metadata: Mapping[str, Any] | None = None,
     same_spectrum: bool = False,
 ) -> Made:
-    """Give the result of an operation as a motion; metadata that are None are left out."""
+    """Return the result of an operation as a motion; metadata that are None are left out."""
     recipe = None
     if motion.recipe is not None and operation is not None:
         done = [*motion.recipe.get("operations", ()), dict(operation)]
@@ -63,7 +63,7 @@ def following(
 
 
 def lost_pieces(si: Motion) -> tuple[str, ...]:
-    """Give the sentence that processing drops the analytic pieces, if there are any."""
+    """Return the sentence that processing drops the analytic pieces, if there are any."""
     return (_DROPPED,) if si.analytic else ()
 
 
@@ -95,7 +95,7 @@ def other_motion(other: object, si: Motion, owner: str) -> MotionValue:
 
 
 def starting_later(motion: MotionValue, seconds: float) -> dict[str, str | float]:
-    """Give the known start times in the metadata, moved by some seconds."""
+    """Return the known start times in the metadata, moved by some seconds."""
     moved: dict[str, str | float] = {}
     for prefix in ("", OF_VERTICAL) if seconds != 0.0 else ():
         if f"{prefix}{_START}" in motion.metadata:
@@ -107,7 +107,7 @@ def starting_later(motion: MotionValue, seconds: float) -> dict[str, str | float
 
 
 def without_vertical(motion: MotionValue) -> dict[str, None]:
-    """Give the metadata of a vertical component that the result no longer has, as None."""
+    """Return the metadata of a vertical component that the result no longer has, as None."""
     return {key: None for key in motion.metadata if key.startswith(OF_VERTICAL)}
 
 

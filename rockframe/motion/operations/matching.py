@@ -58,7 +58,7 @@ class Target(Protocol):
         ...
 
     def at_seconds(self, seconds: Array, *, owner: str) -> Array:
-        """Give the pseudo-spectral accelerations [m s^-2] at periods [s]."""
+        """Return the pseudo-spectral accelerations [m s^-2] at periods [s]."""
         ...
 
 

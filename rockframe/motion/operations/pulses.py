@@ -148,7 +148,7 @@ def searched(shortest: QuantityLike, longest: QuantityLike, dt: float, *, owner:
 
 
 def velocity_of(signal: Signal) -> Array:
-    """Give the velocity of the ground at the samples, from rest [m s^-1]."""
+    """Return the velocity of the ground at the samples, from rest [m s^-1]."""
     return knots_of(ground_path(signal)[0])
 
 

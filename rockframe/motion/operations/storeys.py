@@ -65,7 +65,7 @@ _WAYS: Final = (
 def _read_building(
     entries: Mapping[str, Any], damping_ratio: object, owner: str
 ) -> tuple[FloorModes, str, dict[str, Any]]:
-    """Give the modes of a building, its description in words, and its arguments."""
+    """Return the modes of a building, its description in words, and its arguments."""
     values = {name: value for name, value in entries.items() if value is not None}
     ways = [set(needed) <= set(values) <= {*needed, *more} for needed, more in _WAYS]
     if True not in ways:
@@ -347,7 +347,7 @@ def through_storeys(
 
 
 def _floor(ground: Signal, modes: FloorModes, parts: int) -> tuple[Signal, float]:
-    """Give the floor acceleration, and its deviation from straight lines over its peak."""
+    """Return the floor acceleration, and its deviation from straight lines over its peak."""
     halves = divided_signal(ground, 2 * parts)
     rigid = modes.rigid_share * divided_signal(ground, parts).samples
     added = passed_on(halves.pieces, halves.time_step, modes.moving)

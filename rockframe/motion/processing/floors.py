@@ -64,14 +64,14 @@ def passed_on(pieces: Array, time_step: float, modes: FloorModes) -> Array:
 
 
 def decay_time(modes: FloorModes) -> float:
-    """Give the time in which all modes decay, :eq:`eq-floor-decay` [s]."""
+    """Return the time in which all modes decay, :eq:`eq-floor-decay` [s]."""
     with np.errstate(divide="ignore"):
         periods = 1.0 - math.log(DECAYED) / (2.0 * math.pi * modes.damping_ratios)
     return max((modes.periods * periods).tolist(), default=0.0)
 
 
 def _oscillator(pieces: Array, time_step: float, period: float, damping: float) -> Array:
-    """Give the absolute acceleration of one oscillator, :eq:`eq-oscillator-acceleration`."""
+    """Return the absolute acceleration of one oscillator, :eq:`eq-oscillator-acceleration`."""
     matrix = interval_matrix(time_step, period, damping, pieces.shape[1])
     (uu, uv), (vu, vv) = matrix[:, :2].tolist()
     driven = matrix[:, 2:] @ pieces.T
@@ -89,7 +89,7 @@ def _oscillator(pieces: Array, time_step: float, period: float, damping: float) 
 
 
 def uniform_modes(storeys: int, floor: int, period: float) -> tuple[Array, Array]:
-    """Give the modes of equal storeys in closed form, :eq:`eq-uniform-building`."""
+    """Return the modes of equal storeys in closed form, :eq:`eq-uniform-building`."""
     angles = np.pi * np.arange(1.0, 2.0 * storeys, 2.0) / (2 * storeys + 1)
     periods = period * np.sin(0.5 * angles[0]) / np.sin(0.5 * angles)
     participations = 2.0 * np.sin(floor * angles) / ((2 * storeys + 1) * np.tan(0.5 * angles))

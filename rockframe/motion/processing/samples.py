@@ -37,13 +37,13 @@ def sample_count(duration: float, time_step: float) -> int:
 
 
 def whole_ratio(ratio: float) -> int | None:
-    """Give a ratio of time steps as a whole number; None if it is not whole."""
+    """Return a ratio of time steps as a whole number; None if it is not whole."""
     times = round(ratio)
     return times if abs(ratio - times) <= _INTEGER_RATIO * ratio else None
 
 
 def instants_of(duration: float, time_step: float) -> Array:
-    """Give the times of the samples of step `time_step` within `duration` [s]."""
+    """Return the times of the samples of step `time_step` within `duration` [s]."""
     return np.minimum(np.arange(sample_count(duration, time_step)) * time_step, duration)
 
 
@@ -251,5 +251,5 @@ def warn_of_coarse_samples(
 
 
 def finer(time_step: float, shortest: float) -> float:
-    """Give a time step, divided into equal parts, that is short enough for a period [s]."""
+    """Return a time step, divided into equal parts, that is short enough for a period [s]."""
     return time_step / math.ceil(FEWEST * time_step / shortest * (1.0 - _ROUNDING))

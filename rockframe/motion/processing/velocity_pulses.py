@@ -45,7 +45,7 @@ def scaling_filter() -> Array:
 
 @cache
 def _table() -> tuple[Array, Array]:
-    """Give exact values of the wavelet at dyadic points: integers, halves, quarters and so on."""
+    """Return exact values of the wavelet at dyadic points: integers, halves, quarters and so on."""
     taps = math.sqrt(2.0) * scaling_filter()
     size = taps.size
     # the values at integers are an eigenvector of the two-scale equation
@@ -124,7 +124,7 @@ class Measures(NamedTuple):
 
 
 def periods_between(shortest: float, longest: float) -> Array:
-    """Give the periods of the search for a pulse [s]."""
+    """Return the periods of the search for a pulse [s]."""
     count = math.ceil(math.log(longest / shortest) / math.log(PERIOD_RATIO)) + 1
     return np.geomspace(shortest, longest, max(count, 2))
 
@@ -172,7 +172,7 @@ def extracted(velocity: Array, dt: float, place: WaveletPeak) -> list[tuple[int,
 
 
 def sum_of(wavelets: list[tuple[int, float]], wavelet: Array, start: int, count: int) -> Array:
-    """Give the sum of wavelets at some samples."""
+    """Return the sum of wavelets at some samples."""
     total = np.zeros(count)
     for middle, coefficient in wavelets:
         begin = middle - wavelet.size // 2 - start
@@ -212,7 +212,7 @@ def _reached(velocity: Array, share: float) -> int:
 
 
 def _coefficients_about(velocity: Array, samples: range, wavelet: Array) -> Array:
-    """Give the coefficients of a wavelet centred at consecutive samples."""
+    """Return the coefficients of a wavelet centred at consecutive samples."""
     from scipy import signal as module
 
     signal: Any = module
@@ -223,7 +223,7 @@ def _coefficients_about(velocity: Array, samples: range, wavelet: Array) -> Arra
 
 
 def _at(velocities: Array, sample: int, wavelet: Array) -> Array:
-    """Give the coefficient of a wavelet centred at a sample, for each component."""
+    """Return the coefficient of a wavelet centred at a sample, for each component."""
     return np.array(
         [_coefficients_about(one, range(sample, sample + 1), wavelet)[0] for one in velocities]
     )

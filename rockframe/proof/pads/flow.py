@@ -40,7 +40,7 @@ class Curve:
         return Curve(self.of + other.of, error)
 
     def __neg__(self) -> "Curve":
-        """Give the opposite."""
+        """Return the opposite."""
         return Curve(-self.of, self.error)
 
     def __sub__(self, other: "Curve") -> "Curve":
@@ -48,7 +48,7 @@ class Curve:
         return self + (-other)
 
     def times(self, factor: float) -> "Curve":
-        """Give a multiple."""
+        """Return a multiple."""
         return Curve(self.of * factor, abs(factor) * self.error + _LOST * abs(factor) * self.size)
 
     def __mul__(self, other: "Curve") -> "Curve":
@@ -59,7 +59,7 @@ class Curve:
         return Curve(whole[: DEGREE + 1], (error + _LOST * self.size * other.size) * UPWARDS)
 
     def inverse(self) -> "Curve":
-        """Give the reciprocal; its error follows from the product with it, which should be 1."""
+        """Return the reciprocal; its error follows from the product with it, which should be 1."""
         first = 1.0 / float(self.of[0])
         found = np.zeros(DEGREE + 1)
         found[0] = first
@@ -75,14 +75,14 @@ class Curve:
 
 
 def constant(value: float) -> Curve:
-    """Give a constant curve."""
+    """Return a constant curve."""
     found = np.zeros(DEGREE + 1)
     found[0] = value
     return Curve(found, abs(value) * _LOST)
 
 
 def curve(series: Row, error: float) -> Curve:
-    """Give the curve of a series, within an error."""
+    """Return the curve of a series, within an error."""
     middles = np.array([float(one) for one in series])
     sizes = sum(float(one.abs_upper()) for one in series[DEGREE + 1 :])
     radii = sum(float(one.rad()) for one in series[: DEGREE + 1])
@@ -114,7 +114,7 @@ class StateSet(NamedTuple):
         return [one + ball(0, each) for one, each in zip(self.centre, radii, strict=True)]
 
     def mapped(self, image: Row, middle: Array, error: Array, weights: Array) -> "StateSet":
-        """Give the image of the set from that of the centre, and the weighted derivative.
+        """Return the image of the set from that of the centre, and the weighted derivative.
 
         The derivative is `middle`, each element within `error`.
         """
@@ -141,7 +141,7 @@ class StateSet(NamedTuple):
 
 
 def point(start: Sequence[float]) -> StateSet:
-    """Give the set of one state."""
+    """Return the set of one state."""
     return StateSet([ball(one) for one in start], np.eye(SIZE), np.zeros(SIZE))
 
 
@@ -161,7 +161,7 @@ class Step(NamedTuple):
         return [value(series, share) + ball(0, rest) for series, rest in pairs]
 
     def derivative(self, share: float) -> Array:
-        """Give the weighted derivative by the start at a share of the step, without its error."""
+        """Return the weighted derivative by the start at a share of the step, without its error."""
         found = self.powers[-1]
         for one in self.powers[-2::-1]:
             found = found * share + one
@@ -238,7 +238,7 @@ def _motion(pads: PadBalls, found: PadCourse, strays: Array) -> _Motion:
 
 
 def _stiffness(pads: PadBalls, standing: Standing, motion: _Motion) -> dict[tuple[int, int], Curve]:
-    """Give the derivatives of both accelerations by the state, by row and column."""
+    """Return the derivatives of both accelerations by the state, by row and column."""
     if standing.flies:
         return {}
     tall, stiff, damped = float(pads.height), float(pads.stiffness), float(pads.damping)
@@ -280,7 +280,7 @@ def _stiffness(pads: PadBalls, standing: Standing, motion: _Motion) -> dict[tupl
 
 
 def _weighted(stiff: dict[tuple[int, int], Curve], h: float, weights: Array) -> tuple[Array, Array]:
-    """Give the coefficients of the weighted derivative of the field times h, and their errors."""
+    """Return the coefficients of the weighted derivative of the field times h, and their errors."""
     matrix, error = np.zeros((DEGREE + 1, SIZE, SIZE)), np.zeros((SIZE, SIZE))
     for (i, j), one in stiff.items():
         factor = h * weights[j] / weights[i]
@@ -293,7 +293,7 @@ def _weighted(stiff: dict[tuple[int, int], Curve], h: float, weights: Array) -> 
 
 
 def _variation(matrix: Array, error: Array) -> tuple[Array, Array]:
-    """Give a polynomial for the derivative by the start, and its residual in its equation."""
+    """Return a polynomial for the derivative by the start, and its residual in its equation."""
     powers = np.zeros((_OF_VARIATION + 1, SIZE, SIZE))
     powers[0] = np.eye(SIZE)
     size, whole = np.abs(matrix), np.zeros((SIZE, SIZE))
@@ -311,7 +311,7 @@ def _guard(
     pads: PadBalls, standing: Standing, guard: Guard, found: PadCourse, motion: _Motion,
     bounds: tuple[float, float], weights: Array,
 ) -> tuple[Curve, Curve]:  # fmt: skip
-    """Give a guard and its derivative by the share, as curves."""
+    """Return a guard and its derivative by the share, as curves."""
     tube, rate = bounds
     h = float(found.h)
     lean, turn, sink, fall = (float(one) for one in motion.strays[:4])
@@ -357,5 +357,5 @@ def _guard(
 
 
 def _slope(series: Row, error: float) -> Curve:
-    """Give the derivative of a series by the share, as a curve."""
+    """Return the derivative of a series by the share, as a curve."""
     return curve([k * one for k, one in enumerate(series)][1:], error)

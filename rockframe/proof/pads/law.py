@@ -38,7 +38,7 @@ class Dual:
     __radd__ = __add__
 
     def __neg__(self) -> "Dual":
-        """Give the opposite."""
+        """Return the opposite."""
         return Dual(-self.value, [-one for one in self.slope])
 
     def __sub__(self, other: Any) -> "Dual":
@@ -68,18 +68,18 @@ class Dual:
         return Dual(value, slope)
 
     def sin(self) -> "Dual":
-        """Give the sine."""
+        """Return the sine."""
         cosine = self.value.cos()
         return Dual(self.value.sin(), [cosine * one for one in self.slope])
 
     def cos(self) -> "Dual":
-        """Give the cosine."""
+        """Return the cosine."""
         sine = self.value.sin()
         return Dual(self.value.cos(), [-sine * one for one in self.slope])
 
 
 def duals(state: Row) -> list[Dual]:
-    """Give a state as duals, the independent variables of gradients."""
+    """Return a state as duals, the independent variables of gradients."""
     one = [[ball(int(i == j)) for j in range(SIZE)] for i in range(SIZE)]
     return [Dual(value, one[i]) for i, value in enumerate(state)]
 
@@ -117,11 +117,11 @@ class Standing(NamedTuple):
     right: int
 
     def of(self, left: bool) -> int:
-        """Give the contact of a corner."""
+        """Return the contact of a corner."""
         return self.left if left else self.right
 
     def with_corner(self, left: bool, contact: int) -> "Standing":
-        """Give the contacts with another one of a corner."""
+        """Return the contacts with another one of a corner."""
         return Standing(contact, self.right) if left else Standing(self.left, contact)
 
     @property
@@ -147,7 +147,7 @@ _GUARDS: Final = {
 
 
 def guards_of(standing: Standing) -> list[Guard]:
-    """Give the guards of some contacts, :eq:`eq-guards`, and those of overturning."""
+    """Return the guards of some contacts, :eq:`eq-guards`, and those of overturning."""
     found = [Guard(kind, left) for left in (True, False) for kind in _GUARDS[standing.of(left)]]
     return [*found, Guard("limit", True), Guard("limit", False)]
 
@@ -161,7 +161,7 @@ class Turned(NamedTuple):
 
 
 def turned(pads: PadBalls, rotation: Any) -> Turned:
-    """Give sine, cosine and rise, :eq:`eq-kinematics`."""
+    """Return sine, cosine and rise, :eq:`eq-kinematics`."""
     if pads.small:
         return Turned(rotation, ball(1), rotation * rotation * (pads.height / 2))
     cosine = rotation.cos()
@@ -177,7 +177,7 @@ class CornerMotion(NamedTuple):
 
 
 def corner(pads: PadBalls, left: bool, state: list[Any]) -> CornerMotion:
-    """Give height, speed and lever of a corner in a state."""
+    """Return height, speed and lever of a corner in a state."""
     reach = pads.left if left else -pads.right
     at = turned(pads, state[0])
     lever = at.sine * pads.height + at.cosine * reach
@@ -185,19 +185,19 @@ def corner(pads: PadBalls, left: bool, state: list[Any]) -> CornerMotion:
 
 
 def reaction(pads: PadBalls, left: bool, at: CornerMotion) -> Any:
-    """Give the force of a pad on a corner if they touched, :eq:`eq-pad-force`."""
+    """Return the force of a pad on a corner if they touched, :eq:`eq-pad-force`."""
     depth = pads.settlements[not left] - at.level
     return depth * pads.stiffness - at.speed * pads.damping
 
 
 def pivot(pads: PadBalls, standing: Standing) -> int:
-    """Give the pivot: which point of the base is held."""
+    """Return the pivot: which point of the base is held."""
     left, right = (standing.of(one) < RELAXING for one in (True, False))
     return pivot_of(pads.rule, left, right, 0.0, 0.0)
 
 
 def pin(pads: PadBalls, standing: Standing) -> Ball:
-    """Give e, from below the centre of mass to the held point."""
+    """Return e, from below the centre of mass to the held point."""
     found = pivot(pads, standing)
     if found == PIVOT_CENTRE:
         return pads.middle
@@ -205,7 +205,7 @@ def pin(pads: PadBalls, standing: Standing) -> Ball:
 
 
 def arm(pads: PadBalls, standing: Standing, rotation: Any) -> Any:
-    """Give x', the derivative of the centre's horizontal place by the rotation."""
+    """Return x', the derivative of the centre's horizontal place by the rotation."""
     if pads.small:
         return pads.height
     at = turned(pads, rotation)
@@ -213,7 +213,7 @@ def arm(pads: PadBalls, standing: Standing, rotation: Any) -> Any:
 
 
 def field(pads: PadBalls, standing: Standing, state: list[Any], ground: Shaken) -> list[Any]:
-    """Give the rates of change of a state, :eq:`eq-two-spring`."""
+    """Return the rates of change of a state, :eq:`eq-two-spring`."""
     rotation, rate, _, speed, _ = state
     upward, moment = -ground.weight, ZERO
     for left in (True, False):
@@ -234,7 +234,7 @@ def field(pads: PadBalls, standing: Standing, state: list[Any], ground: Shaken) 
 
 
 def guard_value(pads: PadBalls, guard: Guard, state: list[Any]) -> Any:
-    """Give the value of a guard in a state."""
+    """Return the value of a guard in a state."""
     if guard.kind == "limit":
         limit = pads.limits[not guard.left]
         return state[0] + limit if guard.left else limit - state[0]
@@ -261,7 +261,7 @@ class Switched(NamedTuple):
 def switched(
     pads: PadBalls, standing: Standing, guard: Guard, state: list[Dual], ground: Shaken
 ) -> Switched:
-    """Give the state after the event of a guard that has fallen to zero.
+    """Return the state after the event of a guard that has fallen to zero.
 
     Raises
     ------
@@ -286,7 +286,7 @@ def switched(
 def _separated(
     pads: PadBalls, standing: Standing, left: bool, state: list[Dual], ground: Shaken
 ) -> Switched:
-    """Give the state after a corner has lifted off."""
+    """Return the state after a corner has lifted off."""
     at, free = corner(pads, left, state), Guard("gap", left)
     own = CLEAR
     if standing.of(left) == TOUCHING and pads.damping > 0:
@@ -329,7 +329,7 @@ def _separated(
 
 
 def _held(pads: PadBalls, standing: Standing, left: bool, state: list[Dual]) -> Switched:
-    """Give the state after a corner has landed, or is pressed again by its pad."""
+    """Return the state after a corner has landed, or is pressed again by its pad."""
     lands, other = standing.of(left) == CLEAR, standing.of(not left)
     if lands and other == CLEAR:
         level = guard_value(pads, Guard("gap", not left), state).value
@@ -389,11 +389,11 @@ def _struck(pads: PadBalls, after: Standing, left: bool, state: list[Dual]) -> l
 def _rate(
     pads: PadBalls, standing: Standing, guard: Guard, state: list[Dual], ground: Shaken
 ) -> Ball:
-    """Give the rate of change of a guard in a state, as a ball."""
+    """Return the rate of change of a guard in a state, as a ball."""
     at = duals([one.value for one in state])
     return along(guard_value(pads, guard, at), field(pads, standing, at, ground))
 
 
 def along(of: Dual, rates: list[Dual]) -> Ball:
-    """Give the rate of change of a dual, from the rates of its state."""
+    """Return the rate of change of a dual, from the rates of its state."""
     return sum((a * b.value for a, b in zip(of.slope, rates, strict=True)), ZERO)

@@ -55,7 +55,7 @@ class Series(NamedTuple):
 
 
 def product(a: list[Any], b: list[Any]) -> Any:
-    """Give the last coefficient of the product of two series of the same length."""
+    """Return the last coefficient of the product of two series of the same length."""
     return sum(map(mul, a, b[::-1]))
 
 
@@ -63,7 +63,7 @@ def recursion(
     shape: SeriesNumbers, standing: Standing, small: bool, start: Series,
     ground: tuple[list[Any], ...], h: Any, minus: int, enough: Any,
 ) -> Series:  # fmt: skip
-    """Give series from their first coefficients; `minus` is -1, or 1 for their bounds.
+    """Return series from their first coefficients; `minus` is -1, or 1 for their bounds.
 
     `enough` is called with the order and the series, and returns whether they are long enough.
     """
@@ -229,7 +229,7 @@ def _anywhere(row: Row) -> list[float]:
 
 
 def _first(pads: PadBalls, standing: Standing, start: Row, held: Ball) -> Series:
-    """Give the first coefficients of the series from a state."""
+    """Return the first coefficients of the series from a state."""
     rotation, rate, height, speed, sway = start
     if pads.small:
         sine, cosine = rotation, rotation * 0 + 1
@@ -259,14 +259,14 @@ def _sizes(one: Any) -> Any:
 
 
 def _upper(size: Any) -> Any:
-    """Give a bound that the motion is to be proved not to reach."""
+    """Return a bound that the motion is to be proved not to reach."""
     if isinstance(size, tuple):
         return tuple(_upper(each) for each in size)
     return size * _ROOM + 1e-200
 
 
 def _last(one: Any) -> Any:
-    """Give the last coefficient of bounds, rounded upwards."""
+    """Return the last coefficient of bounds, rounded upwards."""
     if isinstance(one, tuple):
         return tuple(_last(each) for each in one)
     return float(one[-1]) * UPWARDS if one else 0.0

@@ -27,7 +27,7 @@ _REACH: Final = 1.6
 
 
 def pad_numbers(part: OnBase, limits: OverturningAngles, inputs: Deviations) -> PadBalls:
-    """Give a block on elastic pads in balls."""
+    """Return a block on elastic pads in balls."""
     body, base = part.body, part.base
     return PadBalls(
         ball(body.height), ball(body.left), ball(body.right), ball(body.inertia),
@@ -52,7 +52,7 @@ def way_of(
     inputs: Deviations | None = None,
     watch: Watch | None = None,
 ) -> PadWay:
-    """Give the way of a block from its start, ready to be followed."""
+    """Return the way of a block from its start, ready to be followed."""
     part, body = law.part, law.state_of(0, state)
     pads = pad_numbers(part, limits, inputs or Deviations())
     contact = part.mode_of(mode).contact

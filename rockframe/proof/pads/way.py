@@ -305,7 +305,7 @@ class PadWay:
         raise Undecided(msg)
 
     def _shaken(self, ground: GroundPiece, time: Ball) -> Shaken:
-        """Give the ground at a time from now, or at all times of a ball, in both intervals [s]."""
+        """Return ground at a time from now, or at all times of a ball, in both intervals [s]."""
         left = self.shaking.length(self.k) - self.offset
         found = ground.at(time)
         if not time < left:
@@ -382,7 +382,7 @@ def _inflated(rates: Callable[[list[Any]], list[Any]], box: Row, window: Ball, w
 def _saltation(
     after: Switched, before: list[Any], later: list[Any], guarded: Any, falling: Ball
 ) -> Matrix:
-    """Give the saltation matrix: the derivative of a change by the state, at one fixed time."""
+    """Return the saltation matrix: the derivative of a change by the state, at one fixed time."""
     reset = [one.slope for one in after.state]
     speeds = [one.value for one in before]
     jump = [
@@ -432,7 +432,7 @@ def _positive(value: Curve, change: Curve, until: float, *, fresh: bool, falls: 
 
 
 def _series(pads: PadBalls, guard: Guard, made: Step) -> Row:
-    """Give the series of a guard over a step."""
+    """Return the series of a guard over a step."""
     found, i = made.course.series, int(not guard.left)
     if guard.kind == "limit":
         sign = 1 if guard.left else -1

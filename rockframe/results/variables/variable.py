@@ -55,7 +55,7 @@ class Variable:
     dtype: str = "float64"
 
     def attributes(self, dtype: str | None = None) -> dict[str, Any]:
-        """Give the CF attributes.
+        """Return the CF attributes.
 
         Parameters
         ----------
@@ -83,13 +83,13 @@ class Variable:
 
 
 def unit_behind(attributes: Mapping[Any, Any]) -> str:
-    """Give the unit of values with a space before it, to follow a number; empty where it is 1."""
+    """Return the unit of values with a space before it, to follow a number; empty where it is 1."""
     unit = str(attributes.get("units", Unit.ONE))
     return "" if unit == Unit.ONE else f" {unit}"
 
 
 def words_of_flags(attributes: Mapping[Any, Any]) -> dict[Any, str]:
-    """Give the words of a variable's flags, by their values; none for other variables."""
+    """Return the words of a variable's flags, by their values; none for other variables."""
     values = np.atleast_1d(attributes.get("flag_values", ())).tolist()
     return dict(zip(values, str(attributes.get("flag_meanings", "")).split(), strict=True))
 
@@ -119,5 +119,5 @@ def _row(name: str, dims: tuple[str, ...], meaning: str | tuple[str, type]) -> V
 
 
 def bounds(name: str, words: str) -> dict[str, str]:
-    """Give the meanings of a lower and an upper bound: ``{}`` in `words` becomes either word."""
+    """Return the meanings of a lower and an upper bound: ``{}`` in `words` becomes either word."""
     return {f"{name}_{end}_bound": words.format(end) for end in ("lower", "upper")}

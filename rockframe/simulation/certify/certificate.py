@@ -95,7 +95,7 @@ class Certificate:
         return self._farthest([shown for _, found in self.nudged for shown in found.tried.values()])
 
     def _farthest(self, others: list[RunSummary]) -> float:
-        """Give the largest difference of peak rotations; NaN if a run was not finished [rad]."""
+        """Return the largest difference of peak rotations; NaN if a run was not finished [rad]."""
         apart = [
             math.nan if one.overturned is None else abs(one.peak - self.base.peak)
             for one in (self.base, *others)
@@ -113,7 +113,7 @@ class Certificate:
         return certificate_sentence(self)
 
     def values(self) -> dict[str, float | bool]:
-        """Give the scalars by their names in the schema."""
+        """Return the scalars by their names in the schema."""
         return {
             "verdict_converged": self.converged,
             "verdict_robust": self.robust,
@@ -124,7 +124,7 @@ class Certificate:
         }
 
     def attributes(self) -> dict[str, str | float | int]:
-        """Give the attributes of a dataset that describe the certificate."""
+        """Return the attributes of a dataset that describe the certificate."""
         return {
             "certificate": self.sentence,
             "certificate_nudge": self.wanted.nudge,
@@ -306,7 +306,7 @@ def _near(found: Certificate, ends: _Ends) -> list[str]:
 
 
 def _little(found: Certificate) -> float:
-    """Give the change of scale up to which a flip is near."""
+    """Return the change of scale up to which a flip is near."""
     return max(NEAR, found.wanted.nudge)
 
 

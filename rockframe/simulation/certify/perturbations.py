@@ -26,7 +26,7 @@ SceneAt = Callable[[float], Assembly | None]
 
 
 def parameters(system: Assembly) -> Iterator[tuple[str, SceneAt]]:
-    """Give the name of each parameter of each part, and a function that gives the changed scene."""
+    """Return name of each parameter of each part, and a function that gives the changed scene."""
     parts = system.parts
 
     def changed(slot: str, name: str) -> SceneAt:
@@ -50,7 +50,7 @@ def parameters(system: Assembly) -> Iterator[tuple[str, SceneAt]]:
 
 
 def scales(nudge: float, reach: float) -> list[float]:
-    """Give the first changes of scale to try, from a share of the nudge up to the reach."""
+    """Return the first changes of scale to try, from a share of the nudge up to the reach."""
     row = [share * nudge for share in QUARTERS if share * nudge < reach]
     place = min(nudge, reach)
     while place < reach:
@@ -96,7 +96,7 @@ MOST_PER_PERIOD: Final = 1e4
 
 
 def finer_plans(system: Assembly, plan: Plan, step: float) -> Iterator[tuple[str, Plan]]:
-    """Give the plans of runs of higher accuracy, each with what is finer in words.
+    """Return the plans of runs of higher accuracy, each with what is finer in words.
 
     `step` is the mean step of the run itself [s].
     """
@@ -126,14 +126,14 @@ def tolerance_words(accuracy: Accuracy) -> str:
 
 
 def tightened(accuracy: Accuracy) -> Accuracy:
-    """Give settings with a tighter tolerance, or with a tolerance instead of fixed sub-steps."""
+    """Return settings with a tighter tolerance, or with a tolerance instead of fixed sub-steps."""
     if accuracy.rtol is None:
         return LEVELS[AccuracyLevel.STANDARD]
     return replace(accuracy, rtol=max(TIGHTER * accuracy.rtol, TIGHTEST))
 
 
 def shortened(accuracy: Accuracy, system: Assembly, step: float, interval: float) -> Accuracy:
-    """Give settings with shorter steps than the mean one of a run; interval of its motion [s]."""
+    """Return settings with shorter steps than the mean one of a run; interval of its motion [s]."""
     wanted = step / SHORTER
     if accuracy.substeps is not None:
         value = accuracy.substeps if isinstance(accuracy.substeps, int) else 1
@@ -145,5 +145,5 @@ def shortened(accuracy: Accuracy, system: Assembly, step: float, interval: float
 
 
 def cut(motion: GroundMotion, parts: int) -> GroundMotion:
-    """Give the same function of time, with each interval divided into parts."""
+    """Return the same function of time, with each interval divided into parts."""
     return GroundMotion(motion.si.each(lambda one: divided_signal(one, parts)), name=motion.name)

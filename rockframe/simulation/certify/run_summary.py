@@ -93,7 +93,7 @@ def run_summary(
     *,
     in_motion: bool,
 ) -> RunSummary:
-    """Give the summary of a run, from its events by names of the schema and its length [s]."""
+    """Return the summary of a run, from its events by names of the schema and its length [s]."""
     rates = np.abs(events["angular_velocity_before"])
     if summary.overturned:
         rate = float(rates[events["event_kind"] == EventKind.OVERTURNING][0])

@@ -49,7 +49,7 @@ class Scan:
     tried: dict[float, RunSummary]  # all runs by their changes, without the one at zero
 
     def within(self, reach: float) -> int:
-        """Give the number of changes tried up to a reach."""
+        """Return the number of changes tried up to a reach."""
         return sum(abs(change) <= reach for change in self.tried)
 
 
@@ -87,11 +87,11 @@ class Side:
         return count >= CROWD
 
     def intervals(self) -> Iterator[tuple[float, float]]:
-        """Give the ends of all intervals, from near to far."""
+        """Return the ends of all intervals, from near to far."""
         yield from pairwise(self.places)
 
     def flip(self) -> tuple[float, float] | None:
-        """Give the first interval at whose far end the verdict differs from that at 0."""
+        """Return the first interval at whose far end the verdict differs from that at 0."""
         verdict = self.shown[0.0].overturned
         for near, far in self.intervals():
             if self.shown[far].overturned != verdict:
@@ -173,7 +173,7 @@ def _wide(near: float, far: float, resolution: float) -> bool:
 
 
 def _first_doubt(sides: Sequence[Side], end: float, resolution: float) -> _Task | None:
-    """Give the nearest interval, up to an end, in which the verdict might change to and fro."""
+    """Return the nearest interval, up to an end, in which the verdict might change to and fro."""
     found: list[_Task] = []
     for side, other in zip(sides, reversed(sides), strict=True):
         for number, (near, far) in enumerate(side.intervals()):

@@ -42,7 +42,7 @@ class Look:
 
 
 def look_at(setting: Setting, summary: Summary, duration: float) -> Look:
-    """Give the numbers of a run of some length [s] from which follows how sure its verdict is."""
+    """Return the numbers of a run of some length [s] from which follows how sure its verdict is."""
     time = summary.verdict_time
     return Look(
         summary.overturned,
@@ -56,7 +56,7 @@ def look_at(setting: Setting, summary: Summary, duration: float) -> Look:
 
 
 def second_look(system: Assembly, plan: Plan) -> Plan:
-    """Give the plan of the second run: more steps in each interval of the motion, at least one."""
+    """Return plan of the second run: more steps in each interval of the motion, at least one."""
     value = max(substeps_of(plan.accuracy, system.model, plan.interval), 1)
     return replace(plan.bare(), accuracy=Accuracy(substeps=value + math.ceil(MORE * value)))
 

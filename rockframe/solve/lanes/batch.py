@@ -81,7 +81,7 @@ def copy_to_row(batch: Batch, row: Vector, lane: int, first: int, count: int) ->
 
 @inlined
 def equations_in(batch: Batch, row: Vector) -> BoundEquations:
-    """Give the equations of a row's system."""
+    """Return the equations of a row's system."""
     one, shape = batch.equations, batch.shape
     return BoundEquations(
         stepping=one.stepping, slope=one.slope, observing=one.observing, switching=one.switching,

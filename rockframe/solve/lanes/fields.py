@@ -76,7 +76,7 @@ class Places(NamedTuple):
 
 @inlined
 def places_of(system: Equations) -> Places:
-    """Give the indices of the fields of a system."""
+    """Return the indices of the fields of a system."""
     size, variables, guards = system.coordinates(), system.variables(), system.guards() + 1
     width, slope = 2 * size + variables, size + variables + POWERS
     reference = LIMITS + WEIGHTS + size

@@ -60,7 +60,7 @@ class Outcomes:
     memories: Matrix  # memories at the end
 
     def summary(self, k: int, substeps: int) -> Summary:
-        """Give the summary of run `k`, made in steps by tolerance (0 substeps) or fixed steps."""
+        """Return the summary of run `k`, made in steps by tolerance (0 substeps) or fixed steps."""
         ending = Ending(int(self.modes[k]), self.states[k].copy(), self.memories[k].copy())
         return Summary(
             status=Status(int(self.status[k])),
@@ -70,7 +70,7 @@ class Outcomes:
         )
 
     def summary_of_many(self, some: Whole, substeps: int) -> Summary:
-        """Give one summary of runs that ended in the same way, whose numbers are `Many`."""
+        """Return one summary of runs that ended in the same way, whose numbers are `Many`."""
 
         def each(rows: Any) -> Any:
             return np.array([Many(row[some].astype(np.float64)) for row in rows.T], dtype=object)
@@ -91,7 +91,7 @@ def joined(several: Sequence[Outcomes]) -> Outcomes:
 
 
 def kind_of(model: ContactModel) -> Any:
-    """Give a key that is equal for models that can run side by side."""
+    """Return a key that is equal for models that can run side by side."""
     return structure_of(model.system), len(model.memory)
 
 
@@ -159,7 +159,7 @@ def _batches(motions: Sequence[Motion | None], motion_of: Whole) -> list[slice]:
 
 
 def rows_of(model: ContactModel, begun: Begun, count: int = 1) -> Matrix:
-    """Give the row of a run, or the rows of many runs, whose numbers are :class:`Many`."""
+    """Return the row of a run, or the rows of many runs, whose numbers are :class:`Many`."""
     there, numbers = places_of(model.system), list(elements_of(model.system))
     memory = there.numbers + len(numbers)
     tolerance = memory + len(begun.memory)
@@ -203,14 +203,14 @@ class _Rows:
         return self._places.first - self._places.state, self._memory
 
     def endings(self, rows: Matrix) -> tuple[Whole, Matrix, Matrix]:
-        """Give modes, states and memories at the end of runs, from their rows."""
+        """Return modes, states and memories at the end of runs, from their rows."""
         there, behind = self._places, self._places.numbers + self._count
         modes = rows.view(np.int64)[:, fields.COUNTERS + at.MODE]
         memories = rows[:, behind : behind + self._memory]
         return modes, rows[:, there.state : there.first], memories
 
     def batch(self, motions: Sequence[Motion | None], run_of: Whole, motion_of: Whole) -> Batch:
-        """Give the batch of some cases: their rows, and all else that `advance_batch` needs."""
+        """Return the batch of some cases: their rows, and all else that `advance_batch` needs."""
         rows = self._rows[run_of]
         own = rows.view(np.int64)[:, fields.OWN_WHOLE : fields.OWN_WHOLE + fields.WHOLES]
         both = [pieces_of(motion) for motion in motions]
@@ -235,7 +235,7 @@ class _Rows:
 def _scratch(
     equations: BoundEquations, there: Places, memory: int
 ) -> tuple[Output, EventTable, Workspace]:
-    """Give scratch for a single run: no outputs, events that are not kept, a step."""
+    """Return scratch for a single run: no outputs, events that are not kept, a step."""
     width = there.first - there.state
     output = Output(np.empty((0, width)), np.empty(0, dtype=np.int64), np.empty((0, 2)), NO_STEPS)
     events = EventTable(

@@ -445,7 +445,7 @@ def step_lanes_by_tolerance(
 
 
 def steps_in_lanes(system: Equations, *, fixed_steps: bool) -> Callable[..., int]:
-    """Give the function that makes a step in all lanes, for a system and a kind of steps."""
+    """Return the function that makes a step in all lanes, for a system and a kind of steps."""
     if not fixed_steps:
         return step_lanes_by_tolerance
     return step_lanes_by_rates if gives_powers(system) else step_lanes

@@ -322,7 +322,7 @@ def _states(runs: xr.Dataset, limits: Iterable[object] | None) -> tuple[LimitSta
 def _of_capacities(
     analysis: xr.Dataset, state: LimitState, verdict: xr.DataArray, measures: Sequence[xr.DataArray]
 ) -> StructureTrials:
-    """Give the capacities that a dynamic analysis found for a limit state."""
+    """Return the capacities that a dynamic analysis found for a limit state."""
     if SCALE not in analysis.dims:
         msg = f"{_OWNER}: found a dynamic analysis at one scale; expected one with all its scales"
         raise SchemaError(msg)

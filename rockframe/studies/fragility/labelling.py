@@ -43,7 +43,7 @@ class Means:
     confidence: float  # of the bounds [1]
 
     def deviations(self, clusters: float = math.inf) -> float:
-        """Give standard errors from an estimate to its bound, by Student's t of few clusters."""
+        """Return standard errors from an estimate to its bound, by Student's t of few clusters."""
         from scipy.special import ndtri, stdtrit
 
         share = 0.5 + 0.5 * self.confidence
@@ -129,7 +129,7 @@ def fragility_dataset(
 
 
 def _arranged(values: Mapping[str, Any], over: Mapping[str, int]) -> dict[str, Generic]:
-    """Give values of each structure and limit state, which are counted, their dimensions."""
+    """Return values of each structure and limit state, which are counted, their dimensions."""
     arrays = {name: np.asarray(each) for name, each in values.items()}
     return {n: each.reshape(*over.values(), *each.shape[1:]) for n, each in arrays.items()}
 
@@ -170,13 +170,13 @@ def _parameters(each: _Fitted, means: Means) -> dict[str, float]:
 
 
 def _exp(log: float) -> float:
-    """Give the exponential of a logarithm: infinite where the intensity hardly matters."""
+    """Return the exponential of a logarithm: infinite where the intensity hardly matters."""
     with np.errstate(over="ignore"):
         return float(np.exp(log))
 
 
 def _log_parameters(fit: Fit) -> tuple[Array, Array]:
-    """Give the logarithms of median and dispersion, and their covariance."""
+    """Return the logarithms of median and dispersion, and their covariance."""
     best = _logs_of(fit.coefficients)
     if fit.without is not None and fit.complete:
         rows, alike = fit.without
@@ -193,7 +193,7 @@ def _logs_of(coefficients: Array) -> Array:
 
 
 def _lacking(clusters: float) -> float:
-    """Give the mean deficit of the logarithm of a dispersion, :eq:`eq-fragility-lacking` [1]."""
+    """Return the mean deficit of the logarithm of a dispersion, :eq:`eq-fragility-lacking` [1]."""
     from scipy.special import digamma
 
     if math.isinf(clusters):
@@ -202,7 +202,7 @@ def _lacking(clusters: float) -> float:
 
 
 def _extremes(edge: Array) -> Array:
-    """Give the ranges of log-median and dispersion in a region of the coefficients."""
+    """Return the ranges of log-median and dispersion in a region of the coefficients."""
     intercept, slope = edge
     least = 0.0 if slope.max() > _NO_DISPERSION else 1.0 / slope.max()
     if slope.min() <= 0.0:  # a curve that does not rise is likely enough, too
@@ -234,7 +234,7 @@ def _with_curves(
 
 
 def _eta(each: _Fitted, rows: Array, means: Means) -> Array:
-    """Give eta and its bounds where coefficients multiply `rows`; shape (3, intensities)."""
+    """Return eta and its bounds where coefficients multiply `rows`; shape (3, intensities)."""
     if each.gap is not None:
         eta = np.where(rows[1] < 0.5 * sum(each.gap), -np.inf, np.inf)
     else:
@@ -287,7 +287,7 @@ def with_stripes(
 
 
 def _decided(trials: Sequence[Trials]) -> list[tuple[Array, Array]]:
-    """Give verdicts on capacities at intensities that divide them into equal groups."""
+    """Return verdicts on capacities at intensities that divide them into equal groups."""
     every = [np.where(each.has_upper, each.upper[:, 0], each.lower[:, 0]) for each in trials]
     ends = np.concatenate(every)
     if not len(ends):
@@ -304,7 +304,7 @@ def _decided(trials: Sequence[Trials]) -> list[tuple[Array, Array]]:
 
 
 def _spaced(every: Sequence[_Fitted], measure: int, count: int) -> Array:
-    """Give intensities from the least to the greatest, with equal ratios."""
+    """Return intensities from the least to the greatest, with equal ratios."""
     ends = np.concatenate(
         [
             values[has, measure]

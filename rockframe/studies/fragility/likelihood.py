@@ -56,7 +56,7 @@ class Fit:
 
     @classmethod
     def none(cls, status: FragilityStatus, measures: int) -> "Fit":
-        """Give the fit of trials for which no maximum-likelihood fit exists."""
+        """Return the fit of trials for which no maximum-likelihood fit exists."""
         square = np.full((1 + measures,) * 2, np.nan)
         return cls(status, square[0], square, square)
 
@@ -81,7 +81,7 @@ def fit(trials: Trials, bands: Bands) -> Fit:
 
 
 def jackknife(best: Array, rows: Array, alike: Array) -> Array:
-    """Give the covariance of estimates; each of the `rows` omits one cluster.
+    """Return the covariance of estimates; each of the `rows` omits one cluster.
 
     By :eq:`eq-fragility-jackknife`.
     """
@@ -91,7 +91,7 @@ def jackknife(best: Array, rows: Array, alike: Array) -> Array:
 
 
 def _without_each(trials: Trials) -> Iterator[tuple[Trials, float]]:
-    """Give the trials without each cluster, or each trial, in turn, and how many are alike."""
+    """Return the trials without each cluster, or each trial, in turn, and how many are alike."""
     if trials.cluster is None:
         for row, weight in enumerate(trials.weight):
             rest = trials.weight.copy()
@@ -103,7 +103,7 @@ def _without_each(trials: Trials) -> Iterator[tuple[Trials, float]]:
 
 
 def _near(trials: Trials, start: Array) -> Array:
-    """Give the most likely coefficients, by Newton's method if they are near known ones."""
+    """Return the most likely coefficients, by Newton's method if they are near known ones."""
     at = start
     for _ in range(20):
         step = np.linalg.lstsq(information(trials, at), scores(trials, at).sum(axis=0))[0]
@@ -159,22 +159,22 @@ def _fit(trials: Trials) -> Fit:
 
 
 def log_likelihood(trials: Trials, coefficients: Array) -> Array:
-    """Give the logarithm of the likelihood, :eq:`eq-fragility-likelihood`."""
+    """Return the logarithm of the likelihood, :eq:`eq-fragility-likelihood`."""
     return trials.weight @ log_shares(*_etas(trials, coefficients))
 
 
 def scores(trials: Trials, coefficients: Array) -> Array:
-    """Give the slope of each trial's share in the log-likelihood."""
+    """Return the slope of each trial's share in the log-likelihood."""
     return trials.weight[:, None] * slopes_of_shares(*_ends(trials, coefficients))
 
 
 def information(trials: Trials, coefficients: Array) -> Array:
-    """Give the observed information, the curvature of the log-likelihood with its sign changed."""
+    """Return observed information, the curvature of the log-likelihood with its sign changed."""
     return curvature_of_shares(*_ends(trials, coefficients), trials.weight)
 
 
 def slopes_of_shares(upper: Array, lower: Array, eta_upper: Array, eta_lower: Array) -> Array:
-    """Give the derivatives of the log shares between two ends by the coefficients.
+    """Return the derivatives of the log shares between two ends by the coefficients.
 
     From the factors of the coefficients at the ends, and eta there; an open end has zeros and an
     infinite eta.
@@ -186,7 +186,7 @@ def slopes_of_shares(upper: Array, lower: Array, eta_upper: Array, eta_lower: Ar
 def curvature_of_shares(
     upper: Array, lower: Array, eta_upper: Array, eta_lower: Array, weight: Array | float = 1.0
 ) -> Array:
-    """Give their curvature, summed up with weights, with its sign changed."""
+    """Return their curvature, summed up with weights, with its sign changed."""
     at_upper, at_lower = _densities(eta_upper, eta_lower)
     eta_upper, eta_lower = (np.where(np.isfinite(x), x, 0.0) for x in (eta_upper, eta_lower))
     of_upper = weight * at_upper * (eta_upper + at_upper)
@@ -202,7 +202,7 @@ def curvature_of_shares(
 
 
 def boundary(trials: Trials, found: Fit, level: float) -> Array:
-    """Give the boundary of the region :eq:`eq-fragility-region`, for a fit of one measure.
+    """Return the boundary of the region :eq:`eq-fragility-region`, for a fit of one measure.
 
     The range of any function of the coefficients in this region is its interval by profile
     likelihood. The likelihood of separated trials has a bound but no maximum, and the region is
@@ -257,7 +257,7 @@ def boundary(trials: Trials, found: Fit, level: float) -> Array:
 
 
 def _within(trials: Trials, drop: float) -> tuple[Array, Array, float]:
-    """Give coefficients of separated trials near their likelihood's bound, with that bound.
+    """Return coefficients of separated trials near their likelihood's bound, with that bound.
 
     With the information at these coefficients. If the gap is a single intensity at which some
     trials exceed, their share is the most likely probability there.
@@ -280,7 +280,7 @@ def _within(trials: Trials, drop: float) -> tuple[Array, Array, float]:
 
 
 def gap(trials: Trials) -> tuple[float, float] | None:
-    """Give the logarithms of the intensities between which all capacities may lie."""
+    """Return the logarithms of the intensities between which all capacities may lie."""
     least = float(trials.upper[trials.has_upper].min(initial=np.inf))
     most = float(trials.lower[trials.has_lower].max(initial=-np.inf))
     return (most, least) if most <= least else None
@@ -316,7 +316,7 @@ def _without_maximum(trials: Trials) -> FragilityStatus | None:
 
 
 def _design(trials: Trials) -> tuple[Array, Array]:
-    """Give ones and logarithms of both ends; an open end has zeros."""
+    """Return ones and logarithms of both ends; an open end has zeros."""
     count = len(trials.weight)
     upper = np.column_stack([np.ones(count), trials.upper]) * trials.has_upper[:, None]
     lower = np.column_stack([np.ones(count), trials.lower]) * trials.has_lower[:, None]
@@ -324,7 +324,7 @@ def _design(trials: Trials) -> tuple[Array, Array]:
 
 
 def _etas(trials: Trials, coefficients: Array) -> tuple[Array, Array]:
-    """Give eta at both ends, infinite where one is open; shape (trials, sets)."""
+    """Return eta at both ends, infinite where one is open; shape (trials, sets)."""
     upper, lower = _design(trials)
     eta_upper = np.where(trials.has_upper[:, None], upper @ coefficients, np.inf)
     eta_lower = np.where(trials.has_lower[:, None], lower @ coefficients, -np.inf)
@@ -332,19 +332,19 @@ def _etas(trials: Trials, coefficients: Array) -> tuple[Array, Array]:
 
 
 def _ends(trials: Trials, coefficients: Array) -> tuple[Array, Array, Array, Array]:
-    """Give the factors of the coefficients at both ends, and eta there."""
+    """Return the factors of the coefficients at both ends, and eta there."""
     eta_upper, eta_lower = _etas(trials, coefficients[:, None])
     return *_design(trials), eta_upper[:, 0], eta_lower[:, 0]
 
 
 def _densities(upper: Array, lower: Array) -> tuple[Array, Array]:
-    """Give the densities at both ends over the share between."""
+    """Return the densities at both ends over the share between."""
     share = log_shares(upper, lower)
     return np.exp(_log_density(upper) - share), np.exp(_log_density(lower) - share)
 
 
 def log_shares(upper: Array, lower: Array) -> Array:
-    """Give ln(Phi(upper) - Phi(lower)), to the last digits in both tails."""
+    """Return ln(Phi(upper) - Phi(lower)), to the last digits in both tails."""
     from scipy.special import log_ndtr
 
     # in the upper tail the complementary distribution keeps the digits
@@ -356,12 +356,12 @@ def log_shares(upper: Array, lower: Array) -> Array:
 
 
 def _log_density(eta: Array) -> Array:
-    """Give the logarithm of the density of the normal distribution."""
+    """Return the logarithm of the density of the normal distribution."""
     return -0.5 * (eta * eta + math.log(2.0 * math.pi))
 
 
 def _filling(trials: Trials, best: Array) -> Array:
-    """Give the products of the scores, summed over clusters, with the usual small-sample factor."""
+    """Return products of the scores, summed over clusters, with the usual small-sample factor."""
     of_trial = scores(trials, best)
     if trials.cluster is None:
         weight = trials.weight

@@ -66,7 +66,7 @@ def ordered_fits(
 
 
 def _ends(logs: Array, count: Generic, at: Array) -> tuple[Array, Array, Array, Array]:
-    """Give the factors of the coefficients at both ends of each verdict, and eta there.
+    """Return the factors of the coefficients at both ends of each verdict, and eta there.
 
     As :func:`rockframe.studies.fragility.likelihood.slopes_of_shares` takes them.
     """
@@ -83,7 +83,7 @@ def _ends(logs: Array, count: Generic, at: Array) -> tuple[Array, Array, Array, 
 
 
 def _value(logs: Array, count: Generic, at: Array) -> float:
-    """Give the log-likelihood, :eq:`eq-fragility-ordered`; minus infinity if out of order."""
+    """Return the log-likelihood, :eq:`eq-fragility-ordered`; minus infinity if out of order."""
     *_, upper, lower = _ends(logs, count, at)
     if np.any(upper <= lower):
         return -math.inf
@@ -132,7 +132,7 @@ def _greatest(logs: Array, count: Generic, states: int, start: Array | None = No
 def _covariance(
     logs: Array, count: Generic, motions: Generic, best: Array, bands: Bands
 ) -> tuple[Array, Array | None]:
-    """Give the covariance by motions, :eq:`eq-fragility-sandwich`, :eq:`eq-fragility-jackknife`."""
+    """Return covariance by motions, :eq:`eq-fragility-sandwich`, :eq:`eq-fragility-jackknife`."""
     names, place = np.unique(motions, return_inverse=True)
     if bands is Bands.SANDWICH:
         ends = _ends(logs, count, best)

@@ -39,7 +39,7 @@ class Structures:
         return tuple(int(group.max()) + 1 for group in self.groups.values())
 
     def parts(self, values: Values) -> Iterator[Values]:
-        """Give what belongs to each structure, the last dimension fastest."""
+        """Return what belongs to each structure, the last dimension fastest."""
         for number in np.ndindex(self.shape):
             groups = zip(self.groups.items(), number, strict=True)
             chosen = {dim: np.flatnonzero(group == k) for (dim, group), k in groups}
@@ -107,7 +107,7 @@ def check_one_structure(
 
 
 def attributes_of_system(runs: xr.Dataset) -> dict[str, Any]:
-    """Give the attributes that describe the system of runs, which a sweep may have changed."""
+    """Return the attributes that describe the system of runs, which a sweep may have changed."""
     changed = any(name in runs.coords for name in _changed(_axes(runs), ()))
     names = ("model",) if changed else ("model", "system_json")
     return {name: runs.attrs[name] for name in names if name in runs.attrs}
@@ -127,12 +127,12 @@ def _check_pooled(
 
 
 def _axes(runs: xr.Dataset) -> dict[str, str]:
-    """Give what each axis of a sweep changes."""
+    """Return what each axis of a sweep changes."""
     return {one["name"]: one["changes"] for one in json.loads(runs.attrs["axes_json"])}
 
 
 def _own(runs: xr.Dataset, values: Sequence[object]) -> list[str]:
-    """Give the names of intensities that are numbers of the runs; no others of an axis' name."""
+    """Return the names of intensities that are numbers of the runs; no others of an axis' name."""
     arrays = [one for one in values if isinstance(one, xr.DataArray)]
     return [
         str(one.name) for one in arrays
@@ -141,7 +141,7 @@ def _own(runs: xr.Dataset, values: Sequence[object]) -> list[str]:
 
 
 def _changed(axes: Mapping[str, str], own: Sequence[str]) -> list[str]:
-    """Give the axes along which structures differ."""
+    """Return the axes along which structures differ."""
     return [name for name in axes if name not in own and axes[name] != Changes.MOTION]
 
 
@@ -164,7 +164,7 @@ def _check_motions(runs: xr.Dataset, foreign: Sequence[str], owner: str, *, name
 def _grouped(
     runs: xr.Dataset, dims: Sequence[str], kept: Sequence[str], alone: Sequence[str]
 ) -> Structures:
-    """Give structures numbers along each dimension, and labels."""
+    """Return structures numbers along each dimension, and labels."""
     groups: dict[str, Generic] = {}
     coordinates = {
         str(name): runs[name].variable
@@ -187,7 +187,7 @@ def _grouped(
 
 
 def _alike(columns: Sequence[Generic], size: int, apart: bool) -> tuple[Generic, Generic]:
-    """Give the first place of each group of equal rows, and the group of each place."""
+    """Return the first place of each group of equal rows, and the group of each place."""
     if apart:
         return np.arange(size), np.arange(size)
     table = pd.DataFrame(dict(enumerate(columns)))
@@ -213,7 +213,7 @@ class Trials:
     def of_verdicts(
         cls, logs: Array, exceeded: Array, trials: Array, cluster: Generic | None = None
     ) -> "Trials":
-        """Give the trials of counts."""
+        """Return the trials of counts."""
         both = np.concatenate([logs, logs])
         over = np.repeat([True, False], len(logs))
         weight = np.concatenate([exceeded, trials - exceeded]).astype(np.float64)
@@ -222,7 +222,7 @@ class Trials:
         return cls(both[kept], both[kept], ~over[kept], over[kept], weight[kept], numbers)
 
     def of_weights(self, weight: Array) -> "Trials":
-        """Give the trials that have a weight above zero, with that weight."""
+        """Return the trials that have a weight above zero, with that weight."""
         kept = weight > 0.0
         return Trials(
             self.lower[kept], self.upper[kept], self.has_lower[kept], self.has_upper[kept],
@@ -249,7 +249,7 @@ class StructureTrials:
 def trials_of_runs(
     exceeded: xr.DataArray, measures: Sequence[xr.DataArray], *, by_motion: bool
 ) -> StructureTrials:
-    """Give the trials of runs, each of which exceeds a limit state or does not."""
+    """Return the trials of runs, each of which exceeds a limit state or does not."""
     columns = np.column_stack([laid_out(one, exceeded).astype(np.float64) for one in measures])
     verdict = exceeded.to_numpy().ravel().astype(np.float64)
     runs = columns, verdict
@@ -271,7 +271,7 @@ def trials_of_runs(
 def trials_of_capacities(
     analysis: xr.Dataset, known: xr.DataArray, measures: Sequence[xr.DataArray]
 ) -> StructureTrials:
-    """Give the trials of a dynamic analysis, one for each line, from its first exceedance.
+    """Return the trials of a dynamic analysis, one for each line, from its first exceedance.
 
     A line is a motion, and a value of all else that is taken for one population.
     """
@@ -300,7 +300,7 @@ def trials_of_capacities(
 def _first_brackets(
     analysis: xr.Dataset, known: xr.DataArray, sizes: Mapping[str, int]
 ) -> tuple[Array, Array]:
-    """Give for each line the scales between which the limit state is first exceeded."""
+    """Return for each line the scales between which the limit state is first exceeded."""
     capacity = _in_lines(analysis["capacity_scale"], sizes)[:, 0]
     above, below = (
         _in_lines(analysis[f"scale_{end}"], sizes, "flip") for end in ("above", "below")
@@ -329,14 +329,14 @@ def laid_out(values: xr.DataArray, like: xr.DataArray) -> Generic:
 
 
 def motion_numbers(runs: xr.DataArray) -> Generic:
-    """Give the number of the motion of each run, laid out in a row."""
+    """Return the number of the motion of each run, laid out in a row."""
     if MOTION not in runs.coords:
         return np.zeros(runs.size, dtype=np.intp)
     return np.unique(laid_out(runs[MOTION], runs).astype(str), return_inverse=True)[1]
 
 
 def at_scales(measure: Generic, known: Array, scales: Array | float) -> Array:
-    """Give a measure at scales from those at known ones, of which it is a power."""
+    """Return a measure at scales from those at known ones, of which it is a power."""
     near, far = measure[..., 0], measure[..., -1]
     if measure.shape[-1] == 1:
         return near

@@ -106,13 +106,13 @@ def _of_another(fragility: xr.Dataset) -> list[str]:
 
 
 def measures_of(fragility: xr.Dataset) -> list[str]:
-    """Give the intensity measures of a fragility."""
+    """Return the intensity measures of a fragility."""
     status = fragility["fragility_status"].dims
     return [str(dim) for dim in fragility["exceedance_probability"].dims if dim not in status]
 
 
 def in_own_units(fragility: xr.Dataset, measure: str, *, owner: str) -> xr.Dataset:
-    """Give intensities in the unit of their measure, where a user has put them into another."""
+    """Return intensities in the unit of their measure, where a user has put them into another."""
     if measure not in SCHEMA:  # one of the user's own
         return fragility
     unit = str(SCHEMA[measure].unit)

@@ -36,8 +36,7 @@ class ExecutionArguments(TypedDict, total=False):
         Argument(
             None,
             "str or path, optional",
-            "A folder in which what has been run is kept. The same call goes on with what it "
-            "finds there.",
+            "A folder in which results are kept. The same call continues from them.",
         ),
     ]
     executor: Annotated[
@@ -45,7 +44,7 @@ class ExecutionArguments(TypedDict, total=False):
         Argument(
             None,
             "concurrent.futures.Executor, optional",
-            "Makes the runs; threads, one for each processor, unless given.",
+            "Executes the runs. By default threads, one for each processor.",
         ),
     ]
     chunk: Annotated[
@@ -53,8 +52,8 @@ class ExecutionArguments(TypedDict, total=False):
         Argument(
             None,
             "int, optional",
-            "Cases that are handed out, and kept, together; what takes about a second unless "
-            "given. A `store` keeps to what it was begun with.",
+            "Number of cases that are submitted and stored together. By default as many as take "
+            "about a second. A `store` keeps its original value.",
         ),
     ]
     progress: Annotated[
@@ -62,8 +61,8 @@ class ExecutionArguments(TypedDict, total=False):
         Argument(
             None,
             "bool, optional",
-            "Whether a bar shows how far it is (needs tqdm); where it can be seen unless given. "
-            "Where runs come in rounds, one bar counts them all, and its total grows.",
+            "Whether to show a progress bar (needs tqdm). By default it is shown where it is "
+            "visible. If runs come in rounds, one bar counts all of them, and its total grows.",
         ),
     ]
 

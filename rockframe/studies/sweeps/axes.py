@@ -46,18 +46,18 @@ class Axis:
     slot: str = ""  # of the part whose parameter it is; empty otherwise
 
     def attributes(self) -> dict[str, str]:
-        """Give the CF attributes of the coordinate."""
+        """Return the CF attributes of the coordinate."""
         unit = {} if self.unit is None else {"units": self.unit}
         return {"long_name": self.long_name, **unit}
 
     def to_dict(self) -> dict[str, str | None]:
-        """Give all but the values, fit for JSON."""
+        """Return all but the values, fit for JSON."""
         described = vars(self) | {"changes": str(self.changes)}
         return {name: value for name, value in described.items() if name != "values"}
 
     @classmethod
     def from_dict(cls, described: Mapping[str, Any], values: Generic) -> "Axis":
-        """Give the axis that :meth:`to_dict` described."""
+        """Return the axis that :meth:`to_dict` described."""
         return cls(values=values, **{**described, "changes": Changes(described["changes"])})
 
 
@@ -83,7 +83,7 @@ def numbers_of(value: object, measure: Measure, name: str, *, owner: str = OWNER
 
 
 def _with_own_unit(value: object) -> object:
-    """Give an array with an attribute ``units`` beside it, as values and their unit are given.
+    """Return an array with an attribute ``units`` beside it, as values and their unit are given.
 
     An iterator is converted to a list.
     """
@@ -139,7 +139,7 @@ def free_values(
 
 
 def _with_unit(value: object) -> tuple[Any, str] | None:
-    """Give values and their unit, if one unit was given for all of them."""
+    """Return values and their unit, if one unit was given for all of them."""
     pair = cast("tuple[Any, ...]", value) if isinstance(value, tuple) else ()
     if len(pair) == 2 and isinstance(pair[1], str) and not isinstance(pair[0], str):
         return pair
@@ -147,7 +147,7 @@ def _with_unit(value: object) -> tuple[Any, str] | None:
 
 
 def _unit_in(value: object) -> str | None:
-    """Give the unit of the given values; None for bare numbers and words."""
+    """Return the unit of the given values; None for bare numbers and words."""
     if (pair := _with_unit(value)) is not None:
         return pair[1]
     first = next(iter(items_of(value)), None)
@@ -181,7 +181,7 @@ def _measure_of(unit: str, name: str, owner: str, expected: str) -> Measure:
 
 
 def items_of(value: object) -> list[Any]:
-    """Give values as a sequence; a single value becomes a sequence of one."""
+    """Return values as a sequence; a single value becomes a sequence of one."""
     if isinstance(value, str | bytes) or not isinstance(value, Iterable):
         return [value]
     if getattr(value, "ndim", 1) == 0:  # arrays and quantities of one value only seem to be a row
@@ -202,7 +202,7 @@ def _as_python(value: Any) -> Any:
 
 
 def in_unit(labels: xr.DataArray, unit: str | None, *, owner: str) -> xr.DataArray:
-    """Give the labels of an axis in its unit, if a user has converted them to another one."""
+    """Return the labels of an axis in its unit, if a user has converted them to another one."""
     own = labels.attrs.get("units")
     if unit is None or own in (None, unit):
         return labels
@@ -218,7 +218,7 @@ def in_unit(labels: xr.DataArray, unit: str | None, *, owner: str) -> xr.DataArr
 
 
 def in_units_of_schema(dataset: xr.Dataset, *, owner: str) -> xr.Dataset:
-    """Give variables in their units, if a user has converted them, for example for a figure."""
+    """Return variables in their units, if a user has converted them, for example for a figure."""
     other = {
         name: SCHEMA[str(name)].unit for name, values in dataset.data_vars.items()
         if name in SCHEMA and values.attrs.get("units") not in (None, SCHEMA[str(name)].unit)
@@ -283,12 +283,12 @@ class Grid:
         return [self.sizes[name] for name in self.order]
 
     def places(self, cases: range | Generic) -> dict[str, Generic]:
-        """Give the places along all dimensions of cases, by their numbers in order of running."""
+        """Return the places along all dimensions of cases, by their numbers in order of running."""
         found = np.unravel_index(np.asarray(cases, dtype=np.int64), self.shape)
         return dict(zip(self.order, found, strict=True))
 
     def numbers(self, key: Sequence[Any]) -> Generic:
-        """Give the numbers, in the order of running, of the cases at places along all dimensions.
+        """Return the numbers, in the order of running, of the cases at places along all dimensions.
 
         For each dimension, in the order of `sizes`: a place, a slice or a sequence of places.
         """
@@ -308,14 +308,14 @@ class Grid:
         return np.ascontiguousarray(apart.transpose([*moved, *rest]))
 
     def of_cases(self, cases: range | Generic) -> tuple[tuple[Axis, Generic], ...]:
-        """Give for each axis its values in some cases."""
+        """Return for each axis its values in some cases."""
         places = self.places(cases)
         own = [(axis, axis.values[places[axis.name]]) for axis in self.axes]
         rows = [(axis, axis.values[places[CASE]]) for axis in self.columns]
         return (*own, *rows)
 
     def motions_of(self, cases: range | Generic) -> Generic:
-        """Give the numbers of the motions of some cases."""
+        """Return the numbers of the motions of some cases."""
         places = self.places(cases)
         if self.motion_column is not None:
             return self.motion_column[places[CASE]]
@@ -331,7 +331,7 @@ class Chunk:
 
     @classmethod
     def of(cls, number: int, count: int, size: int) -> "Chunk":
-        """Give a chunk of a size, of a number of cases; the last may be shorter."""
+        """Return a chunk of a size, of a number of cases; the last may be shorter."""
         first = number * size
         return cls(number, range(first, min(first + size, count)))
 

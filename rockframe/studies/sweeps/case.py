@@ -172,7 +172,7 @@ def case(
 
 
 def system_of_case(dataset: xr.Dataset, *, owner: str) -> System:
-    """Give the system of a sweep, with the values of those axes along which one was selected."""
+    """Return the system of a sweep, with the values of those axes along which one was selected."""
     values: dict[Axis, Any] = {}
     for described in json.loads(dataset.attrs["axes_json"]):
         if described["changes"] not in OF_SCENES:
@@ -185,7 +185,7 @@ def system_of_case(dataset: xr.Dataset, *, owner: str) -> System:
 
 
 def remembered(attributes: Mapping[str, Any]) -> Study | None:
-    """Give the study of a dataset, if this process has made it."""
+    """Return the study of a dataset, if this process has made it."""
     return _studies.get(str(attributes.get("study_sha256")))
 
 
@@ -256,7 +256,7 @@ def _position_of(labels: xr.DataArray, name: str, wanted: Any, unit: str | None)
 def _value(
     dataset: xr.Dataset, name: str, place: Mapping[str, int], unit: str | None = None
 ) -> Any:
-    """Give the value of a coordinate in the case, also if it was selected before."""
+    """Return the value of a coordinate in the case, also if it was selected before."""
     return _value_of(in_unit(_along(dataset, name, _OWNER), unit, owner=_OWNER), place)
 
 
@@ -303,7 +303,7 @@ def unscaled_motions(
     needed: bool = True,
     owner: str = _OWNER,
 ) -> dict[str, GroundMotion | None]:
-    """Give the available motions of a sweep as they were before scaling."""
+    """Return the available motions of a sweep as they were before scaling."""
     every = json.loads(attributes["motion_names"]), json.loads(attributes["motions_json"])
     described = dict(zip(*every, strict=True))
     study = remembered(attributes)
@@ -329,7 +329,7 @@ def unscaled_motions(
 
 
 def store_of(runs: xr.Dataset) -> Store | None:
-    """Give the folder that a dataset was opened from, if it was and holds its study."""
+    """Return the folder that a dataset was opened from, if it was and holds its study."""
     folder = Path(str(runs.encoding.get("source", "")))
     try:
         found = Store.at(folder) if folder.is_dir() else None
@@ -340,7 +340,7 @@ def store_of(runs: xr.Dataset) -> Store | None:
 
 
 def known_motions(runs: xr.Dataset, motions: object = None) -> dict[str, GroundMotion]:
-    """Give the available motions of a sweep by name, before they were scaled."""
+    """Return the available motions of a sweep by name, before they were scaled."""
     names: list[str] = json.loads(runs.attrs["motion_names"])
     if MOTION in runs:
         used = set(runs[MOTION].to_numpy().astype(str).ravel().tolist())

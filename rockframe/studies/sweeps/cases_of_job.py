@@ -37,30 +37,30 @@ class CasesOfJob:
         self._motion: tuple[object, GroundMotion | None] = (None, None)
 
     def changed(self, change: Change) -> "CasesOfJob":
-        """Give the same cases with other plans; their parts are shared."""
+        """Return the same cases with other plans; their parts are shared."""
         other = CasesOfJob(self.job, change)
         other._scenes = self._scenes
         return other
 
     def __len__(self) -> int:
-        """Give the number of cases."""
+        """Return the number of cases."""
         return len(self.job.motion_of_case)
 
     def scene_key(self, case: int) -> tuple[Any, ...]:
-        """Give what cases of one scene have in common."""
+        """Return what cases of one scene have in common."""
         return tuple(each[case] for _, each in self._of_scene)
 
     def start_key(self, case: int) -> tuple[float, ...]:
-        """Give what cases of one start have in common, if starts differ."""
+        """Return what cases of one start have in common, if starts differ."""
         return tuple(each[case] for _, each in self._start)
 
     def motion_key(self, case: int) -> tuple[int, float | None]:
-        """Give what cases of one motion have in common, if it is not that of the scene."""
+        """Return what cases of one motion have in common, if it is not that of the scene."""
         number = int(self.job.motion_of_case[case])
         return number, (self._scale[0][1][case] if self._scale else None)
 
     def scene(self, case: int) -> tuple[Assembly, list[str]]:
-        """Give the scene of a case, and the warnings of its assembly."""
+        """Return the scene of a case, and the warnings of its assembly."""
         key = self.scene_key(case)
         found = self._scenes.get(key)
         if found is None:
@@ -75,36 +75,36 @@ class CasesOfJob:
         return isinstance(self.job.scene, SystemScene)
 
     def word_key(self, case: int) -> tuple[Any, ...]:
-        """Give the differences between cases that are words or counts."""
+        """Return the differences between cases that are words or counts."""
         return tuple(each[case] for axis, each in self._of_scene if axis.name not in self._numbers)
 
     def _of(self, axis: Axis, values: list[Any], which: Places) -> Any:
-        """Give the value of an axis in many cases, which agree where it is no number."""
+        """Return the value of an axis in many cases, which agree where it is no number."""
         numbers = self._numbers.get(axis.name)
         return values[which[0]] if numbers is None else Many(numbers[which])
 
     def scene_of_many(self, which: Places) -> tuple[Assembly, list[str]]:
-        """Give the scene of many cases; the warnings are the same for all."""
+        """Return the scene of many cases; the warnings are the same for all."""
         values = {axis: self._of(axis, each, which) for axis, each in self._of_scene}
         with collected_warnings() as warned:
             return self.job.scene.assembled(values), warned
 
     def unscaled(self, case: int) -> GroundMotion | None:
-        """Give the motion of a case before it is scaled; the scene's unless there are others."""
+        """Return the motion of a case before it is scaled; the scene's unless there are others."""
         motion = self.job.motions[self.job.motion_of_case[case]]
         if motion is None and not self.can_run_in_lanes:  # a function adds it to its systems
             motion = self.scene(case)[0].parts.motion
         return motion
 
     def length_key(self, case: int) -> tuple[float, float, bool] | None:
-        """Give the time step and the length of the motion of a case, and whether it is vertical."""
+        """Return time step and the length of the motion of a case, and whether it is vertical."""
         motion = self.unscaled(case)
         if motion is None:
             return None
         return motion.si.time_step, motion.si.duration, motion.si.vertical is not None
 
     def ground(self, case: int) -> Motion | None:
-        """Give the motion of a case only as numbers, which is cheaper."""
+        """Return the motion of a case only as numbers, which is cheaper."""
         motion = self.unscaled(case)
         if motion is None or [axis.name for axis, _ in self._scale] != [FACTOR]:
             found = self.motion(case)
@@ -112,7 +112,7 @@ class CasesOfJob:
         return multiplied(motion.si, self._scale[0][1][case])
 
     def motion(self, case: int) -> GroundMotion | None:
-        """Give the motion of a case; None where the ground stands still."""
+        """Return the motion of a case; None where the ground stands still."""
         motion = self.unscaled(case)
         if not self._scale:
             return motion
@@ -126,13 +126,13 @@ class CasesOfJob:
         return self._motion[1]
 
     def planned(self, case: int) -> tuple[Assembly, list[str], Plan]:
-        """Give the scene of a case, the warnings of its assembly, and the plan."""
+        """Return the scene of a case, the warnings of its assembly, and the plan."""
         system, messages = self.scene(case)
         start = {axis.parameter: each[case] for axis, each in self._start}
         return system, messages, self._plan(system, start, self.motion(case))
 
     def plan_of_many(self, which: Places) -> tuple[Assembly, list[str], Plan]:
-        """Give the same of many cases, with the motion of the first before it is scaled."""
+        """Return the same of many cases, with the motion of the first before it is scaled."""
         system, messages = self.scene_of_many(which)
         start = {axis.parameter: self._of(axis, each, which) for axis, each in self._start}
         return system, messages, self._plan(system, start, self.unscaled(int(which[0])))

@@ -111,7 +111,7 @@ class CollectedResults:
                 _put_into(kept, self._count, name, here, values[which])
 
     def rows(self) -> CaseResults:
-        """Give the collected results."""
+        """Return the collected results."""
         texts = tuple(self._texts)
         return CaseResults(self._status, self._scalars, self._histories, self._message, texts)
 
@@ -201,7 +201,7 @@ def run_chunk(job: SweepJob, stopped: Callable[[], bool] = lambda: False) -> Cas
 
 
 def _told(run: Finished) -> tuple[list[str], Mapping[str, Generic | float]]:
-    """Give the warnings of a run, its scalars, and how it was run."""
+    """Return the warnings of a run, its scalars, and how it was run."""
     if run.response is not None:
         driver = Driver.AS_PYTHON if run.response.trajectory.as_python else Driver.ALONE
         cautions = [text for _, text in run.response.cautions()]

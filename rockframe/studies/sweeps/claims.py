@@ -121,7 +121,7 @@ def _link(part: Path, path: Path) -> None:
 
 
 def _heir(claim: Path) -> int:
-    """Give how many jobs had a chunk before the one that made a claim; -1 of a foreign file."""
+    """Return how many jobs had a chunk before the one that made a claim; -1 of a foreign file."""
     try:
         return int(claim.name.partition("-")[2])
     except ValueError:
@@ -154,7 +154,7 @@ def _machine() -> list[str]:
 
 
 def _begun(process: int) -> str | None:
-    """Give the start of a process of this machine; None if there is none or it is unknown."""
+    """Return the start of a process of this machine; None if there is none or it is unknown."""
     with suppress(OSError, IndexError):
         status = (_PROCESSES / str(process) / "stat").read_text()
         state, *rest = status.rpartition(")")[2].split()  # numbered from the third field on

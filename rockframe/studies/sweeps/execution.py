@@ -129,7 +129,7 @@ _END: Final = Chunk(-1, range(0))
 
 
 def workers_of(executor: Executor | None) -> int:
-    """Give how many chunks an executor can run at once."""
+    """Return how many chunks an executor can run at once."""
     if executor is None:
         return worker_count()
     for name in ("_max_workers", "num_workers"):  # of Python's own, of joblib and of mpi4py

@@ -57,7 +57,7 @@ def description_of(value: object) -> Any:
 
 
 def digest_of(described: object) -> str:
-    """Give the sha256 of what :func:`description_of` has described; the order of entries counts."""
+    """Return sha256 of what :func:`description_of` has described; the order of entries counts."""
     return hashlib.sha256(json.dumps(described).encode()).hexdigest()
 
 
@@ -76,7 +76,7 @@ def difference(one: object, other: object) -> list[str]:
 
 
 def _entries(described: object) -> dict[str, Any]:
-    """Give the named entries of a description: a dataclass, a mapping, or a list of named items."""
+    """Return named entries of a description: a dataclass, a mapping, or a list of named items."""
     if isinstance(described, dict):
         return cast("dict[str, Any]", described)
     rows = cast("list[Any]", described) if isinstance(described, list) else []
@@ -115,7 +115,7 @@ def _of_code(code: CodeType | None) -> list[Any]:
 
 
 def name_of(function: Callable[..., object]) -> str:
-    """Give the name of a function, or else of its class."""
+    """Return the name of a function, or else of its class."""
     return getattr(function, "__qualname__", type(function).__name__)
 
 

@@ -30,14 +30,14 @@ class KnownCases:
         self._sources = [_Source(study, folder) for folder in folders]
 
     def lacking(self, chunk: Chunk) -> Generic:
-        """Give the numbers of the cases of a chunk that nobody has run."""
+        """Return the numbers of the cases of a chunk that nobody has run."""
         if not self._sources:
             return np.asarray(chunk.cases)
         source, _ = self._found(chunk)
         return np.asarray(chunk.cases)[source == _NOBODY]
 
     def filled(self, chunk: Chunk, run: CaseResults | None) -> CaseResults:
-        """Give the results of a chunk: those just run, and those known from others."""
+        """Return the results of a chunk: those just run, and those known from others."""
         if run is not None and len(run.status) == len(chunk.cases):
             return run
         source, number = self._found(chunk)
@@ -53,7 +53,7 @@ class KnownCases:
         return whole.rows()
 
     def _found(self, chunk: Chunk) -> tuple[Generic, Generic]:
-        """Give who has each case of a chunk, and its number there."""
+        """Return who has each case of a chunk, and its number there."""
         places = self._grid.places(chunk.cases)
         source = np.full(len(chunk.cases), _NOBODY)
         number = np.zeros(len(chunk.cases), dtype=np.int64)
@@ -103,7 +103,7 @@ class _Source:
             self._places[axis.name] = _places(axis.values.tolist(), there[axis.name])
 
     def numbers(self, places: Mapping[str, Generic]) -> Generic:
-        """Give the numbers that cases have here, by their places in the other study."""
+        """Return the numbers that cases have here, by their places in the other study."""
         each = [self._places[dim][places[dim]] for dim in self._grid.order]
         found = np.ravel_multi_index([np.maximum(one, 0) for one in each], self._grid.shape)
         found[np.any(np.array(each) == _NOBODY, axis=0)] = _NOBODY
@@ -114,6 +114,6 @@ class _Source:
 
 
 def _places(wanted: list[Any], there: list[Any]) -> Generic:
-    """Give the positions of values among others."""
+    """Return the positions of values among others."""
     place = {one: k for k, one in enumerate(there)}
     return np.array([place.get(one, _NOBODY) for one in wanted])

@@ -48,7 +48,7 @@ class Labels:
 
 
 def sweep_labels(study: Study) -> Labels:
-    """Give the labels of a sweep."""
+    """Return the labels of a sweep."""
     arguments = study.arguments
     scene, grid = study.scene, study.grid
     attributes: dict[str, str | float | int] = {
@@ -114,14 +114,14 @@ def sweep_dataset(labels: Labels, found: Iterable[tuple[range, CaseResults]]) ->
 
 
 def names_of_scalars(labels: Labels) -> tuple[str, ...]:
-    """Give the scalars, and peaks at points, that all cases have, also before any has been run."""
+    """Return scalars, and peaks at points, that all cases have, also before any has been run."""
     screened = SCREENED if labels.attributes["accuracy"] == SCREEN else ()
     peaks = tuple(row.name for row in POINT_PEAKS) if labels.points else ()
     return ALWAYS + screened + peaks
 
 
 def around_cases(labels: Labels, attributes: Mapping[str, str | float | int]) -> xr.Dataset:
-    """Give the dataset of a sweep without its results."""
+    """Return the dataset of a sweep without its results."""
     sizes = labels.grid.sizes
     around: dict[str, Any] = {}
     if MOTION in sizes:

@@ -181,7 +181,7 @@ class FinishedTogether:
     look: Look  # indications of their verdicts, with arrays instead of numbers
 
     def looks(self) -> list[tuple[int, Look]]:
-        """Give the indications of each verdict."""
+        """Return the indications of each verdict."""
         count = len(self.cases)
         columns = (
             [each] * count if isinstance(each, bool) else in_each(each, count).tolist()
@@ -275,7 +275,7 @@ def _integrated(
 def _told(
     cases: CasesOfJob, groups: Sequence[_Batch], group_of: Places, ran: Places, outcomes: Outcomes
 ) -> Iterator[Finished | FinishedTogether]:
-    """Give the outcomes of runs, together for those that ended in the same way."""
+    """Return the outcomes of runs, together for those that ended in the same way."""
     status, modes = outcomes.status, outcomes.modes
     # the mode tells whether those that stand may overturn later, and which slips are over
     with_modes = (status == Status.COMPLETED) | groups[0].one.system.setting.slides

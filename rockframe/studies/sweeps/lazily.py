@@ -31,7 +31,7 @@ _Key: TypeAlias = tuple[Any, ...]
 
 
 def lazy_dataset(kept: Store) -> xr.Dataset:
-    """Give the content of a folder as a dataset that is read when it is used.
+    """Return the content of a folder as a dataset that is read when it is used.
 
     With dask its variables are dask arrays, whose blocks lie along the chunks.
     """
@@ -62,7 +62,7 @@ def lazy_dataset(kept: Store) -> xr.Dataset:
 
 
 def blocks(grid: Grid, most: int) -> dict[str, int]:
-    """Give the lengths of blocks of cases that follow one another in the order of running."""
+    """Return the lengths of blocks of cases that follow one another in the order of running."""
     found: dict[str, int] = {}
     for dim in reversed(grid.order):
         found[dim] = max(1, min(grid.sizes[dim], most))

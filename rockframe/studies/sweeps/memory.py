@@ -53,7 +53,7 @@ def check_memory(
 
 
 def available() -> float:
-    """Give what this process may still use; infinite where the system does not tell [bytes]."""
+    """Return what this process may still use; infinite where the system does not tell [bytes]."""
     found = [math.inf]
     with suppress(OSError, ValueError, IndexError):
         (line,) = (one for one in _MEMORY.read_text().splitlines() if "MemAvailable" in one)
@@ -78,7 +78,7 @@ def _shown(size: float) -> str:
 def numbers_of_case(
     arguments: RunRequest, kept: Histories | None, *, screened: bool
 ) -> dict[str, float]:
-    """Give how many numbers of each kind are kept for a case."""
+    """Return how many numbers of each kind are kept for a case."""
     points = len(arguments.points)
     every = [*EVENTS_AND_SCALARS, *FORCE_SCALARS, *(SWEEP if screened else ())]
     numbers = {"scalars": float(sum(not row.dims for row in every))}

@@ -52,14 +52,14 @@ ABBREVIATIONS: Final = {
 
 
 def full_name(name: str) -> str:
-    """Give the name of an axis that an abbreviation stands for."""
+    """Return the name of an axis that an abbreviation stands for."""
     return ABBREVIATIONS.get(name, name)
 
 
 def motion_of_case(
     motion: GroundMotion, name: str, value: float, period: float | None
 ) -> GroundMotion:
-    """Give the motion of a case."""
+    """Return the motion of a case."""
     target = TARGETS[name]
     if target.measure.unit == Unit.ONE:
         return motion.scaled(value)
@@ -93,7 +93,7 @@ def named_motions(value: object) -> dict[str, GroundMotion]:
 
 
 def _each_component(named: Mapping[str, Any]) -> dict[str, Any]:
-    """Give motions by name; the name of a component follows that of its pair."""
+    """Return motions by name; the name of a component follows that of its pair."""
     found: dict[str, Any] = {}
     for name, one in named.items():
         if not isinstance(one, HorizontalPair):
@@ -110,7 +110,7 @@ def _each_component(named: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def motion_number(wanted: object, names: Sequence[str], *, owner: str) -> int:
-    """Give the number of the motion for a name or a number, also one given as text."""
+    """Return the number of the motion for a name or a number, also one given as text."""
     if isinstance(wanted, str) and wanted in names:
         return names.index(wanted)
     typed = isinstance(wanted, str) and wanted in {str(place) for place in range(len(names))}

@@ -117,7 +117,7 @@ class Faults:
         self.found: list[str] = []
 
     def tried(self, read: Callable[[], Read], otherwise: Read) -> Read:
-        """Give what is read, or another value where that fails, and note why."""
+        """Return what is read, or another value where that fails, and note why."""
         try:
             return read()
         except StudyError as problem:

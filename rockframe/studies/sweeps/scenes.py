@@ -123,18 +123,18 @@ class SystemScene:
         return found
 
     def with_parts_of(self, axes: Iterable[Axis]) -> "SystemScene":
-        """Give the scene with the rigid ground as a part, where axes name its parameters."""
+        """Return the scene with the rigid ground as a part, where axes name its parameters."""
         parts = self.assembly.parts
         if all(axis.slot in ("", *parts.components) for axis in axes):
             return self
         return SystemScene(assembly_of(parts.standing(), self.assembly.options))
 
     def _parts(self) -> dict[str, Component]:
-        """Give the parts whose parameters axes may name, by their slots."""
+        """Return the parts whose parameters axes may name, by their slots."""
         return self.assembly.parts.standing().components
 
     def assembled(self, values: Values) -> Assembly:
-        """Give the system with the values of a case in the place of its own."""
+        """Return the system with the values of a case in the place of its own."""
         parts, options = self.assembly.parts, self.assembly.options
         by_slot: dict[str, dict[str, Any]] = {}
         for axis, value in values.items():
@@ -156,7 +156,7 @@ class SystemScene:
     def _having(
         self, parameter: str, kind: str, parts: Mapping[str, Component]
     ) -> list[tuple[str, Component, Declared[Any, Any]]]:
-        """Give the parts that have a parameter, with their slots and its declaration."""
+        """Return the parts that have a parameter, with their slots and its declaration."""
         return [
             (slot, part, part.varied()[parameter])
             for slot, part in parts.items()
@@ -164,7 +164,7 @@ class SystemScene:
         ]
 
     def _called(self, part: Component) -> list[str]:
-        """Give what axes may call a part: its class, and those that it is derived from.
+        """Return what axes may call a part: its class, and those that it is derived from.
 
         A link first what results call it, in one word: "restrainer 1" is restrainer_1.
         """
@@ -212,7 +212,7 @@ class SystemScene:
 
 
 def _made_of(part: Component) -> list[Component]:
-    """Give the parts within a part, whose parameters no axis names."""
+    """Return the parts within a part, whose parameters no axis names."""
     if isinstance(part, Stack):
         return [*part.bodies, *part.interfaces]
     return [part.column] if isinstance(part, RockingFrame) else []

@@ -187,7 +187,7 @@ class Store:
         )  # fmt: skip
 
     def provenance(self) -> dict[str, str]:
-        """Give the attributes that tell where the numbers are from."""
+        """Return the attributes that tell where the numbers are from."""
         return {
             "history": self.history,
             "source": f"rockframe {self.version}, {SOURCE}",
@@ -195,15 +195,15 @@ class Store:
         }
 
     def described(self) -> dict[str, Any]:
-        """Give the description of the study made when it was begun."""
+        """Return the description of the study made when it was begun."""
         return _read_head(self.folder)["study"]
 
     def chunks(self) -> list[Chunk]:
-        """Give all chunks."""
+        """Return all chunks."""
         return chunks_of(self.cases, self.chunk)
 
     def chunk_at(self, number: int) -> Chunk:
-        """Give a chunk by its number."""
+        """Return a chunk by its number."""
         return Chunk.of(number, self.cases, self.chunk)
 
     def has(self, chunk: Chunk) -> bool:
@@ -262,13 +262,13 @@ class Store:
         return CaseResults(status, scalars, histories, message, tuple(texts))
 
     def found(self) -> Iterator[tuple[range, CaseResults]]:
-        """Give all stored results."""
+        """Return all stored results."""
         for chunk in self.chunks():
             if self.has(chunk):
                 yield chunk.cases, self.get(chunk)
 
     def contents(self) -> tuple[dict[str, tuple[int, ...]], int]:
-        """Give the stored scalars and histories, with their shapes per case; count chunks."""
+        """Return the stored scalars and histories, with their shapes per case; count chunks."""
         files = [*self.folder.glob(f"{_FOLDERS if self.in_folders else ''}chunk-*.arrays")]
         found: dict[str, tuple[int, ...]] = {}
         for file in files:
@@ -367,12 +367,12 @@ def _make(path: Path, study: Study, chunk: int) -> None:
 
 
 def _words(axis: Axis) -> list[str] | None:
-    """Give the values of an axis that are words."""
+    """Return the values of an axis that are words."""
     return axis.values.tolist() if axis.values.dtype.kind == "U" else None
 
 
 def _sampled(one: Mapping[str, Any] | None) -> dict[str, dict[str, Any]]:
-    """Give the components that a motion is described by, where it is described by samples.
+    """Return the components that a motion is described by, where it is described by samples.
 
     What a constructor makes is described by its arguments, and ``vertical`` may be one of them.
     """

@@ -95,7 +95,7 @@ class Study:
     lazy: bool = field(default=False, compare=False)
 
     def job(self, cases: range | Generic) -> SweepJob:
-        """Give the job of some cases."""
+        """Return the job of some cases."""
         number = self.grid.motions_of(cases)
         used, place = np.unique(number, return_inverse=True)
         every = list(self.motions.values())
@@ -166,7 +166,7 @@ class Study:
         return one if self.patience is None else one * IN_LANES
 
     def chunk_size(self, workers: int, *, as_python: bool) -> int:
-        """Give a chunk size that takes long enough and leaves work for all workers."""
+        """Return a chunk size that takes long enough and leaves work for all workers."""
         size = LONG_ENOUGH / self.time_of_case(as_python=as_python)
         fair = -(-self.grid.count // (4 * workers))
         if self.patience is not None and not as_python:
@@ -188,7 +188,7 @@ class Study:
 
 
 def worker_count() -> int:
-    """Give the number of processors that this process may use."""
+    """Return the number of processors that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1

@@ -304,7 +304,7 @@ def _runs_as_python(study: Study) -> bool:
 def _in_memory(
     study: Study, size: int, executor: Executor | None, bar: ProgressBar
 ) -> tuple[xr.Dataset, str]:
-    """Give the results, and of an interrupted study how far it came."""
+    """Return the results, and of an interrupted study how far it came."""
     found: list[tuple[range, CaseResults]] = []
     bar.expect(study.grid.count)
 
@@ -326,7 +326,7 @@ def _kept(
     bar: ProgressBar,
     others: KnownCases,
 ) -> tuple[xr.Dataset, str]:
-    """Give the results, and of an interrupted study how far it came."""
+    """Return the results, and of an interrupted study how far it came."""
     kept = Store.of_study(folder, study, size)
     every = kept.chunks()
     missing = [one for one in every if not kept.has(one)]
@@ -365,7 +365,7 @@ def _kept(
 def _free(
     missing: list[Chunk], kept: Store, others: KnownCases, claims: Claims, bar: ProgressBar
 ) -> Iterator[Chunk | None]:
-    """Give the chunks that no other job has, as they are claimed; None while others have them.
+    """Return the chunks that no other job has, as they are claimed; None while others have them.
 
     Chunks that are fully known from other studies are stored here, and not returned.
     """
@@ -390,7 +390,7 @@ def _free(
 
 
 def stored_dataset(kept: Store, *, lazy: bool) -> xr.Dataset:
-    """Give what a folder holds as a dataset, by which its motions are found again."""
+    """Return what a folder holds as a dataset, by which its motions are found again."""
     dataset = lazy_dataset(kept) if lazy else sweep_dataset(kept.labels(), kept.found())
     dataset = dataset.assign_attrs(kept.provenance())
     dataset.encoding["source"] = str(kept.folder)  # as of a dataset that was read from a file

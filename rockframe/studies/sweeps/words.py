@@ -107,7 +107,7 @@ def _parts_of(runs: xr.Dataset) -> Iterator[xr.Dataset]:
 
 
 def slips_of_cases(runs: xr.Dataset) -> Generic:
-    """Give the largest slip of each case, of several bodies of that which slipped farthest [m]."""
+    """Return largest slip of each case, of several bodies of that which slipped farthest [m]."""
     most = np.full(runs["status"].shape, np.nan)
     for found in (runs[name] for name in PEAK_SLIPS if name in runs):
         others = [dim for dim in found.dims if dim not in runs["status"].dims]
@@ -150,7 +150,7 @@ def warn_of_missing_results(dataset: xr.Dataset, histories: Iterable[str]) -> No
 
 
 def _most_frequent(texts: Sequence[str]) -> tuple[str, int]:
-    """Give the text of most cases, those that differ in their numbers alone as one, and count."""
+    """Return the text of most cases, those that differ in their numbers alone as one, and count."""
     alike: dict[tuple[str, ...], Counter[str]] = {}
     for text, count in Counter(texts).items():
         alike.setdefault(tuple(_NUMBER.split(text)), Counter())[text] = count

@@ -24,7 +24,7 @@ _GAUSS = math.sqrt(0.6)
 
 @compiled
 def down(contact, z, p):
-    """Give the coordinates s of the ends of the part of the base that is down.
+    """Return the coordinates s of the ends of the part of the base that is down.
 
     They are measured from the foot of the centre of mass.
     """
@@ -46,7 +46,7 @@ def down(contact, z, p):
 
 @within
 def bed_pressure(z, p, s):
-    """Give compression, rate of the height, pressure and lever at a point of the base."""
+    """Return compression, rate of the height, pressure and lever at a point of the base."""
     w, lever, _ = height(is_small(p), z[1], z[2], -s, p[LOWER_HEIGHT], 1.0)
     rate = z[7] + lever * z[8]
     u = p[BED_SETTLEMENT] - w
@@ -61,7 +61,7 @@ def no_suction(p):
 
 @within
 def bearing(contact, z, p):
-    """Give the ends of the part that bears: that is down, and pushes if suction is excluded.
+    """Return the ends of the part that bears: that is down, and pushes if suction is excluded.
 
     Which end is cut off belongs to the contact state, so that forces are smooth within it.
     """
@@ -77,7 +77,7 @@ def bearing(contact, z, p):
 
 @within
 def end_pressures(contact, z, p):
-    """Give the pressures at both ends of the part that is down, over the static one."""
+    """Return the pressures at both ends of the part that is down, over the static one."""
     start, end = down(contact, z, p)
     scale = p[BED_STIFFNESS] * p[BED_SETTLEMENT]
     return bed_pressure(z, p, start)[2] / scale, bed_pressure(z, p, end)[2] / scale
@@ -97,7 +97,7 @@ def cut_off(contact, z, p, noise):
 
 @within
 def resultants(contact, z, p):
-    """Give force and generalised force on the rotation of what bears."""
+    """Return force and generalised force on the rotation of what bears."""
     start, end = bearing(contact, z, p)
     middle, half = 0.5 * (start + end), 0.5 * (end - start)
     force = moment = 0.0
@@ -111,7 +111,7 @@ def resultants(contact, z, p):
 
 @compiled
 def bed_energy(contact, z, p):
-    """Give the energy of the springs of the bed and the power of its dashpots."""
+    """Return the energy of the springs of the bed and the power of its dashpots."""
     start, end = down(contact, z, p)
     first, last = bearing(contact, z, p)
     energy = power = 0.0

@@ -74,7 +74,7 @@ class Outcome:
     """Whether rockframe says that verdict or peak are not sure."""
 
     def plain(self) -> dict:
-        """Give plain values."""
+        """Return plain values."""
         return asdict(self)
 
 
@@ -84,7 +84,7 @@ def run_reference(scene: Scene, factor: float = 1.0, tolerance: float = TOLERANC
 
 
 def apart(history: History, run, scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Give times and differences of rotation and rise over their greatest values."""
+    """Return times and differences of rotation and rise over their greatest values."""
     rows = rows_at(history.time, run)
     # a run that overturned has stopped between two output times
     common = rows >= 0

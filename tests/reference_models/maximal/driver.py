@@ -157,7 +157,7 @@ def advance(clock, stops, pieces, motion, z, contact, held, p, room, largest, st
 
 @compiled
 def typical_sizes(p):
-    """Give the least sizes that the error of each variable is measured against."""
+    """Return the least sizes that the error of each variable is measured against."""
     sizes = np.ones(STATES)
     for k in range(2):
         level = p[HALF_HEIGHT] if k == 1 else p[LOWER_HEIGHT]

@@ -135,7 +135,7 @@ def _disturbed(z, contact, p, room, noise):
 
 @within
 def due(z, contact, p, room, guards, noise):
-    """Give the guard whose switch is due at this instant, or -1.
+    """Return the guard whose switch is due at this instant, or -1.
 
     That is one that is negative, or that stands at zero and falls.
     """

@@ -14,7 +14,7 @@ COSINE, SINE, PULL = 5, 6, 7
 
 @compiled
 def ground(t, piece, shape, across, upwards):
-    """Give the acceleration of the ground along the base and normal to it, see `_level`."""
+    """Return the acceleration of the ground along the base and normal to it, see `_level`."""
     gx, gy = _level(t, piece, shape, across, upwards)
     cosine, sine = shape[COSINE], shape[SINE]
     return gx * cosine + gy * sine + shape[PULL], gy * cosine - gx * sine
@@ -22,7 +22,7 @@ def ground(t, piece, shape, across, upwards):
 
 @within
 def _level(t, piece, shape, across, upwards):
-    """Give the horizontal and vertical acceleration of the ground.
+    """Return the horizontal and vertical acceleration of the ground.
 
     Parameters
     ----------

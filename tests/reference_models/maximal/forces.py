@@ -49,7 +49,7 @@ def has_lower(p):
 
 @compiled
 def corner(p, rel, i):
-    """Give level, lever, its derivative, speed and the pad's force law at corner i (0 left)."""
+    """Return level, lever, its derivative, speed and the pad's force law at corner i (0 left)."""
     side = 1.0 - 2.0 * i
     distance = p[HALF_WIDTH] + side * p[ECCENTRICITY]
     y, lever, bend = height(is_small(p), rel[1], rel[2], distance, p[HALF_HEIGHT], side)
@@ -59,7 +59,7 @@ def corner(p, rel, i):
 
 @compiled
 def end(p, z, i):
-    """Give level, lever, its derivative and speed of end i (0 left) of the base on soil."""
+    """Return level, lever, its derivative and speed of end i (0 left) of the base on soil."""
     side = 1.0 - 2.0 * i
     distance = p[LOWER_HALF_WIDTH] + side * p[LOWER_ECCENTRICITY]
     w, lever, bend = height(is_small(p), z[1], z[2], distance, p[LOWER_HEIGHT], side)
@@ -77,7 +77,7 @@ def inverse_masses(p, inverse):
 
 
 def rooms(p: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Give the room that the compiled functions work in."""
+    """Return the room that the compiled functions work in."""
     room = (
         np.zeros(8),
         np.zeros((3, 6)),
@@ -92,7 +92,7 @@ def rooms(p: np.ndarray) -> tuple[np.ndarray, ...]:
 
 @within
 def top_acceleration(p, z, out):
-    """Give the acceleration, relative to the ground, of the middle of the lower body's top."""
+    """Return the acceleration, relative to the ground, of the middle of the lower body's top."""
     far, aside, a, rate = p[TOP], p[LOWER_ECCENTRICITY], z[2], z[8]
     if is_small(p):
         return (
@@ -111,7 +111,7 @@ def top_acceleration(p, z, out):
 
 @within
 def top_velocity(p, z):
-    """Give the velocity, relative to the ground, of the middle of the lower body's top."""
+    """Return the velocity, relative to the ground, of the middle of the lower body's top."""
     aside = p[LOWER_ECCENTRICITY]
     if is_small(p):
         return z[6] + p[TOP] * z[8], z[7] - p[TOP] * z[2] * z[8] + aside * z[8]

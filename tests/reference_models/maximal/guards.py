@@ -60,7 +60,7 @@ from .layout import (
 
 @compiled
 def total_rotation(z, p):
-    """Give the rotation on which overturning is judged."""
+    """Return the rotation on which overturning is judged."""
     if p[MASS] <= 0.0:
         return z[2]
     return z[2] + z[5] if int(p[KIND]) == CASCADE else z[5]

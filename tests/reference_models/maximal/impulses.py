@@ -102,7 +102,7 @@ def carry_over(z, before, contact, held, p, room):
 
 @compiled
 def slip(z, held, p, room):
-    """Give the speed of the block's held point along its base."""
+    """Return the speed of the block's held point along its base."""
     rel, rows = room[0], room[1]
     relative(z, p, rel, rows)
     _, first, _ = sway(is_small(p), rel[2], p[HALF_HEIGHT], held[POINT])
@@ -111,7 +111,7 @@ def slip(z, held, p, room):
 
 @compiled
 def lower_slip(z, held, p):
-    """Give the horizontal speed of the held point of the body on soil."""
+    """Return the horizontal speed of the held point of the body on soil."""
     _, first, _ = sway(is_small(p), z[2], p[LOWER_HEIGHT], held[LOWER_POINT])
     return z[6] - first * z[8]
 

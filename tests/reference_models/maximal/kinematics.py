@@ -17,7 +17,7 @@ from .layout import (
 
 @compiled
 def height(small, r, angle, distance, level, side):
-    """Give height, its derivative by the angle, and the second one, of a point of the base.
+    """Return height, its derivative by the angle, and the second one, of a point of the base.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def height(small, r, angle, distance, level, side):
 
 @compiled
 def sway(small, angle, level, point):
-    """Give x of the centre of mass over the held point and its two derivatives by the angle.
+    """Return x of the centre of mass over the held point and its two derivatives by the angle.
 
     `point` is the place of the held point along the base, from the foot of the centre of mass.
     """
@@ -113,5 +113,5 @@ def is_small(p):
 
 @compiled
 def limit_of(p, rotation):
-    """Give the overturning angle to the side of a rotation."""
+    """Return the overturning angle to the side of a rotation."""
     return p[LEFT_LIMIT] if rotation < 0.0 else p[RIGHT_LIMIT]

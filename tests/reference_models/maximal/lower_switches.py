@@ -30,7 +30,7 @@ SAME = 1e-9
 
 
 def lower_point(z, contact, held, p):
-    """Give the coordinate of the point that the rule holds, from the foot of the centre of mass."""
+    """Return coordinate of the point that the rule holds, from the foot of the centre of mass."""
     rule = int(p[RULE])
     b, middle = p[LOWER_HALF_WIDTH], -p[LOWER_ECCENTRICITY]
     if rule == CENTRE:

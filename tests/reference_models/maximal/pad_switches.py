@@ -42,7 +42,7 @@ def bears(state):
 
 
 def pad_point(z, contact, held, p, room):
-    """Give the coordinate of the point that the rule holds, from the foot of the centre of mass."""
+    """Return coordinate of the point that the rule holds, from the foot of the centre of mass."""
     rule = int(p[RULE])
     b, middle = p[HALF_WIDTH], -p[ECCENTRICITY]
     if rule == CENTRE:
@@ -62,7 +62,7 @@ def pad_point(z, contact, held, p, room):
 
 
 def look(i, z, p, room):
-    """Give level, speed and the force law at a corner."""
+    """Return level, speed and the force law at a corner."""
     relative(z, p, room[0], room[1])
     y, _, _, speed, force = corner(p, room[0], i)
     return y, speed, force / (p[MASS] * p[GRAVITY])

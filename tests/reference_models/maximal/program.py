@@ -87,7 +87,7 @@ def run_program(scene: Scene, factor: float = 1.0, accuracy: str | rf.Accuracy =
 
 
 def scaled_start(scene: Scene, factor: float) -> Scene:
-    """Give the scene with a start that is larger by a factor."""
+    """Return the scene with a start that is larger by a factor."""
     return replace(scene, start=factor * scene.start, start_rate=factor * scene.start_rate)
 
 
@@ -96,7 +96,7 @@ def _in(value: float, unit: str) -> str:
 
 
 def rows_at(times: np.ndarray, run) -> np.ndarray:
-    """Give the rows of a run at output times, -1 where there is none."""
+    """Return the rows of a run at output times, -1 where there is none."""
     have = run.time.values
     rows = np.searchsorted(have, times - 1e-9)
     rows = np.minimum(rows, have.size - 1)

@@ -32,14 +32,14 @@ class Rest:
 
 
 def lowered(small: bool, point: float, level: float, angle: float) -> float:
-    """Give how far the centre of mass moves across as a body tilts about a point of its base."""
+    """Return how far the centre of mass moves across as a body tilts about a point of its base."""
     if small:
         return level * angle
     return level * math.sin(angle) + point * (1.0 - math.cos(angle))
 
 
 def rest_of(scene: Scene, p: np.ndarray) -> Rest:
-    """Give where the bodies are at rest.
+    """Return where the bodies are at rest.
 
     Raises
     ------
@@ -61,13 +61,13 @@ def _sizes(angle: float, small: bool) -> tuple[float, float]:
 
 
 def _pads_push(p: np.ndarray, sine: float) -> float:
-    """Give where the resultant of both pads stands, right of the middle."""
+    """Return where the resultant of both pads stands, right of the middle."""
     b = p[at.HALF_WIDTH]
     return float(np.clip(b * b * sine / p[at.SETTLEMENT], -b, b))
 
 
 def _bed_push(p: np.ndarray, sine: float) -> tuple[float, float]:
-    """Give where the resultant of the bed stands, and the height of the middle of the base."""
+    """Return where the resultant of the bed stands, and the height of the middle of the base."""
     b, delta = p[at.LOWER_HALF_WIDTH], p[at.BED_SETTLEMENT]
     raised = b * abs(sine)
     if raised <= delta:
@@ -78,7 +78,7 @@ def _bed_push(p: np.ndarray, sine: float) -> tuple[float, float]:
 
 
 def _first_root(lack: Callable[[float], float], edge: float) -> float:
-    """Give the first angle on the way to `edge` where `lack` has risen to zero."""
+    """Return the first angle on the way to `edge` where `lack` has risen to zero."""
     last = 0.0
     for share in np.linspace(0.0, edge, SHARES + 1)[1:]:
         if lack(float(share)) > 0.0:
@@ -103,7 +103,7 @@ def _alone(scene: Scene, p: np.ndarray, lower: bool) -> tuple[float, float]:
 
 
 def _both(scene: Scene, p: np.ndarray) -> Rest:
-    """Give the rest of cap and block: of the block on the cap, and of both on the soil."""
+    """Return the rest of cap and block: of the block on the cap, and of both on the soil."""
     b, h, e = p[at.HALF_WIDTH], p[at.HALF_HEIGHT], p[at.ECCENTRICITY]
     weight, cap = p[at.MASS], p[at.LOWER_MASS]
 
@@ -137,7 +137,7 @@ def _both(scene: Scene, p: np.ndarray) -> Rest:
 
 
 def _guess(scene: Scene, p: np.ndarray) -> tuple[float, float]:
-    """Give what small angles would be: the cap leans as if the block stood upright on it."""
+    """Return what small angles would be: the cap leans as if the block stood upright on it."""
     b, h, e = p[at.HALF_WIDTH], p[at.HALF_HEIGHT], p[at.ECCENTRICITY]
     both = p[at.MASS] + p[at.LOWER_MASS]
     level = (p[at.MASS] * (2.0 * p[at.LOWER_HEIGHT] + h) + p[at.LOWER_MASS] * p[at.TOP]) / both

@@ -46,12 +46,12 @@ def place_hinged(z, held, p):
 
 @compiled
 def corner_place(p, side):
-    """Give the place of a corner, 1 right and -1 left, from the foot of the centre of mass."""
+    """Return the place of a corner, 1 right and -1 left, from the foot of the centre of mass."""
     return side * p[HALF_WIDTH] - p[ECCENTRICITY]
 
 
 def _holding(p, side, gx, gy):
-    """Give the moment, per mass, that brings the block back from a corner."""
+    """Return the moment, per mass, that brings the block back from a corner."""
     b, h = side * corner_place(p, side), p[HALF_HEIGHT]
     if is_small(p):
         lean = (p[GRAVITY] + gy) * limit_of(p, side) + side * gx

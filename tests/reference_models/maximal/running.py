@@ -73,13 +73,13 @@ def _digits(contact: np.ndarray) -> float:
 
 
 def kinetic(z: np.ndarray, inverse: np.ndarray) -> float:
-    """Give the kinetic energy relative to the ground."""
+    """Return the kinetic energy relative to the ground."""
     there = inverse > 0.0
     return 0.5 * float(np.sum(z[6:12][there] ** 2 / inverse[there]))
 
 
 def stored(z: np.ndarray, contact: np.ndarray, p: np.ndarray, room) -> float:
-    """Give the energy of gravity and of all springs."""
+    """Return the energy of gravity and of all springs."""
     energy = p[GRAVITY] * (p[MASS] * z[4] + p[LOWER_MASS] * z[1])
     if has_lower(p):
         energy += bed_energy(contact, z, p)[0]

@@ -79,7 +79,7 @@ class Scene:
         return self.cap or self.kind in ("cascade", "coupled")
 
     def one_body(self) -> tuple[float, float, float, float]:
-        """Give mass, inertia, half width and height of the centre of mass of block and cap."""
+        """Return mass, inertia, half width and height of the centre of mass of block and cap."""
         m, h = self.mass, self.half_height
         if not self.has_cap:
             return m, self.inertia, self.half_width, h
@@ -113,14 +113,14 @@ class Scene:
         return (1.0 + mu * math.cos(2.0 * self.theta)) / (1.0 + mu)
 
     def limits(self) -> tuple[float, float]:
-        """Give the overturning angles of the block to the left and to the right."""
+        """Return the overturning angles of the block to the left and to the right."""
         if self.eccentricity == 0.0:
             return self.theta, self.theta
         b, h, e = self.half_width, self.half_height, self.eccentricity
         return math.atan((b + e) / h), math.atan((b - e) / h)
 
     def rebounds(self) -> tuple[float, float]:
-        """Give the restitutions of impacts on the left and on the right corner.
+        """Return the restitutions of impacts on the left and on the right corner.
 
         The default is that of angular momentum kept about the new corner: m v moves about the old
         corner, at a distance d from the foot of the centre of mass, when the new one at d' comes
@@ -135,7 +135,7 @@ class Scene:
 
 
 def parameters(scene: Scene, tolerance: float) -> np.ndarray:
-    """Give the parameters of a scene as an array."""
+    """Return the parameters of a scene as an array."""
     p = np.zeros(at.PARAMETERS)
     weight = GRAVITY * math.cos(scene.inclination)  # of a unit of mass, normal to the base
     p[at.GRAVITY] = weight
@@ -195,7 +195,7 @@ KINDS_NUMBER = {
 
 
 def paces(scene: Scene, p: np.ndarray) -> float:
-    """Give an upper bound for the angular frequencies of the vibration."""
+    """Return an upper bound for the angular frequencies of the vibration."""
     rate = 4.0 * scene.frequency
     if p[at.STIFFNESS] > 0.0:
         light = 1.0 / p[at.MASS] + (1.0 / p[at.LOWER_MASS] if scene.kind == "coupled" else 0.0)
@@ -209,7 +209,7 @@ def paces(scene: Scene, p: np.ndarray) -> float:
 
 
 def mirrored(scene: Scene) -> Scene:
-    """Give the scene with left and right exchanged, for still ground."""
+    """Return the scene with left and right exchanged, for still ground."""
     return replace(
         scene,
         start=-scene.start,

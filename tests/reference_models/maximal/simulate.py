@@ -26,12 +26,12 @@ class Excitation:
 
     @classmethod
     def still(cls, step: float = 0.01) -> "Excitation":
-        """Give still ground."""
+        """Return still ground."""
         return cls(step, 0, _shape(), np.zeros(2), np.zeros(2), np.inf)
 
     @classmethod
     def record(cls, step: float, across, upwards=None) -> "Excitation":
-        """Give straight lines between samples."""
+        """Return straight lines between samples."""
         across = np.array(across, dtype=np.float64)
         upwards = np.zeros_like(across) if upwards is None else np.array(upwards, dtype=np.float64)
         shape = _shape(excitation.RECORD, step)
@@ -39,13 +39,13 @@ class Excitation:
 
     @classmethod
     def pulse(cls, kind, step, intervals, scale, phase, peak, vertical) -> "Excitation":
-        """Give a formula; `scale` is its frequency, or a wavelet's period."""
+        """Return a formula; `scale` is its frequency, or a wavelet's period."""
         shape = _shape(kind, scale, phase, peak, vertical)
         longest = 0.02 / scale if kind == excitation.HARMONIC else 0.01 * scale
         return cls(step, intervals, shape, np.zeros(2), np.zeros(2), longest)
 
     def along(self, inclination: float) -> "Excitation":
-        """Give the same motion on a base that rises to the right."""
+        """Return the same motion on a base that rises to the right."""
         shape = self.shape.copy()
         sine = np.sin(inclination)
         shape[[excitation.COSINE, excitation.SINE]] = np.cos(inclination), sine
@@ -54,7 +54,7 @@ class Excitation:
 
 
 def _shape(*values: float) -> np.ndarray:
-    """Give the numbers of a motion on a level base, see `excitation.ground`."""
+    """Return the numbers of a motion on a level base, see `excitation.ground`."""
     shape = np.zeros(8)
     shape[: len(values)] = values
     shape[excitation.COSINE] = 1.0

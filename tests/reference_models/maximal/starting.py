@@ -13,7 +13,7 @@ from .scene import GRAVITY, Scene
 
 
 def start(scene: Scene, p: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Give state, contact and held points at the start."""
+    """Return state, contact and held points at the start."""
     z = np.zeros(at.STATES)
     contact = np.zeros(at.CONTACTS, dtype=np.int64)
     held = np.zeros(8)
@@ -39,7 +39,7 @@ def start(scene: Scene, p: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarr
 
 
 def rest_on_slope(scene: Scene, p: np.ndarray) -> Rest:
-    """Give the rest of bodies on an inclined base, with all of their bases pressed.
+    """Return the rest of bodies on an inclined base, with all of their bases pressed.
 
     It is found from the accelerations of the equations of motion, which must vanish.
 

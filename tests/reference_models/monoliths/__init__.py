@@ -160,7 +160,7 @@ class Drive:
         self.edges = kept
 
     def pieces(self):
-        """Give (start, stop, horizontal, vertical) for one smooth piece after another."""
+        """Return (start, stop, horizontal, vertical) for one smooth piece after another."""
         for start, stop in zip(self.edges[:-1], self.edges[1:], strict=True):
             yield start, stop, *(source.piece(start, stop) for source in self.sources)
 

@@ -198,14 +198,14 @@ class _Run(March):
         return [one for one in held if self.contact[one[0]] != "flight"]
 
     def rates(self, z, xp=math):
-        """Give the six rates: those of held coordinates follow from their masters'."""
+        """Return the six rates: those of held coordinates follow from their masters'."""
         v = list(z[6:12])
         for interface, slave, master in self.constraints():
             v[slave] = self.lever(interface, z[master], xp)[0] * v[master]
         return v
 
     def basis(self, z, v, xp=math):
-        """Give B and a such that the accelerations are B times the free ones, plus a."""
+        """Return B and a such that the accelerations are B times the free ones, plus a."""
         shape = np.shape(z[0])
         held = self.constraints()
         slaves = [slave for _, slave, _ in held]
@@ -221,7 +221,7 @@ class _Run(March):
         return basis, bias
 
     def corners(self, psi, r, xp=math):
-        """Give for L and R the rise, its derivative in the rotation, and the second one."""
+        """Return for L and R the rise, its derivative in the rotation, and the second one."""
         b, h = self.b, self.h
         sine, cosine = xp.sin(psi), xp.cos(psi)
         middle = r + h * (1.0 - cosine)
@@ -231,7 +231,7 @@ class _Run(March):
         }
 
     def pads(self, z, xp=math):
-        """Give for each corner its rise, rate, expression of its force, lever and bend."""
+        """Return for each corner its rise, rate, expression of its force, lever and bend."""
         out = {}
         for name, (rise, arm, bend) in self.corners(z[PSI], z[R], xp).items():
             rate = z[6 + R] + arm * z[6 + PSI]
@@ -245,7 +245,7 @@ class _Run(March):
         return np.moveaxis(mass, (0, 1), (-2, -1)) if shape else mass
 
     def mass(self, z):
-        """Give the mass matrix of the six coordinates."""
+        """Return the mass matrix of the six coordinates."""
         v = [0.0] * 6
         entries = self.functions[math][0](z[:6], v, self.parameters, 0.0, 0.0)[: len(PAIRS)]
         return self.matrix(entries)
@@ -351,7 +351,7 @@ class _Run(March):
         self.guards = guards
 
     def pad_force(self, corner, accelerations, psi_dot):
-        """Give the expression of a corner's force, its rate, and the corner's acceleration."""
+        """Return the expression of a corner's force, its rate, and the corner's acceleration."""
         _, rate, force, arm, bend = corner
         acceleration = accelerations[R] + arm * accelerations[PSI] + bend * psi_dot**2
         return force, -self.k * rate - self.c * acceleration, acceleration
@@ -497,7 +497,7 @@ class _Run(March):
         self.events.append(event)
 
     def change(self, z, kind, interface, names, just_left):
-        """Give the named corners or ends their new state."""
+        """Return the named corners or ends their new state."""
         for name in names:
             if interface == "soil":
                 self.bed.end[name] = TOUCHING if kind == "land" else CLEAR

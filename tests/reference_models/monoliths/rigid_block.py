@@ -99,7 +99,7 @@ class _Run:
         return self.radius, self.radius * left
 
     def place(self, alpha):
-        """Give x and y of the centre of mass from the block's place at rest."""
+        """Return x and y of the centre of mass from the block's place at rest."""
         side = 1.0 if alpha >= 0.0 else -1.0
         left = self.theta - abs(alpha)
         if self.finite:

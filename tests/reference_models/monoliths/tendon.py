@@ -28,18 +28,18 @@ class Tendon:
         """Begin: there is nothing to remember."""
 
     def length(self, z):
-        """Give the elongation, its derivatives, and its rate."""
+        """Return the elongation, its derivatives, and its rate."""
         alpha, rate = z[0], z[3]
         far = self.to_right if self.side > 0 else self.to_left
         way = self.side * far * math.cos(0.5 * alpha)
         return 2.0 * self.side * far * math.sin(0.5 * alpha), (way, 0.0, 0.0), way * rate, 0.0
 
     def tension(self, length: float, rate: float) -> float:
-        """Give the force in it."""
+        """Return the force in it."""
         return self.preload + self.stiffness * length
 
     def guards(self, number: int) -> list:
-        """Give what ends its state: nothing."""
+        """Return what ends its state: nothing."""
         return []
 
     def turned(self, z) -> bool:
@@ -51,7 +51,7 @@ class Block(tied_rigid_block.Block):
     """A block with tendons."""
 
     def pulls(self, alpha: float, rate: float) -> tuple[float, float]:
-        """Give the tendons' moment on the rotation; they lift nothing."""
+        """Return the tendons' moment on the rotation; they lift nothing."""
         for one in self.ties:
             one.side = self.side
         return super().pulls(alpha, rate)

@@ -50,14 +50,14 @@ class Block:
         self.about = self.inertia + self.radius**2
 
     def place(self, alpha: float, rate: float) -> tuple[list[float], float, float]:
-        """Give rotation, rise and shift with their rates, and how the latter go with alpha."""
+        """Return rotation, rise and shift with their rates, and how the latter go with alpha."""
         lean, s = self.theta * self.side - alpha, self.side
         up, along = self.radius * math.sin(lean), self.radius * math.cos(lean)
         x, y = s * self.b - up, along - self.h
         return [alpha, y, x, rate, up * rate, along * rate], up, along
 
     def pulls(self, alpha: float, rate: float) -> tuple[float, float]:
-        """Give the ties' moment on the rotation, and their force upwards."""
+        """Return the ties' moment on the rotation, and their force upwards."""
         z, up, along = self.place(alpha, rate)
         moment = lift = 0.0
         for tie in self.ties:
@@ -68,19 +68,19 @@ class Block:
         return moment, lift
 
     def swing(self, alpha: float, rate: float, ax: float, ay: float) -> float:
-        """Give the angular acceleration."""
+        """Return the angular acceleration."""
         _, up, along = self.place(alpha, rate)
         moment = -(self.gravity + ay) * up - ax * along
         return (moment + self.pulls(alpha, rate)[0]) / self.about
 
     def press(self, alpha: float, rate: float, ax: float, ay: float) -> float:
-        """Give the force of the bearing corner."""
+        """Return the force of the bearing corner."""
         _, up, along = self.place(alpha, rate)
         rise = up * self.swing(alpha, rate, ax, ay) - along * rate**2
         return self.gravity + ay + rise - self.pulls(alpha, rate)[1]
 
     def holds(self, ax: float, ay: float) -> float:
-        """Give the least restoring acceleration of both corners, at rest; negative if it starts."""
+        """Return least restoring acceleration of both corners, at rest; negative if it starts."""
         restoring = []
         for side in (1, -1):
             self.side = side

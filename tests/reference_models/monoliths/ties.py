@@ -54,7 +54,7 @@ class Tie:
             self.state = TAUT if x > 0.0 or self.compression else SLACK
 
     def length(self, z, xp=math):
-        """Give length, its derivatives by rotation, height and place, rate and what bends it."""
+        """Return length, its derivatives by rotation, height and place, rate and what bends it."""
         alpha, y, x, alpha_dot, y_dot, x_dot = z[:6]
         sine, cosine = xp.sin(alpha), xp.cos(alpha)
         px, py = self.point
@@ -69,7 +69,7 @@ class Tie:
         return length, (ux * up - uy * across, uy, ux), rate, bend
 
     def tension(self, length, rate):
-        """Give the force that pulls the body towards the anchor."""
+        """Return the force that pulls the body towards the anchor."""
         if self.state == BROKEN:
             return 0.0 * length
         x = {
@@ -81,7 +81,7 @@ class Tie:
         return self.stiffness * x + self.damping * rate
 
     def stored(self, z) -> float:
-        """Give the energy of the spring."""
+        """Return the energy of the spring."""
         if self.state in (SLACK, BROKEN):
             return 0.0
         x = self.most
@@ -90,7 +90,7 @@ class Tie:
         return 0.5 * self.stiffness * x * x
 
     def lost_power(self, rate: float) -> float:
-        """Give what dashpot and yielding take."""
+        """Return what dashpot and yielding take."""
         if self.state == BROKEN:
             return 0.0
         sign = {YIELDING: 1.0, PRESSED: -1.0}.get(self.state, 0.0)
@@ -98,7 +98,7 @@ class Tie:
         return self.damping * rate * rate + plastic
 
     def guards(self, number: int) -> list[Guard]:
-        """Give what can end the present state."""
+        """Return what can end the present state."""
         kinds = {SLACK: ("taut",), YIELDING: ("turn",), PRESSED: ("turn",), BROKEN: ()}
         some = list(kinds.get(self.state, ()))
         if self.state == TAUT:
@@ -108,7 +108,7 @@ class Tie:
         return [Guard(kind, str(number), strict=False) for kind in some]
 
     def value(self, kind, length, rate, acceleration):
-        """Give a guard and its rate."""
+        """Return a guard and its rate."""
         x = length - self.natural - self.set
         if kind == "turn":
             sign = 1.0 if self.state == YIELDING else -1.0
@@ -153,7 +153,7 @@ EVENTS = {
 
 
 def event_of(tie, kind):
-    """Give what results call the end of a state, before the switch."""
+    """Return what results call the end of a state, before the switch."""
     return "RESTRAINER_FRACTURE" if kind in ("yield", "press") and tie.brittle else EVENTS[kind]
 
 
@@ -168,7 +168,7 @@ def turn_others(ties, z):
 
 
 def guards_of(ties, z):
-    """Give the guards of all ties at a state of rotation, height and place, and their rates."""
+    """Return the guards of all ties at a state of rotation, height and place, and their rates."""
     found = {}
     for i, tie in enumerate(ties):
         length, _, rate, _ = tie.length(z)
@@ -180,7 +180,7 @@ def guards_of(ties, z):
 
 
 def forces(ties, z, xp=np):
-    """Give the generalised forces on rotation, height and place of all ties."""
+    """Return the generalised forces on rotation, height and place of all ties."""
     found = [0.0, 0.0, 0.0]
     for tie in ties:
         length, way, rate, _ = tie.length(z, xp)

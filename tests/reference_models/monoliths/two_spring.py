@@ -170,7 +170,7 @@ class _Run:
         return self.h * cosine + e * sine, e * cosine - self.h * sine
 
     def corners(self, alpha, y, xp=math):
-        """Give for L and R the rise, its derivative in the rotation, and the second one."""
+        """Return for L and R the rise, its derivative in the rotation, and the second one."""
         b, h = self.b, self.h
         if not self.finite:
             middle = y + 0.5 * h * alpha * alpha
@@ -228,7 +228,7 @@ class _Run:
         return [alpha_dot, y_dot, x_dot, alpha_acc, y_acc, x_acc, dissipated, work]
 
     def whole(self, z, xp=math):
-        """Give the state with the horizontal speed of a body that is held."""
+        """Return the state with the horizontal speed of a body that is held."""
         if not self.ties or self.contact == "flight":
             return z
         return [*z[:5], self.lever(z[0], xp)[0] * z[3], *z[6:]]

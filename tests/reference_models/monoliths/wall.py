@@ -25,7 +25,7 @@ class Wall(Tie):
         self.state = TAUT if self.length(z)[0] > self.natural else SLACK
 
     def length(self, z, xp=math):
-        """Give how far the point has come to the wall's side, as of a tie."""
+        """Return how far the point has come to the wall's side, as of a tie."""
         alpha, _, x, alpha_dot, _, x_dot = z[:6]
         sine, cosine = xp.sin(alpha), xp.cos(alpha)
         px, py = self.point
@@ -35,11 +35,11 @@ class Wall(Tie):
         return self.side * (x + across - px), way, rate, -self.side * across * alpha_dot**2
 
     def tension(self, length, rate):
-        """Give the force with which it presses the body away."""
+        """Return the force with which it presses the body away."""
         if self.state == SLACK:
             return 0.0 * length
         return self.stiffness * (length - self.natural) + self.damping * rate
 
     def lost_power(self, rate: float) -> float:
-        """Give what the dashpot takes."""
+        """Return what the dashpot takes."""
         return self.damping * rate * rate if self.state == TAUT else 0.0

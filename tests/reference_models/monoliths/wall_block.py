@@ -28,7 +28,7 @@ class Run:
 
 
 def simulate(theta, radius, inertia, ratio, samples, step, *, gravity, start=(0.0, 0.0)):
-    """Give the run of a block with its wall on the left."""
+    """Return the run of a block with its wall on the left."""
     count = len(samples)
     run = Run(np.full(count, np.nan))
     state, rocking = np.array(start, dtype=float), any(start)

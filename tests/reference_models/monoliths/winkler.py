@@ -136,7 +136,7 @@ class Bed:
         self.bounds: tuple[str, str] | None = ("end", "end")
 
     def frame(self, alpha, y, xp=math):
-        """Give the base's middle, and what its points' rises and levers are made of."""
+        """Return the base's middle, and what its points' rises and levers are made of."""
         if self.finite:
             sine, cosine = xp.sin(alpha), xp.cos(alpha)
             return y + self.h * (1.0 - cosine), sine, cosine, sine
@@ -161,7 +161,7 @@ class Bed:
         return self.b * np.clip((left + right) / np.where(gap == 0.0, TINY, gap), -2.0, 2.0)
 
     def place(self, bounds, ends, xp=math):
-        """Give the coordinates of a stretch of the base from the kinds of its two bounds."""
+        """Return the coordinates of a stretch of the base from the kinds of its two bounds."""
         left, right = ends["L"], ends["R"]
         at = {"level": (left.depth, right.depth), "pressure": (left.pressure, right.pressure)}
         low, high = (
@@ -171,7 +171,7 @@ class Bed:
         return low, high
 
     def below(self) -> tuple[str, str] | None:
-        """Give the bounds of the stretch below the unloaded level."""
+        """Return the bounds of the stretch below the unloaded level."""
         left, right = (self.end[name] != CLEAR for name in "LR")
         if not (left or right):
             return None
@@ -196,7 +196,7 @@ class Bed:
         return lift, moment, viscous, relaxing
 
     def resultants(self, ends, alpha, y, alpha_dot, y_dot, xp=math):
-        """Give lift, moment about the centre of mass, and the power the dashpots burn."""
+        """Return lift, moment about the centre of mass, and the power the dashpots burn."""
         lift = moment = dissipated = 0.0 * alpha
         motion = (alpha, y, alpha_dot, y_dot, xp)
         below = self.below()
@@ -242,7 +242,7 @@ class Bed:
 
     # what bears, under the pressure rule -----------------------------------------------------
     def cross(self, ends, accelerations):
-        """Give what tells which of two roots lies further right (see ``read``), and its rate."""
+        """Return what tells which of two roots lies further right (see ``read``), and its rate."""
         left, right = ends["L"], ends["R"]
         value = left.depth * right.pressure - right.depth * left.pressure
         rate = (
@@ -293,7 +293,7 @@ class Bed:
         return guards
 
     def cut_value(self, where, ends, accelerations):
-        """Give the quantity whose change of sign changes the bounds, and its rate."""
+        """Return the quantity whose change of sign changes the bounds, and its rate."""
         if where == "X":
             value, rate = self.cross(ends, accelerations)
             sign = 1.0 if self.cross_positive else -1.0
@@ -579,7 +579,7 @@ class _Run(March):
         self.guards = guards
 
     def bearing(self, end, acceleration):
-        """Give what must be positive at an end that bears, and its rate."""
+        """Return what must be positive at an end that bears, and its rate."""
         if self.bed.by_pressure:
             return end.pressure, self.bed.pressure_rate(end, acceleration)
         return end.depth, -end.rate
@@ -720,7 +720,7 @@ class _Run(March):
         self.set_guards()
 
     def change(self, kind, names, z, just_left):
-        """Give the named ends their new state."""
+        """Return the named ends their new state."""
         for name in names:
             self.grace.discard(name)
             if kind in ("engage", "settle"):

@@ -49,7 +49,7 @@ class Result:
     overturned: bool = False
 
     def count(self, kind: str) -> int:
-        """Give how often something happened."""
+        """Return how often something happened."""
         return sum(what == kind for _, what, _ in self.events)
 
 
@@ -98,7 +98,7 @@ class _Block:
         return not any(state in HELD for state in self.state.values())
 
     def held_point(self):
-        """Give e, or None in flight."""
+        """Return e, or None in flight."""
         if self.flies:
             return None
         left, right = (self.state[name] in HELD for name in "LR")
@@ -116,7 +116,7 @@ class _Block:
         return h * (1.0 - cosine) + b * sine, h * sine + b * cosine, h * cosine - b * sine
 
     def motion(self, t, q, xp=math):
-        """Give the accelerations (alpha, y, x), and both corners."""
+        """Return the accelerations (alpha, y, x), and both corners."""
         alpha, y, _, alpha_dot, y_dot, _, *sets = q
         ends, upward, moment = {}, 0.0 * alpha, 0.0 * alpha
         for name, plastic in zip("LR", sets, strict=True):
@@ -196,7 +196,7 @@ class _Block:
         return found
 
     def slack(self, end):
-        """Give what the spring's force lacks to the line on which it yields."""
+        """Return what the spring's force lacks to the line on which it yields."""
         return self.strength + self.r * self.k / (1.0 - self.r) * end.set - end.spring
 
     def due(self, t, q):

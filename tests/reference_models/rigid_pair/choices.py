@@ -30,12 +30,12 @@ class Outcome(NamedTuple):
 
 
 def named(ends) -> str:
-    """Give the name of a set of ends."""
+    """Return the name of a set of ends."""
     return "both" if len(ends) == 2 else ends[0] if ends else "none"
 
 
 def patterns(touching: Touching) -> list[Pattern]:
-    """Give all patterns in which some of the touching ends bear."""
+    """Return all patterns in which some of the touching ends bear."""
     subsets = {
         key: [named(some) for count in (2, 1, 0) for some in combinations(ends, count)]
         for key, ends in touching.items()
@@ -44,7 +44,7 @@ def patterns(touching: Touching) -> list[Pattern]:
 
 
 def normal_rows(seats: Seats, place, touching: Touching) -> tuple[list, np.ndarray]:
-    """Give the rows that make speeds of opening, of all touching ends, from six velocities."""
+    """Return the rows that make speeds of opening, of all touching ends, from six velocities."""
     names, rows = [], []
     for end in touching["ground"]:
         _, row = _rows(place, seats.ground[end], None, 0.0)
@@ -59,7 +59,7 @@ def normal_rows(seats: Seats, place, touching: Touching) -> tuple[list, np.ndarr
 
 
 def tangent_rows(seats: Seats, place, touching: Touching) -> np.ndarray:
-    """Give the rows that make speeds of slip, one of each touching interface."""
+    """Return the rows that make speeds of slip, one of each touching interface."""
     rows = []
     if touching["ground"]:
         rows.append(_rows(place, seats.ground[touching["ground"][0]], None, 0.0)[0])
@@ -86,7 +86,7 @@ def _rows(place, one, other, slope):
 
 
 def strike(pair, shift, place, speed, touching: Touching, anchor=0.0) -> Outcome:
-    """Give what follows a plastic impact, with contacts that bear held against sliding.
+    """Return what follows a plastic impact, with contacts that bear held against sliding.
 
     The one admissible pattern; of several the one that loses least energy; if there is none,
     what `complementary` gives.
@@ -128,7 +128,7 @@ def strike(pair, shift, place, speed, touching: Touching, anchor=0.0) -> Outcome
 
 
 def projected(phase: Phase, place, speed) -> np.ndarray:
-    """Give the six velocities when contacts of a pattern take hold at once: (B'MB)^-1 B'M v."""
+    """Return the six velocities when contacts of a pattern take hold at once: (B'MB)^-1 B'M v."""
     jac, _ = phase.motions(place[2], place[5])
     if not phase.size:
         return np.zeros(6)
@@ -182,7 +182,7 @@ def complementary(seats, masses, place, speed, touching: Touching):
 
 
 def yield_to(phase: Phase, place, speed, touching, across, up, apart=None) -> Outcome | None:
-    """Give the pattern whose accelerations open what it leaves and press where it bears.
+    """Return the pattern whose accelerations open what it leaves and press where it bears.
 
     Parameters
     ----------
@@ -226,7 +226,7 @@ def yield_to(phase: Phase, place, speed, touching, across, up, apart=None) -> Ou
 
 
 def _turning(seats: Seats, place, speed, names) -> np.ndarray:
-    """Give the openings' accelerations by rotation at constant rates."""
+    """Return the openings' accelerations by rotation at constant rates."""
     found = []
     for key, end in names:
         if key == "ground":
@@ -245,7 +245,7 @@ def _turning(seats: Seats, place, speed, names) -> np.ndarray:
 
 
 def touching_of(pattern: Pattern) -> Touching:
-    """Give the ends that touch while a pattern lasts."""
+    """Return the ends that touch while a pattern lasts."""
     return {"ground": MEMBERS[pattern.ground], "joint": MEMBERS[pattern.joint]}
 
 

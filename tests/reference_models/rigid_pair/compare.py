@@ -60,7 +60,7 @@ class Compared:
 
 
 def block_of(body: Body) -> rf.Block:
-    """Give the package's block."""
+    """Return the package's block."""
     return rf.Block(
         width=f"{2.0 * body.half_width!r} m",
         height=f"{body.below + body.above!r} m",
@@ -71,7 +71,7 @@ def block_of(body: Body) -> rf.Block:
 
 
 def system_of(scene: Scene) -> rf.System:
-    """Give the package's scene."""
+    """Return the package's scene."""
     pair = scene.pair
     upper, lower = block_of(pair.upper), block_of(pair.lower)
     stack = rf.Stack(upper, lower, interfaces=[rf.RigidGround()], offsets=[f"{pair.offset!r} m"])
@@ -79,7 +79,7 @@ def system_of(scene: Scene) -> rf.System:
 
 
 def motion_of(motion: dict[str, Any]) -> rf.GroundMotion:
-    """Give the package's ground motion."""
+    """Return the package's ground motion."""
     if motion["form"] == "record":
         step, across, up = drawing.record_of(motion)
         return rf.GroundMotion.from_arrays((across, "m/s^2"), f"{step!r} s", vertical=(up, "m/s^2"))

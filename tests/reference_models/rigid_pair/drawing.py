@@ -120,7 +120,7 @@ def _motion(rng: np.random.Generator, pair: Pair) -> dict[str, Any]:
 
 
 def record_of(motion: dict[str, Any]) -> tuple[float, np.ndarray, np.ndarray]:
-    """Give step and samples of a recorded motion, across and upwards [s], [m/s²]."""
+    """Return step and samples of a recorded motion, across and upwards [s], [m/s²]."""
     step, across = _samples(RECORDS[motion["which"]])
     _, up = _samples(RECORDS[1 - motion["which"]])
     last = min(across.size, up.size) - 1
@@ -136,7 +136,7 @@ def record_of(motion: dict[str, Any]) -> tuple[float, np.ndarray, np.ndarray]:
 
 
 def pieces_for(motion: dict[str, Any]) -> tuple[list[Piece], float]:
-    """Give the pieces of a motion and of still ground after it, and its least period [s]."""
+    """Return the pieces of a motion and of still ground after it, and its least period [s]."""
     if motion["form"] == "record":
         step, across, up = record_of(motion)
         pieces = pieces_of(step, across, up)

@@ -7,7 +7,7 @@ LANDINGS = tuple((kind, end) for end in SIGN for kind in ("corner", "edge"))
 
 
 def meeting(pair: Pair, place, kind: str, end: str) -> tuple[float, float]:
-    """Give an end as the other body sees it.
+    """Return an end as the other body sees it.
 
     Returns
     -------
@@ -26,7 +26,7 @@ def meeting(pair: Pair, place, kind: str, end: str) -> tuple[float, float]:
 
 
 def gaps(pair: Pair, place) -> dict:
-    """Give how far ends are from the faces that they may land on, over the upper half width."""
+    """Return how far ends are from the faces that they may land on, over the upper half width."""
     found = {}
     for kind, end in LANDINGS:
         along, away = meeting(pair, place, kind, end)
@@ -37,7 +37,7 @@ def gaps(pair: Pair, place) -> dict:
 
 
 def shift_after(pair: Pair, place, kind: str, end: str) -> float:
-    """Give how far the upper body stands beside the middle of the lower one when an end lands."""
+    """Return how far the upper body stands beside the middle of the lower one when an end lands."""
     along, _ = meeting(pair, place, kind, end)
     if kind == "corner":
         return along - SIGN[end] * pair.upper.half_width

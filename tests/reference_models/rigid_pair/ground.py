@@ -19,7 +19,7 @@ class Piece:
 
 
 def pieces_of(step: float, across, up=None) -> list[Piece]:
-    """Give the pieces of a sampled motion, linear between samples."""
+    """Return the pieces of a sampled motion, linear between samples."""
     across = np.asarray(across, dtype=float)
     up = np.zeros_like(across) if up is None else np.asarray(up, dtype=float)
     found = []
@@ -34,12 +34,12 @@ def pieces_of(step: float, across, up=None) -> list[Piece]:
 
 
 def still(start: float, stop: float) -> Piece:
-    """Give a span of still ground."""
+    """Return a span of still ground."""
     return Piece(start, stop, lambda t: 0.0, lambda t: 0.0, linear=True)
 
 
 def harmonic(peak, vertical, frequency, cycles, phase=0.0, free=0.0) -> list[Piece]:
-    """Give whole or half cycles of a harmonic acceleration, and still ground after them."""
+    """Return whole or half cycles of a harmonic acceleration, and still ground after them."""
     stop, turn = cycles / frequency, 2.0 * math.pi * frequency
     return [
         Piece(

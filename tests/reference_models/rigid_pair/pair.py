@@ -38,12 +38,12 @@ class Body(NamedTuple):
 
     @classmethod
     def uniform(cls, width: float, height: float, mass: float) -> "Body":
-        """Give a homogeneous rectangle."""
+        """Return a homogeneous rectangle."""
         inertia = mass * (width**2 + height**2) / 12.0
         return cls(mass, inertia, 0.5 * width, 0.5 * height, 0.5 * height)
 
     def from_centre(self, across: float, up: float) -> tuple[float, float]:
-        """Give a point, measured from the middle of the width, as seen from the centre of mass."""
+        """Return a point, measured from the middle of the width, from the centre of mass."""
         return across - self.beside, up
 
 
@@ -100,7 +100,7 @@ class Pair:
         return math.sqrt(min(sizes) / self.gravity)
 
     def mirrored(self) -> "Pair":
-        """Give the pair as seen from behind."""
+        """Return the pair as seen from behind."""
         return replace(
             self,
             lower=self.lower._replace(beside=-self.lower.beside),
@@ -109,7 +109,7 @@ class Pair:
         )
 
     def energy(self, place, speed) -> float:
-        """Give kinetic energy and that of gravity [J]."""
+        """Return kinetic energy and that of gravity [J]."""
         return float(0.5 * self.masses @ speed**2 + self.gravity * self.weights @ place)
 
 
@@ -129,7 +129,7 @@ class Seats(NamedTuple):
 
 
 def seats_of(pair: Pair, shift: float) -> Seats:
-    """Give the points of contact when the upper body stands `shift` beside the lower one."""
+    """Return the points of contact when the upper body stands `shift` beside the lower one."""
     one, two = pair.lower, pair.upper
     ground, below, above, edge = {}, {}, {}, {}
     for end, way in SIGN.items():
@@ -167,7 +167,7 @@ class Phase:
         self.masses, self.weights = pair.masses, pair.weights
 
     def placed(self, q) -> np.ndarray:
-        """Give the six places from the coordinates."""
+        """Return the six places from the coordinates."""
         ground, joint = self.pattern
         x1, y1, turn = q[:3] if ground == "none" else (0.0, 0.0, q[0] if self.of_lower else 0.0)
         if ground != "none":
@@ -186,14 +186,14 @@ class Phase:
         return np.array([x1, y1, turn, x2, y2, other])
 
     def coordinates(self, place) -> np.ndarray:
-        """Give the coordinates from the six places, or their rates from the six velocities."""
+        """Return the coordinates from the six places, or their rates from the six velocities."""
         ground, joint = self.pattern
         first = () if ground == "both" else place[:3] if ground == "none" else place[2:3]
         second = () if joint == "both" else place[3:6] if joint == "none" else place[5:6]
         return np.array([*first, *second])
 
     def motions(self, first: float, second: float, rate: float = 0.0, other: float = 0.0):
-        """Give the velocities per rate of each coordinate, and the accelerations of mere turning.
+        """Return the velocities per rate of each coordinate, and the accelerations of mere turning.
 
         Parameters
         ----------
@@ -264,13 +264,13 @@ class Phase:
         return second_rates, jac @ second_rates + bend
 
     def needed(self, acceleration, across, up) -> np.ndarray:
-        """Give the resultants of all contact forces on each body that accelerations ask for."""
+        """Return the resultants of all contact forces on each body that accelerations ask for."""
         g = self.pair.gravity + up
         lift = np.array([across, g, 0.0, across, g, 0.0])
         return self.masses * (acceleration + lift)
 
     def pressures(self, place, resultants) -> dict:
-        """Give how strongly each bearing end presses, along the normal.
+        """Return how strongly each bearing end presses, along the normal.
 
         Of a base that stands full the force is shared by its two ends so that its moment is right.
 

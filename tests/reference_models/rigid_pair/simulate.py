@@ -23,7 +23,7 @@ MOST_EVENTS = 20000
 
 
 def first_event(guards, solver, dense, armed, slowness, gone=1e-13):
-    """Give time and name of the first guard that fires in a step; or tell to step again.
+    """Return time and name of the first guard that fires in a step; or tell to step again.
 
     `guards` gives values by names, at a time and in a state; `armed` keeps which were positive,
     beyond `gone`.
@@ -123,20 +123,20 @@ class _Running:
     # states ---------------------------------------------------------------------------------
 
     def unpack(self, state):
-        """Give places and velocities of both bodies from what is integrated."""
+        """Return places and velocities of both bodies from what is integrated."""
         n = self.phase.size
         place = self.phase.placed(state[:n])
         jac, _ = self.phase.motions(place[2], place[5])
         return place, jac @ state[n : 2 * n]
 
     def packed(self):
-        """Give what is integrated."""
+        """Return what is integrated."""
         phase = self.phase
         q, rates = phase.coordinates(self.place), phase.coordinates(self.speed)
         return np.concatenate([q, rates, [self.work]])
 
     def slopes(self, t, state):
-        """Give the derivative of the state, of which the last is the work of the ground."""
+        """Return the derivative of the state, of which the last is the work of the ground."""
         phase, n = self.phase, self.phase.size
         joint = phase.pattern.joint
         rates = state[n : 2 * n]
@@ -154,7 +154,7 @@ class _Running:
     # guards ---------------------------------------------------------------------------------
 
     def guards(self, t, state) -> dict:
-        """Give what must stay positive."""
+        """Return what must stay positive."""
         phase = self.phase
         place, speed = self.unpack(state)
         found = {}
@@ -192,7 +192,7 @@ class _Running:
         return found
 
     def _may_open(self, place, speed, across, up):
-        """Give the pattern without the hinges that are pulled, if accelerations allow it."""
+        """Return the pattern without the hinges that are pulled, if accelerations allow it."""
         touching = touching_of(self.phase.pattern)
         return yield_to(self.phase, place, speed, touching, across, up)
 
@@ -276,7 +276,7 @@ class _Running:
         return abs(angle) < LEVEL and abs(rate) < 1e3 * self.slow
 
     def _flush(self, key):
-        """Give the places with an angle that is zero but for rounding made zero."""
+        """Return the places with an angle that is zero but for rounding made zero."""
         place = self.place.copy()
         if key == "ground":
             place[2] = 0.0
@@ -363,7 +363,7 @@ class _Running:
         return name
 
     def _root(self, name, low, high, state):
-        """Give the time at which a guard vanishes, in a state that lasts."""
+        """Return the time at which a guard vanishes, in a state that lasts."""
         value = lambda t: self.guards(t, state)[name]  # noqa: E731
         return low if value(low) <= 0.0 else brentq(value, low, high, xtol=1e-15, rtol=1e-15)
 

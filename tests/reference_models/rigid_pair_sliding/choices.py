@@ -27,7 +27,7 @@ class Answer(NamedTuple):
     friction: dict[str, float]
 
     def pressed(self, key: str) -> float:
-        """Give the sum of the normal forces of an interface."""
+        """Return the sum of the normal forces of an interface."""
         return sum(push for (one, _), push in self.normal.items() if one == key)
 
 
@@ -108,23 +108,23 @@ class Touch:
         return one
 
     def opening(self, name, motion, turning: bool) -> float:
-        """Give how fast an end leaves its surface."""
+        """Return how fast an end leaves its surface."""
         one = self.contacts[name]
         return float(np.dot(one.normal, motion)) + (one.turns[1] if turning else 0.0)
 
     def along(self, key: str, end: str, motion, turning: bool) -> float:
-        """Give how fast an end goes along its surface."""
+        """Return how fast an end goes along its surface."""
         one = self.contacts[key, end]
         return float(np.dot(one.along, motion)) + (one.turns[0] if turning else 0.0)
 
     def fall(self, across: float, up: float) -> np.ndarray:
-        """Give the accelerations of bodies that nothing touches."""
+        """Return the accelerations of bodies that nothing touches."""
         g = self.pair.gravity + up
         return np.array([-across, -g, 0.0, -across, -g, 0.0])
 
 
 def patterns(touching: Touching, senses: dict[str, tuple[int, ...]]) -> list[Pattern]:
-    """Give all patterns of touching ends and of the senses that each interface may slip in."""
+    """Return all patterns of touching ends and of the senses that each interface may slip in."""
     found = []
     for key in INTERFACES:
         ends = touching[key]
@@ -134,7 +134,7 @@ def patterns(touching: Touching, senses: dict[str, tuple[int, ...]]) -> list[Pat
 
 
 def strike(pair: Pair, frictions: Frictions, place, speed, touching: Touching) -> Outcome:
-    """Give what follows a plastic impact in which all touching ends take part.
+    """Return what follows a plastic impact in which all touching ends take part.
 
     Ends that bear stop, those that do not part. Each interface is held if |T| <= mu_k N, or slips
     after the impact against T = mu_k N (Moreau 1988). Of several motions it is the one that loses
@@ -166,7 +166,7 @@ def strike(pair: Pair, frictions: Frictions, place, speed, touching: Touching) -
 
 
 def _sizes(pair: Pair, speed, energy: float) -> tuple[float, float]:
-    """Give what counts as no impulse and no velocity."""
+    """Return what counts as no impulse and no velocity."""
     heavy, light = max(pair.masses[[0, 3]]), min(pair.masses[[0, 3]])
     quick = SMALL * math.sqrt(2.0 * energy / heavy) + 1e-300
     push = quick * light
@@ -193,7 +193,7 @@ def _fits(touch: Touch, pattern: Pattern, answer: Answer, push: float, quick: fl
 
 
 def hooked_strike(touch: Touch) -> tuple[Pattern, Answer]:
-    """Give the impact in which interfaces that stick do so although nothing presses there."""
+    """Return the impact in which interfaces that stick do so although nothing presses there."""
     hooked = tuple(k for k in INTERFACES if touch.frictions[k].sticks and touch.touching[k])
     senses = {key: (0,) if touch.frictions[key].sticks else (0, 1, -1) for key in INTERFACES}
     best = None
@@ -243,7 +243,7 @@ def follow(
     up: float,
     ended: Ended | None = None,
 ) -> Outcome | None:
-    """Give the pattern whose accelerations go with its forces.
+    """Return the pattern whose accelerations go with its forces.
 
     Of several the one with fewest ends changed, then the one that holds most.
 
@@ -302,7 +302,7 @@ def follow(
 
 
 def _loose(touch: Touch, before: Pattern, fall, push: float) -> set[str]:
-    """Give the interfaces that friction at rest cannot hold, or only just, as they were."""
+    """Return the interfaces that friction at rest cannot hold, or only just, as they were."""
     try:
         answer = touch.solve(before, fall, turning=True)
     except np.linalg.LinAlgError:

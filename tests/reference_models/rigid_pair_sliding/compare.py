@@ -92,12 +92,12 @@ class Compared:
 
 
 def _at(instants: list, wanted) -> set:
-    """Give all that is said to happen at a time."""
+    """Return all that is said to happen at a time."""
     return set().union(*(what for t, what in instants if abs(t - wanted[0]) < TOGETHER))
 
 
 def ground_of(scene: Scene, key: str) -> Any:
-    """Give the package's interface."""
+    """Return the package's interface."""
     friction = scene.frictions[key]
     if key in scene.bases:
         given = {"friction": friction.static, "kinetic_friction": friction.kinetic}
@@ -112,7 +112,7 @@ def ground_of(scene: Scene, key: str) -> Any:
 
 
 def system_of(scene: Scene) -> rf.System:
-    """Give the package's scene."""
+    """Return the package's scene."""
     pair = scene.pair
     stack = rf.Stack(
         held.block_of(pair.upper), held.block_of(pair.lower),
@@ -122,7 +122,7 @@ def system_of(scene: Scene) -> rf.System:
 
 
 def giving_of(scene: Scene, system: rf.System) -> dict[str, Any]:
-    """Give what is not rigid in a scene to the reference model, and how quick it is."""
+    """Return what is not rigid in a scene to the reference model, and how quick it is."""
     pair, found = scene.pair, {}
     for key in scene.bases:
         support = system.setting.bases[BODIES[key] - 1]
@@ -140,7 +140,7 @@ def giving_of(scene: Scene, system: rf.System) -> dict[str, Any]:
 
 
 def motion_of(motion: dict[str, Any]) -> rf.GroundMotion:
-    """Give the package's ground motion."""
+    """Return the package's ground motion."""
     if motion["form"] != "noise":
         return held.motion_of(motion)
     vertical = {"vertical": (motion["up"], "m/s^2")} if any(motion["up"]) else {}
@@ -161,7 +161,7 @@ def instants(events, until: float) -> list:
 
 
 def changes_of(event: Event) -> list:
-    """Give what an event is, as kind and body, with all that changes besides."""
+    """Return what an event is, as kind and body, with all that changes besides."""
     found = [(KINDS[event.kind], BODIES[key]) for key in event.where.split("+")]
     if event.kind == "overturning":
         return [("OVERTURNING", body) for body in (1, 2)]  # both may, at once

@@ -57,17 +57,17 @@ class Contact(NamedTuple):
 
 
 def upper_end(pair: Pair, end: str) -> tuple[float, float]:
-    """Give an end of the upper base as seen from the upper centre of mass."""
+    """Return an end of the upper base as seen from the upper centre of mass."""
     return pair.upper.from_centre(SIGN[end] * pair.upper.half_width, -pair.upper.below)
 
 
 def lower_end(pair: Pair, end: str) -> tuple[float, float]:
-    """Give an end of the lower base as seen from the lower centre of mass."""
+    """Return an end of the lower base as seen from the lower centre of mass."""
     return pair.lower.from_centre(SIGN[end] * pair.lower.half_width, -pair.lower.below)
 
 
 def standing(pair: Pair) -> np.ndarray:
-    """Give the six places of upright bodies."""
+    """Return the six places of upright bodies."""
     one, two = pair.lower, pair.upper
     level = one.below + one.above + two.below
     return np.array([one.beside, one.below, 0.0, pair.offset + two.beside, level, 0.0])
@@ -97,7 +97,7 @@ def contact(pair: Pair, place, speed, key: str, end: str) -> Contact:
 
 
 def on_top(pair: Pair, place, end: str) -> tuple[float, float]:
-    """Give where an end of the upper base is, along the lower top from its middle and above it."""
+    """Return where an end of the upper base is, along the lower top from its middle and above."""
     x1, y1, a1, x2, y2, a2 = place
     cx, cy = turned(a2, *upper_end(pair, end))
     x, y = turned(-a1, x2 + cx - x1, y2 + cy - y1)
@@ -105,7 +105,7 @@ def on_top(pair: Pair, place, end: str) -> tuple[float, float]:
 
 
 def height(pair: Pair, place, end: str) -> float:
-    """Give the height of an end of the lower base."""
+    """Return the height of an end of the lower base."""
     return place[1] + turned(place[2], *lower_end(pair, end))[1]
 
 
@@ -131,7 +131,7 @@ def tidied(pair: Pair, pattern: Pattern, place) -> np.ndarray:
 
 
 def middle_slips(pair: Pair, place, speed) -> tuple[float, float]:
-    """Give the velocities of the middles of both bases along the surfaces under them."""
+    """Return the velocities of the middles of both bases along the surfaces under them."""
     found = []
     for key in INTERFACES:
         rows = [contact(pair, place, speed, key, end).along for end in ENDS]

@@ -31,7 +31,7 @@ class Scene(NamedTuple):
     rule: str = "contact-state"
 
     def mirrored(self) -> "Scene":
-        """Give the scene as seen from behind."""
+        """Return the scene as seen from behind."""
         motion = dict(self.motion)
         if motion["form"] == "noise":
             motion["across"] = [-one for one in motion["across"]]
@@ -131,7 +131,7 @@ def _motion(rng: np.random.Generator, pair: Pair, frictions: Frictions) -> dict[
 
 
 def pieces_for(motion: dict[str, Any]) -> tuple[list[Piece], float]:
-    """Give the pieces of a motion and of still ground after it, and its least period [s]."""
+    """Return the pieces of a motion and of still ground after it, and its least period [s]."""
     if motion["form"] != "noise":
         return drawing.pieces_for(motion)
     pieces = pieces_of(STEP, motion["across"], motion["up"])

@@ -23,7 +23,7 @@ Giving = dict[str, Pads | Bed]
 
 
 def mixed(one: Contact, other: Contact, share: float) -> Contact:
-    """Give the contact of a point between two ends, which is linear in its place."""
+    """Return the contact of a point between two ends, which is linear in its place."""
     along, normal, turns = (
         [(1.0 - share) * a + share * b for a, b in zip(first, second, strict=True)]
         for first, second in zip(one, other, strict=True)
@@ -51,7 +51,7 @@ class View:
         )
 
     def corner_acceleration(self, side, z, accelerations):
-        """Give how fast the speed of an end grows."""
+        """Return how fast the speed of an end grows."""
         row = self.rows["left" if side == "L" else "right"]
         return float(np.dot(row.normal, accelerations)) + row.turns[1]
 
@@ -75,7 +75,7 @@ class GivingTouch(Touch):
             self.contacts[key, HELD] = mixed(view.rows["left"], view.rows["right"], share)
 
     def fall(self, across, up):
-        """Give the accelerations of bodies under what presses them, without constraints."""
+        """Return the accelerations of bodies under what presses them, without constraints."""
         return super().fall(across, up) + self.inverse * self.load
 
     def solve(self, pattern, motion, turning, hooked=()):
@@ -118,7 +118,7 @@ class GivingMoving(Moving):
         self.pattern = self.with_points(self.pattern)
 
     def with_points(self, pattern: Pattern, slips=None) -> Pattern:
-        """Give the pattern in which bases that give way bear at the points that are held."""
+        """Return the pattern in which bases that give way bear at the points that are held."""
         found = []
         for key, bearing in zip(INTERFACES, pattern, strict=True):
             if key in self.giving:
@@ -130,25 +130,25 @@ class GivingMoving(Moving):
         return Pattern(*found)
 
     def bare(self, pattern: Pattern) -> Pattern:
-        """Give the pattern of rigid bases alone."""
+        """Return the pattern of rigid bases alone."""
         return Pattern(
             *(Bearing() if key in self.giving else one
               for key, one in zip(INTERFACES, pattern, strict=True))
         )  # fmt: skip
 
     def touch(self, place, speed, touching=None):
-        """Give the contacts as they are."""
+        """Return the contacts as they are."""
         touching = touching or self.touching()
         return GivingTouch(
             self.pair, self.frictions, place, speed, touching, self.giving, self.rule
         )
 
     def power(self, touch, speed) -> float:
-        """Give the power of springs and dashpots."""
+        """Return the power of springs and dashpots."""
         return float(touch.load @ speed)
 
     def tidied(self, state):
-        """Give a state without what steps add to it by rounding."""
+        """Return a state without what steps add to it by rounding."""
         pattern, self.pattern = self.pattern, self.bare(self.pattern)
         found = super().tidied(state)
         self.pattern = pattern
@@ -156,7 +156,7 @@ class GivingMoving(Moving):
         return found
 
     def guards(self, t, state):
-        """Give what must stay positive."""
+        """Return what must stay positive."""
         found, scale = super().guards(t, state), self.pair.gravity * self.pair.upper.mass
         for key, base in self.giving.items():
             view = View(self.pair, state[:6], state[6:12], key)

@@ -60,22 +60,22 @@ class Moving:
         return self.state[6:12]
 
     def touching(self, pattern=None):
-        """Give the ends that bear."""
+        """Return the ends that bear."""
         return dict(zip(INTERFACES, (one.ends for one in pattern or self.pattern), strict=True))
 
     def touch(self, place, speed, touching=None) -> Touch:
-        """Give the contacts as they are."""
+        """Return the contacts as they are."""
         touching = touching or self.touching()
         return Touch(self.pair, self.frictions, place, speed, touching)
 
     def forces(self, t, state):
-        """Give the contacts, and accelerations and forces of the pattern."""
+        """Return the contacts, and accelerations and forces of the pattern."""
         touch = self.touch(state[:6], state[6:12])
         fall = touch.fall(self.piece.across(t), self.piece.up(t))
         return touch, touch.solve(self.pattern, fall, turning=True)
 
     def slip_rates(self, touch: Touch, state) -> list[float]:
-        """Give the velocities of slip; in flight those of the middles of the bases."""
+        """Return the velocities of slip; in flight those of the middles of the bases."""
         rates = []
         for i, bearing in enumerate(self.pattern):
             if not bearing.ends:
@@ -87,7 +87,7 @@ class Moving:
         return rates
 
     def slopes(self, t, state):
-        """Give the derivative of the state."""
+        """Return the derivative of the state."""
         touch, answer = self.forces(t, state)
         speed, slips = state[6:12], self.slip_rates(touch, state)
         burnt = [
@@ -101,11 +101,11 @@ class Moving:
         return np.concatenate([speed, answer.motion, slips, [work], burnt])
 
     def power(self, touch: Touch, speed) -> float:
-        """Give the power of bases that give way: there are none."""
+        """Return the power of bases that give way: there are none."""
         return 0.0
 
     def tidied(self, state):
-        """Give a state without what steps add to it by rounding."""
+        """Return a state without what steps add to it by rounding."""
         state = state.copy()
         state[:6] = tidied(self.pair, self.pattern, state[:6])
         state[6:12] = self.projected(self.pattern, state[:6], state[6:12])
@@ -133,7 +133,7 @@ class Moving:
     # guards -------------------------------------------------------------------------------------
 
     def guards(self, t, state) -> dict:
-        """Give what must stay positive."""
+        """Return what must stay positive."""
         pair, found, place = self.pair, {}, state[:6]
         touch, answer = self.forces(t, state)
         scale = pair.gravity * pair.upper.mass
@@ -198,7 +198,7 @@ class Moving:
         self.state = self.tidied(self.state)
 
     def _followed(self, t, state, ended: Ended | None = None) -> Outcome | None:
-        """Give the pattern that the forces ask for."""
+        """Return the pattern that the forces ask for."""
         before, moving = self.pattern, {}
         touch = self.touch(state[:6], state[6:12])
         for key, bearing in zip(INTERFACES, before, strict=True):

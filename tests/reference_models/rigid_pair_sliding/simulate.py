@@ -38,7 +38,7 @@ class _Running(Moving):
         run.peak_slips = np.maximum(run.peak_slips, np.abs(state[12:14]))
 
     def energy(self):
-        """Give kinetic energy and that of gravity [J]."""
+        """Return kinetic energy and that of gravity [J]."""
         return self.pair.energy(self.place, self.speed)
 
     def audit(self):

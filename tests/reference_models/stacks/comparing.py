@@ -44,7 +44,7 @@ class Compared:
 
 
 def model_of(scene: Scene) -> ContactModel:
-    """Give the package's model of a scene whose bodies stand upright at rest."""
+    """Return the package's model of a scene whose bodies stand upright at rest."""
     links, measure, carried = [], scene.bodies[0].mass, 0.0
     below = [*(one.eccentricity for one in scene.bodies[1:]), 0.0]
     for given, base, lower in zip(scene.bodies, scene.bases, below, strict=True):
@@ -94,7 +94,7 @@ def run_chain(scene: Scene, motion: Motion | None, accuracy: str, step: float) -
 
 
 def rotations(model: ContactModel, run: Trajectory) -> np.ndarray:
-    """Give the rotations of all bodies at the output times, shape (samples, bodies)."""
+    """Return the rotations of all bodies at the output times, shape (samples, bodies)."""
     memory, row = memory_at_outputs(run)
     still = np.zeros((len(run.time), 2))
     shown = observe_states(model, run.mode, run.state, memory, row, still)

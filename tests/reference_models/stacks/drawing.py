@@ -61,7 +61,7 @@ def draw(
 
 
 def tied(scene: Scene, rng: np.random.Generator) -> Scene:
-    """Give the scene with one to three ties or bars, between bodies or to the ground."""
+    """Return the scene with one to three ties or bars, between bodies or to the ground."""
     count, found = len(scene.bodies), []
     for _ in range(int(rng.integers(1, 4))):
         on = int(rng.integers(count))
@@ -113,7 +113,7 @@ def _pads(rng: np.random.Generator, bodies: list[Body]) -> list[Pads]:
 
 
 def _above(bodies: list[Body], k: int) -> tuple[float, float]:
-    """Give mass of a body and all above it, and the height of their centre over its base."""
+    """Return mass of a body and all above it, and the height of their centre over its base."""
     mass = rise = base = 0.0
     for body in bodies[k::-1]:
         mass += body.mass
@@ -123,7 +123,7 @@ def _above(bodies: list[Body], k: int) -> tuple[float, float]:
 
 
 def softness(bodies: list[Body], bases: list[Pads]) -> float:
-    """Give an upper bound for the weight over that which tips the upright stack, by Dunkerley."""
+    """Return an upper bound for the weight over that which tips the upright stack, by Dunkerley."""
     total = 0.0
     for k, (body, pads) in enumerate(zip(bodies, bases, strict=True)):
         mass, level = _above(bodies, k)
@@ -132,7 +132,7 @@ def softness(bodies: list[Body], bases: list[Pads]) -> float:
 
 
 def _threshold(bodies: list[Body]) -> tuple[float, float]:
-    """Give the acceleration that uplifts the weakest base, and the size of what rocks there."""
+    """Return the acceleration that uplifts the weakest base, and the size of what rocks there."""
     found = []
     for k, body in enumerate(bodies):
         level = _above(bodies, k)[1]

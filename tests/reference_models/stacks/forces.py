@@ -12,20 +12,20 @@ from .standing import FREE, HELD, SLIDES, SLIDING, TOUCHING
 
 @compiled
 def pad_force(k, i, stack, room):
-    """Give the force law of the pad under end i."""
+    """Return the force law of the pad under end i."""
     level, _, _, speed = end(k, i, stack, room)
     return stack.stiffness[k] * (stack.settlement[k] - level) - stack.damping[k] * speed
 
 
 @within
 def mean_product(f0, f1, g0, g1):
-    """Give the mean of the product of two linear functions from their values at both ends."""
+    """Return the mean of the product of two linear functions from their values at both ends."""
     return (f0 * g0 + f1 * g1) / 3.0 + (f0 * g1 + f1 * g0) / 6.0
 
 
 @within
 def bed(k, stack, ends, room):
-    """Give force, generalised force on the rotation, power of dashpots and energy of a bed."""
+    """Return force, generalised force on the rotation, power of dashpots and energy of a bed."""
     w0, l0, _, v0 = end(k, 0, stack, room)
     w1, l1, _, v1 = end(k, 1, stack, room)
     u0, u1 = stack.settlement[k] - w0, stack.settlement[k] - w1
@@ -53,7 +53,7 @@ def bed(k, stack, ends, room):
 
 @compiled
 def base_force(k, stack, ends, room):
-    """Give force and generalised force of a base, the power it loses and the energy it stores."""
+    """Return force and generalised force of a base, the power it loses and the energy it stores."""
     if stack.is_bed[k]:
         return bed(k, stack, ends, room)
     force = moment = power = energy = 0.0
@@ -74,7 +74,7 @@ def base_force(k, stack, ends, room):
 
 @compiled
 def yielding_rate(k, stack):
-    """Give k/c, the rate at which an unloaded pad returns; 0 without a dashpot and on a bed."""
+    """Return k/c, the rate at which an unloaded pad returns; 0 without a dashpot and on a bed."""
     if stack.is_bed[k] or stack.damping[k] == 0.0:
         return 0.0
     return stack.stiffness[k] / stack.damping[k]
@@ -97,7 +97,7 @@ def end_row(k, lever, room, row):
 
 @within
 def product(one, i, other, j, inverse):
-    """Give the product of the rows of bodies i and j over the masses of what both move."""
+    """Return the product of the rows of bodies i and j over the masses of what both move."""
     total = 0.0
     low, high = 3 * max(i, j), 3 * min(i, j) + 6
     for g in range(low, high):
@@ -107,7 +107,7 @@ def product(one, i, other, j, inverse):
 
 @compiled
 def stretched(which, z, stack, arms):
-    """Give the way between a tie's points, its rate, and the distance at rest; fill in the arms."""
+    """Return way between a tie's points, its rate, and the distance at rest; fill in the arms."""
     count, row = stack.inverse.size, stack.ties[which]
     dx, dy, vx, vy = row[6], row[7], 0.0, 0.0
     given = math.sqrt(dx * dx + dy * dy)
@@ -230,7 +230,7 @@ def _find_gains(stack, standing, room):
 
 @within
 def powers(z, gx, gy, stack, standing, room):
-    """Give what is dissipated and what the ground puts in, after `accelerate` for the state."""
+    """Return what is dissipated and what the ground puts in, after `accelerate` for the state."""
     count = stack.inverse.size
     given, lost = 0.0, pull_ties(z, stack, room.load * 0.0)
     for k in range(stack.mass.size):

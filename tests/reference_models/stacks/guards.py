@@ -102,7 +102,7 @@ def noise_levels(z, stack, noise):
 
 @within
 def due(stack, standing, room, guards, noise):
-    """Give the guard whose switch is due at this instant, or -1.
+    """Return the guard whose switch is due at this instant, or -1.
 
     That is one that is negative, or that stands at zero and falls. `room` is that of the present
     state.

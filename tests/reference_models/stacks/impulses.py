@@ -18,7 +18,7 @@ def relate(z, stack, room):
 
 @compiled
 def slip(k, stack, standing, room):
-    """Give the speed of the held point of a body along its base."""
+    """Return the speed of the held point of a body along its base."""
     _, first, _ = sway(k, standing.point[k], stack, room)
     return room.rel[k, 3] - first * room.rel[k, 5]
 
@@ -90,7 +90,7 @@ def tidy(z, stack, standing, room):
 
 @compiled
 def kinetic(z, stack):
-    """Give the kinetic energy relative to the ground."""
+    """Return the kinetic energy relative to the ground."""
     count, energy = stack.inverse.size, 0.0
     for j in range(count - 3):
         energy += 0.5 * z[count + j] * z[count + j] / stack.inverse[j]

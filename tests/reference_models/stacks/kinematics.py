@@ -41,7 +41,7 @@ def relative(k, z, stack, room):
 
 @compiled
 def end(k, i, stack, room):
-    """Give level, lever, its derivative by the rotation, and speed of end i (0 left) of a base."""
+    """Return level, lever, its derivative by rotation, and speed of end i (0 left) of a base."""
     rel, level = room.rel[k], stack.height[k]
     sine, cosine, half = math.sin(rel[2]), math.cos(rel[2]), math.sin(0.5 * rel[2])
     # from the foot of the centre of mass to the left
@@ -53,7 +53,7 @@ def end(k, i, stack, room):
 
 @compiled
 def sway(k, point, stack, room):
-    """Give x of the centre of mass over a point of the base and its two derivatives by rotation."""
+    """Return x of the centre of mass over a point of the base, and two derivatives by rotation."""
     level, angle = stack.height[k], room.rel[k, 2]
     sine, cosine = math.sin(angle), math.cos(angle)
     return (
@@ -65,5 +65,5 @@ def sway(k, point, stack, room):
 
 @compiled
 def size_of(k, stack):
-    """Give a length of the size of a body."""
+    """Return a length of the size of a body."""
     return stack.half_width[k] + stack.height[k]

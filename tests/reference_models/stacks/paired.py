@@ -9,7 +9,7 @@ from .scene import Bed, Body, Pads, Scene
 
 
 def as_stack(known: Known) -> Scene:
-    """Give a scene of finite rotation on pads, on a bed that parts by displacement, or on both."""
+    """Return a scene of finite rotation on pads, a bed that parts by displacement, or both."""
     p = parameters(known, 1e-13)
     bodies: list[Body] = []
     bases: list[Pads | Bed] = []

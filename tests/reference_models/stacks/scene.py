@@ -118,7 +118,7 @@ class Stack(NamedTuple):
 
 
 def stack_of(scene: Scene, tolerance: float) -> Stack:
-    """Give the numbers of a scene."""
+    """Return the numbers of a scene."""
     bodies, bases = scene.bodies, scene.bases
     n = len(bodies)
     mass = np.array([body.mass for body in bodies])
@@ -159,14 +159,14 @@ def stack_of(scene: Scene, tolerance: float) -> Stack:
 
 
 def centre_of(scene: Scene, k: int) -> tuple[float, float]:
-    """Give the centre of mass of an upright body from the middle of the lowest base."""
+    """Return the centre of mass of an upright body from the middle of the lowest base."""
     bodies = scene.bodies
     level = sum(one.height + one.top for one in bodies[k + 1 :]) + bodies[k].height
     return sum(one.offset for one in bodies[k:-1]) + bodies[k].eccentricity, level
 
 
 def apart(scene: Scene, tie: Tie) -> tuple[float, float]:
-    """Give the way from the second point of a tie to the first, upright."""
+    """Return the way from the second point of a tie to the first, upright."""
     x, y = centre_of(scene, tie.on)
     other = (0.0, 0.0) if tie.to is None else centre_of(scene, tie.to)
     return (
@@ -202,7 +202,7 @@ def _rebounds(base: Pads | Bed) -> tuple[float, float]:
 
 
 def _limits(bodies: tuple[Body, ...], k: int) -> tuple[float, float]:
-    """Give the overturning angles of a body to the left and to the right."""
+    """Return the overturning angles of a body to the left and to the right."""
     body = bodies[k]
     if body.limit is not None:
         return body.limit, body.limit
@@ -228,7 +228,7 @@ def _pace(inverse, stiffness, damping, wide) -> float:
 
 
 def mirrored(scene: Scene) -> Scene:
-    """Give the scene with left and right exchanged, for still ground."""
+    """Return the scene with left and right exchanged, for still ground."""
     return replace(
         scene,
         bodies=tuple(

@@ -144,7 +144,7 @@ def _run(course, z, motion, stack, standing, room) -> tuple[int, list[Event]]:
 
 
 def _stops(motion: Excitation, free: float) -> tuple[np.ndarray, np.ndarray]:
-    """Give the times at which steps end, and the parts of the motion between them."""
+    """Return the times at which steps end, and the parts of the motion between them."""
     total = motion.intervals * motion.step + free
     count = math.ceil(total / motion.step * (1.0 - 1e-12))
     stops = motion.step * np.arange(count + 1)
@@ -157,7 +157,7 @@ def _stops(motion: Excitation, free: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _typical_sizes(stack: Stack) -> np.ndarray:
-    """Give the least sizes that the error of each variable is measured against."""
+    """Return the least sizes that the error of each variable is measured against."""
     n = stack.mass.size
     small = 1e-4 * min(0.5, np.abs(stack.limits).min())
     sizes = []
@@ -170,7 +170,7 @@ def _typical_sizes(stack: Stack) -> np.ndarray:
 
 
 def energy(z: np.ndarray, stack: Stack, standing: Standing, room: Room) -> float:
-    """Give the energy of motion, of gravity and of all springs."""
+    """Return the energy of motion, of gravity and of all springs."""
     relate(z, stack, room)
     total = kinetic(z, stack)
     for k in range(stack.mass.size):

@@ -48,14 +48,14 @@ class Room(NamedTuple):
 
 
 def standing_of(n: int, ties: int) -> Standing:
-    """Give a standing in flight."""
+    """Return a standing in flight."""
     numbers = [np.zeros(n) for _ in range(3)]
     ends, hold = np.zeros((n, 2), dtype=np.int64), np.zeros(n, dtype=np.int64)
     return Standing(ends, hold, *numbers, np.ones(n), np.ones(ties))
 
 
 def room_of(n: int) -> Room:
-    """Give room for n bodies."""
+    """Return room for n bodies."""
     m = n + 2
     return Room(
         np.zeros((n, 8)),

@@ -26,7 +26,7 @@ class NoRestError(Exception):
 
 
 def start(scene: Scene, stack: Stack) -> tuple[np.ndarray, Standing, Room]:
-    """Give state, standing and room at the start.
+    """Return state, standing and room at the start.
 
     Raises
     ------
@@ -41,7 +41,7 @@ def start(scene: Scene, stack: Stack) -> tuple[np.ndarray, Standing, Room]:
 
 
 def height_over_base(stack: Stack, k: int, angle: float) -> float:
-    """Give the height of the middle of a base that carries its load at a rotation."""
+    """Return the height of the middle of a base that carries its load at a rotation."""
     raised, delta = stack.half_width[k] * abs(math.sin(angle)), stack.settlement[k]
     if raised <= delta:
         return 0.0
@@ -49,7 +49,7 @@ def height_over_base(stack: Stack, k: int, angle: float) -> float:
 
 
 def rest_of(stack: Stack) -> tuple[np.ndarray, np.ndarray]:
-    """Give rotations and heights of the middles of all bases, on what carries them, at rest.
+    """Return rotations and heights of the middles of all bases, on what carries them, at rest.
 
     Raises
     ------
@@ -77,7 +77,7 @@ def rest_of(stack: Stack) -> tuple[np.ndarray, np.ndarray]:
 
 
 def placed(stack: Stack, angles, middles, rate=0.0) -> tuple[np.ndarray, Standing, Room]:
-    """Give the state with all bases at rotations and heights on what carries them.
+    """Return the state with all bases at rotations and heights on what carries them.
 
     Each held point is at its place along that. The top body has a relative rate.
     """

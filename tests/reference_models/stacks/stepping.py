@@ -37,7 +37,7 @@ class Path(NamedTuple):
 
 
 def path_of(states: int, guards: int) -> Path:
-    """Give room for a step."""
+    """Return room for a step."""
     vectors = [np.zeros(states) for _ in range(5)]
     return Path(
         np.zeros((STAGES, states)), *vectors, np.zeros(guards), np.zeros(guards),
@@ -113,7 +113,7 @@ def sample_guards(t, h, z, piece, motion, stack, standing, room, path):
 
 @compiled
 def value_at(x, slot, t, z, piece, motion, stack, standing, room, path):
-    """Give a guard after a step of length x."""
+    """Return a guard after a step of length x."""
     step(t, x, z, piece, motion, stack, standing, room, path, path.trial)
     gx, gy = ground(t + x, piece, motion.shape, motion.across, motion.upwards)
     evaluate(path.trial, gx, gy, stack, standing, room, path.guards)

@@ -95,14 +95,14 @@ class Events:
         return end(k, i, self.stack, self.room)[0] / self.stack.settlement[k] - 1.0
 
     def _push(self, k: int, i: int) -> float:
-        """Give the force law of a pad over the load."""
+        """Return the force law of a pad over the load."""
         return pad_force(k, i, self.stack, self.room) / self.stack.load[k]
 
     def _tiny(self, k: int) -> float:
         return self.noise[BASE_GUARDS * k]
 
     def _following(self, k: int, i: int) -> float:
-        """Give the speed of an end that follows its pad without a force."""
+        """Return the speed of an end that follows its pad without a force."""
         return -yielding_rate(k, self.stack) * self.stack.settlement[k] * self._gap(k, i)
 
     def _bears(self, k: int, i: int) -> bool:
@@ -118,7 +118,7 @@ class Events:
     # what holds a body
 
     def _rule(self, k: int) -> float:
-        """Give the point that the rule holds, from the foot of the centre of mass."""
+        """Return the point that the rule holds, from the foot of the centre of mass."""
         stack, standing = self.stack, self.standing
         b, middle = stack.half_width[k], -stack.eccentricity[k]
         if stack.rule == CENTRE:

@@ -14,7 +14,7 @@ from rockframe.command.main import main
 
 @pytest.fixture
 def uncompiled():
-    """Give the environment of processes whose single short run is no matter for a compiler."""
+    """Return the environment of processes whose single short run is no matter for a compiler."""
     return os.environ | {"ROCKFRAME_COMPILE": "0"}
 
 

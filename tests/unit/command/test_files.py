@@ -38,7 +38,7 @@ def file(tmp_path):
 
 
 def faults(read, path):
-    """Give what is wrong with a file, as pairs of a line and words."""
+    """Return what is wrong with a file, as pairs of a line and words."""
     with pytest.raises(FileError) as caught:
         read(path)
     for line, words in caught.value.faults:

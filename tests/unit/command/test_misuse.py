@@ -109,7 +109,7 @@ def split(words):
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
-    """Give the result of the scene, and its record, in netCDF."""
+    """Return the result of the scene, and its record, in netCDF."""
     place = tmp_path_factory.mktemp("made")
     (place / "scene.toml").write_text(TEMPLATES["block"])
     assert main(["run", str(place / "scene.toml"), "-o", str(place / "run.nc")]) == 0
@@ -119,7 +119,7 @@ def made(tmp_path_factory):
 
 @pytest.fixture
 def files(folder, made):
-    """Give files of all kinds."""
+    """Return files of all kinds."""
     Path("bytes.toml").write_bytes(bytes(range(256)))
     Path("still.toml").write_text(Path("scene.toml").read_text().split("[motion]")[0])
     for name, content in made.items():

@@ -17,7 +17,7 @@ AFTER = {"free_vibration": "5 s"}
 
 @pytest.fixture
 def records(folder):
-    """Give a folder of records, each of its own strength."""
+    """Return a folder of records, each of its own strength."""
     (folder / "records").mkdir()
     for number in range(5):
         pulse = rf.GroundMotion.sine_pulse(f"{-3 - 0.6 * number} m/s^2", "1 Hz")

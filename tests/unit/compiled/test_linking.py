@@ -72,7 +72,7 @@ def folder(tmp_path, monkeypatch):
 
 @pytest.fixture
 def made(monkeypatch):
-    """Give the names of all that numba makes machine code of."""
+    """Return the names of all that numba makes machine code of."""
     from numba.core.codegen import JITCodeLibrary
 
     names = []

@@ -79,7 +79,7 @@ def folder(tmp_path, monkeypatch):
 
 @pytest.fixture
 def own(tmp_path, monkeypatch):
-    """Give the folder of two modules of a user's."""
+    """Return the folder of two modules of a user's."""
     (tmp_path / "own.py").write_text(OWN)
     (tmp_path / "own_help.py").write_text(HELP)
     path = os.pathsep.join([str(tmp_path), *filter(None, [os.environ.get("PYTHONPATH")])])

@@ -35,7 +35,7 @@ def counted():
 
 
 def written(figure):
-    """Give the texts of all legends."""
+    """Return the texts of all legends."""
     legends = [axes.get_legend() for axes in figure.axes] + figure.legends
     return [text.get_text() for one in legends if one for text in one.get_texts()]
 

@@ -51,7 +51,7 @@ def read(page):
 
 
 def points_of(data, numbers, name):
-    """Give where a layer is at all instants [m]."""
+    """Return where a layer is at all instants [m]."""
     drawn, instants = data["layers"], len(data["times"])
     (layer,) = [one for one in drawn["list"] if one["name"] == name]
     size = 2 * layer["points"] * instants
@@ -185,7 +185,7 @@ def test_a_browser_draws_it(tmp_path):
 
 
 def written_by_a_browser(page, tmp_path, height=640, canvas="traces"):
-    """Give what a page writes on a canvas, with its place [pixels]."""
+    """Return what a page writes on a canvas, with its place [pixels]."""
     browser = which("chromium") or which("google-chrome")
     if browser is None:
         pytest.skip("neither chromium nor google-chrome is installed")

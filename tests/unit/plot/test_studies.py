@@ -16,7 +16,7 @@ COUNTS = {"intensity": ([2, 4, 8], "m/s^2"), "trials": 20}
 
 
 def crosses(axes):
-    """Give the places that are marked as overturned."""
+    """Return the places that are marked as overturned."""
     found = [line for line in axes.get_lines() if line.get_label() == "overturned"]
     return {tuple(place) for line in found for place in line.get_xydata().round(9).tolist()}
 

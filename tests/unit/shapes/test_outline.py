@@ -118,7 +118,7 @@ def stars(draw):
 
 
 def by_brute_force(points, cells=400):
-    """Give the centroid and mean square distance from it, summed over a grid of points."""
+    """Return the centroid and mean square distance from it, summed over a grid of points."""
     low, high = points.min(axis=0), points.max(axis=0)
     x, y = (low[k] + (high[k] - low[k]) * (np.arange(cells) + 0.5) / cells for k in (0, 1))
     x, y = np.meshgrid(x, y)
@@ -244,7 +244,7 @@ def test_a_class_derived_from_block_builds_its_own():
 
 
 def overhanging(height, reach=0.5):
-    """Give a block of 1 m by 4 m with a shelf to the right, at a height."""
+    """Return a block of 1 m by 4 m with a shelf to the right, at a height."""
     points = [(0.0, 0.0), (1.0, 0.0), (1.0, height), (1.0 + reach, height)]
     points += [(1.0 + reach, height + 0.01), (1.0, height + 0.01), (1.0, 4.0), (0.0, 4.0)]
     return points

@@ -23,7 +23,7 @@ def numbers(block):
 
 
 def summed(masses):
-    """Give mass, centre and inertia of many (mass, x, y, inertia), by integrals about zero."""
+    """Return mass, centre and inertia of many (mass, x, y, inertia), by integrals about zero."""
     m, x, y, own = np.array(masses).T
     total = m.sum()
     centre = (m @ x / total, m @ y / total)

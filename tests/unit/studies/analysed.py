@@ -30,7 +30,7 @@ def made():
 
 @cache
 def whole_analysis():
-    """Give an analysis of all motions, made once in a process; tests do not change it."""
+    """Return an analysis of all motions, made once in a process; tests do not change it."""
     return rf.incremental_dynamic_analysis(
         SYSTEM, motions(), scale=np.arange(0.5, 6.1, 0.5), limits=["uplift", 0.4],
         intensity="PGA", free_vibration="4 s", **QUIET,

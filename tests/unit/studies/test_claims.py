@@ -48,7 +48,7 @@ def this(tmp_path, monkeypatch):
 
 
 def run_by(tmp_path):
-    """Give how often each chunk was run, by the number of its first case."""
+    """Return how often each chunk was run, by the number of its first case."""
     told = [path.read_text().splitlines() for path in tmp_path.glob("log *")]
     return Counter(int(first) for each in told for first in each)
 

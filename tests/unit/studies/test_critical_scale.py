@@ -56,7 +56,7 @@ def found():
 
 
 def overturns(response):
-    """Give the verdict of a run, by what the run was asked for."""
+    """Return the verdict of a run, by what the run was asked for."""
     lies_flat = response.status.flag_meanings.split().index("toppled")
     going_on = '"overturning": "continue"' in response.attrs["run_json"]
     return response.status.item() == lies_flat if going_on else bool(response.overturned)

@@ -17,7 +17,7 @@ SLIDES = "the block would slide from"
 
 
 def texts_of(runs):
-    """Give what is said of each case."""
+    """Return what is said of each case."""
     return runs.message.to_numpy().squeeze()
 
 

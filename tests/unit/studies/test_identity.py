@@ -135,7 +135,7 @@ def test_every_argument_is_changed_in_turn():
 
 
 def two(base, name, change):
-    """Give what is asked for before and after an argument has been changed."""
+    """Return what is asked for before and after an argument has been changed."""
     before, after = change if isinstance(change, tuple) and len(change) == 2 and all(
         isinstance(one, dict) for one in change
     ) else ({}, {name: change})  # fmt: skip
@@ -164,7 +164,7 @@ def test_what_changes_no_numbers_is_the_same_study(tmp_path):
 
 @pytest.fixture(scope="module")
 def begun(tmp_path_factory):
-    """Give a function that makes the store of an analysis, each but once."""
+    """Return a function that makes the store of an analysis, each but once."""
     made = {}
 
     def store(name, asked, into):

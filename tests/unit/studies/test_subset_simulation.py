@@ -188,7 +188,7 @@ def test_too_few_levels_have_a_bound_from_above_alone():
 
 
 def steps(values):
-    """Give levels of a demand that is a step function of one normal number."""
+    """Return levels of a demand that is a step function of one normal number."""
     return list(
         subset_levels(
             lambda _, scores: np.floor(values * scores[:, 0]) / values, 1, 3.0, count=2000,

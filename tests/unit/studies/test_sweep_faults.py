@@ -59,7 +59,7 @@ def test_killed_at_any_moment_it_goes_on_to_the_same_end(whole, tmp_path):
 
 
 def dying(height):
-    """Give a scene; the first process of a pool that makes the eighth one is killed meanwhile."""
+    """Return a scene; the first process of a pool that makes the eighth one is killed meanwhile."""
     mark, worker = Path(os.environ[MARK]), parent_process() is not None
     if worker and height.m_as("m") > HEIGHTS[0][7] - 0.01 and not mark.exists():
         mark.touch()
