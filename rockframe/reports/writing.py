@@ -88,7 +88,7 @@ def report(
         numbers and clauses are in a section each.
     certify : bool, optional
         Whether a run without a certificate is certified first, if the dataset holds its motion;
-        that takes some hundred runs.
+        that takes 100 to 200 runs.
     overwrite : bool, optional
         Whether to replace an existing file that is not a report.
 

@@ -38,8 +38,8 @@ class RunSummary:
     # for a body that stays within the overturning angle, 1 less its peak over that angle; for one
     # that came back from beyond it, its peak over that angle less 1, and 1 less its peak over a
     # right angle. For one that overturns, the square of its rate at that angle [rad^2 s^-2], and
-    # the time from then to the end of the run [s]: it would not have overturned without speed, or
-    # in less time
+    # the time from then to the end of the run [s]: the smaller either is, the nearer the run is to
+    # one that does not overturn, or not before its end
     clearances: tuple[float, ...] = ()
     time: float = math.nan  # of overturning by the verdict, NaN if none [s]
     direction: int = 0  # sign of the rotation at overturning, 0 if none

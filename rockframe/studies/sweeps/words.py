@@ -107,7 +107,7 @@ def _parts_of(runs: xr.Dataset) -> Iterator[xr.Dataset]:
 
 
 def slips_of_cases(runs: xr.Dataset) -> Generic:
-    """Return largest slip of each case, of several bodies of that which slipped farthest [m]."""
+    """Return the largest slip of each case, over all bodies [m]."""
     most = np.full(runs["status"].shape, np.nan)
     for found in (runs[name] for name in PEAK_SLIPS if name in runs):
         others = [dim for dim in found.dims if dim not in runs["status"].dims]
