@@ -26,9 +26,9 @@ from rockframe.reports.project import ATTRIBUTE
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.variable import words_of_flags
 from rockframe.studies import fragility, open_study, sweep
+from rockframe.studies.sweeps.case import NOT_GIVEN
 
 _RESULT: Final = analysis_kind("a fragility", "exceedance_probability", "fragility_status")
-_GIVEN: Final = "must be given, as motions="
 _IN_STORE: Final = (
     "is not in this result; name the store of the study, which keeps its records, instead of the "
     "result, or run it again with --store"
@@ -56,9 +56,9 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     try:
         dataset = fragility(runs, **typed_intensity(arguments, fragility))
     except StudyError as problem:
-        if not known or _GIVEN not in str(problem):
+        if not known or NOT_GIVEN not in str(problem):
             raise
-        words = str(problem).removeprefix(f"{fragility.__name__}: ").replace(_GIVEN, _IN_STORE)
+        words = str(problem).removeprefix(f"{fragility.__name__}: ").replace(NOT_GIVEN, _IN_STORE)
         raise FileError(arguments.scene, words) from problem
     dataset = with_project(dataset, str(runs.attrs.get(ATTRIBUTE, "")))
     answer.says("Verdict", dataset.attrs["verdict"])

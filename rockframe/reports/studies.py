@@ -20,7 +20,7 @@ from rockframe.results.outcome import LEAST_SLIP, overturned_by
 from rockframe.simulation.system import System
 from rockframe.studies import case
 from rockframe.studies.sweeps.axes import Changes
-from rockframe.studies.sweeps.case import system_of_case
+from rockframe.studies.sweeps.case import NOT_GIVEN, system_of_case
 from rockframe.studies.sweeps.words import cases_verdict, slips_of_cases
 from rockframe.units.shown import ReaderUnits, raised
 
@@ -68,7 +68,7 @@ def worst_case(
             found = case(dataset, motions=motions or None, **labels)
             run = found.simulate(outputs=())
     except RockframeError as problem:  # such as without its motions
-        words = str(problem).replace("as motions=", "as motions= or, in a shell, by --motions")
+        words = str(problem).replace(NOT_GIVEN, f"{NOT_GIVEN} or, in a shell, by --motions")
         return f"Not simulated again; {words}.", None
     shown_as = labels_of(dataset, place, units)
     named = ", ".join(f"{name.replace('_', ' ')} {words}" for name, words in shown_as.items())

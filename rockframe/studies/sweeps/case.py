@@ -29,6 +29,8 @@ from rockframe.studies.sweeps.store import Store
 from rockframe.studies.sweeps.study import Study
 from rockframe.units import Measure, Unit, to_ratio, to_si
 
+NOT_GIVEN: Final = "must be given, as motions="
+"""Words on a record that neither the result nor the process has."""
 _OWNER: Final = "case"
 _SHOWN: Final = 6
 """Values that a message lists."""
@@ -321,7 +323,7 @@ def unscaled_motions(
         elif one["sha256"] in records:
             found[name] = records[one["sha256"]]
         elif needed:
-            has = "must be given, as motions=" if value is None else "is not among those given"
+            has = NOT_GIVEN if value is None else "is not among those given"
             digest = one["sha256"][:12]
             msg = f"{owner}: the record {one['name']!r} (sha256 {digest}...) {has}"
             raise StudyError(msg)
