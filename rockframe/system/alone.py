@@ -4,8 +4,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
+from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.errors import AssemblyError
 from rockframe.many import isnan
 from rockframe.system.fitting import BaseFriction
@@ -14,9 +14,6 @@ from rockframe.system.setting import Setting, SlipRange, chain_slips
 from rockframe.system.statics import SmallMotion, Statics, static_values
 from rockframe.system.support import Support
 from rockframe.system.words import Words, angle_words, sliding_words
-
-if TYPE_CHECKING:
-    from rockframe.dynamics.protocol import ContactModel, Ending
 
 
 @dataclass(frozen=True)
@@ -45,7 +42,7 @@ class AloneSetting(Setting):
             left_out=["sliding", f"elasticity of the {base.body}", *base.left_out],
         )
 
-    def contact_model(self) -> "ContactModel":
+    def contact_model(self) -> ContactModel:
         """Return the equations of a body on its base."""
         from rockframe.dynamics.alone import alone
 
@@ -121,7 +118,7 @@ class SlidingAloneSetting(AloneSetting):
         friction = ("friction at rest, and of slip", self.friction.words())
         return sliding_words(held, friction, restraint=restraint)
 
-    def contact_model(self) -> "ContactModel":
+    def contact_model(self) -> ContactModel:
         """Return the equations of slip, rotation and rise: those of a chain of one body."""
         from rockframe.dynamics.chain.model import AtRest, ChainBody, chain
 
@@ -132,6 +129,6 @@ class SlidingAloneSetting(AloneSetting):
         one = ChainBody(body, self.support.base_numbers, 1.0, 0.0, 0.0)
         return chain([one], self.body.mass, rest, frictions=[self.friction])
 
-    def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
+    def slips_of(self, ending: Ending) -> tuple[SlipRange, ...]:
         """Return how far the body slipped."""
         return chain_slips(self, 1, ending)

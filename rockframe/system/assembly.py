@@ -4,9 +4,10 @@ import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from rockframe.components import Component, RigidGround
+from rockframe.dynamics.protocol import ContactModel
 from rockframe.errors import AssemblyError
 from rockframe.system.alone import AloneSetting, SlidingAloneSetting
 from rockframe.system.bodies import BaseLoad, load_of, one_body
@@ -44,9 +45,6 @@ from rockframe.system.stacked import (
     StackedSetting,
 )
 from rockframe.system.words import describe
-
-if TYPE_CHECKING:
-    from rockframe.dynamics.protocol import ContactModel
 
 
 @dataclass(frozen=True)
@@ -253,7 +251,7 @@ class Assembly:
         return self.scene.make_setting(self.parts, self.options)
 
     @cached_property
-    def model(self) -> "ContactModel":
+    def model(self) -> ContactModel:
         """The scene's equations, ready for the integrator, which does not change them."""
         return self.setting.compile()
 

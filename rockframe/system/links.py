@@ -5,15 +5,13 @@ import re
 from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from rockframe.components import Link, Load, PointLink, RearWall, Restrainer, Tendon
-from rockframe.dynamics.links import LinkNumbers
+from rockframe.dynamics.chain.link_rows import ChainLink
+from rockframe.dynamics.links import Bumper, LinkNumbers, SteadyForce, Tie
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import SupportedBody
-
-if TYPE_CHECKING:
-    from rockframe.dynamics.chain.link_rows import ChainLink
 
 
 class OwnLink(PointLink):
@@ -95,8 +93,6 @@ class PlacedLink:
 
     def numbers(self, mass: float) -> LinkNumbers:
         """Return the law, per unit of a mass [kg]."""
-        from rockframe.dynamics.links import Bumper, LinkNumbers, SteadyForce
-
         if isinstance(self.part, Restrainer | Tendon):
             return tie_of(self.part, mass)
         if isinstance(self.part, OwnLink):
@@ -114,10 +110,8 @@ class PlacedLink:
             return 0.0, 0.0
         return self.part.si.horizontal, -self.part.si.vertical
 
-    def chain_link(self, mass: float) -> "ChainLink":
+    def chain_link(self, mass: float) -> ChainLink:
         """Return the link as the equations take it."""
-        from rockframe.dynamics.chain.link_rows import ChainLink
-
         to_point = self.to_point if self.to >= 0 else (0.0, 0.0)
         return ChainLink(
             self.on, self.on_point, self.to, to_point, self.apart, self.numbers(mass), self.along
@@ -178,8 +172,6 @@ def tie_words(part: Restrainer | Tendon) -> list[str]:
 
 def tie_of(part: Restrainer | Tendon, mass: float) -> LinkNumbers:
     """Return the law of a restrainer, :eq:`eq-tie`, or of a tendon, per unit of a mass [kg]."""
-    from rockframe.dynamics.links import LinkNumbers, Tie
-
     numbers = part.si
     slack, damping = (getattr(numbers, name, None) or 0.0 for name in ("slack", "damping"))
     stiffness, damping = numbers.stiffness / mass, damping / mass

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import ClassVar, NoReturn
 
 from rockframe.components import Component
-from rockframe.dynamics.protocol import ContactModel
+from rockframe.dynamics.protocol import BODY_COLUMNS, POWERS, ContactModel, Ground, Start
 from rockframe.errors import AssemblyError
 from rockframe.system.own_base import OwnAnswers
 from rockframe.system.parts import Parts
@@ -100,8 +100,6 @@ class OwnScene(OwnAnswers, Setting):
 
 def _faults_of(model: ContactModel) -> list[str]:
     """Compare the sizes of a model's tables with what its system gives at the start."""
-    from rockframe.dynamics.protocol import BODY_COLUMNS, POWERS, Ground, Start
-
     system, size, still = model.system, model.system.coordinates(), Ground(0.0, 0.0)
     width = 2 * size + system.variables()
     mode, state, memory = model.initial(Start())

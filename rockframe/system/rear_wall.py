@@ -3,11 +3,12 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final, NamedTuple, cast
+from typing import Final, NamedTuple, cast
 
 from rockframe.components import RearWall
 from rockframe.components.block_numbers import BlockSI
 from rockframe.components.link import WallImpact, WallSide
+from rockframe.dynamics.protocol import ContactModel
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import (
     BaseLoad,
@@ -23,9 +24,6 @@ from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import RigidGroundSetting
 from rockframe.system.statics import Statics
 from rockframe.system.words import TO_ROCK, Words
-
-if TYPE_CHECKING:
-    from rockframe.dynamics.protocol import ContactModel
 
 _INTO_WALL: Final = "is into the RearWall"
 IMPACT_TIME: Final = 1e-3
@@ -88,7 +86,7 @@ class RearWallSetting(RigidGroundSetting):
             return [f"InitialState: an angular velocity to the {side} at no rotation {_INTO_WALL}"]
         return []
 
-    def contact_model(self) -> "ContactModel":
+    def contact_model(self) -> ContactModel:
         """Return Housner's equations, with the wall on its side."""
         model = super().contact_model()
         share = self.body.centre_height / self.height

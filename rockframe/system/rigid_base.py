@@ -5,16 +5,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, cast
 
+from rockframe.dynamics.base_numbers import BaseNumbers, rigid_numbers
+from rockframe.dynamics.body import Body
 from rockframe.dynamics.equilibrium import Balance, Path
+from rockframe.dynamics.standing import Stand
+from rockframe.dynamics.tied import Tied, at_rest, rocked
 from rockframe.system.statics import Statics, work_against
 from rockframe.system.support import BaseWords, StandingBodies, Support
 from rockframe.system.words import uplift_words
 
 if TYPE_CHECKING:
-    from rockframe.dynamics.base_numbers import BaseNumbers
-    from rockframe.dynamics.body import Body
-    from rockframe.dynamics.standing import Stand
-    from rockframe.dynamics.tied import Tied
     from rockframe.system.stack import StackSetting
 
 NO_VERTICAL_START = (
@@ -42,10 +42,8 @@ class RigidBase(Support):
         """Rotation of uplift: zero, as any rotation lifts a corner [rad]."""
         return 0.0
 
-    def law(self, body: "Body", mass: float, load_mass: float) -> "BaseNumbers":
+    def law(self, body: Body, mass: float, load_mass: float) -> BaseNumbers:
         """Return the base as the equations take it."""
-        from rockframe.dynamics.base_numbers import rigid_numbers
-
         return rigid_numbers(body)
 
     def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
@@ -79,7 +77,7 @@ class Pressed(NamedTuple):
         return -self.to_left <= couple <= self.to_right
 
 
-def pressed(setting: "StackSetting", k: int, tied: "Sequence[Tied]") -> Pressed:
+def pressed(setting: "StackSetting", k: int, tied: Sequence[Tied]) -> Pressed:
     """Return the load on the rigid base under body `k`, :eq:`eq-link-rest`.
 
     It carries all bodies above it, and the forces of links on them in the upright position.
@@ -113,7 +111,7 @@ class Lifting(NamedTuple):
         return f"{left} to the right, which tips it to the left, or {right} to the left"
 
 
-def lifting(setting: "StackSetting", k: int, tied: "Sequence[Tied]") -> Lifting:
+def lifting(setting: "StackSetting", k: int, tied: Sequence[Tied]) -> Lifting:
     """Return what lifts a corner of the rigid base under body `k`, with link forces at rest.
 
     Without links it is :eq:`eq-rigid-together`, and the friction b/h.
@@ -124,10 +122,8 @@ def lifting(setting: "StackSetting", k: int, tied: "Sequence[Tied]") -> Lifting:
     return Lifting(shears[0] / body.mass, shears[1] / body.mass, needed / carried.force)
 
 
-def rocking_moment(setting: "StackSetting", k: int, rotation: float) -> "tuple[float, list[Tied]]":
+def rocking_moment(setting: "StackSetting", k: int, rotation: float) -> tuple[float, list[Tied]]:
     """Return the restoring moment [N m] of all above base `k`, rotated as one, and its ties."""
-    from rockframe.dynamics.tied import rocked
-
     load, (middle, foot) = setting.bases[k].load, setting.base_of(k)
     side, half = (1.0, load.body.right) if rotation > 0.0 else (-1.0, load.body.left)
     sine, versine = math.sin(abs(rotation)), 2.0 * math.sin(0.5 * rotation) ** 2
@@ -150,8 +146,6 @@ def rocking_energy(setting: "StackSetting", k: int) -> float:
 
 def rocked_statics(setting: "StackSetting", rotation: float) -> Statics:
     """Return the equilibrium on rigid bases only: everything above the weakest one rocks."""
-    from rockframe.dynamics.tied import at_rest
-
     right, mass = rotation > 0.0, setting.body.mass
     side = 1.0 if right else -1.0
     tied = at_rest(setting.chain_ties)
@@ -259,7 +253,7 @@ class _Joint:
         self.bodies = setting.standing_in(whole, k, side)
         self.side = side
 
-    def rotations(self, stands: "Sequence[Stand]") -> list[float]:
+    def rotations(self, stands: Sequence[Stand]) -> list[float]:
         """Return the rotations of all bodies on their bases; 0 for the body on this base."""
         found = [one.state.rotation for one in stands]
         return [*found[: self.place], 0.0, *found[self.place :]]

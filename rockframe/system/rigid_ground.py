@@ -3,8 +3,9 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
+from rockframe.dynamics.protocol import ContactModel
 from rockframe.errors import AssemblyError
 from rockframe.many import atan, cos, hypot, sin, sqrt, tan
 from rockframe.system.bodies import ROUNDING, Restitutions, restitution_cautions
@@ -12,9 +13,6 @@ from rockframe.system.rigid_base import REACTIONS
 from rockframe.system.setting import Setting
 from rockframe.system.statics import Statics, static_values
 from rockframe.system.words import Words, angle_words
-
-if TYPE_CHECKING:
-    from rockframe.dynamics.protocol import ContactModel
 
 
 @dataclass(frozen=True)
@@ -95,7 +93,7 @@ class RigidGroundSetting(Setting):
                 )
         return found
 
-    def contact_model(self) -> "ContactModel":
+    def contact_model(self) -> ContactModel:
         """Return Housner's equations."""
         from rockframe.dynamics.rigid_ground import corner_of, rigid_ground
 

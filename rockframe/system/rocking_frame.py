@@ -4,12 +4,14 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, cast
+from typing import Any, ClassVar, cast
 
 import numpy as np
 
 from rockframe.components import RockingFrame, Tendon
 from rockframe.components.rocking_frame import RockingFrameSI
+from rockframe.dynamics.links import LinkNumbers, Stretch
+from rockframe.dynamics.protocol import ContactModel
 from rockframe.errors import AssemblyError
 from rockframe.signals.arrays import Array
 from rockframe.system.bodies import BaseLoad, OnCorners, Restitutions, restitution_on
@@ -20,10 +22,6 @@ from rockframe.system.rigid_ground import RigidGroundSetting, refuse_fall
 from rockframe.system.stack import refuse_options
 from rockframe.system.statics import Statics
 from rockframe.system.words import TO_ROCK, Words
-
-if TYPE_CHECKING:
-    from rockframe.dynamics.links import LinkNumbers
-    from rockframe.dynamics.protocol import ContactModel
 
 
 @dataclass(frozen=True)
@@ -143,11 +141,11 @@ class TiedFrameSetting(RockingFrameSetting):
         return tuple(link_labels(self.tendons))
 
     @cached_property
-    def laws(self) -> "tuple[LinkNumbers, ...]":
+    def laws(self) -> tuple[LinkNumbers, ...]:
         """The tendons as the equations take them."""
         return tuple(tie_of(one, self.body.mass) for one in self.tendons)
 
-    def contact_model(self) -> "ContactModel":
+    def contact_model(self) -> ContactModel:
         """Return the equations of the columns and their tendons."""
         from rockframe.dynamics.tendons import tied_frame
 
@@ -156,8 +154,6 @@ class TiedFrameSetting(RockingFrameSetting):
 
     def forces(self, rotation: float) -> list[float]:
         """Return the force of each tendon, :eq:`eq-rocking-frame-tendon` [N]."""
-        from rockframe.dynamics.links import Stretch
-
         longer = 4.0 * self.frame.column.half_width * math.sin(0.5 * abs(rotation))
         stretch, found = Stretch(longer, 0.0, 0.0, 0.0, 0.0), list[float]()
         for one in self.laws:

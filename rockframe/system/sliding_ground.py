@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rockframe.components.bases import Impact
+from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.errors import AssemblyError
 from rockframe.many import largest, python_number
 from rockframe.system.bodies import SupportedBody, load_of, restitution_on
@@ -16,7 +17,6 @@ from rockframe.system.setting import SlipRange
 from rockframe.system.words import HELD_BY_FRICTION, Words
 
 if TYPE_CHECKING:
-    from rockframe.dynamics.protocol import ContactModel, Ending
     from rockframe.dynamics.slide_rock import SlideRock
 
 
@@ -46,7 +46,7 @@ class SlidingSetting(RigidGroundSetting):
         left, right = self._reached_at(left, right)
         return max(left, 0.0), max(right, 0.0)
 
-    def contact_model(self) -> "ContactModel":
+    def contact_model(self) -> ContactModel:
         """Return the equations of slip, rotation and rise."""
         from rockframe.dynamics.slide_rock_model import slide_rock
 
@@ -54,7 +54,7 @@ class SlidingSetting(RigidGroundSetting):
         system = slide_rock_of(self.body, self.friction, self.restitution, gravity)
         return slide_rock(system, mass=self.body.mass)
 
-    def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
+    def slips_of(self, ending: Ending) -> tuple[SlipRange, ...]:
         """Return how far the block slipped."""
         return (slips_on_ground(ending),)
 
@@ -148,7 +148,7 @@ def slide_rock_of(
     )
 
 
-def slips_on_ground(ending: "Ending") -> SlipRange:
+def slips_on_ground(ending: Ending) -> SlipRange:
     """Return how far a block slipped on rigid ground."""
     from rockframe.dynamics.slide_motion import (
         BEARINGS,

@@ -2,10 +2,11 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from rockframe.components import Component, RigidGround, Tendon, TwoSpringSupport
 from rockframe.components.bases import Impact
+from rockframe.dynamics.protocol import MOST_MODES, ContactModel, Ending
 from rockframe.errors import AssemblyError
 from rockframe.system.fitting import HELD, SMALL_SLIDING, BaseFriction, friction_under
 from rockframe.system.options import Sliding
@@ -19,9 +20,6 @@ from rockframe.system.sliding_ground import (
 )
 from rockframe.system.stack import StackSetting
 from rockframe.system.words import HELD_BY_FRICTION, SLIPS, Words, sliding_words
-
-if TYPE_CHECKING:
-    from rockframe.dynamics.protocol import ContactModel, Ending
 
 LEAST_OVERHANG: Final = 0.1
 """Overhang of a body beyond an edge from which on a warning is given, over half its base width.
@@ -52,11 +50,11 @@ class SlidingStackSetting(StackSetting):
             for k, friction in enumerate(self.frictions, 1)
         ))  # fmt: skip
 
-    def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
+    def slips_of(self, ending: Ending) -> tuple[SlipRange, ...]:
         """Return how far each body slipped."""
         return chain_slips(self, len(self.bodies), ending)
 
-    def beyond_edges(self, ending: "Ending") -> list[str]:
+    def beyond_edges(self, ending: Ending) -> list[str]:
         """Warn of bodies that slipped beyond an edge of the body below, which is not modelled."""
         pairs = zip(self.bodies, self.bodies[1:], self.offsets, self.slips_of(ending), strict=False)
         found = (
@@ -120,7 +118,6 @@ def _same(held: StackSetting) -> dict[str, Any]:
 def _refuse_many_modes(bases: Sequence[Component], slips: bool) -> None:
     """Refuse bodies whose contacts have more combinations than can be numbered."""
     from rockframe.dynamics.chain.rows import BED_MODES, PAD_MODES, RIGID_MODES
-    from rockframe.dynamics.protocol import MOST_MODES
 
     count = 1
     for base in bases:
@@ -156,7 +153,7 @@ class TiedSetting(StackSetting):
         """Friction of the ground."""
         return self.frictions[0] if self.frictions else HELD
 
-    def contact_model(self) -> "ContactModel":
+    def contact_model(self) -> ContactModel:
         """Return the equations of slip, rotation and rise, with links."""
         from rockframe.dynamics.slide_rock_model import slide_rock
         from rockframe.dynamics.tied_slide_rock import tied_slide_rock
@@ -208,7 +205,7 @@ class TiedSlidingSetting(TiedSetting):
             ],
         )  # fmt: skip
 
-    def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
+    def slips_of(self, ending: Ending) -> tuple[SlipRange, ...]:
         """Return how far the block slipped."""
         return (slips_on_ground(ending),)
 

@@ -8,8 +8,13 @@ from typing import TYPE_CHECKING, Any, Final
 
 from rockframe.components import Component, Link, Load, Tendon
 from rockframe.components.block_numbers import BlockSI
+from rockframe.dynamics.base_numbers import BaseNumbers
+from rockframe.dynamics.chain.link_rows import ChainLink
+from rockframe.dynamics.on_base import OnBase
+from rockframe.dynamics.protocol import ContactModel
 from rockframe.dynamics.standing import Stand, StandingBody, standing_body
 from rockframe.dynamics.statics import StandingChain
+from rockframe.dynamics.tied import Tied, at_rest
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import BaseLoad, SupportedBody, body_of_block, with_mass
 from rockframe.system.fitting import BaseFriction
@@ -31,11 +36,7 @@ from rockframe.system.support import StandingBodies, Support
 from rockframe.system.words import TO_ROCK, Words
 
 if TYPE_CHECKING:
-    from rockframe.dynamics.base_numbers import BaseNumbers
-    from rockframe.dynamics.chain.link_rows import ChainLink
     from rockframe.dynamics.chain.model import AtRest
-    from rockframe.dynamics.protocol import ContactModel
-    from rockframe.dynamics.tied import Tied
     from rockframe.dynamics.vibrations import ChainBody
 
 NO_REST: Final = "the bodies find no rest under their weight: their bases are too soft for them"
@@ -197,7 +198,7 @@ class StackSetting(Setting):
         return tuple(found)
 
     @cached_property
-    def chain_ties(self) -> "tuple[ChainLink, ...]":
+    def chain_ties(self) -> tuple[ChainLink, ...]:
         """The ties as the equations take them."""
         return tuple(one.chain_link(self.body.mass) for one in self.ties)
 
@@ -213,9 +214,7 @@ class StackSetting(Setting):
 
         `lifted` is the lowest body of that group, -1 for none; `side` is the side of its corner.
         """
-        from rockframe.dynamics.on_base import OnBase
-
-        found, numbers = list[StandingBody](), list["BaseNumbers"]()
+        found, numbers = list[StandingBody](), list[BaseNumbers]()
         mass = self.body.mass
         for some in groups:
             body, lowest = self._joined(some), some[-1]
@@ -239,7 +238,7 @@ class StackSetting(Setting):
         chain = StandingChain(tuple(found), self.slope.along_gravity, ties)
         return StandingBodies(chain, mass, tuple(numbers))
 
-    def _between_groups(self, tie: PlacedLink, groups: Sequence[range]) -> "ChainLink":
+    def _between_groups(self, tie: PlacedLink, groups: Sequence[range]) -> ChainLink:
         """Return a tie between groups of joined bodies; a point on the ground stays there."""
         found = tie.chain_link(self.body.mass)
         if not any(self.rigid):
@@ -379,15 +378,13 @@ class StackSetting(Setting):
         }
 
     @cached_property
-    def _tied_at_rest(self) -> "list[Tied]":
+    def _tied_at_rest(self) -> list[Tied]:
         """Elongations and forces of the ties at rest."""
-        from rockframe.dynamics.tied import at_rest
-
         if not self.groups:
             return at_rest(self.chain_ties)
         return self.standing.chain.tied(self.standing.rest or [])
 
-    def contact_model(self) -> "ContactModel":
+    def contact_model(self) -> ContactModel:
         """Return the equations of stacked bodies."""
         from rockframe.dynamics.chain.model import chain
 

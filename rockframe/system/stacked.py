@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from rockframe.dynamics.on_base import OnBase
+from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.dynamics.standing import Stand, standing_body
 from rockframe.dynamics.statics import StandingChain
 from rockframe.errors import AssemblyError
@@ -24,7 +26,6 @@ from rockframe.system.words import Words, sliding_words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.coupled.model import StackRest
-    from rockframe.dynamics.protocol import ContactModel, Ending
     from rockframe.dynamics.vibrations import ChainBody
 
 LEAST_CAP_SHARE = 1e-3
@@ -115,8 +116,6 @@ class StackedSetting(Setting):
         return self._standing(*self._moving_cap)
 
     def _standing(self, cap_mass: float, cap_inertia: float) -> StandingBodies:
-        from rockframe.dynamics.on_base import OnBase
-
         both = self._stack(cap_mass, cap_inertia)
         links = tuple(
             standing_body(OnBase(one.body, one.base.law), one.mass, one.top, one.beside)
@@ -187,7 +186,7 @@ class CoupledSetting(StackedSetting):
             ("cap: flight", "no soil force; block and cap fall together or apart"),
         ]  # fmt: skip
 
-    def contact_model(self) -> "ContactModel":
+    def contact_model(self) -> ContactModel:
         """Return the coupled equations."""
         from rockframe.dynamics.coupled.model import coupled
 
@@ -227,7 +226,7 @@ class SlidingCoupledSetting(CoupledSetting):
             if friction != HELD
         ))  # fmt: skip
 
-    def contact_model(self) -> "ContactModel":
+    def contact_model(self) -> ContactModel:
         """Return the equations of two stacked bodies that slip."""
         from rockframe.dynamics.chain.model import AtRest
         from rockframe.dynamics.chain.on_cap import block_on_cap
@@ -237,11 +236,11 @@ class SlidingCoupledSetting(CoupledSetting):
             rest = [AtRest(one.state.rotation, one.state.vertical) for one in self._rest]
         return block_on_cap(*self.bodies(), self.body.mass, rest, self.frictions)
 
-    def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
+    def slips_of(self, ending: Ending) -> tuple[SlipRange, ...]:
         """Return how far the block slipped on the cap and, if it can slip, the cap on the soil."""
         return chain_slips(self, 1 if self.frictions[-1] == HELD else 2, ending)
 
-    def beyond_edges(self, ending: "Ending") -> list[str]:
+    def beyond_edges(self, ending: Ending) -> list[str]:
         """Warn of a block that slipped beyond the edge of its cap."""
         slips, widths = self.slips_of(ending)[0], (self.body.half_width, self.cap.half_width)
         found = beyond_edge(slips, 0.0, *widths, self.sliding_bodies)
@@ -272,7 +271,7 @@ class CascadeSetting(StackedSetting):
             "the cap's inclination, for the block",
         ]
 
-    def contact_model(self) -> "ContactModel":
+    def contact_model(self) -> ContactModel:
         """Return the equations of both stages."""
         from rockframe.dynamics.cascade.model import cascade
 

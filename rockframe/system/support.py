@@ -8,15 +8,17 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, Final
+from typing import ClassVar, Final
 
 from rockframe.components import TwoSpringSupport, WinklerSoil
 from rockframe.components.bases import Separation
 from rockframe.dynamics.base_numbers import BaseNumbers, bed_numbers, pads_numbers
 from rockframe.dynamics.body import Body
+from rockframe.dynamics.on_base import OnBase
 from rockframe.dynamics.standing import Stand, of_base, standing_body, uplift_rotation
 from rockframe.dynamics.statics import StandingChain
 from rockframe.many import sqrt
+from rockframe.signals.arrays import Array
 from rockframe.system.bodies import (
     BaseLoad,
     Restitutions,
@@ -25,9 +27,6 @@ from rockframe.system.bodies import (
 )
 from rockframe.system.statics import Statics, required_states, static_values
 from rockframe.system.words import uplift_words, vibration_words
-
-if TYPE_CHECKING:
-    from rockframe.signals.arrays import Array
 
 LEAST: Final = 2.0**-20
 """Rotation, over the one that the settlement allows, below which moments are taken as linear in it:
@@ -105,7 +104,7 @@ class StandingBodies:
             found["cap_rotation"] = stands[-1].state.rotation
         return found
 
-    def small_motion(self, stands: list[Stand]) -> "tuple[Array, Array, Array]":
+    def small_motion(self, stands: list[Stand]) -> tuple[Array, Array, Array]:
         """Return mass, damping and stiffness matrix about rest, for rotation and height of each."""
         from rockframe.dynamics.linear import linear
 
@@ -220,7 +219,6 @@ class Support(ABC):
     def standing(self) -> StandingBodies:
         """Its body alone on it, by the law."""
         from rockframe.dynamics.alone import eccentricity_of
-        from rockframe.dynamics.on_base import OnBase
 
         body, numbers = self.load.rigid_body, self.base_numbers
         link = standing_body(OnBase(body, numbers.law), beside=eccentricity_of(body))

@@ -2,13 +2,12 @@
 
 import math
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from textwrap import wrap
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from rockframe.system.parts import Parts
     from rockframe.system.setting import Setting
 
@@ -80,7 +79,7 @@ _WIDTH = 100
 
 
 def describe(
-    setting: "Setting", parts: "Parts", written: "Sequence[tuple[str, str]] | None" = None
+    setting: "Setting", parts: "Parts", written: Sequence[tuple[str, str]] | None = None
 ) -> str:
     """Describe the model, its equations, its numbers and its limits.
 
