@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+from rockframe.dynamics.alone import alone
 from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.errors import AssemblyError
 from rockframe.many import isnan
@@ -44,8 +45,6 @@ class AloneSetting(Setting):
 
     def contact_model(self) -> ContactModel:
         """Return the equations of a body on its base."""
-        from rockframe.dynamics.alone import alone
-
         body, base = self.load.rigid_body, self.support.base_numbers
         return alone(self.model, body, base, self.body.mass, self.rest_rotation)
 

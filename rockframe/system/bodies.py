@@ -10,6 +10,7 @@ import numpy as np
 from rockframe.components import Component
 from rockframe.components.bases import CushionCapSI
 from rockframe.components.block_numbers import BlockSI, BodyGeometry, greatest_restitutions
+from rockframe.dynamics.alone import rigid_body
 from rockframe.dynamics.body import Body
 from rockframe.dynamics.chain.link_rows import LINK_MOMENT
 from rockframe.many import Many, atan2, tan
@@ -250,8 +251,6 @@ class BaseLoad:
 
     def law(self, mass: float) -> Body:
         """Return the body as the equations take it, per unit of a reference mass [kg]."""
-        from rockframe.dynamics.alone import rigid_body
-
         return rigid_body(
             left=self.body.left,
             right=self.body.right,

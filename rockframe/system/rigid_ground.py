@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from rockframe.dynamics.protocol import ContactModel
+from rockframe.dynamics.rigid_ground import corner_of, rigid_ground
 from rockframe.errors import AssemblyError
 from rockframe.many import atan, cos, hypot, sin, sqrt, tan
 from rockframe.system.bodies import ROUNDING, Restitutions, restitution_cautions
@@ -95,8 +96,6 @@ class RigidGroundSetting(Setting):
 
     def contact_model(self) -> ContactModel:
         """Return Housner's equations."""
-        from rockframe.dynamics.rigid_ground import corner_of, rigid_ground
-
         body, small = self.body, self.options.small
         left, right = (
             corner_of(

@@ -15,6 +15,7 @@ from rockframe.dynamics.protocol import ContactModel
 from rockframe.dynamics.standing import Stand, StandingBody, standing_body
 from rockframe.dynamics.statics import StandingChain
 from rockframe.dynamics.tied import Tied, at_rest
+from rockframe.dynamics.vibrations import ChainBody
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import BaseLoad, SupportedBody, body_of_block, with_mass
 from rockframe.system.fitting import BaseFriction
@@ -37,7 +38,6 @@ from rockframe.system.words import TO_ROCK, Words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.chain.model import AtRest
-    from rockframe.dynamics.vibrations import ChainBody
 
 NO_REST: Final = "the bodies find no rest under their weight: their bases are too soft for them"
 PULLED: Final = ", or their restrainers or loads pull them over"
@@ -181,11 +181,9 @@ class StackSetting(Setting):
         )  # fmt: skip
 
     @cached_property
-    def links(self) -> "tuple[ChainBody, ...]":
+    def links(self) -> tuple[ChainBody, ...]:
         """The bodies as the equations take them, per unit mass of the highest one."""
-        from rockframe.dynamics.vibrations import ChainBody
-
-        found, carried, mass = list["ChainBody"](), 0.0, self.body.mass
+        found, carried, mass = list[ChainBody](), 0.0, self.body.mass
         below = (*(body.eccentricity for body in self.bodies[1:]), 0.0)
         for body, top, offset, base, lower in zip(
             self.bodies, self.tops, self.offsets, self.bases, below, strict=True

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from rockframe.dynamics.alone import eccentricity_of
 from rockframe.dynamics.on_base import OnBase
 from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.dynamics.standing import Stand, standing_body
 from rockframe.dynamics.statics import StandingChain
+from rockframe.dynamics.vibrations import ChainBody
 from rockframe.errors import AssemblyError
 from rockframe.many import atan2, isnan
 from rockframe.system.alone import AloneSetting
@@ -26,7 +28,6 @@ from rockframe.system.words import Words, sliding_words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.coupled.model import StackRest
-    from rockframe.dynamics.vibrations import ChainBody
 
 LEAST_CAP_SHARE = 1e-3
 """Least mass of a cap, as a share of the block's, with which the coupled equations are
@@ -132,14 +133,11 @@ class StackedSetting(Setting):
             return cap.mass, cap.inertia
         return least, least * cap.half_width**2 / 3.0
 
-    def bodies(self) -> "tuple[ChainBody, ChainBody]":
+    def bodies(self) -> tuple[ChainBody, ChainBody]:
         """Return block and cap on their bases, as the coupled equations take them."""
         return self._stack(*self._moving_cap)
 
-    def _stack(self, cap_mass: float, cap_inertia: float) -> "tuple[ChainBody, ChainBody]":
-        from rockframe.dynamics.alone import eccentricity_of
-        from rockframe.dynamics.vibrations import ChainBody
-
+    def _stack(self, cap_mass: float, cap_inertia: float) -> tuple[ChainBody, ChainBody]:
         (upper, lower), cap, mass = self.supports, self.cap, self.body.mass
         block = self.load.law(mass)
         plate = block._replace(

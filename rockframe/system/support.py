@@ -12,6 +12,7 @@ from typing import ClassVar, Final
 
 from rockframe.components import TwoSpringSupport, WinklerSoil
 from rockframe.components.bases import Separation
+from rockframe.dynamics.alone import eccentricity_of
 from rockframe.dynamics.base_numbers import BaseNumbers, bed_numbers, pads_numbers
 from rockframe.dynamics.body import Body
 from rockframe.dynamics.on_base import OnBase
@@ -218,8 +219,6 @@ class Support(ABC):
     @cached_property
     def standing(self) -> StandingBodies:
         """Its body alone on it, by the law."""
-        from rockframe.dynamics.alone import eccentricity_of
-
         body, numbers = self.load.rigid_body, self.base_numbers
         link = standing_body(OnBase(body, numbers.law), beside=eccentricity_of(body))
         chain = StandingChain((link,), self.load.options.slope.along_gravity)
