@@ -10,6 +10,7 @@ from collections.abc import Generator, Iterable, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from difflib import get_close_matches
+from functools import partial
 from inspect import currentframe
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Final, NoReturn
@@ -101,11 +102,8 @@ class RecordError(RockframeError, ValueError):
         super().__init__(f"{where}: found {found}; expected {expected}")
 
     def __reduce__(self) -> tuple[object, ...]:
-        return (_rebuild_record_error, (self.path, self.found, self.expected, self.line))
-
-
-def _rebuild_record_error(path: str, found: str, expected: str, line: int | None) -> RecordError:
-    return RecordError(path, found=found, expected=expected, line=line)
+        rebuild = partial(type(self), found=self.found, expected=self.expected, line=self.line)
+        return (rebuild, (self.path,))
 
 
 class FileError(RockframeError, ValueError):
@@ -270,9 +268,8 @@ def warn(message: str, category: type[RockframeWarning]) -> None:
     if texts is not None:
         texts.append(message)
         return
-    package = __name__.partition(".")[0]
     level, frame = 1, currentframe()
-    while frame and str(frame.f_globals.get("__name__")).partition(".")[0] == package:
+    while frame and str(frame.f_globals.get("__name__")).partition(".")[0] == _PACKAGE:
         level, frame = level + 1, frame.f_back
     warnings.warn(message, category, stacklevel=level)
 

@@ -1,7 +1,6 @@
 """The motions in a report: metadata of their records, spectra, and the target."""
 
 import json
-import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final, TypeAlias, cast
@@ -20,7 +19,7 @@ from rockframe.results.schema import SCHEMA
 from rockframe.studies.sweeps.case import known_motions
 from rockframe.suites import MotionSuite, TargetSpectrum
 from rockframe.suites.candidates import usual_periods
-from rockframe.suites.columns import column
+from rockframe.suites.columns import column, is_missing
 from rockframe.suites.scaling import compared_target
 from rockframe.units import Unit
 from rockframe.units.shown import ReaderUnits, raised, reader_units
@@ -149,7 +148,7 @@ def _records(
     """Return a table with a row for each motion, with what is known of its record."""
     known = {
         name: values for name in OF_RECORDS
-        if not all(map(_missing, values := [column(name, one) for one in motions.values()]))
+        if not all(map(is_missing, values := [column(name, one) for one in motions.values()]))
     }  # fmt: skip
     if misfits is not None:
         known["spectral_misfit"] = misfits.tolist()
@@ -166,7 +165,7 @@ def record_rows(motion: GroundMotion, units: ReaderUnits) -> list[tuple[str, str
     return [
         (_head(name, units), _cell(name, value, units))
         for name, value in found
-        if not _missing(value)
+        if not is_missing(value)
     ]
 
 
@@ -180,11 +179,7 @@ def _of(name: str, units: ReaderUnits) -> ReaderUnits:
 
 
 def _cell(name: str, value: Any, units: ReaderUnits) -> str:
-    if _missing(value):
+    if is_missing(value):
         return "-"
     unit = SCHEMA[name].unit
     return str(value) if unit is None else number_in(float(value), str(unit), _of(name, units))
-
-
-def _missing(value: Any) -> bool:
-    return value is None or value == "" or (isinstance(value, float) and math.isnan(value))

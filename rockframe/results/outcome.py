@@ -55,30 +55,33 @@ def peak_share(run: Summary, angles: OverturningAngles) -> float:
     return largest(own, run.other_share)
 
 
+def columns_of(name: str, count: int) -> tuple[str, ...]:
+    """Name the columns of a quantity of all bodies, or of all restrainers."""
+    return tuple(column_of(name, k) for k in range(count))
+
+
 def body_histories(
     model: ContactModel, run: Trajectory, values: Mapping[str, Generic]
 ) -> dict[str, Generic]:
     """Return histories, those of all bodies and of all restrainers stacked in one array each."""
     kept = {name: each for name, each in values.items() if name in SCHEMA}
+
+    def of_each(name: str, count: int) -> Generic:
+        return np.array([values[each] for each in columns_of(name, count)])
+
     if model.links:
-        links = range(model.links)
-        kept |= {
-            name: np.array([values[column_of(name, i)] for i in links]) for name in OF_EACH_LINK
-        }
+        kept |= {name: of_each(name, model.links) for name in OF_EACH_LINK}
     if not model.shows_bodies:
         return kept
-    bodies = range(model.system.bodies())
-    found: dict[str, Generic] = {
-        name: np.array([values[column_of(one, k)] for k in bodies])
-        for name, one in OF_EACH_BODY.items()
-    }
+    count = model.system.bodies()
+    kept |= {name: of_each(one, count) for name, one in OF_EACH_BODY.items()}
     if "slip" in values:
-        found["body_slip"] = np.array([values[column_of("slip", k)] for k in bodies])
-    found["body_contact_state"] = np.array(
-        [model.contact_states(run.mode, k) for k in bodies], dtype=np.int8
+        kept["body_slip"] = of_each("slip", count)
+    kept["body_contact_state"] = np.array(
+        [model.contact_states(run.mode, k) for k in range(count)], dtype=np.int8
     )
-    found["body"] = np.array(bodies) + 1
-    return kept | found
+    kept["body"] = np.arange(count) + 1
+    return kept
 
 
 def broken_links(model: ContactModel, ending: Ending) -> list[int]:

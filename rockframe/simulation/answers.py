@@ -9,11 +9,10 @@ import numpy as np
 
 from rockframe.compiled import Integers
 from rockframe.dynamics.events import IMPACT, REVERSAL, SILENT, SLIP, STICK
-from rockframe.dynamics.protocol import BODY_FORCES, column_of
+from rockframe.dynamics.protocol import BODY_FORCES
 from rockframe.errors import RockframeError
 from rockframe.motion import GroundMotion
 from rockframe.results.along_steps import FRACTIONS, AlongSteps
-from rockframe.results.diagnostics import Diagnostic
 from rockframe.results.forces import (
     OF_SETTLEMENT,
     OF_SOIL_FRICTION,
@@ -27,6 +26,7 @@ from rockframe.results.outcome import (
     Generic,
     body_histories,
     cap_histories,
+    columns_of,
     energy_histories,
     ground_histories,
     ground_on_slope,
@@ -101,10 +101,10 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
     if model.shows_bodies:
         # peaks of the whole run, as for the peak rotation of the highest body
         every = seen.along(math.inf) if fell else along
-        scalars["peak_body_rotation"] = _peaks_of(rotations_of(model.system.bodies()), every)
+        scalars["peak_body_rotation"] = _peaks_of("rotation", model.system.bodies(), every)
     places: dict[str, Generic] = {}
     if model.links:
-        scalars["peak_restrainer_force"] = _peaks_of(forces_of_links(model.links), along)
+        scalars["peak_restrainer_force"] = _peaks_of("restrainer_force", model.links, along)
         places = {"restrainer": np.array(setting.link_names)}
     if plan.points:
         scalars |= point_peaks(plan.points, along, load)
@@ -140,9 +140,9 @@ class _Observed:
         ground = ground_at(plan.motion, np.concatenate([run.time, events.time, events.time]))
         moved, resolved = ground_on_slope(ground, slope)
         model, names = system.model, BODY_FORCES + OF_SETTLEMENT
-        names += forces_of_links(model.links) if model.links else ()
+        names += columns_of("restrainer_force", model.links)
         names += OF_SOIL_FRICTION if system.setting.stacked else ()
-        names += rotations_of(model.system.bodies()) if model.shows_bodies else ()
+        names += columns_of("rotation", model.system.bodies()) if model.shows_bodies else ()
         self.columns, shown = observe_run(model, run, None if self.whole else names, resolved)
         shown, last = without_gravity(shown, slope), count + len(events.time)
         self.values, before, after = (
@@ -170,7 +170,8 @@ class _Observed:
         if model.selects:
             values = body_histories(model, run, values)
         values |= relative_histories(values, setting)
-        values |= ground_histories(self.ground, has_vertical_motion=plan.has_vertical_motion)
+        shakes_upwards = plan.motion is not None and plan.motion.si.vertical is not None
+        values |= ground_histories(self.ground, has_vertical_motion=shakes_upwards)
         values["time"] = run.time
         return values
 
@@ -251,7 +252,9 @@ def _of_users(
     for one in plan.diagnostics:
         state = _state_of(values, seen.run.time, seen.ground)
         history_and_peak = or_missing(
-            lambda one=one, state=state: (one.of(state), _peak_of(one, along)),
+            lambda one=one, state=state: (
+                one.of(state), along.largest(lambda values: np.abs(one.of(values))[None])[0].item()
+            ),
             None, f"the diagnostic {one.name!r}", missing,
         )  # fmt: skip
         if history_and_peak is not None:
@@ -259,23 +262,9 @@ def _of_users(
     return found
 
 
-def _peak_of(one: Diagnostic, along: AlongSteps) -> float:
-    """Return the largest absolute value of a diagnostic along the steps."""
-    return along.largest(lambda state: np.abs(one.of(state))[None])[0].item()
-
-
-def rotations_of(bodies: int) -> tuple[str, ...]:
-    """Name the columns of the rotations of all bodies."""
-    return tuple(column_of("rotation", k) for k in range(bodies))
-
-
-def forces_of_links(links: int) -> tuple[str, ...]:
-    """Name the columns of the forces of all restrainers."""
-    return tuple(column_of("restrainer_force", i) for i in range(links))
-
-
-def _peaks_of(names: tuple[str, ...], along: AlongSteps) -> Array:
-    """Return the greatest absolute values of columns."""
+def _peaks_of(name: str, count: int, along: AlongSteps) -> Array:
+    """Return the greatest absolute values of a quantity of all bodies, or of all restrainers."""
+    names = columns_of(name, count)
     return along.largest(lambda shown: np.abs([shown[name] for name in names]))[0]
 
 

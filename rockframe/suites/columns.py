@@ -112,17 +112,18 @@ def check_column(motions: Mapping[str, GroundMotion], name: object, *, owner: st
 def order(motions: Mapping[str, GroundMotion], name: str, *, descending: bool) -> list[str]:
     """Return the labels in the order of a column; motions without a value come last."""
     known = {label: column(name, motion) for label, motion in motions.items()}
-    there = [label for label, value in known.items() if not _missing(value)]
+    there = [label for label, value in known.items() if not is_missing(value)]
     as_text = any(isinstance(known[label], str) for label in there)
     there.sort(key=lambda label: str(known[label]) if as_text else known[label], reverse=descending)
     return [*there, *(label for label in known if label not in set(there))]
 
 
 def _passes(test: Test, value: Any) -> bool:
-    return not _missing(value) and bool(test(value))
+    return not is_missing(value) and bool(test(value))
 
 
-def _missing(value: Any) -> bool:
+def is_missing(value: Any) -> bool:
+    """Whether a column has no value for a motion."""
     return value is None or value == "" or (isinstance(value, float) and math.isnan(value))
 
 
