@@ -14,6 +14,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 KIND: Final = FileKind.marked("a report", (".html", ".htm"), generator("report"))
+BANNERS: Final = {
+    True: ("Overturned", "bad"),
+    False: ("Did not overturn", "good"),
+    None: ("Not finished", "doubt"),
+}
+"""Title and kind of the banner of a run, by its verdict."""
 LARGEST_DRAWING: Final = 1_500_000
 """Size of a vector drawing above which pixels replace it [bytes]."""
 _LONGEST_VALUE: Final = 14

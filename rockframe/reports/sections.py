@@ -33,12 +33,6 @@ from rockframe.units.shown import ReaderUnits, raised
 from rockframe.version import __version__
 
 _LIBRARIES: Final = ("numpy", "scipy", "xarray")
-_BANNERS: Final = {
-    True: ("Overturned", "bad"),
-    False: ("Did not overturn", "good"),
-    None: ("Not finished", "doubt"),
-}
-"""Title and kind of the banner, by the verdict."""
 _CERTIFICATE: Final = [row.name for row in (*CERTIFICATE, *PROOF)]
 _NUMBERS: Final = re.compile(r": |, after ")
 """Ends of the part of a verdict before its numbers."""
@@ -73,7 +67,7 @@ _PROVENANCE: Final = (
 
 def outcome_of(dataset: xr.Dataset, units: ReaderUnits) -> str:
     """Return the verdict; its title says whether the body slid."""
-    title, kind = _BANNERS[verdict_of(dataset)]
+    title, kind = page.BANNERS[verdict_of(dataset)]
     words = units.of_sentence(str(dataset.attrs.get("verdict", "")))
     slid = float(slips_of_cases(dataset)) >= LEAST_SLIP
     if "peak_slip" in dataset and words:

@@ -13,6 +13,7 @@ from urllib.parse import parse_qsl, urlsplit
 
 from rockframe import plot
 from rockframe.errors import PLEASE_REPORT, ComponentError, RockframeError, collected_warnings
+from rockframe.reports.page import BANNERS
 from rockframe.results.outcome import verdict_of
 from rockframe.serve import page
 from rockframe.serve.controls import (
@@ -31,8 +32,6 @@ _KEPT: Final = 16
 _MOST_FIELDS: Final = 50
 _PATIENCE: Final = 30.0
 """Time after which a silent client is disconnected [s]."""
-_TITLES: Final = {True: ("Overturned", "bad"), False: ("Did not overturn", "good"),
-                  None: ("Not finished", "doubt")}  # fmt: skip
 _HTML: Final = "text/html; charset=utf-8"
 _FILES: Final = {page.STYLE: "text/css", page.SCRIPT: "text/javascript"}
 _POLICY: Final = (
@@ -99,7 +98,7 @@ class Server(ThreadingHTTPServer):
             motion = choice.ground(self.record)
             run = choice.system().simulate(motion, free_vibration=FREE_VIBRATION)
             player = plot.player(run, title=_MOVING).to_html()
-        title, kind = _TITLES[verdict_of(run)]
+        title, kind = BANNERS[verdict_of(run)]
         return ToldOutcome(title, str(run.attrs["verdict"]), kind, tuple(warned), toml, player)
 
 

@@ -109,8 +109,28 @@ class Certificate:
 
     @property
     def sentence(self) -> str:
-        """The certificate in words."""
-        return certificate_sentence(self)
+        """Which further runs were made and what they showed, in words."""
+        if not self.finished:
+            return "No certificate: the run was not finished."
+        ends = _Ends(self)
+        near, flip = _near(self, ends), _nearest(self)
+        doubts = [*_unsettled(self, ends), *_fragile(self, ends), *near]
+        if doubts:
+            text = f"{NEAR_WORDS}: the body {ends.verdict}, but {'; '.join(doubts)}."
+            near_scale = near and _scaled_a_little(self)
+            return text if near_scale or not flip else f"{text} {flip.capitalize()}."
+        means = [tolerance_words(self.plan.accuracy), f"steps {SHORTER:g} times shorter"]
+        if self.plan.motion is not None:
+            means.append("the intervals of the motion divided")
+        body = "The body"
+        if self.base.in_motion:
+            body = "To the end of the run, where it can still overturn, the body"
+        text = (
+            f"{body} {ends.verdict} also with {', '.join(means[:-1])} and {means[-1]}, and with "
+            f"every parameter up to {100.0 * self.wanted.nudge:g} % larger or smaller"
+        )
+        scales = "; ".join(filter(None, [_tried(self), flip]))
+        return f"{text}. {scales}." if scales else f"{text}."
 
     def values(self) -> dict[str, float | bool]:
         """Return the scalars by their names in the schema."""
@@ -213,31 +233,6 @@ NEAR: Final = 0.01
 """Margin up to which a verdict is called near the boundary [1]."""
 NEAR_WORDS: Final = "Near the boundary"
 """Beginning of the sentence about such a verdict."""
-
-
-def certificate_sentence(found: Certificate) -> str:
-    """Say which further runs were made and what they showed."""
-    if not found.finished:
-        return "No certificate: the run was not finished."
-    ends = _Ends(found)
-    near, flip = _near(found, ends), _nearest(found)
-    doubts = [*_unsettled(found, ends), *_fragile(found, ends), *near]
-    if doubts:
-        text = f"{NEAR_WORDS}: the body {ends.verdict}, but {'; '.join(doubts)}."
-        near_scale = near and _scaled_a_little(found)
-        return text if near_scale or not flip else f"{text} {flip.capitalize()}."
-    means = [tolerance_words(found.plan.accuracy), f"steps {SHORTER:g} times shorter"]
-    if found.plan.motion is not None:
-        means.append("the intervals of the motion divided")
-    body = "The body"
-    if found.base.in_motion:
-        body = "To the end of the run, where it can still overturn, the body"
-    text = (
-        f"{body} {ends.verdict} also with {', '.join(means[:-1])} and {means[-1]}, and with every "
-        f"parameter up to {100.0 * found.wanted.nudge:g} % larger or smaller"
-    )
-    scales = "; ".join(filter(None, [_tried(found), flip]))
-    return f"{text}. {scales}." if scales else f"{text}."
 
 
 class _Ends:
