@@ -11,10 +11,13 @@ from rockframe.errors import FileError
 from rockframe.version import __version__
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray as xr
 
 _LABEL: Final = 9
 """Width of the label at the head of a line [characters]."""
+_MOST_SHOWN: Final = 40
+"""Largest number of rows of a table that is printed."""
 _ALONG: Final = {"time", "event", "sample_after_end"}
 """Dimensions of histories, which only the files of results hold."""
 
@@ -47,6 +50,11 @@ class Answer:
         """Add lines of text as they are; JSON has the named values instead."""
         self._lines.append((False, words))
         self._told |= {name: _as_json(value) for name, value in named.items()}
+
+    def table(self, values: "pd.DataFrame") -> None:
+        """Add a table, unless it is long."""
+        if len(values) <= _MOST_SHOWN:
+            self.text(printed(values))
 
     def numbers(self, found: "xr.Dataset | Mapping[str, Any]") -> None:
         """Add numbers with their units: of a result all variables but histories."""
@@ -106,6 +114,11 @@ class Answer:
     def _add(self, label: str, words: str, *, beside: bool) -> None:
         self._lines.append((beside, f"{f'{label}:'.ljust(_LABEL - 1)} {words}"))
         self._told[label.lower().replace(" ", "_")] = words
+
+
+def printed(values: "pd.DataFrame") -> str:
+    """Write a table in columns, with four digits."""
+    return values.to_string(float_format=lambda value: f"{value:.4g}")
 
 
 def _number(one: Any) -> dict[str, Any]:

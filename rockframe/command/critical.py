@@ -5,7 +5,6 @@ from typing import Any, Final
 
 from rockframe.command.answer import Answer
 from rockframe.command.plot import PICTURE, concluded
-from rockframe.command.run import finished
 from rockframe.command.shared import (
     Outputs,
     analysed,
@@ -43,5 +42,4 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     measure = dataset[dataset.attrs["intensity"]]
     if bool(measure.notnull()):
         answer.says("Shaking", f"{in_words(measure, dataset)} at the critical scale")
-    concluded(dataset, arguments, answer, outputs)
-    return 0 if finished(dataset) else 1
+    return concluded(dataset, arguments, answer, outputs)

@@ -10,7 +10,6 @@ from rockframe.command.answer import Answer
 from rockframe.command.files.studies import AXES, CASES
 from rockframe.command.over_motions import SCALE, scene_and_motions, typed_intensity
 from rockframe.command.plot import PICTURE, concluded
-from rockframe.command.run import finished
 from rockframe.command.shared import (
     Outputs,
     amount,
@@ -68,8 +67,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     if found is not None:
         answer.subject("Scene", system_words(found.system))
     answer.subject("Runs", str(runs.attrs["verdict"]))
-    concluded(dataset, arguments, answer, outputs)
-    return 0 if finished(runs) else 1
+    return concluded(dataset, arguments, answer, outputs, runs)
 
 
 def _runs_of_study(arguments: argparse.Namespace) -> xr.Dataset:

@@ -7,12 +7,10 @@ from rockframe.command.answer import Answer
 from rockframe.command.files.studies import AXES, CASES, KNOWN
 from rockframe.command.over_motions import SCALE, scene_and_motions, typed_intensity
 from rockframe.command.plot import PICTURE, concluded
-from rockframe.command.run import finished
 from rockframe.command.shared import (
     Outputs,
     analysed,
     analysis_kind,
-    printed,
     system_words,
     table_kind,
     taken_by,
@@ -26,8 +24,6 @@ _RESULT: Final = analysis_kind("the result of a dynamic analysis", "capacity_sca
 _TABLE: Final = table_kind("a table of capacities", "limit_state", "motion", "capacity_scale")
 _SHOWN: Final = ("capacity_scale", "flip_count")
 """Variables that are printed for each record."""
-_MOST_SHOWN: Final = 40
-"""Largest number of rows of a table that is printed."""
 _USUAL: Final = "PGA"
 
 
@@ -57,8 +53,6 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
                        **typed_options(arguments, "period"))  # fmt: skip
     answer.says("Fit", fitted.attrs["verdict"])
     capacities = table(dataset[list(_SHOWN)].drop_vars("rotation_limit"))
-    if len(capacities) <= _MOST_SHOWN:
-        answer.text(printed(capacities))
+    answer.table(capacities)
     outputs.table(capacities)
-    concluded(dataset, arguments, answer, outputs)
-    return 0 if finished(dataset) else 1
+    return concluded(dataset, arguments, answer, outputs)

@@ -10,7 +10,6 @@ from rockframe.command.answer import Answer
 from rockframe.command.files.scenes import Described, read_scene
 from rockframe.command.files.tables import arguments_of
 from rockframe.command.plot import PICTURE, concluded
-from rockframe.command.run import finished
 from rockframe.command.shared import (
     Outputs,
     analysed,
@@ -50,8 +49,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     answer.subject("Scene", f"{system_words(found.system)} ({dataset.attrs['model']})")
     answer.subject("Pulse", words)
     answer.text("\n".join(_lines(dataset)))
-    concluded(dataset, arguments, answer, outputs)
-    return 0 if finished(dataset) else 1
+    return concluded(dataset, arguments, answer, outputs)
 
 
 def _pulse(found: Described, name: str | None) -> tuple[Any, str]:

@@ -4,9 +4,9 @@ import argparse
 from pathlib import Path
 from typing import Final
 
-from rockframe.command.answer import Answer
+from rockframe.command.answer import Answer, printed
 from rockframe.command.plot import PICTURE, save
-from rockframe.command.shared import Outputs, motions_from, printed, table_kind
+from rockframe.command.shared import Outputs, motions_from, table_kind
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.measures import intensity_measures
 from rockframe.motion import GroundMotion

@@ -9,6 +9,7 @@ import xarray as xr
 
 from rockframe import plot
 from rockframe.command.answer import Answer
+from rockframe.command.run import finished
 from rockframe.command.shared import Outputs, check_format, read_result
 from rockframe.command.streams import STREAM
 from rockframe.command.typed_calls import values_by_name
@@ -56,13 +57,21 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
 
 
 def concluded(
-    dataset: xr.Dataset, arguments: argparse.Namespace, answer: Answer, outputs: Outputs
-) -> None:
-    """Return the numbers of an analysis, and write its result and its picture."""
+    dataset: xr.Dataset,
+    arguments: argparse.Namespace,
+    answer: Answer,
+    outputs: Outputs,
+    runs: xr.Dataset | None = None,
+) -> int:
+    """Tell the numbers of an analysis, write its result and its picture, and give the exit code.
+
+    `runs` are those that it is of, unless it has their status itself.
+    """
     answer.numbers(dataset)
     outputs.result(dataset)
     if arguments.picture is not None:
         save(getattr(plot, drawn_by(dataset))(dataset), arguments.picture, outputs)
+    return 0 if finished(dataset if runs is None else runs) else 1
 
 
 def save(drawn: Any, path: str | Path, outputs: Outputs, of_stream: str | None = None) -> None:

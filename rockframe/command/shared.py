@@ -360,11 +360,6 @@ RUN: Final = result_kind("the result of a run", axes=False)
 STUDY: Final = result_kind("the result of a study", axes=True)
 
 
-def printed(values: Any) -> str:
-    """Write a table of pandas in columns, with four digits."""
-    return values.to_string(float_format=lambda value: f"{value:.4g}")
-
-
 def system_words(system: System) -> str:
     """Name the parts of a system in one line."""
     return ", ".join(type(part).__name__ for part in system.parts.structural())

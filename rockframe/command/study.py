@@ -13,7 +13,6 @@ from rockframe.command.shared import (
     STUDY,
     Outputs,
     analysed,
-    printed,
     store_from,
     system_words,
     table_kind,
@@ -27,8 +26,6 @@ from rockframe.studies import sweep
 _SHOWN: Final = ("status", "peak_relative_rotation", "overturned")
 """Variables of each case in the printed table."""
 _TABLE: Final = table_kind("the table of a study", "status", "overturned", "peak_rotation")
-_MOST_SHOWN: Final = 40
-"""Largest number of rows of a table that is printed."""
 
 
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
@@ -45,9 +42,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
         answer.says("Verdict", runs.attrs["verdict"])
         answer.numbers(runs)
         values = table(runs)
-        if len(values) <= _MOST_SHOWN:
-            wanted = [head for head in values if str(head).split(" [")[0] in _SHOWN]
-            answer.text(printed(values[wanted]))
+        answer.table(values[[head for head in values if str(head).split(" [")[0] in _SHOWN]])
         outputs.table(values)
         outputs.result(runs)
     except StudyError as problem:

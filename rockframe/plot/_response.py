@@ -122,9 +122,8 @@ def draw_events(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
         if "event_kind" not in dataset:
             continue
         rotation = dataset["event_rotation"].to_numpy()
-        left, right = overturning_angles(dataset)
-        drawn = rotation / np.where(rotation < 0.0, left, right)
-        drawn = drawn if unit is None else unit.of(rotation)
+        angles = overturning_angles(dataset)
+        drawn = relative(rotation, *angles) if unit is None else unit.of(rotation)
         when = dataset["event_time"].to_numpy()
         kinds = dataset["event_kind"].to_numpy()
         for value, name in words_of_flags(dataset["event_kind"].attrs).items():

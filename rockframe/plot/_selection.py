@@ -19,8 +19,6 @@ from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import AxesLike, Panels, sheet
 from rockframe.units.shown import UnitsLike
 
-_SET: Final = BLUE
-_TARGET: Final = VERMILLION
 _MOST_NAMED: Final = 50
 _LETTERS: Final = 34
 
@@ -81,8 +79,8 @@ def selection(
         one = drawn["scaled_spectral_acceleration"].isel(motion=place)
         spectra.plot(period, one, color=GREY, alpha=0.6, linewidth=0.6, label=words)
     for name, colour, words in (
-        ("set_median", _SET, "median"),
-        ("target_spectral", _TARGET, "target"),
+        ("set_median", BLUE, "median"),
+        ("target_spectral", VERMILLION, "target"),
     ):
         middle = drawn[f"{name}_acceleration"].to_numpy()
         spread = drawn[f"{name.split('_')[0]}_standard_deviation"].to_numpy()

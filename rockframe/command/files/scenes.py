@@ -157,9 +157,8 @@ def read_scene(path: str | Path) -> Described:
         if name not in keys():
             _unknown_table(file, name)
     found = described_scene(file)
-    file.check()
-    if found is None:  # cannot be: without a fault there is a system
-        raise AssertionError
+    if found is None or not file.sound:
+        raise file.error()
     return found
 
 

@@ -86,9 +86,8 @@ def read_study(path: str | Path, *, varied: bool = True) -> DescribedStudy:
     store, output = (_path_of(file, name) for name in (STORE, OUTPUT))
     if varied and AXES not in file.values and CASES not in file.values:
         file.fault((), "a study needs [axes], such as scale = [0.5, 1.0, 1.5], or cases")
-    file.check()
-    if scene is None:  # cannot be: without a fault there is a scene
-        raise AssertionError
+    if scene is None or not file.sound:
+        raise file.error()
     taken = {name: value for name, value in scene.run.items() if name in _FROM_RUN}
     used = scene.motion if motions is None else motions
     files = (*file.files, *scene.files)

@@ -158,11 +158,6 @@ class TomlFile:
         """Whether no fault has been found."""
         return not self._faults
 
-    def check(self) -> None:
-        """Raise if a fault has been found."""
-        if self._faults:
-            raise self.error()
-
     def error(self) -> FileError:
         """Return the error with all faults, in the order of their lines."""
         return FileError(str(self.path), sorted(self._faults, key=lambda fault: fault[0] or 0))
