@@ -170,8 +170,7 @@ class _Observed:
         if model.selects:
             values = body_histories(model, run, values)
         values |= relative_histories(values, setting)
-        shakes_upwards = plan.motion is not None and plan.motion.si.vertical is not None
-        values |= ground_histories(self.ground, has_vertical_motion=shakes_upwards)
+        values |= ground_histories(self.ground, has_vertical_motion=plan.has_vertical_motion)
         values["time"] = run.time
         return values
 

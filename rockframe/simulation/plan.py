@@ -283,6 +283,11 @@ class Plan(_Requested):
         """Time between samples of the motion, or the interval used for still ground [s]."""
         return STILL_INTERVAL if self.motion is None else self.motion.si.time_step
 
+    @property
+    def has_vertical_motion(self) -> bool:
+        """Whether the motion has a vertical component."""
+        return self.motion is not None and self.motion.si.vertical is not None
+
     def bare(self) -> "Plan":
         """Return the same run without samples."""
         return replace(self, output_step=None, requested=(), diagnostics=(), points=())
