@@ -11,7 +11,6 @@ from rockframe.errors import FileError
 from rockframe.version import __version__
 
 if TYPE_CHECKING:
-    import pandas as pd
     import xarray as xr
 
 _LABEL: Final = 9
@@ -51,8 +50,8 @@ class Answer:
         self._lines.append((False, words))
         self._told |= {name: _as_json(value) for name, value in named.items()}
 
-    def table(self, values: "pd.DataFrame") -> None:
-        """Add a table, unless it is long."""
+    def table(self, values: Any) -> None:
+        """Add a table of pandas, unless it is long."""
         if len(values) <= _MOST_SHOWN:
             self.text(printed(values))
 
@@ -116,8 +115,8 @@ class Answer:
         self._told[label.lower().replace(" ", "_")] = words
 
 
-def printed(values: "pd.DataFrame") -> str:
-    """Write a table in columns, with four digits."""
+def printed(values: Any) -> str:
+    """Write a table of pandas in columns, with four digits."""
     return values.to_string(float_format=lambda value: f"{value:.4g}")
 
 

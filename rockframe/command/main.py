@@ -6,6 +6,7 @@ import sys
 import threading
 import traceback
 import warnings
+from argparse import Namespace
 from collections.abc import Generator, Sequence
 from contextlib import contextmanager
 from importlib import import_module
@@ -17,8 +18,6 @@ from rockframe.command.streams import StandardInput, tell
 from rockframe.errors import RockframeError, RockframeWarning, SolverError
 
 if TYPE_CHECKING:
-    from argparse import Namespace
-
     from rockframe.command.answer import Answer
 
 UNFINISHED: Final = 1
@@ -68,7 +67,7 @@ def _wrong(typed: Sequence[str], words: str) -> int:
     return WRONG_INPUT
 
 
-def _carried_out(arguments: "Namespace", who: str, heard: list[int]) -> int:
+def _carried_out(arguments: Namespace, who: str, heard: list[int]) -> int:
     """Run a command, and print its results once all of its files are written."""
     from rockframe.command.answer import Answer
 
