@@ -55,12 +55,12 @@ class Answer:
         if len(values) <= _MOST_SHOWN:
             self.text(printed(values))
 
-    def numbers(self, found: "xr.Dataset | Mapping[str, Any]") -> None:
-        """Add numbers with their units: of a result all variables but histories."""
+    def numbers(self, found: "xr.Dataset") -> None:
+        """Add the numbers of a result with their units: all variables but histories."""
         self._numbers |= {
             str(name): _number(one)
-            for name, one in getattr(found, "variables", found).items()
-            if not _ALONG & set(getattr(one, "dims", ()))
+            for name, one in found.variables.items()
+            if not _ALONG & {*one.dims}
         }
 
     def wrote(self, title: str, path: object) -> None:
@@ -120,15 +120,14 @@ def printed(values: Any) -> str:
     return values.to_string(float_format=lambda value: f"{value:.4g}")
 
 
-def _number(one: Any) -> dict[str, Any]:
+def _number(one: "xr.Variable") -> dict[str, Any]:
     """Return a value with its unit and, of an array, its dimensions."""
     import numpy as np
 
-    attributes = dict(getattr(one, "attrs", {}))
     values = np.asarray(one)
-    found: dict[str, Any] = {"value": _as_json(_in_words(values, attributes))}
-    if "units" in attributes:
-        found["unit"] = str(attributes["units"])
+    found: dict[str, Any] = {"value": _as_json(_in_words(values, one.attrs))}
+    if "units" in one.attrs:
+        found["unit"] = str(one.attrs["units"])
     if values.ndim:
         found["dims"] = [str(dim) for dim in one.dims]
     return found

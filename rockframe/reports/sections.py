@@ -216,11 +216,8 @@ def provenance_section(dataset: xr.Dataset, file: str) -> Iterator[str]:
 
 def _drawing(system: System, units: ReaderUnits) -> Iterator[str]:
     """Draw the scene, if it can be drawn."""
-    draw = getattr(plot, "scene", None)
-    if draw is None:
-        return
     try:
-        drawn = draw(system, units=units.words)
+        drawn = plot.scene(system, units=units.words)
     except RockframeError:  # a base of a user's own
         return
     yield page.picture(drawn, "The scene, to scale.")
