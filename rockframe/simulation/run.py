@@ -40,6 +40,7 @@ from rockframe.simulation.soundness import (
     doubtful_residual,
     friction_words,
     may_overturn_later,
+    slips,
     unbalanced,
 )
 from rockframe.solve.accuracy import LEVELS, AccuracyLevel
@@ -129,13 +130,7 @@ class Response:
         leaving = [] if setting.flies else or_missing(
             lambda: list(_leaving(self.system, plan.motion, values, falls)), [], _LEAVING, missing
         )  # fmt: skip
-        slipping = or_missing(
-            lambda: [
-                f"{one.body} {one.words}; the model holds it"
-                for one in self.answers.slidings if one.slides
-            ],
-            [], _FRICTION, missing,
-        )  # fmt: skip
+        slipping = or_missing(lambda: list(slips(self.answers.slidings)), [], _FRICTION, missing)
         _ = self.scalars  # computed first: what fails is added to `missing`
         cut_off = [] if summary.status.finished else [verdict(summary, setting, self.system.model)]
         beyond = setting.beyond_edges(summary.ending)

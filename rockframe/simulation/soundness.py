@@ -335,6 +335,13 @@ def friction_words(scalars: Mapping[str, Generic | float], found: Sequence[Slidi
     return f" Friction needed: {most:.3g}, {level} for {lasted:.3g} s in all."
 
 
+def slips(found: Sequence[SlidingCheck]) -> Iterator[str]:
+    """Return a caution for each base that has less friction than a run needs."""
+    for each in found:
+        if each.slides:
+            yield f"{each.body} {each.words}; the model holds it"
+
+
 def share_words(would_slide: Generic, *, runs: str = "runs") -> str:
     """Say in how many runs of an analysis the block would slide, though its model holds it."""
     slide, hold = counts_of_slides(would_slide)
