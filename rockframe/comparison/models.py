@@ -16,9 +16,9 @@ from rockframe.components import (
     WinklerSoil,
 )
 from rockframe.components.block_numbers import squat
-from rockframe.errors import ComponentError, ModelWarning
+from rockframe.errors import ModelWarning
 from rockframe.proposals import hinted
-from rockframe.simulation.system import System
+from rockframe.simulation.system import System, check_system
 from rockframe.system.options import Coupling, Rotation, Sliding
 from rockframe.system.own_base import OwnBase
 
@@ -54,13 +54,6 @@ _LINKS: Final[dict[type, str]] = {
     RearWall: "wall",
 }
 """Words for links; links of a user's own are named by their classes."""
-
-
-def check_system(value: object, owner: str) -> None:
-    """Refuse anything but a System."""
-    if not isinstance(value, System):
-        msg = f"{owner}: system needs a System, got {type(value).__name__}"
-        raise ComponentError(msg)
 
 
 @hinted()

@@ -20,7 +20,7 @@ from rockframe.identification.report import fit_dataset
 from rockframe.identification.swings import swings_of
 from rockframe.identification.unknowns import Circumstance, TrialSystems
 from rockframe.proposals import hinted
-from rockframe.simulation.system import System
+from rockframe.simulation.system import System, check_system
 from rockframe.solve.accuracy import AccuracyLevel, accuracy_of
 from rockframe.system.options import AccuracyLike
 from rockframe.system.words import angle_words
@@ -120,8 +120,7 @@ def fit_free_decay(
     >>> round(float(found.fitted_value.sel(parameter="restitution")), 2)
     0.9
     """
-    _check_system(system)
-    _check_level(system)
+    check_system(system, _OWNER)
     _check_swings(system)
     if (measured is None) == (peaks is None):
         value = "neither" if peaks is None else "both"
@@ -157,31 +156,21 @@ def fit_free_decay(
     )
 
 
-def _check_system(value: object) -> None:
-    if not isinstance(value, System):
-        msg = f"{_OWNER}: system needs a System, got {type(value).__name__}"
-        raise ComponentError(msg)
-
-
-def _check_level(system: System) -> None:
-    if system.options.slope.level:
-        return
-    msg = (
-        f"{_OWNER}: the base is inclined by {angle_words(system.options.inclination)}; free decay "
-        "is fitted on a level base only, about which the swings to both sides are told apart"
-    )
-    raise ComponentError(msg)
-
-
 def _check_swings(system: System) -> None:
-    """Refuse a block before a rigid wall, whose peaks no passage through zero separates."""
-    if system.parts.wall is None or system.parts.wall.elastic:
-        return
-    msg = (
-        f"{_OWNER}: the block is before a rigid RearWall and rocks to one side only; expected a "
-        "block that swings to both sides, without a wall, or before one with a stiffness"
-    )
-    raise ComponentError(msg)
+    """Refuse scenes whose swings to both sides no passage through zero separates."""
+    if not system.options.slope.level:
+        inclined = angle_words(system.options.inclination)
+        msg = (
+            f"{_OWNER}: the base is inclined by {inclined}; free decay is fitted on a level base "
+            "only, about which the swings to both sides are told apart"
+        )
+        raise ComponentError(msg)
+    if system.parts.wall is not None and not system.parts.wall.elastic:
+        msg = (
+            f"{_OWNER}: the block is before a rigid RearWall and rocks to one side only; expected "
+            "a block that swings to both sides, without a wall, or before one with a stiffness"
+        )
+        raise ComponentError(msg)
 
 
 def _names(parameters: Sequence[str] | str) -> tuple[str, ...]:

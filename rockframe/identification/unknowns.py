@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import Any, Final, cast
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,16 +71,9 @@ class TrialSystems:
     def __init__(self, system: System, names: Sequence[str], owner: str) -> None:
         alone = system.parts.signature == frozenset({"block"})
         self._parts = (system.parts.standing() if alone else system.parts).structural()
-        options = system.options
-        self._options: dict[str, Any] = {
-            "restraint": options.restraint,
-            "rotation": options.rotation,
-            "coupling": options.coupling,
-            "sliding": options.sliding,
-            "gravity": system.gravity,
-        }
+        self._options: dict[str, Any] = system.options.to_dict()
         self.radius = system.parts.the_block.radius
-        self.gravity = options.gravity
+        self.gravity = system.options.gravity
         known = dict(self._ratios(system))
         self.places = {name: _place_of(name, known, owner) for name in names}
 
@@ -88,7 +81,9 @@ class TrialSystems:
         """Find the dimensionless parameters of all parts; None for one without a start value."""
         usual = {"restitution": system.parts.the_block.maximum_restitution}
         for index, part in enumerate(self._parts):
-            for argument, declared in _declared_ratios(part):
+            for argument, declared in sorted(part.declared().items()):
+                if not isinstance(declared, Ratio):
+                    continue
                 value = part.to_dict().get(argument, usual.get(argument))
                 condition = declared.condition
                 bounds = (-math.inf, math.inf) if condition is None else condition.bounds
@@ -116,14 +111,6 @@ class TrialSystems:
     def system(self, values: Mapping[str, float]) -> System:
         """Return the system with these values of the parameters."""
         return System(*self._with(values), **self._options)
-
-
-def _declared_ratios(part: Component) -> Iterator[tuple[str, Ratio[Any]]]:
-    kind: Any = type(part)
-    for name in dir(kind):
-        declared = getattr(kind, name)
-        if isinstance(declared, Ratio):
-            yield name, cast("Ratio[Any]", declared)
 
 
 def _place_of(name: object, known: Mapping[str, PartParameter | None], owner: str) -> PartParameter:

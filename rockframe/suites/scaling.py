@@ -10,7 +10,7 @@ from rockframe.errors import ComponentError, SchemaError
 from rockframe.motion.quantities import ArrayLike
 from rockframe.proposals import hinted
 from rockframe.results.joining import MOTION
-from rockframe.results.schema import SCHEMA, build_dataset, without_fill_values
+from rockframe.results.schema import SCHEMA, build_dataset, with_variables, without_fill_values
 from rockframe.suites.candidates import Candidates, Combination, candidates_of
 from rockframe.suites.target import TargetSpectrum
 from rockframe.suites.value import LabelledMotions
@@ -133,16 +133,13 @@ def scaled_set(
         title=title,
         source="recurrence of Nigam and Jennings",
     )
-    of_all = build_dataset(
-        {
-            "target_spectral_acceleration": np.exp(candidates.target),
-            "target_standard_deviation": candidates.deviations,
-            "set_median_acceleration": np.exp(logarithms.mean(axis=0)),
-            "set_standard_deviation": spread_of(logarithms),
-        },
-        {},
-    )
-    dataset = of_each.assign(of_all.data_vars)
+    of_all = {
+        "target_spectral_acceleration": np.exp(candidates.target),
+        "target_standard_deviation": candidates.deviations,
+        "set_median_acceleration": np.exp(logarithms.mean(axis=0)),
+        "set_standard_deviation": _spread_of(logarithms),
+    }
+    dataset = with_variables(of_each, of_all)
     labels = [candidates.labels[place] for place in places.tolist()]
     meaning = {**SCHEMA["period"].attributes(), "long_name": "undamped period of the oscillator"}
     dataset = dataset.assign_coords(
@@ -169,7 +166,7 @@ def compared_target(found: xr.Dataset) -> TargetSpectrum | None:
     )
 
 
-def spread_of(logarithms: "Array") -> "Array":
+def _spread_of(logarithms: "Array") -> "Array":
     """Return the standard deviation over a set, shape (k,); zero of a single motion."""
     if len(logarithms) < 2:
         return np.zeros(logarithms.shape[1])
