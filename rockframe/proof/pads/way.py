@@ -60,7 +60,6 @@ class PadWay:
     fresh: tuple[Guard, ...] = ()  # guards that have just become zero
     margin: int = 16  # of the series, in bits below the precision
     impacts: int = 0
-    changes: int = 0
     widest: float = 0.0  # largest radius of a rotation so far [rad]
     beyond: tuple[Ball, Ball] | None = None  # from when to when it passes the overturning angle
 
@@ -208,7 +207,6 @@ class PadWay:
         )
         self.standing, self.fresh = whole.after.standing, whole.after.fresh
         self.impacts += whole.after.impacts
-        self.changes += 1
 
     def _crossed(
         self, shaking: GroundPiece, h: Ball, box: Row, guard: Guard, rate: float

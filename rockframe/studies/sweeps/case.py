@@ -21,13 +21,13 @@ from rockframe.proposals import hinted, proposing
 from rockframe.results.variables.studies import MOTION, REPEATED
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import LEVELS, Accuracy
-from rockframe.studies.sweeps.axes import OF_SCENES, Axis, Changes, in_unit
+from rockframe.studies.sweeps.axes import OF_SCENES, Axis, Changes, in_unit, number_of
 from rockframe.studies.sweeps.chunk import AGAIN
 from rockframe.studies.sweeps.motions import full_name, motion_number, motion_of_case, named_motions
 from rockframe.studies.sweeps.scenes import FunctionScene, SweptScene, SystemScene, scene_of
 from rockframe.studies.sweeps.store import Store
 from rockframe.studies.sweeps.study import Study
-from rockframe.units import Measure, Unit, to_ratio, to_si
+from rockframe.units import Measure, Unit
 
 NOT_GIVEN: Final = "must be given, as motions="
 """Words on a record that neither the result nor the process has."""
@@ -235,11 +235,8 @@ def _position_of(labels: xr.DataArray, name: str, wanted: Any, unit: str | None)
         else:
             own = Unit(labels.attrs["units"] if unit is None else unit)
             values = np.atleast_1d(in_unit(labels, own, owner=_OWNER).to_numpy())
-            if own == Unit.ONE:
-                number = to_ratio(wanted, owner=_OWNER, name=name)
-            else:
-                measure = Measure("a value", own, f"{values[0]:g} {own}")
-                number = to_si(wanted, measure, owner=_OWNER, name=name)
+            measure = Measure("a value", own, f"{values[0]:g} {own}")
+            number = number_of(wanted, measure, owner=_OWNER, name=name)
         nearest = int(np.argmin(np.abs(values - number)))
         if np.isclose(values[nearest], number, rtol=1e-9, atol=0.0):
             return nearest
