@@ -70,23 +70,19 @@ def read_history(value: object, owner: str) -> History:
                 f"{shown(value)}; {_HISTORY}"
             )
             raise ComponentError(msg)
-        time = _values(value[name], TIME, owner, "time")
-        return _history(time, _values(value, ANGLE, owner, "rotation"), owner)
+        return History(*_with_times(value[name], value, owner))
     pair = _two(value)
     if pair is None:
         msg = f"{owner}: measured needs times and rotations, got {shown(value)}; {_HISTORY}"
         raise UnitsError(msg)
-    time = _values(pair[0], TIME, owner, "time")
-    return _history(time, _values(pair[1], ANGLE, owner, "rotation"), owner)
+    return History(*_with_times(*pair, owner))
 
 
 def read_peaks(value: object, owner: str) -> MeasuredPeaks:
     """Read successive peaks of the rotation, with or without times."""
     pair = _two(value)
     if pair is not None:
-        times = _values(pair[0], TIME, owner, "time")
-        rotation = _values(pair[1], ANGLE, owner, "rotation")
-        _check_times(times, rotation, owner)
+        times, rotation = _with_times(*pair, owner)
         peaks = MeasuredPeaks(rotation, np.sign(rotation), times)
     elif isinstance(value, tuple | pint.Quantity):
         rotation = _values(cast("object", value), ANGLE, owner, "peaks")
@@ -136,11 +132,6 @@ def _two(value: object) -> tuple[object, object] | None:
     return items[0], items[1]
 
 
-def _history(time: Array, rotation: Array, owner: str) -> History:
-    _check_times(time, rotation, owner)
-    return History(time, rotation)
-
-
 def _values(value: object, measure: Measure, owner: str, name: str) -> Array:
     """Convert an array with a unit to SI units, and check it."""
     unit: object = None
@@ -184,7 +175,10 @@ def _values(value: object, measure: Measure, owner: str, name: str) -> Array:
     return factor * array
 
 
-def _check_times(time: Array, rotation: Array, owner: str) -> None:
+def _with_times(times: object, rotations: object, owner: str) -> tuple[Array, Array]:
+    """Read rotations and their times, which must increase."""
+    time = _values(times, TIME, owner, "time")
+    rotation = _values(rotations, ANGLE, owner, "rotation")
     if time.size != rotation.size:
         msg = f"{owner}: there are {time.size} times and {rotation.size} rotations"
         raise ComponentError(msg)
@@ -196,6 +190,7 @@ def _check_times(time: Array, rotation: Array, owner: str) -> None:
             f"{time[first + 1]:.6g} s at index {first + 1}"
         )
         raise ComponentError(msg)
+    return time, rotation
 
 
 def _place(measured: History | MeasuredPeaks, index: int) -> str:

@@ -5,7 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from enum import StrEnum
 from os import cpu_count
-from typing import TYPE_CHECKING, Any, Final, Generic, TypeVar, cast
+from typing import Any, Final, Generic, TypeVar, cast
 
 import numpy as np
 import xarray as xr
@@ -17,9 +17,7 @@ from rockframe.motion import GroundMotion
 from rockframe.results.joining import MOTION
 from rockframe.results.schema import SCHEMA, build_dataset, without_fill_values
 from rockframe.signals import Signal
-
-if TYPE_CHECKING:
-    from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import Array
 
 
 class GroundComponent(StrEnum):
@@ -125,8 +123,8 @@ def component_attributes(motion: GroundMotion, component: object) -> dict[str, s
 
 
 def build_over(
-    axes: "Mapping[str, tuple[Array, str]]",
-    values: "Mapping[str, Array]",
+    axes: Mapping[str, tuple[Array, str]],
+    values: Mapping[str, Array],
     attributes: Mapping[str, str | float | int],
     *,
     over: tuple[str, ...] = (),
