@@ -14,7 +14,7 @@ from rockframe.identification.fitting import (
     Uncertainty,
     uncertainty_of,
 )
-from rockframe.identification.measured import History, MeasuredPeaks
+from rockframe.identification.measured import OWNER, History, MeasuredPeaks
 from rockframe.identification.prediction import Prediction
 from rockframe.identification.unknowns import Circumstance
 from rockframe.results.schema import build_dataset
@@ -129,7 +129,7 @@ def fit_dataset(
     }
     cautions = list(cautions_of(names, solution, uncertainty, values))
     for caution in cautions:
-        warn(f"fit_free_decay: {caution}", ModelWarning)
+        warn(f"{OWNER}: {caution}", ModelWarning)
     fitted = prediction.trials.system({name: found[name] for name in places})
     attributes: dict[str, str | float | int] = {
         "verdict": fit_sentence(values, list(places), confidence, uncertainty.reach),

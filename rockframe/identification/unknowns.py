@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from rockframe.components import Component
 from rockframe.components.parameters import Ratio
 from rockframe.errors import ComponentError, nearest, shown
+from rockframe.identification.measured import OWNER
 from rockframe.simulation.system import System
 from rockframe.system.assembly import Assembly, assemble
 
@@ -68,14 +69,14 @@ class PartParameter:
 class TrialSystems:
     """Systems that differ from the tested one in the parameters that are to be found."""
 
-    def __init__(self, system: System, names: Sequence[str], owner: str) -> None:
+    def __init__(self, system: System, names: Sequence[str]) -> None:
         alone = system.parts.signature == frozenset({"block"})
         self._parts = (system.parts.standing() if alone else system.parts).structural()
         self._options: dict[str, Any] = system.options.to_dict()
         self.radius = system.parts.the_block.radius
         self.gravity = system.options.gravity
         known = dict(self._ratios(system))
-        self.places = {name: _place_of(name, known, owner) for name in names}
+        self.places = {name: _place_of(name, known) for name in names}
 
     def _ratios(self, system: System) -> Iterator[tuple[str, PartParameter | None]]:
         """Find the dimensionless parameters of all parts; None for one without a start value."""
@@ -113,19 +114,19 @@ class TrialSystems:
         return System(*self._with(values), **self._options)
 
 
-def _place_of(name: object, known: Mapping[str, PartParameter | None], owner: str) -> PartParameter:
+def _place_of(name: object, known: Mapping[str, PartParameter | None]) -> PartParameter:
     matches = [full for full in known if name in (full, full.partition(".")[2])]
     if len(matches) == 1:
         place = known[matches[0]]
         if place is not None:
             return place
         msg = (
-            f"{owner}: {shown(name)} cannot be fitted, since the part was given without it; give "
+            f"{OWNER}: {shown(name)} cannot be fitted, since the part was given without it; give "
             f"{matches[0]} as a start value, instead of what stands for it"
         )
         raise ComponentError(msg)
     choice = ", ".join(repr(full) for full in (matches or known))
     found = "several parts have" if matches else "no part of the system has"
     near = "" if matches else nearest(name, {one.rpartition(".")[2] for one in known})
-    msg = f"{owner}: {found} the parameter {shown(name)}{near}; expected one of {choice}"
+    msg = f"{OWNER}: {found} the parameter {shown(name)}{near}; expected one of {choice}"
     raise ComponentError(msg)

@@ -15,7 +15,7 @@ from concurrent.futures import (
 from contextlib import closing, contextmanager, nullcontext
 from functools import partial
 from threading import Event, Thread
-from typing import Any, Final
+from typing import Any, Final, Protocol, runtime_checkable
 
 from rockframe.errors import ComponentError, RockframeError, StudyError, shown
 from rockframe.studies.sweeps.axes import OWNER, Chunk
@@ -28,8 +28,12 @@ _GROWS: Final = "total grows"
 """Text of a bar when further cases are to come whose number is not known yet."""
 
 
-class ProgressBar:
-    """A bar over the cases of one sweep, or of several that follow one another; shows nothing."""
+@runtime_checkable
+class ProgressBar(Protocol):
+    """A bar over the cases of one sweep, or of several that follow one another.
+
+    A protocol, since that of the command line is made without the import of studies.
+    """
 
     def name(self, part: str) -> None:
         """Say which part of the whole comes next; the number of parts is unknown."""
@@ -42,6 +46,10 @@ class ProgressBar:
 
     def close(self) -> None:
         """Show the total, which no longer grows."""
+
+
+class _Silent(ProgressBar):
+    """A bar that shows nothing."""
 
 
 class _Bar(ProgressBar):
@@ -96,18 +104,18 @@ def _made(value: object, owner: str, unit: str) -> ProgressBar:
         msg = f"{owner}: progress must be True, False or None, got {shown(value)}"
         raise ComponentError(msg)
     if value is False:
-        return ProgressBar()
+        return _Silent()
     try:
         from tqdm import auto
     except ImportError as problem:
         if value is None:
-            return ProgressBar()
+            return _Silent()
         msg = f"{owner}: progress=True needs tqdm (pip install 'rockframe[progress]')"
         raise ComponentError(msg) from problem
     kind: Any = auto.tqdm
     in_a_notebook = any("notebook" in one.__module__ for one in kind.__mro__)
     if value is None and not (in_a_notebook or sys.stderr.isatty()):
-        return ProgressBar()
+        return _Silent()
     return _Bar(kind, owner, unit, _DELAY if value is None else 0.0)
 
 
