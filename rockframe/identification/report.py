@@ -97,9 +97,6 @@ def _with_error(value: float, error: float) -> str:
     return f"{value:.{digits}f} +- {error:.{digits}f}"
 
 
-_TIME: Final = "time of the record"
-
-
 def fit_dataset(
     prediction: Prediction,
     measured: History | MeasuredPeaks,
@@ -149,7 +146,7 @@ def fit_dataset(
         other_unknown=("other_unknown", names, {"long_name": "other unknown of the fit"}),
     )
     if "time" in dataset:
-        dataset["time"].attrs["long_name"] = _TIME
+        dataset["time"].attrs["long_name"] = "time of the record"
     return dataset
 
 

@@ -28,7 +28,6 @@ from rockframe.units import Unit
 
 _KIND: Final = "suite of ground motions"
 Suite = TypeVar("Suite", bound=LabelledMotions)
-_TITLE: Final = "Suite of ground motions"
 _EXPECTED: Final = "a suite as MotionSuite.to_dataset().to_netcdf(...) writes it"
 _MOST_NUMBERS: Final = 20_000_000
 _NAME: Final = "motion_name"
@@ -70,7 +69,7 @@ def suite_dataset(suite: LabelledMotions) -> xr.Dataset:
             **({} if suite.target is None else {_TARGET: json.dumps(_table_of(suite.target))}),
         },
         over=(MOTION,),
-        title=_TITLE,
+        title="Suite of ground motions",
         source="records and models of ground motions",
     )
     texts = {

@@ -197,11 +197,9 @@ def course(
         raise TooLong
     bounds = Series(
         [most[0]], [most[1]], [most[2]], [most[3]], [most[4]], [min(1.0, most[5])], [1.0],
-        ([], []), ([], []), tuple([one] for one in most[9]), [low],
+        ([0.0], [0.0]), ([], []), tuple([one] for one in most[9]), [low],
         [float(shape.height) * UPWARDS + abs(float(held)) * UPWARDS * min(1.0, most[5])],
     )  # fmt: skip
-    bounds.levels[0].append(0.0)
-    bounds.levels[1].append(0.0)
     upper = SeriesNumbers(*(_in_each(_bound, one) for one in shape))
     grounds = tuple(_anywhere(row) for row in ground)
     counts = [len(one) for one in bounds]
