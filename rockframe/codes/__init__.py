@@ -2,12 +2,10 @@
 
 from typing import TYPE_CHECKING
 
-from rockframe.codes.asce import asce_7_22 as asce_7_22
-from rockframe.codes.circolare import circolare_2019 as circolare_2019
+from rockframe.codes.asce import asce_7_22
+from rockframe.codes.circolare import circolare_2019
 from rockframe.proposals import attributes_of
-from rockframe.reports.checks import CheckedLine as CheckedLine
-from rockframe.reports.checks import CheckedVerdict as CheckedVerdict
-from rockframe.reports.checks import CodeCheck as CodeCheck
+from rockframe.reports.checks import CheckedLine, CheckedVerdict, CodeCheck
 
 __all__ = ["CheckedLine", "CheckedVerdict", "CodeCheck", "asce_7_22", "circolare_2019"]
 

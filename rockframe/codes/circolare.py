@@ -119,11 +119,13 @@ def circolare_2019(
         return _damage(system, demand, capacity, values["a_0*"], first)
     _, _, damping, _ = LIMIT_STATES[limit_state]
     d_limit, period = values[f"d_{limit_state}"], values[f"T_{limit_state}"]
-    motions = None if isinstance(demand, TargetSpectrum) else read_motions(demand, _OWNER)
+    motions: dict[str, GroundMotion] = {}
     if isinstance(demand, TargetSpectrum):
-        needed, words = _of_spectrum(demand, period, damping), "S_e(T, xi) T^2/(4 pi^2)"
+        needed = _ordinate(demand, period, damping) * period * period / (4.0 * math.pi**2)
+        words = "S_e(T, xi) T^2/(4 pi^2)"
     else:
-        needed = _of_motions(motions or {}, period, damping)
+        motions = read_motions(demand, _OWNER)
+        needed = _of_motions(motions, period, damping)
         words = "largest mean spectral displacement of the motions up to T"
     wanted = CheckedLine(
         "d_demand", needed, Unit.METRE, f"demand, {words}, xi = {100.0 * damping:g} %",
@@ -136,7 +138,7 @@ def circolare_2019(
         )
     ]  # fmt: skip
     lines = {"Mechanism and capacity": capacity, "Demand in displacement": (wanted,)}
-    if motions is not None:
+    if motions:
         found = _dynamic(system, mechanism, motions, free_vibration)
         lines["Motion of the wall"] = found
         verdicts += _dynamic_verdicts(found, values["d_0"], d_limit, limit_state)
@@ -263,11 +265,6 @@ def _capacity(mechanism: _Mechanism, factor: float) -> tuple[CheckedLine, ...]:
                         f"C8.7.1.{number}"),
         ]  # fmt: skip
     return tuple(lines)
-
-
-def _of_spectrum(spectrum: TargetSpectrum, period: float, damping: float) -> float:
-    """Return the spectral displacement at a period [m]."""
-    return _ordinate(spectrum, period, damping) * period * period / (4.0 * math.pi**2)
 
 
 def _ordinate(spectrum: TargetSpectrum, period: float, damping: float) -> float:

@@ -16,33 +16,26 @@ from rockframe.components import (
     WinklerSoil,
 )
 from rockframe.components.block_numbers import squat
-from rockframe.errors import ComponentError, ModelWarning
+from rockframe.errors import ModelWarning
 from rockframe.proposals import hinted
-from rockframe.simulation.system import System
+from rockframe.simulation.system import System, check_system
 from rockframe.system.options import Coupling, Rotation, Sliding
 from rockframe.system.own_base import OwnBase
 
-_STACK = (
+_MODELS: Final = (
     ("rigid ground", ("block",), Coupling.COUPLED),
+    ("rigid ground", ("frame",), Coupling.COUPLED),
+    ("rigid ground and wall", ("block", "wall"), Coupling.COUPLED),
     ("{two pads}", ("block", "pads"), Coupling.COUPLED),
-    ("{pads}, cap and {soil} by cascade", ("block", "pads", "cap", "soil"), Coupling.CASCADE),
-    ("{pads}, cap and {soil} coupled", ("block", "pads", "cap", "soil"), Coupling.COUPLED),
-)
-_BED = (
-    ("rigid ground", ("block",), Coupling.COUPLED),
     ("{soil}", ("block", "soil"), Coupling.COUPLED),
     ("cap and {soil}", ("block", "cap", "soil"), Coupling.COUPLED),
-)
-_UPON: Final = (
+    ("{pads}, cap and {soil} by cascade", ("block", "pads", "cap", "soil"), Coupling.CASCADE),
+    ("{pads}, cap and {soil} coupled", ("block", "pads", "cap", "soil"), Coupling.COUPLED),
+    ("stack on rigid ground", ("stack",), Coupling.COUPLED),
     ("stack on {two pads}", ("stack", "pads"), Coupling.COUPLED),
     ("stack on {soil}", ("stack", "soil"), Coupling.COUPLED),
 )
-_ON_RIGID: Final = (("stack on rigid ground", ("stack",), Coupling.COUPLED),)
-_FRAME: Final = (("rigid ground", ("frame",), Coupling.COUPLED),)
-_WALL: Final = (
-    *_STACK[:1],
-    ("rigid ground and wall", ("block", "wall"), Coupling.COUPLED),
-)
+"""Models of all scenes: their names, the slots of their parts, and how these are joined."""
 _WORDS: Final = {"two pads": "pads", "pads": "pads", "soil": "soil"}
 """Words in the names of models, and the slots of the bases that they name."""
 
@@ -54,13 +47,6 @@ _LINKS: Final[dict[type, str]] = {
     RearWall: "wall",
 }
 """Words for links; links of a user's own are named by their classes."""
-
-
-def check_system(value: object, owner: str) -> None:
-    """Refuse anything but a System."""
-    if not isinstance(value, System):
-        msg = f"{owner}: system needs a System, got {type(value).__name__}"
-        raise ComponentError(msg)
 
 
 @hinted()
@@ -104,13 +90,7 @@ def model_ladder(system: System) -> dict[str, System]:
     check_system(system, "model_ladder")
     given = system.parts.components
     present = system.parts.signature
-    rows = _STACK if {"pads", "cap"} <= present or "soil" not in present else _BED
-    if "stack" in present:
-        rows = _UPON if present & {"pads", "soil"} else _ON_RIGID
-    rows = _FRAME if "frame" in present else rows
-    rows = _WALL if "wall" in present else rows
-    if system.parts.own:
-        rows = _STACK[:1]
+    rows = _MODELS[:1] if system.parts.own else _MODELS
     slides = system.setting.slides and not system.parts.own
     if slides and "stack" not in present and squat(system.parts.the_block, ""):
         rows = ()  # held against sliding, it would not rock
@@ -131,7 +111,7 @@ def model_ladder(system: System) -> dict[str, System]:
         # a simpler model may warn of effects that it leaves out; the scene has warned before
         warnings.simplefilter("ignore", ModelWarning)
         for name, slots, coupling in rows:
-            if not set(slots) <= present or not _reached(slots, coupling, system):
+            if not _reached(slots, coupling, system):
                 continue
             for bases in _bases(given, slots):
                 parts = {**{slot: given[slot] for slot in slots}, **bases}
@@ -189,6 +169,13 @@ def _named(bases: Mapping[str, Component]) -> dict[str, str]:
 
 def _reached(slots: tuple[str, ...], coupling: Coupling, system: System) -> bool:
     """Whether a model is no finer than the scene: a cascade has no coupled model."""
+    present = system.parts.signature
+    below = present & {"pads", "soil"} - set(slots)
+    # pads stay as long as the soil under them, and a stack stays on one of its bases
+    if not set(slots) <= present or (below and slots == ("stack",)):
+        return False
+    if "pads" in below and "soil" in slots:
+        return False
     if "cap" not in slots or "pads" not in slots:
         return True
     return system.coupling is Coupling.COUPLED or coupling is Coupling.CASCADE

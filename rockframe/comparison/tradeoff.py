@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import several, whole_number
-from rockframe.comparison.models import check_system, model_ladder
+from rockframe.comparison.models import model_ladder
 from rockframe.comparison.recommend import recommend
 from rockframe.errors import ComponentError, ModelWarning, SolverWarning, nearest, shown
 from rockframe.motion import GroundMotion
@@ -22,7 +22,7 @@ from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.provenance import motion_attributes
 from rockframe.simulation.run import respond, run
 from rockframe.simulation.run_arguments import ComparedArguments
-from rockframe.simulation.system import System
+from rockframe.simulation.system import System, check_system
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
 from rockframe.solve.equations import (
     call_nothing_back,

@@ -9,6 +9,7 @@ from rockframe.arguments import one_of_words, several
 from rockframe.errors import ComponentError, shown
 from rockframe.identification.fitting import fit_history, fit_peaks
 from rockframe.identification.measured import (
+    OWNER,
     History,
     MeasuredPeaks,
     check_below_overturning,
@@ -20,13 +21,12 @@ from rockframe.identification.report import fit_dataset
 from rockframe.identification.swings import swings_of
 from rockframe.identification.unknowns import Circumstance, TrialSystems
 from rockframe.proposals import hinted
-from rockframe.simulation.system import System
+from rockframe.simulation.system import System, check_system
 from rockframe.solve.accuracy import AccuracyLevel, accuracy_of
 from rockframe.system.options import AccuracyLike
 from rockframe.system.words import angle_words
 from rockframe.units import Condition, QuantityLike, RatioLike, to_ratio
 
-_OWNER: Final = "fit_free_decay"
 _CONFIDENCE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value < 1.0)
 
 
@@ -120,30 +120,29 @@ def fit_free_decay(
     >>> round(float(found.fitted_value.sel(parameter="restitution")), 2)
     0.9
     """
-    _check_system(system)
-    _check_level(system)
+    check_system(system, OWNER)
     _check_swings(system)
     if (measured is None) == (peaks is None):
         value = "neither" if peaks is None else "both"
-        msg = f"{_OWNER}: give measured (a history) or peaks, got {value}"
+        msg = f"{OWNER}: give measured (a history) or peaks, got {value}"
         raise ComponentError(msg)
     names = _names(parameters)
     probability = to_ratio(
-        confidence, owner=_OWNER, name="confidence", condition=_CONFIDENCE, example="0.95"
+        confidence, owner=OWNER, name="confidence", condition=_CONFIDENCE, example="0.95"
     )
-    settings = accuracy_of(accuracy, owner=_OWNER)
-    trials = TrialSystems(system, names, _OWNER)
-    data = read_history(measured, _OWNER) if peaks is None else read_peaks(peaks, _OWNER)
-    check_below_overturning(data, system.setting.overturning_angles, _OWNER)
+    settings = accuracy_of(accuracy, owner=OWNER)
+    trials = TrialSystems(system, names)
+    data = read_history(measured) if peaks is None else read_peaks(peaks)
+    check_below_overturning(data, system.setting.overturning_angles)
     sought = _sought(circumstances, data)
     unknown = (*names, *sought)
     if data.count <= len(unknown):
         msg = (
-            f"{_OWNER}: {data.count} data do not tell {len(unknown)} unknowns "
+            f"{OWNER}: {data.count} data do not tell {len(unknown)} unknowns "
             f"({', '.join(unknown)}) and their uncertainty; expected at least {len(unknown) + 1}"
         )
         raise ComponentError(msg)
-    swings = swings_of(data, _OWNER) if isinstance(data, History) else None
+    swings = swings_of(data) if isinstance(data, History) else None
     starts = starts_of(system, trials, data, swings, sought, settings)
     known = {str(name): starts[name].start for name in Circumstance if name not in sought}
     prediction = Prediction(trials, unknown, known, settings)
@@ -151,44 +150,34 @@ def fit_free_decay(
     if isinstance(data, MeasuredPeaks):
         fit = fit_peaks(prediction, data, chosen)
     else:
-        fit = fit_history(prediction, data, swings_of(data, _OWNER), chosen)
+        fit = fit_history(prediction, data, swings_of(data), chosen)
     return fit_dataset(
         prediction, data, fit, probability, accuracy if isinstance(accuracy, str) else "own"
     )
 
 
-def _check_system(value: object) -> None:
-    if not isinstance(value, System):
-        msg = f"{_OWNER}: system needs a System, got {type(value).__name__}"
+def _check_swings(system: System) -> None:
+    """Refuse scenes whose swings to both sides no passage through zero separates."""
+    if not system.options.slope.level:
+        inclined = angle_words(system.options.inclination)
+        msg = (
+            f"{OWNER}: the base is inclined by {inclined}; free decay is fitted on a level base "
+            "only, about which the swings to both sides are told apart"
+        )
+        raise ComponentError(msg)
+    if system.parts.wall is not None and not system.parts.wall.elastic:
+        msg = (
+            f"{OWNER}: the block is before a rigid RearWall and rocks to one side only; expected "
+            "a block that swings to both sides, without a wall, or before one with a stiffness"
+        )
         raise ComponentError(msg)
 
 
-def _check_level(system: System) -> None:
-    if system.options.slope.level:
-        return
-    msg = (
-        f"{_OWNER}: the base is inclined by {angle_words(system.options.inclination)}; free decay "
-        "is fitted on a level base only, about which the swings to both sides are told apart"
-    )
-    raise ComponentError(msg)
-
-
-def _check_swings(system: System) -> None:
-    """Refuse a block before a rigid wall, whose peaks no passage through zero separates."""
-    if system.parts.wall is None or system.parts.wall.elastic:
-        return
-    msg = (
-        f"{_OWNER}: the block is before a rigid RearWall and rocks to one side only; expected a "
-        "block that swings to both sides, without a wall, or before one with a stiffness"
-    )
-    raise ComponentError(msg)
-
-
 def _names(parameters: Sequence[str] | str) -> tuple[str, ...]:
-    names = tuple(several(parameters, owner=_OWNER, name="parameters", of="names"))
+    names = tuple(several(parameters, owner=OWNER, name="parameters", of="names"))
     if names and len(set(names)) == len(names):
         return names
-    msg = f"{_OWNER}: parameters must name one or more, each once, got {shown(parameters)}"
+    msg = f"{OWNER}: parameters must name one or more, each once, got {shown(parameters)}"
     raise ComponentError(msg)
 
 
@@ -205,11 +194,11 @@ def _sought(
         return tuple(circumstances)
     if isinstance(data, MeasuredPeaks) and data.signed:
         circumstances.append(Circumstance.GAUGE_OFFSET)
-    listed = several(values, owner=_OWNER, name="circumstances", of="names")
-    names = [one_of_words(Circumstance, one, owner=_OWNER, name="circumstances") for one in listed]
+    listed = several(values, owner=OWNER, name="circumstances", of="names")
+    names = [one_of_words(Circumstance, one, owner=OWNER, name="circumstances") for one in listed]
     for name in names:
         if name not in circumstances:
             needed = "times" if name is Circumstance.RELEASE_TIME else "their signs"
-            msg = f"{_OWNER}: {str(name)!r} cannot be found from peaks without {needed}"
+            msg = f"{OWNER}: {str(name)!r} cannot be found from peaks without {needed}"
             raise ComponentError(msg)
     return tuple(name for name in Circumstance if name in names)

@@ -13,6 +13,7 @@ from rockframe.signals.arrays import Array
 from rockframe.system.bodies import OverturningAngles
 from rockframe.units import ANGLE, TIME, Measure, check_own_unit, to_si
 
+OWNER: Final = "fit_free_decay"
 _UNITS: Final = {"rotation": "deg", "time": "s"}
 _HISTORY: Final = (
     "write measured=((times, 's'), (rotations, 'deg')), or give a DataArray over time with units"
@@ -60,57 +61,51 @@ class MeasuredPeaks:
         return bool(self.sides[0] != self.sides[-1] or np.any(np.diff(self.sides)))
 
 
-def read_history(value: object, owner: str) -> History:
+def read_history(value: object) -> History:
     """Read a history of the rotation, with its times."""
     if isinstance(value, xr.DataArray):
         name = value.dims[0] if value.ndim == 1 else None
         if name is None or name not in value.coords:
             msg = (
-                f"{owner}: measured needs one dimension with times as its coordinate, got "
+                f"{OWNER}: measured needs one dimension with times as its coordinate, got "
                 f"{shown(value)}; {_HISTORY}"
             )
             raise ComponentError(msg)
-        time = _values(value[name], TIME, owner, "time")
-        return _history(time, _values(value, ANGLE, owner, "rotation"), owner)
+        return History(*_with_times(value[name], value))
     pair = _two(value)
     if pair is None:
-        msg = f"{owner}: measured needs times and rotations, got {shown(value)}; {_HISTORY}"
+        msg = f"{OWNER}: measured needs times and rotations, got {shown(value)}; {_HISTORY}"
         raise UnitsError(msg)
-    time = _values(pair[0], TIME, owner, "time")
-    return _history(time, _values(pair[1], ANGLE, owner, "rotation"), owner)
+    return History(*_with_times(*pair))
 
 
-def read_peaks(value: object, owner: str) -> MeasuredPeaks:
+def read_peaks(value: object) -> MeasuredPeaks:
     """Read successive peaks of the rotation, with or without times."""
     pair = _two(value)
     if pair is not None:
-        times = _values(pair[0], TIME, owner, "time")
-        rotation = _values(pair[1], ANGLE, owner, "rotation")
-        _check_times(times, rotation, owner)
+        times, rotation = _with_times(*pair)
         peaks = MeasuredPeaks(rotation, np.sign(rotation), times)
     elif isinstance(value, tuple | pint.Quantity):
-        rotation = _values(cast("object", value), ANGLE, owner, "peaks")
+        rotation = _values(cast("object", value), ANGLE, "peaks")
         peaks = MeasuredPeaks(rotation, np.sign(rotation))
     else:
-        msg = f"{owner}: peaks needs rotations with a unit, got {shown(value)}; {_PEAKS}"
+        msg = f"{OWNER}: peaks needs rotations with a unit, got {shown(value)}; {_PEAKS}"
         raise UnitsError(msg)
     turns = np.diff(peaks.sides)
     if not np.all(peaks.sides) or (peaks.signed and not np.all(turns)):
         msg = (
-            f"{owner}: peaks must alternate in sign, from one swing to the next, or all be given "
+            f"{OWNER}: peaks must alternate in sign, from one swing to the next, or all be given "
             f"without a sign, and none be zero; got {shown(peaks.rotation.tolist())} rad"
         )
         raise ComponentError(msg)
     return peaks
 
 
-def check_below_overturning(
-    measured: History | MeasuredPeaks, angles: OverturningAngles, owner: str
-) -> None:
+def check_below_overturning(measured: History | MeasuredPeaks, angles: OverturningAngles) -> None:
     """Refuse rotations at or beyond overturning, and those of which the side is not known."""
     if isinstance(measured, MeasuredPeaks) and not measured.signed and angles.left != angles.right:
         msg = (
-            f"{owner}: peaks without their signs do not tell the sides of an eccentric block; give "
+            f"{OWNER}: peaks without their signs do not tell the sides of an eccentric block; give "
             "them with their signs, negative to the left"
         )
         raise ComponentError(msg)
@@ -119,7 +114,7 @@ def check_below_overturning(
     if beyond.size:
         first = int(beyond[0])
         msg = (
-            f"{owner}: {_place(measured, first)} is {_angle(float(measured.rotation[first]))}, "
+            f"{OWNER}: {_place(measured, first)} is {_angle(float(measured.rotation[first]))}, "
             f"not below the overturning angle {_angle(float(theta[first]))}; check the unit, and "
             "the size of the block"
         )
@@ -136,12 +131,7 @@ def _two(value: object) -> tuple[object, object] | None:
     return items[0], items[1]
 
 
-def _history(time: Array, rotation: Array, owner: str) -> History:
-    _check_times(time, rotation, owner)
-    return History(time, rotation)
-
-
-def _values(value: object, measure: Measure, owner: str, name: str) -> Array:
+def _values(value: object, measure: Measure, name: str) -> Array:
     """Convert an array with a unit to SI units, and check it."""
     unit: object = None
     values: object = value
@@ -157,45 +147,49 @@ def _values(value: object, measure: Measure, owner: str, name: str) -> Array:
         if len(pair) == 2:
             values, unit = pair
             if isinstance(unit, str):
-                check_own_unit(values, unit, owner=owner, name=name)
+                check_own_unit(values, unit, owner=OWNER, name=name)
     if not isinstance(unit, str):
         example = _UNITS["time" if measure is TIME else "rotation"]
         msg = (
-            f"{owner}: {name} needs an array with a unit such as {example}, got {shown(value)}; "
+            f"{OWNER}: {name} needs an array with a unit such as {example}, got {shown(value)}; "
             f"write for example (values, {example!r})"
         )
         raise UnitsError(msg)
-    factor = to_si(f"1 {unit}", measure, owner=owner, name=name)
+    factor = to_si(f"1 {unit}", measure, owner=OWNER, name=name)
     try:
         array: Any = np.ma.filled(np.ma.asarray(values, dtype=np.float64), math.nan)
     except (TypeError, ValueError) as problem:
-        msg = f"{owner}: {name} needs numbers, got {shown(values)}"
+        msg = f"{OWNER}: {name} needs numbers, got {shown(values)}"
         raise ComponentError(msg) from problem
     if array.ndim != 1 or array.size == 0:
-        msg = f"{owner}: {name} needs a one-dimensional array of numbers, got {shown(values)}"
+        msg = f"{OWNER}: {name} needs a one-dimensional array of numbers, got {shown(values)}"
         raise ComponentError(msg)
     wrong = np.flatnonzero(~np.isfinite(array))
     if wrong.size:
         msg = (
-            f"{owner}: {name} must be finite, got {float(array[wrong[0]])} at index "
+            f"{OWNER}: {name} must be finite, got {float(array[wrong[0]])} at index "
             f"{int(wrong[0])}, one of {wrong.size} such; leave out samples that are missing"
         )
         raise ComponentError(msg)
     return factor * array
 
 
-def _check_times(time: Array, rotation: Array, owner: str) -> None:
+def _with_times(times: object, rotations: object) -> tuple[Array, Array]:
+    """Read rotations and their times, which must increase."""
+    time = _values(times, TIME, "time")
+    rotation = _values(rotations, ANGLE, "rotation")
     if time.size != rotation.size:
-        msg = f"{owner}: there are {time.size} times and {rotation.size} rotations"
+        msg = f"{OWNER}: there are {time.size} times and {rotation.size} rotations"
         raise ComponentError(msg)
     back = np.flatnonzero(np.diff(time) <= 0.0)
     if back.size:
         first = int(back[0])
         msg = (
-            f"{owner}: times must increase, got {time[first]:.6g} s and then "
+            f"{OWNER}: times must increase, got {time[first]:.6g} s and then "
             f"{time[first + 1]:.6g} s at index {first + 1}"
         )
         raise ComponentError(msg)
+    return time, rotation
 
 
 def _place(measured: History | MeasuredPeaks, index: int) -> str:

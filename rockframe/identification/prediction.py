@@ -173,20 +173,18 @@ class Prediction:
         parameters = tuple(values[name] for name in self.trials.places)
         return parameters, values[Circumstance.INITIAL_ROTATION]
 
-    def _named(self, parameters: tuple[float, ...]) -> dict[str, float]:
-        return dict(zip(self.trials.places, parameters, strict=True))
+    def _system(self, parameters: tuple[float, ...]) -> Assembly:
+        return self.trials.assembly(dict(zip(self.trials.places, parameters, strict=True)))
 
     def _run_history(
         self, parameters: tuple[float, ...], rotation: float, duration: float
     ) -> FreeMotion:
-        system = self.trials.assembly(self._named(parameters))
-        return let_go(system, rotation, duration, self._accuracy)
+        return let_go(self._system(parameters), rotation, duration, self._accuracy)
 
     def _run_peaks(
         self, parameters: tuple[float, ...], rotation: float, count: int, duration: float
     ) -> tuple[Array, Array]:
-        system = self.trials.assembly(self._named(parameters))
-        return first_peaks(system, rotation, count, duration, self._accuracy)
+        return first_peaks(self._system(parameters), rotation, count, duration, self._accuracy)
 
     def _length(self, measured: MeasuredPeaks) -> float:
         """Return the duration of a run that is likely to contain all peaks [s]."""
@@ -209,13 +207,9 @@ def starts_of(
     accuracy: Accuracy,
 ) -> dict[str, Unknown]:
     """Return start values and bounds of all parameters and circumstances."""
-    peaks = (
-        measured
-        if isinstance(measured, MeasuredPeaks)
-        else None
-        if swings is None
-        else swings.peaks
-    )
+    peaks = None if swings is None else swings.peaks
+    if isinstance(measured, MeasuredPeaks):
+        peaks = measured
     offset = 0.0
     if swings is not None and Circumstance.GAUGE_OFFSET in sought:
         offset = swings.offset

@@ -14,7 +14,7 @@ from rockframe.identification.fitting import (
     Uncertainty,
     uncertainty_of,
 )
-from rockframe.identification.measured import History, MeasuredPeaks
+from rockframe.identification.measured import OWNER, History, MeasuredPeaks
 from rockframe.identification.prediction import Prediction
 from rockframe.identification.unknowns import Circumstance
 from rockframe.results.schema import build_dataset
@@ -97,9 +97,6 @@ def _with_error(value: float, error: float) -> str:
     return f"{value:.{digits}f} +- {error:.{digits}f}"
 
 
-_TIME: Final = "time of the record"
-
-
 def fit_dataset(
     prediction: Prediction,
     measured: History | MeasuredPeaks,
@@ -129,7 +126,7 @@ def fit_dataset(
     }
     cautions = list(cautions_of(names, solution, uncertainty, values))
     for caution in cautions:
-        warn(f"fit_free_decay: {caution}", ModelWarning)
+        warn(f"{OWNER}: {caution}", ModelWarning)
     fitted = prediction.trials.system({name: found[name] for name in places})
     attributes: dict[str, str | float | int] = {
         "verdict": fit_sentence(values, list(places), confidence, uncertainty.reach),
@@ -149,7 +146,7 @@ def fit_dataset(
         other_unknown=("other_unknown", names, {"long_name": "other unknown of the fit"}),
     )
     if "time" in dataset:
-        dataset["time"].attrs["long_name"] = _TIME
+        dataset["time"].attrs["long_name"] = "time of the record"
     return dataset
 
 

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from rockframe.errors import ComponentError
-from rockframe.identification.measured import History, MeasuredPeaks
+from rockframe.identification.measured import OWNER, History, MeasuredPeaks
 from rockframe.signals.arrays import Array
 
 _LEVEL: Final = 0.1
@@ -30,7 +30,7 @@ class Swings:
     offset: float
 
 
-def swings_of(history: History, owner: str) -> Swings:
+def swings_of(history: History) -> Swings:
     """Find the swings of a measured history."""
     time, rotation = history.time, history.rotation
     offset = _offset(rotation)
@@ -41,7 +41,7 @@ def swings_of(history: History, owner: str) -> Swings:
     turns = np.flatnonzero(np.diff(side[marked]))
     if turns.size == 0 or first == 0.0:
         msg = (
-            f"{owner}: nothing rocks: the measured rotation, from {rotation[0]:.6g} rad at the "
+            f"{OWNER}: nothing rocks: the measured rotation, from {rotation[0]:.6g} rad at the "
             "start, never passes to the other side; give a history of a block that was tilted "
             "and let go"
         )

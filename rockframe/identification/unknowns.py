@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import Any, Final, cast
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from rockframe.components import Component
 from rockframe.components.parameters import Ratio
 from rockframe.errors import ComponentError, nearest, shown
+from rockframe.identification.measured import OWNER
 from rockframe.simulation.system import System
 from rockframe.system.assembly import Assembly, assemble
 
@@ -68,27 +69,22 @@ class PartParameter:
 class TrialSystems:
     """Systems that differ from the tested one in the parameters that are to be found."""
 
-    def __init__(self, system: System, names: Sequence[str], owner: str) -> None:
+    def __init__(self, system: System, names: Sequence[str]) -> None:
         alone = system.parts.signature == frozenset({"block"})
         self._parts = (system.parts.standing() if alone else system.parts).structural()
-        options = system.options
-        self._options: dict[str, Any] = {
-            "restraint": options.restraint,
-            "rotation": options.rotation,
-            "coupling": options.coupling,
-            "sliding": options.sliding,
-            "gravity": system.gravity,
-        }
+        self._options: dict[str, Any] = system.options.to_dict()
         self.radius = system.parts.the_block.radius
-        self.gravity = options.gravity
+        self.gravity = system.options.gravity
         known = dict(self._ratios(system))
-        self.places = {name: _place_of(name, known, owner) for name in names}
+        self.places = {name: _place_of(name, known) for name in names}
 
     def _ratios(self, system: System) -> Iterator[tuple[str, PartParameter | None]]:
         """Find the dimensionless parameters of all parts; None for one without a start value."""
         usual = {"restitution": system.parts.the_block.maximum_restitution}
         for index, part in enumerate(self._parts):
-            for argument, declared in _declared_ratios(part):
+            for argument, declared in sorted(part.declared().items()):
+                if not isinstance(declared, Ratio):
+                    continue
                 value = part.to_dict().get(argument, usual.get(argument))
                 condition = declared.condition
                 bounds = (-math.inf, math.inf) if condition is None else condition.bounds
@@ -118,27 +114,19 @@ class TrialSystems:
         return System(*self._with(values), **self._options)
 
 
-def _declared_ratios(part: Component) -> Iterator[tuple[str, Ratio[Any]]]:
-    kind: Any = type(part)
-    for name in dir(kind):
-        declared = getattr(kind, name)
-        if isinstance(declared, Ratio):
-            yield name, cast("Ratio[Any]", declared)
-
-
-def _place_of(name: object, known: Mapping[str, PartParameter | None], owner: str) -> PartParameter:
+def _place_of(name: object, known: Mapping[str, PartParameter | None]) -> PartParameter:
     matches = [full for full in known if name in (full, full.partition(".")[2])]
     if len(matches) == 1:
         place = known[matches[0]]
         if place is not None:
             return place
         msg = (
-            f"{owner}: {shown(name)} cannot be fitted, since the part was given without it; give "
+            f"{OWNER}: {shown(name)} cannot be fitted, since the part was given without it; give "
             f"{matches[0]} as a start value, instead of what stands for it"
         )
         raise ComponentError(msg)
     choice = ", ".join(repr(full) for full in (matches or known))
     found = "several parts have" if matches else "no part of the system has"
     near = "" if matches else nearest(name, {one.rpartition(".")[2] for one in known})
-    msg = f"{owner}: {found} the parameter {shown(name)}{near}; expected one of {choice}"
+    msg = f"{OWNER}: {found} the parameter {shown(name)}{near}; expected one of {choice}"
     raise ComponentError(msg)

@@ -2,15 +2,11 @@
 
 from typing import TYPE_CHECKING
 
-from rockframe.measures.average import (
-    average_spectral_acceleration as average_spectral_acceleration,
-)
-from rockframe.measures.directions import principal_axes as principal_axes
-from rockframe.measures.directions import rotated_spectrum as rotated_spectrum
-from rockframe.measures.histories import fourier_spectrum as fourier_spectrum
-from rockframe.measures.histories import velocity_and_displacement as velocity_and_displacement
-from rockframe.measures.intensity import intensity_measures as intensity_measures
-from rockframe.measures.response import response_spectrum as response_spectrum
+from rockframe.measures.average import average_spectral_acceleration
+from rockframe.measures.directions import principal_axes, rotated_spectrum
+from rockframe.measures.histories import fourier_spectrum, velocity_and_displacement
+from rockframe.measures.intensity import intensity_measures
+from rockframe.measures.response import response_spectrum
 from rockframe.proposals import attributes_of
 
 __all__ = [

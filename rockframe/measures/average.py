@@ -69,7 +69,10 @@ def average_spectral_acceleration(
     >>> round(float(found.average_spectral_acceleration), 3)
     1.273
     """
-    seconds = checked_periods(_not_none(periods), owner=_OWNER)
+    if periods is None:  # pyright: ignore[reportUnnecessaryComparison]
+        msg = f"{_OWNER}: periods must be given, for example (np.linspace(0.2, 3, 57), 's')"
+        raise ComponentError(msg)
+    seconds = checked_periods(periods, owner=_OWNER)
     if not (seconds > 0.0).all():
         msg = f"{_OWNER}: periods must be above zero, whose logarithm is averaged"
         raise ComponentError(msg)
@@ -105,11 +108,3 @@ def average_spectral_acceleration(
         source="recurrence of Nigam and Jennings",
     )
     return dataset.assign_coords(motion=spectrum["motion"]) if several else dataset
-
-
-def _not_none(periods: object) -> object:
-    """Refuse None, for which spectra have default periods."""
-    if periods is None:
-        msg = f"{_OWNER}: periods must be given, for example (np.linspace(0.2, 3, 57), 's')"
-        raise ComponentError(msg)
-    return periods

@@ -5,7 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from enum import StrEnum
 from os import cpu_count
-from typing import TYPE_CHECKING, Any, Final, Generic, TypeVar, cast
+from typing import Any, Final, Generic, TypeVar, cast
 
 import numpy as np
 import xarray as xr
@@ -17,9 +17,7 @@ from rockframe.motion import GroundMotion
 from rockframe.results.joining import MOTION
 from rockframe.results.schema import SCHEMA, build_dataset, without_fill_values
 from rockframe.signals import Signal
-
-if TYPE_CHECKING:
-    from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import Array
 
 
 class GroundComponent(StrEnum):
@@ -34,17 +32,13 @@ def signal_of(motion: object, component: object, *, owner: str) -> Signal:
     if not isinstance(motion, GroundMotion):
         msg = f"{owner}: motion needs a GroundMotion, got {shown(motion)}"
         raise ComponentError(msg)
-    if component_of(component, owner=owner) is GroundComponent.HORIZONTAL:
+    which = one_of_words(GroundComponent, component, owner=owner, name="component")
+    if which is GroundComponent.HORIZONTAL:
         return motion.si.horizontal
     if motion.si.vertical is None:
         msg = f"{owner}: component='vertical', but {motion.name!r} has no vertical acceleration"
         raise ComponentError(msg)
     return motion.si.vertical
-
-
-def component_of(value: object, *, owner: str) -> GroundComponent:
-    """Read the argument `component`."""
-    return one_of_words(GroundComponent, value, owner=owner, name="component")
 
 
 Thing = TypeVar("Thing")
@@ -93,13 +87,11 @@ def read_inputs(value: object, component: object, *, owner: str) -> Inputs[Signa
     """Take one component of a motion, or of each of several."""
     if not isinstance(value, Mapping):
         signal = signal_of(value, component, owner=owner)
-        which = component_of(component, owner=owner)
-        return Inputs([signal], None, component_attributes(cast("GroundMotion", value), which))
+        return Inputs([signal], None, component_attributes(cast("GroundMotion", value), component))
     motions = cast("Mapping[Any, Any]", value)
     check_some(motions, owner=owner)
     signals = [signal_of(motion, component, owner=owner) for motion in motions.values()]
-    which = str(component_of(component, owner=owner))
-    attributes: dict[str, Any] = {"component": which, "references": REFERENCES}
+    attributes: dict[str, Any] = {"component": str(component), "references": REFERENCES}
     return Inputs(signals, [str(label) for label in motions], attributes)
 
 
@@ -117,9 +109,7 @@ REFERENCES: Final = (
 """References of spectra and intensity measures; all are on the page "Response spectra"."""
 
 
-def component_attributes(
-    motion: "GroundMotion", component: GroundComponent
-) -> dict[str, str | float | int]:
+def component_attributes(motion: GroundMotion, component: object) -> dict[str, str | float | int]:
     """Describe a motion so that it can be recognised."""
     return {
         "motion": motion.name,
@@ -133,8 +123,8 @@ def component_attributes(
 
 
 def build_over(
-    axes: "Mapping[str, tuple[Array, str]]",
-    values: "Mapping[str, Array]",
+    axes: Mapping[str, tuple[Array, str]],
+    values: Mapping[str, Array],
     attributes: Mapping[str, str | float | int],
     *,
     over: tuple[str, ...] = (),

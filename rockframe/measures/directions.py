@@ -1,7 +1,7 @@
 """Measures of two horizontal components: spectra in all directions, ratios, principal axes."""
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import Any, Final, cast
 
 import numpy as np
 import xarray as xr
@@ -20,6 +20,7 @@ from rockframe.motion.processing.samples import warn_of_coarse_samples
 from rockframe.motion.quantities import ArrayLike
 from rockframe.proposals import hinted
 from rockframe.results.schema import build_dataset
+from rockframe.signals import Signal
 from rockframe.signals.arrays import Array
 from rockframe.signals.spectra import (
     check_cost,
@@ -30,9 +31,6 @@ from rockframe.signals.spectra import (
     unit_vectors,
 )
 from rockframe.units import QuantityLike, RatioLike
-
-if TYPE_CHECKING:
-    from rockframe.signals import Signal
 
 _SPECTRUM: Final = "rotated_spectrum"
 _AXES: Final = "principal_axes"
@@ -190,7 +188,7 @@ def principal_axes(pair: HorizontalPair | Mapping[str, HorizontalPair]) -> xr.Da
 
 
 def _spectra(
-    signals: "tuple[Signal, Signal]", seconds: Array, ratios: Array, vectors: Array
+    signals: tuple[Signal, Signal], seconds: Array, ratios: Array, vectors: Array
 ) -> dict[str, Array]:
     """Compute :eq:`eq-rotated-percentiles` and :eq:`eq-geometric-mean`."""
     moving = np.flatnonzero(seconds > 0.0)
@@ -212,7 +210,7 @@ def _spectra(
     }
 
 
-def _vertical(signal: "Signal", seconds: Array, ratios: Array) -> Array:
+def _vertical(signal: Signal, seconds: Array, ratios: Array) -> Array:
     peaks = np.array([spectral_peaks(signal, seconds, ratio) for ratio in ratios.tolist()])
     return pseudo_spectra(signal, seconds, peaks[:, :, 0])[1]
 

@@ -9,7 +9,6 @@ from rockframe.measures.common import (
     GroundComponent,
     build_over,
     component_attributes,
-    component_of,
     signal_of,
 )
 from rockframe.motion import GroundMotion
@@ -18,8 +17,6 @@ from rockframe.results.schema import build_dataset
 from rockframe.signals.integrals import ground_path, transform_of
 from rockframe.signals.motion import knots_of
 from rockframe.units import FREQUENCY, POSITIVE, QuantityLike, to_si
-
-_PREFIX = {GroundComponent.HORIZONTAL: "", GroundComponent.VERTICAL: "vertical_"}
 
 
 @hinted()
@@ -60,11 +57,9 @@ def velocity_and_displacement(motion: GroundMotion, *, component: str = "horizon
     >>> round(float(path.ground_velocity[-1]), 6)
     0.63662
     """
-    owner = "velocity_and_displacement"
-    signal = signal_of(motion, component, owner=owner)
+    signal = signal_of(motion, component, owner="velocity_and_displacement")
     velocity, displacement = ground_path(signal)
-    which = component_of(component, owner=owner)
-    prefix = _PREFIX[which]
+    prefix = "vertical_" if component == GroundComponent.VERTICAL else ""
     values = {
         "time": signal.times,
         f"{prefix}ground_acceleration": signal.samples,
@@ -73,7 +68,7 @@ def velocity_and_displacement(motion: GroundMotion, *, component: str = "horizon
     }
     return build_dataset(
         {name: array.copy() for name, array in values.items()},
-        component_attributes(motion, which),
+        component_attributes(motion, component),
         title="Ground motion",
         source="integration from sample to sample",
     )
@@ -136,7 +131,7 @@ def fourier_spectrum(
     return build_over(
         {"frequency": (frequency, "cyclic frequency")},
         {"fourier_amplitude": np.abs(transform), "fourier_phase": np.angle(transform)},
-        component_attributes(motion, component_of(component, owner=_OWNER)),
+        component_attributes(motion, component),
         title="Fourier spectrum",
         source="fast Fourier transform",
     )

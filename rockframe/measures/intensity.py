@@ -10,7 +10,7 @@ import xarray as xr
 from rockframe.components import Block
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, shown
-from rockframe.measures.common import GroundComponent, component_of, read_inputs
+from rockframe.measures.common import GroundComponent, read_inputs
 from rockframe.motion import GroundMotion
 from rockframe.proposals import hinted
 from rockframe.results.schema import build_dataset
@@ -116,7 +116,7 @@ def intensity_measures(
     )
     damping = to_ratio(damping_ratio, owner=_OWNER, name="damping_ratio", condition=DAMPING_RATIO)
     if block is not None:
-        _check_block(block, component_of(component, owner=_OWNER))
+        _check_block(block, component)
 
     def measured(signal: Signal) -> dict[str, float]:
         check_cost(signal, _PERIODS, owner=_OWNER)
@@ -195,11 +195,11 @@ def _of_block(
     }
 
 
-def _check_block(block: object, component: GroundComponent) -> None:
+def _check_block(block: object, component: str) -> None:
     if not isinstance(block, Block):
         msg = f"{_OWNER}: block needs a Block or a FrameEquivalent, got {shown(block)}"
         raise ComponentError(msg)
-    if component is GroundComponent.VERTICAL:
+    if component == GroundComponent.VERTICAL:
         msg = (
             f"{_OWNER}: a block is rocked by the horizontal component; leave out block or component"
         )

@@ -52,7 +52,7 @@ def product(one: Row, other: Row, order: int) -> Ball:
 
 def value(coefficients: Row, at: Ball) -> Ball:
     """Evaluate a polynomial, lowest power first."""
-    result = ZERO
+    result: Ball = 0
     for each in reversed(coefficients):
         result = result * at + each
     return result

@@ -1,20 +1,19 @@
 """The course of a set of states on rigid ground, from the first sample to a proved verdict."""
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
 from rockframe.dynamics.rigid_ground import BlockOnRigidGround
-from rockframe.proof.balls import UNIT, ZERO, Ball, Row, ball, bits, slope, upper, value
+from rockframe.proof.balls import UNIT, ZERO, Ball, Row, ball, slope, upper, value
 from rockframe.proof.bounces import Instant, Lifted, settle
 from rockframe.proof.flow import Sweep, advance, flow, jerk, sweep
 from rockframe.proof.impacts import Struck, struck
 from rockframe.proof.problem import CornerNumbers, Deviations, GroundPiece, Problem, Undecided
-from rockframe.proof.sets import proved
+from rockframe.proof.sets import concluded, proved
 from rockframe.proof.standing import lifts_in
 from rockframe.proof.states import SetOfStates
-from rockframe.proof.verdict import EXACT, OVERTURNS, SAFE, UNDECIDED, Proof, Tolerances, outwards
+from rockframe.proof.verdict import EXACT, Proof, Tolerances
 from rockframe.signals import Motion
 from rockframe.signals.motion import Slope
 from rockframe.system.bodies import OverturningAngles
@@ -232,13 +231,13 @@ class Course:
         row = [float(each) * self.sign for each in exact]
         row = row[1:] if self.fresh else row
         places = (k / _SAMPLES for k in range(1, _SAMPLES + 1))
-        high = next((x for x in places if _value(row, x) <= 0.0), None)
+        high = next((x for x in places if value(row, x) <= 0.0), None)
         if high is None:
             return None
         low = max(0.0, high - 1.0 / _SAMPLES)
         for _ in range(_NARROWINGS):
             middle = 0.5 * (low + high)
-            low, high = (middle, high) if _value(row, middle) > 0.0 else (low, middle)
+            low, high = (middle, high) if value(row, middle) > 0.0 else (low, middle)
         guess, rates = ball(0.5 * (low + high)), slope(exact)
         for _ in range(6):
             change: Ball = (value(exact, guess) / value(rates, guess)).mid()
@@ -359,13 +358,6 @@ def _potential(rotation: Ball, corner: CornerNumbers, still: GroundPiece) -> Bal
     return corner.ratio * (still.weight[0] * rise - still.along[0] * shift)
 
 
-def _value(row: list[float], at: float) -> float:
-    result = 0.0
-    for each in reversed(row):
-        result = result * at + each
-    return result
-
-
 def prove_block(
     block: BlockOnRigidGround,
     motion: Motion,
@@ -386,22 +378,6 @@ def prove_block(
         problem = Problem.of(block, motion, slope, limits, scale, inputs, STILL_STEP)
         course = Course(problem, watch, () if inputs.exact else inputs.spread())
         course.start(*start)
-        return _concluded(course, scale), course.states.influences()
+        return concluded(course, scale, _LAW), course.states.influences()
 
     return proved(attempt, within)
-
-
-def _concluded(course: Course, scale: float) -> Proof:
-    """Follow a course to its end, and give what it proves."""
-    verdict, reason, earliest, latest = UNDECIDED, "", math.nan, math.nan
-    try:
-        verdict = OVERTURNS if course.overturns() else SAFE
-    except Undecided as why:
-        reason, earliest = str(why), float(course.time)
-        latest = earliest
-    if verdict == OVERTURNS and course.beyond is not None:
-        low, high = course.beyond
-        earliest, latest = outwards(low.lower(), -math.inf), outwards(high.upper(), math.inf)
-    return Proof(
-        verdict, reason, earliest, latest, course.widest, course.impacts, bits(), scale, _LAW
-    )

@@ -30,7 +30,7 @@ from rockframe.proof.problem import (
     stiffness,
     strongest,
 )
-from rockframe.proof.states import SetOfStates, nearly_identity
+from rockframe.proof.states import SetOfStates, identity
 
 HIGHEST: Final = 60
 """Largest order of the series; a step that needs more is halved."""
@@ -260,8 +260,8 @@ def nearly_still(
     by_scale = ZERO
     if during.spread is not None:
         by_scale = ball(0, upper(longest * strongest(corner, during.spread.by_scale)))
-    by_angle = ball(0, upper(longest * stiff))
-    return ShortFlow(nearly_identity(2, ball(0, growth)), by_angle, by_scale)
+    matrix = [[each + ball(0, growth) for each in row] for row in identity(2)]
+    return ShortFlow(matrix, ball(0, upper(longest * stiff)), by_scale)
 
 
 def jerk(course: Sweep, corner: CornerNumbers, during: GroundPiece) -> Ball:

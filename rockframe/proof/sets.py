@@ -4,11 +4,15 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from heapq import heappop, heappush
-from typing import Final, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
-from rockframe.proof.balls import working_precision
-from rockframe.proof.problem import Deviations
-from rockframe.proof.verdict import OVERTURNS, SAFE, UNDECIDED, Proof, Tolerances
+from rockframe.proof.balls import bits, working_precision
+from rockframe.proof.problem import Deviations, Undecided
+from rockframe.proof.verdict import OVERTURNS, SAFE, UNDECIDED, Proof, Tolerances, outwards
+
+if TYPE_CHECKING:
+    from rockframe.proof.course import Course
+    from rockframe.proof.pads.way import PadWay
 
 PRECISIONS: Final = (106, 212, 424)
 """Bits of the balls: the next number is tried where nothing is decided and more bits may help."""
@@ -28,9 +32,9 @@ def proved(attempt: Attempt, within: Tolerances) -> Proof:
     inputs = Deviations.within(within.restitution, within.scale, within.angle)
     known, waiting = list[_Part](), list[_Part]()
     whole: _Part | None = None
-    for bits in PRECISIONS if inputs.exact else PRECISIONS[:1]:
+    for precision in PRECISIONS if inputs.exact else PRECISIONS[:1]:
         before = whole
-        with working_precision(bits):
+        with working_precision(precision):
             whole = _Part(-1.0, 0, inputs, *attempt(inputs))
         if whole.proof.decided or (before and _ends_alike(before.proof, whole.proof)):
             break
@@ -50,6 +54,22 @@ def proved(attempt: Attempt, within: Tolerances) -> Proof:
         restitution_tolerance=within.restitution,
         scale_tolerance=within.scale,
         angle_tolerance=within.angle,
+    )
+
+
+def concluded(course: "Course | PadWay", scale: float, law: str) -> Proof:
+    """Follow a set of states until it is decided whether it overturns, and give what is proved."""
+    verdict, reason, earliest, latest = UNDECIDED, "", math.nan, math.nan
+    try:
+        verdict = OVERTURNS if course.overturns() else SAFE
+    except Undecided as why:
+        reason, earliest = str(why), float(course.time)
+        latest = earliest
+    if verdict == OVERTURNS and course.beyond is not None:
+        low, high = course.beyond
+        earliest, latest = outwards(low.lower(), -math.inf), outwards(high.upper(), math.inf)
+    return Proof(
+        verdict, reason, earliest, latest, course.widest, course.impacts, bits(), scale, law
     )
 
 

@@ -91,8 +91,3 @@ def _axes(turned: Matrix, rest: Row) -> tuple[Matrix, Matrix]:
     axes = [[ball(float(each)) for each in row] for row in found]
     inverse: Matrix = arb_mat(axes).inv().table()
     return axes, inverse
-
-
-def nearly_identity(size: int, off: Ball) -> Matrix:
-    """Return the unit matrix with a ball added to each element."""
-    return [[each + off for each in row] for row in identity(size)]

@@ -11,7 +11,7 @@ import xarray as xr
 
 from rockframe.arguments import checked_dataset, truth
 from rockframe.components import InitialState
-from rockframe.errors import ModelWarning, SchemaError, warn
+from rockframe.errors import ComponentError, ModelWarning, SchemaError, warn
 from rockframe.motion import GroundMotion
 from rockframe.proposals import hinted, proposing
 from rockframe.simulation.provenance import (
@@ -438,3 +438,10 @@ class System(SystemValue):
     def _described(cls, description: Mapping[str, Any], motion: GroundMotion | None) -> Self:
         parts, options = parts_and_options(description, signature(cls).parameters)
         return cls(*parts, *([] if motion is None else [motion]), **options)
+
+
+def check_system(value: object, owner: str) -> None:
+    """Refuse anything but a System."""
+    if not isinstance(value, System):
+        msg = f"{owner}: system needs a System, got {type(value).__name__}"
+        raise ComponentError(msg)

@@ -10,7 +10,6 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import whole_number
-from rockframe.comparison.models import check_system
 from rockframe.components import InitialState
 from rockframe.errors import ComponentError, SolverWarning, warn
 from rockframe.motion import GroundMotion
@@ -24,7 +23,7 @@ from rockframe.simulation.provenance import motion_attributes
 from rockframe.simulation.run import run, summary_of
 from rockframe.simulation.run_arguments import ScaleArguments
 from rockframe.simulation.soundness import STILL_MOVING, has_limit
-from rockframe.simulation.system import System
+from rockframe.simulation.system import System, check_system
 from rockframe.studies.flips import Followed, flips_sentence, follow, least_overturning, unfinished
 from rockframe.studies.intensities import ScaledIntensity, of_study
 from rockframe.studies.lines import read_resolution, read_width

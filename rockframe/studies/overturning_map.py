@@ -8,7 +8,6 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import function_of, whole_number
-from rockframe.comparison.models import check_system
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
 from rockframe.results.schema import SCHEMA, with_variables
@@ -16,7 +15,7 @@ from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
 from rockframe.signals.motion import greatest
-from rockframe.simulation.system import System
+from rockframe.simulation.system import System, check_system
 from rockframe.studies.limit_states import overturns
 from rockframe.studies.lines import SCALE, SOURCE, VERDICT, Lines, read_rising, read_width
 from rockframe.studies.sweeps.arguments import SweepArguments

@@ -20,12 +20,12 @@ from rockframe.simulation.system import System
 from rockframe.studies.confidence import clopper_pearson, read_level
 from rockframe.studies.limit_states import overturns
 from rockframe.studies.sweeps.arguments import SweepArguments
-from rockframe.studies.sweeps.axes import Axis
+from rockframe.studies.sweeps.axes import Axis, number_of
 from rockframe.studies.sweeps.memory import check_memory
 from rockframe.studies.sweeps.motions import MotionsLike, full_name
 from rockframe.studies.sweeps.scenes import SweptScene, motions_of_study, scene_of
 from rockframe.studies.sweeps.sweep import sweep
-from rockframe.units import POSITIVE, Condition, Measure, RatioLike, Unit, to_ratio, to_si
+from rockframe.units import POSITIVE, Condition, Measure, RatioLike, Unit, to_ratio
 
 
 class Sampling(StrEnum):
@@ -173,16 +173,9 @@ def _frozen(name: str, parts: list[Any], scene: SweptScene, owner: str) -> Sprea
     middle = float(distribution.ppf(0.5))
     axis = _axis(scene, name, f"{middle!r} {unit}" if unit else middle, owner)
     if unit:
-        pure = axis.unit == Unit.ONE
         measure = Measure("a value", Unit(str(axis.unit)), f"1 {unit}")
-        one = f"1 {unit}"
-        size = (
-            to_ratio(one, owner=owner, name=name)
-            if pure
-            else to_si(one, measure, owner=owner, name=name)
-        )
-        if size != 1.0:
-            wanted = "of pure ratios" if pure else f"in {axis.unit}"
+        if number_of(f"1 {unit}", measure, owner=owner, name=name) != 1.0:
+            wanted = "of pure ratios" if axis.unit == Unit.ONE else f"in {axis.unit}"
             msg = f"{owner}: {name} needs a distribution {wanted}, got one in {unit}"
             raise ComponentError(msg)
     return Spread(axis.name, str(axis.unit), distribution)

@@ -11,7 +11,6 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import by_words, iterates, several
-from rockframe.comparison.models import check_system
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
 from rockframe.results.joining import CASE_COUNT
@@ -24,7 +23,7 @@ from rockframe.signals.arrays import Array
 from rockframe.signals.motion import COEFFICIENTS
 from rockframe.simulation.certify.perturbations import cut
 from rockframe.simulation.run import NONE
-from rockframe.simulation.system import System
+from rockframe.simulation.system import System, check_system
 from rockframe.studies.limit_states import overturns
 from rockframe.studies.sweeps.arguments import SequenceArguments
 from rockframe.studies.sweeps.sweep import sweep

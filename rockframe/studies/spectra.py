@@ -8,14 +8,13 @@ from typing import Any, Final, Unpack
 import numpy as np
 import xarray as xr
 
-from rockframe.comparison.models import check_system
 from rockframe.components import Block
 from rockframe.errors import ComponentError, collected_warnings
 from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.table import head
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.shared_arguments import takes
-from rockframe.simulation.system import System
+from rockframe.simulation.system import System, check_system
 from rockframe.studies.intensities import POWERS, Intensity, motions_of_runs, of_motions, of_study
 from rockframe.studies.limit_states import overturns
 from rockframe.studies.line_axes import over_rows, read_line_axes

@@ -3,9 +3,10 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rockframe.arguments import one_of_words, several
 from rockframe.errors import ComponentError, shown
@@ -13,16 +14,11 @@ from rockframe.measures import rotated_spectrum
 from rockframe.measures.common import read_inputs
 from rockframe.measures.response import checked_periods, shortest_of, spectra_of
 from rockframe.motion.processing.samples import warn_of_coarse_samples
+from rockframe.motion.quantities import ArrayLike
 from rockframe.signals.arrays import Array
 from rockframe.suites.target import TargetSpectrum, check_target
 from rockframe.suites.value import LabelledMotions
-from rockframe.units import PERIOD, POSITIVE, to_ratio
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from rockframe.motion.quantities import ArrayLike
-    from rockframe.units import QuantityLike, RatioLike
+from rockframe.units import PERIOD, POSITIVE, QuantityLike, RatioLike, to_ratio
 
 _USUAL_BAND: Final = (0.1, 4.0)
 _USUAL_COUNT: Final = 40
@@ -64,7 +60,7 @@ class Candidates:
         return self.logarithms + np.log(factors)[:, None] - self.target
 
     @property
-    def within(self) -> "NDArray[np.bool_]":
+    def within(self) -> NDArray[np.bool_]:
         """Return whether each factor lies within the bounds, shape (n,)."""
         low, high = self.bounds
         return (self.factors >= low) & (self.factors <= high)
@@ -74,9 +70,9 @@ def candidates_of(
     suite: LabelledMotions,
     target: object,
     *,
-    periods: "ArrayLike | Iterable[QuantityLike] | None",
-    conditioned_on: "ArrayLike | Iterable[QuantityLike] | None",
-    bounds: "tuple[RatioLike, RatioLike] | None",
+    periods: ArrayLike | Iterable[QuantityLike] | None,
+    conditioned_on: ArrayLike | Iterable[QuantityLike] | None,
+    bounds: tuple[RatioLike, RatioLike] | None,
     combination: str,
     owner: str,
 ) -> Candidates:
@@ -123,7 +119,7 @@ def usual_periods(target: TargetSpectrum) -> Array:
     return np.geomspace(low, high, _USUAL_COUNT) if high > low else np.array([low])
 
 
-def _bounds(items: "tuple[RatioLike, RatioLike] | None", owner: str) -> tuple[float, float]:
+def _bounds(items: tuple[RatioLike, RatioLike] | None, owner: str) -> tuple[float, float]:
     if items is None:
         return 0.0, np.inf
     values = several(items, owner=owner, name="bounds", of="factors")
@@ -147,8 +143,7 @@ def _spectra(
         found = spectra_of(looked, seconds, np.array([damping_ratio]))[
             "pseudo_spectral_acceleration"
         ]
-        motions = list(suite.values())
-        labels = list(suite)
+        motions = dict(suite)
     else:
         pairs = suite.pairs
         if not pairs:
@@ -158,10 +153,9 @@ def _spectra(
             )
             raise ComponentError(msg)
         found = rotated_spectrum(pairs, with_unit, damping_ratio)[_OF_PAIRS[kind]]
-        motions = [pair.first for pair in pairs.values()]
-        labels = list(pairs)
-    events = [str(motion.metadata.get("event", "")) for motion in motions]
-    return labels, found.isel(damping_ratio=0).to_numpy(), events
+        motions = {record: pair.first for record, pair in pairs.items()}
+    events = [str(motion.metadata.get("event", "")) for motion in motions.values()]
+    return list(motions), found.isel(damping_ratio=0).to_numpy(), events
 
 
 def _conditioned(value: bool, fixed: Array) -> str:

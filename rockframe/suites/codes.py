@@ -1,10 +1,10 @@
 """Design spectra of codes: their arguments, and their shapes."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import Final, TypeAlias
 
 import numpy as np
 
@@ -12,12 +12,16 @@ from rockframe.arguments import one_of_words, whole_number
 from rockframe.errors import ComponentError
 from rockframe.signals.arrays import Array
 from rockframe.signals.spectra import DAMPING_RATIO
-from rockframe.units import ACCELERATION, PERIOD, POSITIVE, to_ratio, to_si, to_si_values
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rockframe.units import QuantityLike, RatioLike
+from rockframe.units import (
+    ACCELERATION,
+    PERIOD,
+    POSITIVE,
+    QuantityLike,
+    RatioLike,
+    to_ratio,
+    to_si,
+    to_si_values,
+)
 
 Shape: TypeAlias = Callable[[Array], Array]
 """Accelerations [m s^-2] at periods [s]."""
@@ -93,12 +97,12 @@ class _ASCE7:
 
 
 def eurocode_8(
-    ground_acceleration: "QuantityLike",
+    ground_acceleration: QuantityLike,
     ground_type: str,
     spectrum_type: int,
-    soil_factor: "RatioLike | None",
-    corner_periods: "Sequence[QuantityLike] | None",
-    damping_ratio: "RatioLike",
+    soil_factor: RatioLike | None,
+    corner_periods: Sequence[QuantityLike] | None,
+    damping_ratio: RatioLike,
     *,
     owner: str,
 ) -> tuple[str, Shape, float]:
@@ -129,9 +133,9 @@ def eurocode_8(
 
 
 def asce_7(
-    short_period_acceleration: "QuantityLike",
-    one_second_acceleration: "QuantityLike",
-    long_period: "QuantityLike",
+    short_period_acceleration: QuantityLike,
+    one_second_acceleration: QuantityLike,
+    long_period: QuantityLike,
     *,
     owner: str,
 ) -> tuple[str, Shape]:

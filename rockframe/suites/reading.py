@@ -216,14 +216,10 @@ def _say(found: _Found) -> None:
     left = [one for one in found.left if not one.path.casefold().endswith(_COMPANIONS)]
     words: list[str] = []
     if left:
-        words.append(f"{len(left)} files not read ({_some(left)}; suite.unread lists all)")
+        listed = "; ".join(f"{PurePath(one.path).name}: {one.reason}" for one in left[:_LISTED])
+        words.append(f"{len(left)} files not read ({listed}; suite.unread lists all)")
     if found.remarks:
         listed = "; ".join(found.remarks[:_LISTED])
         words.append(f"{len(found.remarks)} worth a look ({listed}; suite.remarks lists all)")
     if words:
         warn(f"{_OWNER}: {'; '.join(words)}", RecordWarning)
-
-
-def _some(left: list[Unread]) -> str:
-    listed = [f"{PurePath(one.path).name}: {one.reason}" for one in left[:_LISTED]]
-    return "; ".join(listed)

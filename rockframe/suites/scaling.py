@@ -1,26 +1,23 @@
 """Scaling motions so that their spectra fit a target."""
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from rockframe.errors import ComponentError, SchemaError
+from rockframe.motion import GroundMotion
 from rockframe.motion.quantities import ArrayLike
 from rockframe.proposals import hinted
 from rockframe.results.joining import MOTION
-from rockframe.results.schema import SCHEMA, build_dataset, without_fill_values
+from rockframe.results.schema import SCHEMA, build_dataset, with_variables, without_fill_values
+from rockframe.signals.arrays import Array
 from rockframe.suites.candidates import Candidates, Combination, candidates_of
 from rockframe.suites.target import TargetSpectrum
 from rockframe.suites.value import LabelledMotions
 from rockframe.units import QuantityLike, RatioLike, Unit
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from rockframe.motion import GroundMotion
-    from rockframe.signals.arrays import Array
 
 USUAL_BOUNDS: Final = (0.25, 4.0)
 """Bounds of scale factors that are usually accepted [1]."""
@@ -105,8 +102,8 @@ def scaling_to(
 
 def scaled_set(
     candidates: Candidates,
-    places: "NDArray[np.intp]",
-    factors: "Array",
+    places: NDArray[np.intp],
+    factors: Array,
     *,
     title: str,
     **attributes: str | float,
@@ -133,16 +130,13 @@ def scaled_set(
         title=title,
         source="recurrence of Nigam and Jennings",
     )
-    of_all = build_dataset(
-        {
-            "target_spectral_acceleration": np.exp(candidates.target),
-            "target_standard_deviation": candidates.deviations,
-            "set_median_acceleration": np.exp(logarithms.mean(axis=0)),
-            "set_standard_deviation": spread_of(logarithms),
-        },
-        {},
-    )
-    dataset = of_each.assign(of_all.data_vars)
+    of_all = {
+        "target_spectral_acceleration": np.exp(candidates.target),
+        "target_standard_deviation": candidates.deviations,
+        "set_median_acceleration": np.exp(logarithms.mean(axis=0)),
+        "set_standard_deviation": _spread_of(logarithms),
+    }
+    dataset = with_variables(of_each, of_all)
     labels = [candidates.labels[place] for place in places.tolist()]
     meaning = {**SCHEMA["period"].attributes(), "long_name": "undamped period of the oscillator"}
     dataset = dataset.assign_coords(
@@ -169,7 +163,7 @@ def compared_target(found: xr.Dataset) -> TargetSpectrum | None:
     )
 
 
-def spread_of(logarithms: "Array") -> "Array":
+def _spread_of(logarithms: Array) -> Array:
     """Return the standard deviation over a set, shape (k,); zero of a single motion."""
     if len(logarithms) < 2:
         return np.zeros(logarithms.shape[1])
@@ -178,7 +172,7 @@ def spread_of(logarithms: "Array") -> "Array":
 
 def scaled_motions(
     suite: LabelledMotions, found: xr.Dataset
-) -> "tuple[dict[str, GroundMotion], dict[str, GroundMotion]]":
+) -> tuple[dict[str, GroundMotion], dict[str, GroundMotion]]:
     """Scale the motions of a suite by the factors that were found."""
     needed = ("scale_factor", "spectral_misfit", MOTION)
     if any(name not in found.variables for name in needed) or "combination" not in found.attrs:
@@ -207,7 +201,7 @@ def scaled_motions(
     return motions, upwards
 
 
-def _scaled(motion: "GroundMotion", factor: float, misfit: float) -> "GroundMotion":
+def _scaled(motion: GroundMotion, factor: float, misfit: float) -> GroundMotion:
     done = motion.scaled(factor)
     metadata = {**done.metadata, "spectral_misfit": misfit}
     return type(done)(

@@ -2,26 +2,23 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from rockframe.arguments import whole_number
 from rockframe.errors import ComponentError
 from rockframe.motion.quantities import ArrayLike
 from rockframe.proposals import hinted
 from rockframe.results.schema import with_variables
+from rockframe.signals.arrays import Array
 from rockframe.suites.candidates import Combination, candidates_of
 from rockframe.suites.scaling import USUAL_BOUNDS, scaled_set
 from rockframe.suites.target import TargetSpectrum
 from rockframe.suites.value import LabelledMotions
 from rockframe.units import NOT_NEGATIVE, QuantityLike, RatioLike, to_ratio
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from rockframe.signals.arrays import Array
 
 _MOST_STARTS: Final = 20
 _MOST_PASSES: Final = 50
@@ -154,10 +151,10 @@ def selection_for(
 class _Search:
     """Data and methods of the search for a set."""
 
-    residuals: "Array"  # logarithms of scaled spectra over the target
-    deviations: "Array"  # target of the spread
+    residuals: Array  # logarithms of scaled spectra over the target
+    deviations: Array  # target of the spread
     weight: float  # of the spread
-    events: "NDArray[np.intp]"  # earthquakes by numbers; -1 where it is not known
+    events: NDArray[np.intp]  # earthquakes by numbers; -1 where it is not known
     most: int  # most motions of one earthquake
 
     def misfit(self, chosen: list[int]) -> float:
@@ -176,7 +173,7 @@ class _Search:
                 found.append((self.misfit(chosen), chosen))
         return min(found)[1] if found else None
 
-    def _misfits(self, others: list[int]) -> "Array":
+    def _misfits(self, others: list[int]) -> Array:
         """Compute :eq:`eq-set-misfit` of a set with each candidate added in turn, shape (n,)."""
         held = self.residuals[others]
         count = len(others) + 1
@@ -190,7 +187,7 @@ class _Search:
             squares = squares + self.weight * (spread - self.deviations) ** 2
         return np.sqrt(squares.mean(axis=1))
 
-    def _allowed(self, others: list[int]) -> "NDArray[np.bool_]":
+    def _allowed(self, others: list[int]) -> NDArray[np.bool_]:
         """Return which candidates may be added to a set, shape (n,)."""
         free = np.ones(len(self.residuals), dtype=bool)
         free[others] = False
@@ -224,6 +221,6 @@ class _Search:
         return chosen
 
 
-def _numbered(events: list[str]) -> "NDArray[np.intp]":
+def _numbered(events: list[str]) -> NDArray[np.intp]:
     numbers = {event: k for k, event in enumerate(dict.fromkeys(filter(None, events)))}
     return np.array([numbers.get(event, -1) for event in events], dtype=np.intp)

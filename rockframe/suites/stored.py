@@ -8,7 +8,7 @@ import json
 import math
 import warnings
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, Final, TypeVar
+from typing import Any, Final, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -16,7 +16,7 @@ import xarray as xr
 from rockframe.constants import CONVENTIONS
 from rockframe.errors import ComponentError, RecordError, SchemaError
 from rockframe.motion import GroundMotion
-from rockframe.records import LONG_NAMES, is_netcdf
+from rockframe.records import LONG_NAMES, Source, is_netcdf
 from rockframe.results.joining import MOTION
 from rockframe.results.schema import build_dataset
 from rockframe.signals import Motion, Signal
@@ -26,13 +26,8 @@ from rockframe.suites.target import TargetSpectrum
 from rockframe.suites.value import LabelledMotions
 from rockframe.units import Unit
 
-if TYPE_CHECKING:
-    from rockframe.records import Source
-
-
 _KIND: Final = "suite of ground motions"
 Suite = TypeVar("Suite", bound=LabelledMotions)
-_TITLE: Final = "Suite of ground motions"
 _EXPECTED: Final = "a suite as MotionSuite.to_dataset().to_netcdf(...) writes it"
 _MOST_NUMBERS: Final = 20_000_000
 _NAME: Final = "motion_name"
@@ -74,7 +69,7 @@ def suite_dataset(suite: LabelledMotions) -> xr.Dataset:
             **({} if suite.target is None else {_TARGET: json.dumps(_table_of(suite.target))}),
         },
         over=(MOTION,),
-        title=_TITLE,
+        title="Suite of ground motions",
         source="records and models of ground motions",
     )
     texts = {
@@ -153,7 +148,7 @@ def _target_of(table: Mapping[str, Any]) -> TargetSpectrum:
     return TargetSpectrum.from_table(periods, values, **items)
 
 
-def is_stored_suite(source: "Source") -> bool:
+def is_stored_suite(source: Source) -> bool:
     """Return whether a file is a netCDF file of a suite."""
     if not is_netcdf(source):
         return False
@@ -170,7 +165,7 @@ def is_stored_suite(source: "Source") -> bool:
         return False
 
 
-def stored_suite(source: "Source", read: Callable[[xr.Dataset], Suite]) -> Suite:
+def stored_suite(source: Source, read: Callable[[xr.Dataset], Suite]) -> Suite:
     """Read the netCDF file of a suite."""
     import netCDF4
     from xarray.backends import NetCDF4DataStore

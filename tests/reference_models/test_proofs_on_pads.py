@@ -282,7 +282,7 @@ def outside(case, prepare=None, beside=NOWHERE):
             prepare(one)
         stopped = None
         try:
-            while one.k < KNOTS and one.overturning is None:
+            while one.k < KNOTS and one.beyond is None:
                 one._to_next_knot()
         except Undecided as why:
             stopped = str(why)
@@ -308,7 +308,7 @@ def test_enclosures_hold_the_run_of_fifty_digits(case):
     found = outside(case)
     assert found.stopped is None
     assert found.missed == 0
-    assert found.seen == KNOTS or found.way.overturning is not None
+    assert found.seen == KNOTS or found.way.beyond is not None
     assert max(float(one.rad()) for one in found.last) < 1e-15
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from rockframe.dynamics.pads import TOUCHING
 from rockframe.proof.balls import Row, ball, value
+from rockframe.proof.balls import slope as slope_of
 from rockframe.proof.pads.law import SIZE, Guard, PadBalls, Standing, pin
 from rockframe.proof.pads.series import UPWARDS, PadCourse, TooLong
 
@@ -151,7 +152,6 @@ class Step(NamedTuple):
     course: PadCourse
     powers: Array  # weighted derivative by the start, coefficients of powers of the share
     error: Array  # bound of the error of that derivative in the step
-    tube: float  # bound of the distance of members from the centre in the step, over the weights
     rate: float  # bound of the norm of the weighted derivative of the field, times h
     curves: dict[Guard, tuple[Curve, Curve]]  # guards and their derivatives by the share
 
@@ -174,10 +174,7 @@ def step(
 ) -> Step:  # fmt: skip
     """Enclose the image of a set in a step, :eq:`eq-proof-pads-variation`.
 
-    Raises
-    ------
-    TooLong
-        The step must be halved.
+    Raises `TooLong` if the step must be halved.
     """
     h = float(found.h)
     radius = states.radius()
@@ -200,7 +197,7 @@ def step(
     curves = {
         one: _guard(pads, standing, one, found, motion, (tube, rate), weights) for one in guards
     }
-    return Step(found, powers, off, tube, rate, curves)
+    return Step(found, powers, off, rate, curves)
 
 
 class _Motion(NamedTuple):
@@ -344,7 +341,7 @@ def _guard(
         + reach * turning_away
         + (tall + wide) * (lean * (turning + spin * spin) + 2.0 * spin * turn)
     )
-    slope = _slope(series.speeds[i], (order * rest.speeds[i] + away * h) * UPWARDS)
+    slope = curve(slope_of(series.speeds[i]), (order * rest.speeds[i] + away * h) * UPWARDS)
     if guard.kind == "rise":
         return speed, slope
     stiff, damped = float(pads.stiffness), float(pads.damping)
@@ -354,8 +351,3 @@ def _guard(
     if guard.kind == "slack":
         return -force, -change
     return force, change
-
-
-def _slope(series: Row, error: float) -> Curve:
-    """Return the derivative of a series by the share, as a curve."""
-    return curve([k * one for k, one in enumerate(series)][1:], error)

@@ -263,10 +263,7 @@ def switched(
 ) -> Switched:
     """Return the state after the event of a guard that has fallen to zero.
 
-    Raises
-    ------
-    Undecided
-        A sign that decides about the event is not known.
+    Raises `Undecided` if a sign that decides about the event is not known.
     """
     left, was = guard.left, standing.of(guard.left)
     if guard.kind == "depth" and was in (RELAXING, LEAVING):

@@ -5,6 +5,7 @@ One recursion gives the coefficients and, with all signs positive, their bounds:
 """
 
 import math
+from collections.abc import Callable
 from operator import mul
 from typing import Any, Final, NamedTuple
 
@@ -160,12 +161,7 @@ def course(
     """Enclose the motion from a point, :eq:`eq-proof-pads-majorant`.
 
     The series end where their coefficients, over the typical sizes `sizes_of`, are `margin` bits
-    below the precision.
-
-    Raises
-    ------
-    TooLong
-        The step must be halved.
+    below the precision. Raises `TooLong` if the step must be halved.
     """
     held = pin(pads, standing) if not (standing.flies or pads.small) else 0 * h
     shape = SeriesNumbers(
@@ -190,8 +186,9 @@ def course(
         shape, standing, pads.small, _first(pads, standing, start, held), ground, h, -1, enough
     )
     order = len(found.rotation) - 1
-    sizes = [_sizes(one) for one in found]
-    most = [_upper(size) for size in sizes]
+    sizes = [_in_each(_size, one) for one in found]
+    # bounds that the motion is to be proved not to reach
+    most = [_in_each(lambda size: size * _ROOM + 1e-200, size) for size in sizes]
     inertia = found.inertia
     least_inertia = float(inertia[0].lower()) / UPWARDS
     swing = sum(float(one.abs_upper()) for one in inertia[1:]) * UPWARDS
@@ -200,20 +197,21 @@ def course(
         raise TooLong
     bounds = Series(
         [most[0]], [most[1]], [most[2]], [most[3]], [most[4]], [min(1.0, most[5])], [1.0],
-        ([], []), ([], []), tuple([one] for one in most[9]), [low],
+        ([0.0], [0.0]), ([], []), tuple([one] for one in most[9]), [low],
         [float(shape.height) * UPWARDS + abs(float(held)) * UPWARDS * min(1.0, most[5])],
     )  # fmt: skip
-    bounds.levels[0].append(0.0)
-    bounds.levels[1].append(0.0)
-    upper = SeriesNumbers(*(_bounds(one) for one in shape))
+    upper = SeriesNumbers(*(_in_each(_bound, one) for one in shape))
     grounds = tuple(_anywhere(row) for row in ground)
     counts = [len(one) for one in bounds]
     ended = recursion(
-        upper, standing, pads.small, bounds, grounds, _bounds(h), 1, lambda k, _: k > order
+        upper, standing, pads.small, bounds, grounds, _bound(h), 1, lambda k, _: k > order
     )  # fmt: skip
     grown = zip(ended, counts, strict=True)
     left_out = Series(
-        *(_last(one) if isinstance(one, tuple) or len(one) > count else 0.0 for one, count in grown)
+        *(
+            _in_each(_last, one) if isinstance(one, tuple) or len(one) > count else 0.0
+            for one, count in grown
+        )
     )
     _confirm_bounds(sizes, most, left_out, swing, least_inertia - low)
     return PadCourse(h, ground[1], found, left_out)
@@ -221,7 +219,7 @@ def course(
 
 def _anywhere(row: Row) -> list[float]:
     """Bound the Taylor coefficients of a polynomial about all points of the step."""
-    sizes = [_bounds(one) for one in row]
+    sizes = [_bound(one) for one in row]
     return [
         sum(math.comb(j, k) * one for j, one in enumerate(sizes)) * UPWARDS
         for k in range(len(sizes))
@@ -244,32 +242,24 @@ def _first(pads: PadBalls, standing: Standing, start: Row, held: Ball) -> Series
     )  # fmt: skip
 
 
-def _bounds(one: Any) -> Any:
-    """Bound the absolute values of balls by doubles."""
-    if isinstance(one, tuple):
-        return tuple(_bounds(each) for each in one)
+def _in_each(work: Callable[[Any], float], one: Any) -> Any:
+    """Return what a function makes of one thing, or of that of each corner."""
+    return tuple(map(work, one)) if isinstance(one, tuple) else work(one)
+
+
+def _bound(one: Ball) -> float:
+    """Bound the absolute value of a ball by a double."""
     return float(abs(one).upper()) * UPWARDS
 
 
-def _sizes(one: Any) -> Any:
+def _size(series: Row) -> float:
     """Bound the absolute value of a polynomial over the step."""
-    if isinstance(one, tuple):
-        return tuple(_sizes(each) for each in one)
-    return sum(float(each.abs_upper()) for each in one) * UPWARDS
+    return sum(float(each.abs_upper()) for each in series) * UPWARDS
 
 
-def _upper(size: Any) -> Any:
-    """Return a bound that the motion is to be proved not to reach."""
-    if isinstance(size, tuple):
-        return tuple(_upper(each) for each in size)
-    return size * _ROOM + 1e-200
-
-
-def _last(one: Any) -> Any:
+def _last(bounds: list[float]) -> float:
     """Return the last coefficient of bounds, rounded upwards."""
-    if isinstance(one, tuple):
-        return tuple(_last(each) for each in one)
-    return float(one[-1]) * UPWARDS if one else 0.0
+    return float(bounds[-1]) * UPWARDS if bounds else 0.0
 
 
 def _confirm_bounds(

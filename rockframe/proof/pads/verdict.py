@@ -10,13 +10,13 @@ from rockframe.dynamics.alone import Alone
 from rockframe.dynamics.body import PIVOT_CENTRE
 from rockframe.dynamics.on_base import OnBase
 from rockframe.dynamics.pads import corner_contact
-from rockframe.proof.balls import ball, bits
+from rockframe.proof.balls import ball
 from rockframe.proof.pads.flow import point
 from rockframe.proof.pads.law import PadBalls, Standing
 from rockframe.proof.pads.way import PadWay, Watch
-from rockframe.proof.problem import Deviations, Shaking, Undecided
-from rockframe.proof.sets import proved
-from rockframe.proof.verdict import EXACT, OVERTURNS, SAFE, UNDECIDED, Proof, Tolerances, outwards
+from rockframe.proof.problem import Deviations, Shaking
+from rockframe.proof.sets import concluded, proved
+from rockframe.proof.verdict import EXACT, Proof, Tolerances
 from rockframe.signals import Motion
 from rockframe.signals.motion import Slope
 from rockframe.system.bodies import OverturningAngles
@@ -90,20 +90,6 @@ def prove_pads(
 
     def attempt(inputs: Deviations) -> tuple[Proof, list[float]]:
         way = way_of(law, mode, state, motion, slope, limits, scale=scale, inputs=inputs)
-        return _decided(way, scale), []
+        return concluded(way, scale, LAW), []
 
     return proved(attempt, within)
-
-
-def _decided(way: PadWay, scale: float) -> Proof:
-    verdict, reason = UNDECIDED, ""
-    earliest = latest = math.nan
-    try:
-        verdict = OVERTURNS if way.decide() else SAFE
-    except Undecided as why:
-        reason, earliest = str(why), float(way.time)
-        latest = earliest
-    if way.overturning is not None:
-        low, high = way.overturning
-        earliest, latest = outwards(low, -math.inf), outwards(high, math.inf)
-    return Proof(verdict, reason, earliest, latest, way.widest, way.impacts, bits(), scale, LAW)

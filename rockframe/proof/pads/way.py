@@ -1,7 +1,7 @@
 """The way of a set of states on pads, from the start of a motion to a proved verdict."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
@@ -45,62 +45,33 @@ Watch = Callable[[int, Standing, Row], None]
 
 @dataclass
 class PadWay:
-    """The way of a set of states through a motion; its fields change as it is followed.
-
-    Parameters
-    ----------
-    pads : PadBalls
-        The block and its pads.
-    shaking : Shaking
-        Motion of the ground.
-    standing : Standing
-        Contacts, at first those at the start.
-    states : StateSet
-        States, at first those at the start.
-    weights : ndarray
-        Typical sizes of the state's numbers, powers of two.
-    reach : float
-        Length of a step [s].
-    patience : float
-        Time after the record in which the block has to calm down [s].
-    watch : callable, optional
-        Function that is called with each enclosure at a knot.
-    """
+    """The way of a set of states through a motion; its fields change as it is followed."""
 
     pads: PadBalls
     shaking: Shaking
-    standing: Standing
-    states: StateSet
-    weights: Any
-    reach: float
-    patience: float = 60.0
-    watch: Watch | None = None
-    k: int = 0
-    offset: Ball = field(default_factory=lambda: ZERO)
-    fresh: tuple[Guard, ...] = ()
-    margin: int = 16
+    standing: Standing  # contacts, at first those at the start
+    states: StateSet  # at first those at the start
+    weights: Any  # typical sizes of the state's numbers, powers of two
+    reach: float  # length of a step [s]
+    patience: float = 60.0  # time after the record in which the block has to calm down [s]
+    watch: Watch | None = None  # called with each enclosure at a knot
+    k: int = 0  # number of the last knot
+    offset: Ball = ZERO  # time since it [s]
+    fresh: tuple[Guard, ...] = ()  # guards that have just become zero
+    margin: int = 16  # of the series, in bits below the precision
     impacts: int = 0
-    changes: int = 0
-    widest: float = 0.0
-    overturning: tuple[Ball, Ball] | None = None
+    widest: float = 0.0  # largest radius of a rotation so far [rad]
+    beyond: tuple[Ball, Ball] | None = None  # from when to when it passes the overturning angle
 
     @property
     def time(self) -> Ball:
         """Time from the first sample [s]."""
         return self.shaking.time(self.k, self.offset)
 
-    def decide(self) -> bool:
-        """Prove that the block overturns, or that it never does.
+    def overturns(self) -> bool:
+        """Follow the set until it is proved whether it overturns; `beyond` holds the time.
 
-        Returns
-        -------
-        bool
-            Whether it overturns.
-
-        Raises
-        ------
-        Undecided
-            Neither is proved.
+        Raises `Undecided` if that cannot be proved.
         """
         state = self.states.box(self.weights)
         for one in guards_of(self.standing):
@@ -109,7 +80,7 @@ class PadWay:
                 raise Undecided(msg)
         shaking = self.shaking
         last = shaking.count + self.patience / shaking.still_step
-        while self.overturning is None:
+        while self.beyond is None:
             if self.k >= shaking.count and self._stands_for_ever():
                 return False
             if self.k > last:
@@ -135,7 +106,7 @@ class PadWay:
                     msg = "a contact that hardly changes is not resolved"
                     raise Undecided(msg) from None
                 continue
-            if self.overturning is not None:
+            if self.beyond is not None:
                 return
             if not done:
                 depth, parts = 0, 0
@@ -225,8 +196,8 @@ class PadWay:
         centre = self._crossed(ground, h, states.centre, guard, rate)
         self.offset = self.offset + h
         if guard.kind == "limit":
-            at = self.time
-            self.overturning = (at + whole.delay).lower(), (at + whole.delay).upper()
+            at = self.time + whole.delay
+            self.beyond = at, at
             return
         middle = np.array([[float(one) for one in row] for row in whole.slope])
         radii = np.array([[float(one.rad()) for one in row] for row in whole.slope])
@@ -236,7 +207,6 @@ class PadWay:
         )
         self.standing, self.fresh = whole.after.standing, whole.after.fresh
         self.impacts += whole.after.impacts
-        self.changes += 1
 
     def _crossed(
         self, shaking: GroundPiece, h: Ball, box: Row, guard: Guard, rate: float

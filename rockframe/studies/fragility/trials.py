@@ -284,17 +284,10 @@ def trials_of_capacities(
         np.log(np.column_stack([at_scales(row, scales, scale) for row in rows]))
         for scale in (np.where(has_lower, below, scales[0]), np.where(has_upper, above, scales[-1]))
     )
-    has_bound = has_lower | has_upper
-    count = int(has_bound.sum())
-    found = Trials(
-        lower[has_bound],
-        upper[has_bound],
-        has_lower[has_bound],
-        has_upper[has_bound],
-        np.ones(count),
-        None,
-    )
-    return StructureTrials(found, None, len(has_bound) - count, count)
+    bounded = (has_lower | has_upper).astype(np.float64)
+    found = Trials(lower, upper, has_lower, has_upper, bounded, None).of_weights(bounded)
+    count = len(found.weight)
+    return StructureTrials(found, None, len(bounded) - count, count)
 
 
 def _first_brackets(

@@ -82,6 +82,13 @@ def numbers_of(value: object, measure: Measure, name: str, *, owner: str = OWNER
     return np.array(found, dtype=np.float64)
 
 
+def number_of(value: object, measure: Measure, *, owner: str, name: str) -> float:
+    """Read one value, which is a ratio where the unit of its measure is 1."""
+    if measure.unit == Unit.ONE:
+        return to_ratio(value, owner=owner, name=name)
+    return to_si(value, measure, owner=owner, name=name)
+
+
 def _with_own_unit(value: object) -> object:
     """Return an array with an attribute ``units`` beside it, as values and their unit are given.
 
@@ -170,10 +177,7 @@ def _measure_of(unit: str, name: str, owner: str, expected: str) -> Measure:
     for known in sorted(Unit, key=lambda one: one != expected):
         measure = Measure("a quantity", known, f"1 {known}")
         with suppress(UnitsError, ComponentError):
-            if known == Unit.ONE:
-                to_ratio(f"1 {unit}", owner=owner, name=name)
-            else:
-                to_si(f"1 {unit}", measure, owner=owner, name=name)
+            number_of(f"1 {unit}", measure, owner=owner, name=name)
             return measure
     known = ", ".join(str(one) for one in Unit)
     msg = f"{owner}: {name} has the unit {shown(unit)}; expected that of a quantity in {known}"
@@ -206,12 +210,8 @@ def in_unit(labels: xr.DataArray, unit: str | None, *, owner: str) -> xr.DataArr
     own = labels.attrs.get("units")
     if unit is None or own in (None, unit):
         return labels
-    name = str(labels.name)
-    if unit == Unit.ONE:
-        factor = to_ratio(f"1 {own}", owner=owner, name=name)
-    else:
-        measure = Measure("a value", Unit(unit), f"1 {unit}")
-        factor = to_si(f"1 {own}", measure, owner=owner, name=name)
+    measure = Measure("a value", Unit(unit), f"1 {unit}")
+    factor = number_of(f"1 {own}", measure, owner=owner, name=str(labels.name))
     found = np.reshape(products(np.ravel(labels).astype(float).tolist(), factor), labels.shape)
     attributes = {**labels.attrs, "units": unit}
     return xr.DataArray(found, labels.coords, labels.dims, labels.name, attributes)

@@ -21,13 +21,13 @@ from rockframe.proposals import hinted, proposing
 from rockframe.results.variables.studies import MOTION, REPEATED
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import LEVELS, Accuracy
-from rockframe.studies.sweeps.axes import OF_SCENES, Axis, Changes, in_unit
+from rockframe.studies.sweeps.axes import OF_SCENES, Axis, Changes, in_unit, number_of
 from rockframe.studies.sweeps.chunk import AGAIN
 from rockframe.studies.sweeps.motions import full_name, motion_number, motion_of_case, named_motions
-from rockframe.studies.sweeps.scenes import FunctionScene, SweptScene, SystemScene, scene_of
+from rockframe.studies.sweeps.scenes import SweptScene, scene_of
 from rockframe.studies.sweeps.store import Store
 from rockframe.studies.sweeps.study import Study
-from rockframe.units import Measure, Unit, to_ratio, to_si
+from rockframe.units import Measure, Unit
 
 NOT_GIVEN: Final = "must be given, as motions="
 """Words on a record that neither the result nor the process has."""
@@ -154,10 +154,9 @@ def case(
         values[Axis.from_dict(described, np.array([value]))] = value
     name = _value(dataset, MOTION, place)
     motion = unscaled_motions(attributes, [name], motions, kept)[name]
-    system = _system(
-        _scene(None if scene is None else scene_of(scene), attributes, _OWNER),
-        {axis: one for axis, one in values.items() if axis.changes in OF_SCENES},
-    )
+    swept = _scene(None if scene is None else scene_of(scene), attributes, _OWNER)
+    of_scene = {axis: one for axis, one in values.items() if axis.changes in OF_SCENES}
+    system = swept.system(of_scene)
     motion = system.motion if motion is None else motion
     options = json.loads(attributes["run_json"])
     options = {name: value for name, value in options.items() if value is not None}
@@ -183,7 +182,7 @@ def system_of_case(dataset: xr.Dataset, *, owner: str) -> System:
         if along.size == 1:
             value = in_unit(along, described["unit"], owner=owner).item()
             values[Axis.from_dict(described, np.array([value]))] = value
-    return _system(_scene(None, cast("Mapping[str, Any]", dataset.attrs), owner), values)
+    return _scene(None, cast("Mapping[str, Any]", dataset.attrs), owner).system(values)
 
 
 def remembered(attributes: Mapping[str, Any]) -> Study | None:
@@ -235,11 +234,8 @@ def _position_of(labels: xr.DataArray, name: str, wanted: Any, unit: str | None)
         else:
             own = Unit(labels.attrs["units"] if unit is None else unit)
             values = np.atleast_1d(in_unit(labels, own, owner=_OWNER).to_numpy())
-            if own == Unit.ONE:
-                number = to_ratio(wanted, owner=_OWNER, name=name)
-            else:
-                measure = Measure("a value", own, f"{values[0]:g} {own}")
-                number = to_si(wanted, measure, owner=_OWNER, name=name)
+            measure = Measure("a value", own, f"{values[0]:g} {own}")
+            number = number_of(wanted, measure, owner=_OWNER, name=name)
         nearest = int(np.argmin(np.abs(values - number)))
         if np.isclose(values[nearest], number, rtol=1e-9, atol=0.0):
             return nearest
@@ -275,8 +271,7 @@ def _value_of(along: xr.DataArray, place: Mapping[str, int]) -> Any:
 
 def _scene(swept: SweptScene | None, attributes: Mapping[str, Any], owner: str) -> SweptScene:
     if "system_json" in attributes:
-        system = System.from_dict(json.loads(attributes["system_json"]))
-        return SystemScene(system.assembly)
+        return scene_of(System.from_dict(json.loads(attributes["system_json"])))
     if swept is not None:
         return swept
     if (known := remembered(attributes)) is not None:
@@ -286,14 +281,6 @@ def _scene(swept: SweptScene | None, attributes: Mapping[str, Any], owner: str) 
         way = "give rf.case(dataset, scene=...).simulate() instead of the case"
     msg = f"{owner}: the scene was the function {attributes['function']}; {way}"
     raise StudyError(msg)
-
-
-def _system(scene: SweptScene, values: dict[Axis, Any]) -> System:
-    if isinstance(scene, FunctionScene):
-        return scene.system(values)
-    assembly = scene.assembled(values)
-    options: dict[str, Any] = assembly.options.to_dict()
-    return System(*assembly.parts.structural(), **options)
 
 
 def unscaled_motions(
@@ -332,13 +319,11 @@ def unscaled_motions(
 
 def store_of(runs: xr.Dataset) -> Store | None:
     """Return the folder that a dataset was opened from, if it was and holds its study."""
-    folder = Path(str(runs.encoding.get("source", "")))
     try:
-        found = Store.at(folder) if folder.is_dir() else None
+        found = Store.at(Path(str(runs.encoding.get("source", ""))))
     except StudyError:
         return None
-    same = found is not None and found.digest == runs.attrs.get("study_sha256")
-    return found if same else None
+    return found if found.digest == runs.attrs.get("study_sha256") else None
 
 
 def known_motions(runs: xr.Dataset, motions: object = None) -> dict[str, GroundMotion]:

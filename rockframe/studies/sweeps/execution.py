@@ -30,7 +30,10 @@ _GROWS: Final = "total grows"
 
 @runtime_checkable
 class ProgressBar(Protocol):
-    """A bar over the cases of one sweep, or of several that follow one another."""
+    """A bar over the cases of one sweep, or of several that follow one another.
+
+    A protocol, since that of the command line is made without the import of studies.
+    """
 
     def name(self, part: str) -> None:
         """Say which part of the whole comes next; the number of parts is unknown."""

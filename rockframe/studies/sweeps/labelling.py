@@ -27,7 +27,6 @@ ALWAYS: Final = tuple(
     row.name for row in EVENTS_AND_SCALARS if not row.dims and row.name != "status"
 )
 """Scalars that every run has."""
-_TITLE: Final = "Sweep of a rocking system"
 ALONE: Final = "each case alone"
 SIDE_BY_SIDE: Final = (
     "cases side by side in lanes; alone those that are not finished, or whose energies, friction "
@@ -132,7 +131,7 @@ def around_cases(labels: Labels, attributes: Mapping[str, str | float | int]) ->
         around[TIME[0]] = labels.histories.times
     if labels.points:
         around |= point_labels(labels.points)
-    return build_dataset(around, attributes, title=_TITLE)
+    return build_dataset(around, attributes, title="Sweep of a rocking system")
 
 
 def with_coordinates(dataset: xr.Dataset, labels: Labels, message: xr.Variable) -> xr.Dataset:

@@ -15,25 +15,7 @@ from rockframe.errors import RecordWarning, RockframeError, SolverWarning, Study
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import GROUPS, SCHEMA
-from rockframe.results.variables.analyses import LIMIT_STATE, QUANTILE, STRIPE
-from rockframe.results.variables.bodies import (
-    BODIES,
-    BODY,
-    RESTRAINER,
-    RESTRAINER_SCALARS,
-    RESTRAINERS,
-)
-from rockframe.results.variables.requests import (
-    ACCELERATIONS,
-    FORCE_SCALARS,
-    OTHERS,
-    POINT_PEAKS,
-    POINT_TIME,
-    POINTS,
-    REACTIONS,
-    SLIPS,
-)
-from rockframe.results.variables.runs import ENERGY_HISTORIES, EVENTS_AND_SCALARS, HISTORIES
+from rockframe.results.variables import analyses, bodies, requests, runs
 from rockframe.results.variables.studies import MOTION, SWEEP
 from rockframe.results.variables.variable import EVENT, FLIP, TIME
 from rockframe.simulation.plan import (
@@ -71,7 +53,7 @@ def kept_histories(
         return None
     named = [str(name) for name in listed(outputs)]
     names = tuple(dict.fromkeys(one for name in named for one in GROUPS.get(name, (name,))))
-    wrong = [name for name in names if SCHEMA[name].dims not in (TIME, POINT_TIME)]
+    wrong = [name for name in names if SCHEMA[name].dims not in (TIME, requests.POINT_TIME)]
     if wrong:
         msg = f"outputs: {', '.join(wrong)} are no histories, which a sweep could keep"
         raise StudyError(msg)
@@ -97,13 +79,15 @@ def kept_histories(
 Read = TypeVar("Read")
 
 _TAKEN: Final = {
-    *TIME, *EVENT, *BODY, *RESTRAINER,
-    *LIMIT_STATE, *STRIPE, *FLIP, *QUANTILE,  # of analyses, in which axes stay
+    *TIME, *EVENT, *bodies.BODY, *bodies.RESTRAINER,
+    *analyses.LIMIT_STATE, *analyses.STRIPE, *FLIP, *analyses.QUANTILE,  # in which axes stay
 } | {
     row.name
     for table in (
-        HISTORIES, ENERGY_HISTORIES, ACCELERATIONS, REACTIONS, OTHERS, EVENTS_AND_SCALARS,
-        FORCE_SCALARS, POINTS, POINT_PEAKS, SLIPS, BODIES, RESTRAINERS, RESTRAINER_SCALARS, SWEEP,
+        runs.HISTORIES, runs.ENERGY_HISTORIES, runs.EVENTS_AND_SCALARS, requests.ACCELERATIONS,
+        requests.REACTIONS, requests.OTHERS, requests.FORCE_SCALARS, requests.POINTS,
+        requests.POINT_PEAKS, requests.SLIPS, bodies.BODIES, bodies.RESTRAINERS,
+        bodies.RESTRAINER_SCALARS, SWEEP,
     )
     for row in table
 }  # fmt: skip

@@ -153,6 +153,12 @@ class SystemScene:
             warn(caution, ModelWarning)
         return found
 
+    def system(self, values: Values) -> System:
+        """Return the same as users have it."""
+        assembly = self.assembled(values)
+        options: dict[str, Any] = assembly.options.to_dict()
+        return System(*assembly.parts.structural(), **options)
+
     def _having(
         self, parameter: str, kind: str, parts: Mapping[str, Component]
     ) -> list[tuple[str, Component, Declared[Any, Any]]]:

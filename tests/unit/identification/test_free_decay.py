@@ -126,7 +126,7 @@ def test_swings_of_a_noisy_record():
     time = np.arange(0.0, 6.0, 0.01)
     clean = 0.1 * np.exp(-0.2 * time) * np.cos(2.0 * math.pi * time)
     noise = 1e-3 * np.random.default_rng(0).normal(size=time.size)
-    swings = swings_of(History(time, clean + noise), "test")
+    swings = swings_of(History(time, clean + noise))
     assert swings.crossing == pytest.approx(0.25, abs=0.01)
     np.testing.assert_allclose(swings.peaks.time[1:], 0.5 * np.arange(1, 12), atol=0.02)
     np.testing.assert_array_equal(swings.peaks.sides, (-1.0) ** np.arange(12))
@@ -213,7 +213,7 @@ def test_peaks_of_an_eccentric_block_tell_of_both_sides(first, rotation):
     system = rf.System(block, ground, rotation=rotation)
     run = system.simulate(duration="6 s", initial=start, output_step="2 ms")
     assert not run.overturned
-    swings = swings_of(History(run.time.to_numpy(), run.rotation.to_numpy()), "test")
+    swings = swings_of(History(run.time.to_numpy(), run.rotation.to_numpy()))
     peaks = swings.peaks.rotation[:7]
     found = rf.fit_free_decay(rf.System(block, rotation=rotation), peaks=(peaks, "rad"))
     assert found.fitted_value.item() == pytest.approx(ground.restitution, abs=1e-3)
