@@ -19,17 +19,14 @@ def lifts_in(
     both.
     """
     try:
-        return _lifts(problem, ground, left)
+        times = {side: first_zero(guard_of(problem, ground, side), left) for side in (1, -1)}
     except Undecided:
         if not problem.joins(number):
             raise
         following, length = (of(number + 1) for of in (problem.ground, problem.length))
         found = _lifts_about_sample(problem, ground, left, following, length)
         return None if found is None or found[0] > left else found
-
-
-def _lifts(problem: Problem, ground: GroundPiece, left: Ball) -> tuple[Ball, int] | None:
-    return _earlier({side: first_zero(guard_of(problem, ground, side), left) for side in (1, -1)})
+    return _earlier(times)
 
 
 def _lifts_about_sample(
