@@ -142,6 +142,7 @@ def test_without_a_motion_limit_states_that_the_same_runs_exceed_have_one_capaci
     )
     expected = fit(one, Bands.PROFILE).coefficients
     for state in (first, second):
+        assert state.without is not None
         rows = state.without[0]
         np.testing.assert_allclose(rows[4], expected, rtol=1e-6)
         assert np.isfinite(rows).all()
