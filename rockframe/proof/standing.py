@@ -19,13 +19,14 @@ def lifts_in(
     both.
     """
     try:
-        return _earlier({one: first_zero(guard_of(problem, ground, one), left) for one in (1, -1)})
+        times = {side: first_zero(guard_of(problem, ground, side), left) for side in (1, -1)}
     except Undecided:
         if not problem.joins(number):
             raise
         following, length = (of(number + 1) for of in (problem.ground, problem.length))
         found = _lifts_about_sample(problem, ground, left, following, length)
         return None if found is None or found[0] > left else found
+    return _earlier(times)
 
 
 def _lifts_about_sample(

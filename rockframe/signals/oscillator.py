@@ -87,7 +87,14 @@ def turning_value(
     third = 10.0 * rise - 4.0 * turn + 0.5 * twist
     fourth = -15.0 * rise + 7.0 * turn - twist
     fifth = 6.0 * rise - 3.0 * turn + 0.5 * twist
-    x = slope / (slope - end_slope)
+    # the root of the parabola through both slopes and the first bend: that of the chord may be at
+    # a bend of zero, where Newton's method leaves the step
+    fall = -np.copysign(np.sqrt(np.maximum(0.0, bend * bend - 4.0 * turn * slope)), slope)
+    plain = 1.0 * (bend * fall >= 0.0)  # of the two forms of the root that without cancellation
+    at = (plain * -2.0 * slope + (1.0 - plain) * (fall - bend)) / (
+        plain * (bend + fall) + (1.0 - plain) * 2.0 * turn
+    )
+    x = np.minimum(1.0, np.maximum(0.0, at))
     for _ in range(_NEWTON_STEPS):
         rate = slope + x * (bend + x * (3.0 * third + x * (4.0 * fourth + x * 5.0 * fifth)))
         change = bend + x * (6.0 * third + x * (12.0 * fourth + x * 20.0 * fifth))

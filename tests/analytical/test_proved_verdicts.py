@@ -82,6 +82,13 @@ def test_a_block_that_bounces_to_rest_is_proved_safe():
     assert proof.overturns is False
 
 
+def test_a_ground_that_falls_faster_than_the_block_is_the_reason_of_a_refusal():
+    """Both corners are unloaded at one instant, not at a verge."""
+    fall = np.array([0.0, -5.0, -12.0, -3.0, 0.0, 0.0])
+    motion = rf.GroundMotion.from_arrays((np.zeros(6), "m/s^2"), "0.1 s", vertical=(fall, "m/s^2"))
+    assert rf.prove(system(4), motion).reason == "the ground falls away under the block"
+
+
 def test_the_instant_of_overturning_is_enclosed():
     scene, motion = system(4), half_sine()
     proof = rf.prove(scene, motion, scale=0.6)

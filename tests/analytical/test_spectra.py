@@ -193,6 +193,16 @@ def test_a_peak_is_found_where_the_velocity_grows_and_decays_after_it():
     np.testing.assert_allclose(values, expected, rtol=5e-5)
 
 
+def test_a_peak_is_found_where_the_velocity_first_grows_away_from_its_zero():
+    """At the zero of the chord of the velocity the acceleration is nearly zero."""
+    samples = np.array([0.94, -0.88, 1.38, -0.68, 0.78, -1.77])
+    motion = rf.GroundMotion.from_arrays((samples, "m/s^2"), "0.02 s")
+    found = response_spectrum(motion, ["0.24 s"], 0.7)
+    expected = brute_force(samples, 0.02, 0.24, 0.7, 400)
+    values = [found[name].item() for name in SPECTRA]
+    np.testing.assert_allclose(values, expected, rtol=5e-5)
+
+
 def test_the_ground_may_stop_at_once_within_a_motion():
     """Padded with zeros, a pulse that jumps at its end has the same spectra."""
     pulse = rf.GroundMotion.cosine_pulse("3 m/s^2", "1 Hz", cycles=0.3)

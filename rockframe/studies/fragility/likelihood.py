@@ -19,6 +19,8 @@ from rockframe.studies.fragility.trials import Trials
 
 DIRECTIONS: Final = 360
 """Rays on which the boundary of a confidence region is found."""
+FLAT: Final = 1e-9
+"""Slope, over the spread of the logarithms of intensities, up to which it is a rounding error."""
 _DOUBLINGS: Final = 30
 """Of the length of a ray; one that is within the region still has no end."""
 _BLOCK: Final = 2_000_000
@@ -152,7 +154,7 @@ def _fit(trials: Trials) -> Fit:
     for _ in range(3):  # the last digits
         scaled = scaled - linalg.solve(curvature(scaled), slope(scaled), assume_a="pos")
     best = back @ scaled
-    if trials.measures == 1 and best[1] <= 0.0:
+    if trials.measures == 1 and scaled[1] <= FLAT:
         return Fit.none(FragilityStatus.NOT_RISING, trials.measures)
     inside = information(trials, best)
     return Fit(FragilityStatus.FITTED, best, inside, linalg.inv(inside))

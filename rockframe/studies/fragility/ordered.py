@@ -15,6 +15,7 @@ from rockframe.results.outcome import Generic
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.signals.arrays import Array
 from rockframe.studies.fragility.likelihood import (
+    FLAT,
     Bands,
     Fit,
     curvature_of_shares,
@@ -50,7 +51,7 @@ def ordered_fits(
     first = [int(np.flatnonzero(places == k)[0]) for k in range(places.max() + 1)]
     count = np.asarray(verdicts[some][first].sum(axis=0), dtype=np.intp)
     best = _greatest(logs, count, len(first))
-    if best is None or best[-1] <= 0.0:
+    if best is None or best[-1] * float(logs.std()) <= FLAT:
         status = FragilityStatus.SEPARATED if best is None else FragilityStatus.NOT_RISING
         return [Fit.none(status, 1) if one else f for one, f in zip(some, found, strict=True)]
     covariance, rows = _covariance(logs, count, motions, best, bands)
@@ -145,7 +146,23 @@ def _covariance(
     rows = np.full((len(names), len(best)), np.nan)
     for k in range(len(names)):
         kept = place != k
-        one = _greatest(logs[kept], count[kept], len(best) - 1, best)
+        one = _of_fewer(logs[kept], count[kept], best)
         if one is not None:
             rows[k] = one
     return jackknife(best, rows, np.ones(len(names))), rows
+
+
+def _of_fewer(logs: Array, count: Generic, best: Array) -> Array | None:
+    """Find the greatest likelihood of some of the runs, from that of all; None without one.
+
+    Limit states between which none of these runs ends have one capacity. Their intercepts would
+    pass one another without end, since no run requires them to be in order.
+    """
+    states = len(best) - 1
+    kinds, kind = np.unique(count, return_inverse=True)
+    if not (kinds[0] == 0 and kinds[-1] == states):  # all runs exceed the first, or none the last
+        return None
+    place = np.searchsorted(kinds, np.arange(states), side="right") - 1
+    first = np.searchsorted(place, np.arange(len(kinds) - 1))
+    found = _greatest(logs, kind, len(first), best[[*first, states]])
+    return None if found is None else found[[*place, len(first)]]

@@ -216,6 +216,15 @@ def test_what_has_no_fit_says_so():
     assert reversed_.fragility_status.item() == FragilityStatus.NOT_RISING
 
 
+def test_equal_shares_at_all_intensities_do_not_rise():
+    """The likelihood is greatest at a slope of zero, of which rounding leaves some 1e-15."""
+    for over, trials in ((7, 16), (8, 16), (1, 3)):
+        for levels in ([2.151, 2.456], [0.1, 0.3, 7.0]):
+            found = of_counts((levels, "m/s^2"), [over] * len(levels), trials)
+            assert found.fragility_status.item() == FragilityStatus.NOT_RISING
+            assert np.isnan(found.median_intensity.item())
+
+
 def test_bad_counts_are_refused():
     for unit in ("furlong", "m/s"):
         with pytest.raises(UnitsError, match="is in m s"):

@@ -127,3 +127,30 @@ def test_what_has_no_order_is_refused():
     for options in ({"bands": "profile"}, {"intensity": ("PGA", "PGV/PGA")}, {"dispersion": "one"}):
         with pytest.raises(ComponentError, match="dispersion"):
             rf.fragility(runs, **{"dispersion": "common", **options})
+
+
+def test_without_a_motion_limit_states_that_the_same_runs_exceed_have_one_capacity():
+    """Without the one run that exceeds only the first, nothing keeps the two in order."""
+    logs = np.array([-1.2, -0.9, -0.5, -0.3, 0.0, 0.2, 0.3, 0.6, 0.8, 1.1, 1.3])
+    count = np.array([0, 0, 0, 2, 1, 0, 2, 0, 2, 2, 2])
+    verdicts = np.stack([count > 0, count > 1]).astype(float)
+    motions = np.arange(len(logs))
+    first, second = ordered_fits(logs, verdicts, motions, NAMES[:2], Bands.JACKKNIFE)
+    kept = count != 1
+    one = Trials.of_verdicts(
+        logs[kept, None], verdicts[0, kept], np.ones(kept.sum()), motions[kept]
+    )
+    expected = fit(one, Bands.PROFILE).coefficients
+    for state in (first, second):
+        assert state.without is not None
+        rows = state.without[0]
+        np.testing.assert_allclose(rows[4], expected, rtol=1e-6)
+        assert np.isfinite(rows).all()
+
+
+def test_without_a_motion_all_runs_may_exceed_the_first_limit_state():
+    logs = np.array([-1.2, -0.9, -0.5, -0.3, 0.0, 0.2, 0.3, 0.6])
+    count = np.array([1, 1, 2, 0, 1, 2, 1, 2])
+    verdicts = np.stack([count > 0, count > 1]).astype(float)
+    fits = ordered_fits(logs, verdicts, np.arange(len(logs)), NAMES[:2], Bands.JACKKNIFE)
+    assert not any(one.complete for one in fits)
