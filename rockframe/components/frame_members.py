@@ -203,11 +203,8 @@ class Member(Component):
                 raise ComponentError(msg)
 
     def _numbers(self, numbers: SIValues) -> MemberSI:
-        width, height, depth = (
-            (numbers.width or 0.0),
-            (numbers.height or 0.0),
-            (numbers.depth or 0.0),
-        )
+        sizes = numbers.width, numbers.height, numbers.depth
+        width, height, depth = (size or 0.0 for size in sizes)
         mass, inertia = numbers.mass, numbers.inertia
         if mass is None:
             mass = numbers.density * width * height * depth
@@ -220,9 +217,7 @@ class Member(Component):
                 "numbers"
             )
             raise ComponentError(msg)
-        return MemberSI(
-            mass, numbers.x, numbers.y, inertia, numbers.width, numbers.height, numbers.depth
-        )
+        return MemberSI(mass, numbers.x, numbers.y, inertia, *sizes)
 
 
 _COLUMNS: Final = {

@@ -65,14 +65,6 @@ def _on_body() -> Count[int]:
     return Count(doc="Number of the body, from the top down.", default=BODY)
 
 
-def _to_body() -> Count[None]:
-    return Count(
-        doc="Number of the body of the other point; the ground, or a wall that moves with it, "
-        "unless given.",
-        default=None,
-    )
-
-
 def _name() -> Text[None]:
     return Text(doc="Name in results; its number unless given.", default=None)
 
@@ -96,7 +88,11 @@ class PointLink(Link):
     on = Place(doc="The point of the body.")
     to = Place(doc="The other point.")
     on_body = _on_body()
-    to_body = _to_body()
+    to_body = Count(
+        doc="Number of the body of the other point; the ground, or a wall that moves with it, "
+        "unless given.",
+        default=None,
+    )
     name = _name()
 
 
@@ -197,8 +193,7 @@ class Restrainer(PointLink):
         if faults:
             msg = f"Restrainer: {'; '.join(faults)}"
             raise ComponentError(msg)
-        _refuse_preload("Restrainer", numbers)
-        return numbers
+        return _check_preload("Restrainer", numbers)
 
 
 class Tendon(Link):
@@ -268,8 +263,7 @@ class Tendon(Link):
         )  # fmt: skip
 
     def _numbers(self, numbers: SIValues) -> Any:
-        _refuse_preload("Tendon", numbers)
-        return numbers
+        return _check_preload("Tendon", numbers)
 
 
 class Load(Link):
@@ -328,7 +322,7 @@ class Load(Link):
         return numbers
 
 
-def _refuse_preload(owner: str, numbers: SIValues) -> None:
+def _check_preload(owner: str, numbers: SIValues) -> SIValues:
     """Refuse a preload that is not below the strength."""
     if numbers.preload and numbers.strength and numbers.preload >= numbers.strength:
         msg = (
@@ -336,6 +330,7 @@ def _refuse_preload(owner: str, numbers: SIValues) -> None:
             f"{numbers.strength:.6g} N"
         )
         raise ComponentError(msg)
+    return numbers
 
 
 class WallSide(StrEnum):
@@ -450,7 +445,7 @@ class RearWall(Link):
         doc="Height above its base at which a body touches an elastic wall; its top unless given.",
         default=None,
     )  # fmt: skip
-    on_body = Count(doc="Number of the body, from the top down.", default=BODY)
+    on_body = _on_body()
 
     def __init__(
         self,

@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Final, Self
 from rockframe.components.base import Component
 from rockframe.components.block import Block
 from rockframe.components.block_numbers import BlockSI
-from rockframe.components.parameters import REQUIRED, Count, Declared, Missing, Parameter, SIValues
+from rockframe.components.parameters import Count, Declared, Missing, Parameter, SIValues
 from rockframe.components.registry import component_from_dict
 from rockframe.errors import ComponentError, shown
 from rockframe.notebook import Polygon
@@ -28,9 +28,6 @@ class _Column(Declared[Block, Missing]):
     single = False
     written_as = "Block"
     annotation = Block
-
-    def __init__(self, *, doc: str) -> None:
-        super().__init__(None, None, doc=doc, default=REQUIRED)
 
     def read(self, value: object, owner: str) -> Block:
         """Read a block, or the mapping that describes it."""
