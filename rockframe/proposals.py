@@ -11,7 +11,7 @@ from inspect import Parameter, signature
 from types import FunctionType
 from typing import TYPE_CHECKING, Any, Final, NoReturn, TypeVar, cast
 
-from rockframe.errors import ArgumentError, unexpected_argument, unknown_attribute
+from rockframe.errors import AccessError, ArgumentError, unexpected_argument, unknown_attribute
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 Class = TypeVar("Class", bound=type)
@@ -115,6 +115,23 @@ class Proposing(ABCMeta):
 
     def __dir__(cls) -> list[str]:
         return [name for name in super().__dir__() if name != "_abc_impl"]
+
+
+class Immutable(metaclass=Proposing):
+    """A value whose attributes cannot be changed; ``dir`` lists the public ones."""
+
+    __slots__ = ()
+
+    def __setattr__(self, name: str, value: object) -> NoReturn:
+        msg = f"{type(self).__name__} is immutable; build a new one to change {name}"
+        raise AccessError(msg)
+
+    def __delattr__(self, name: str) -> NoReturn:
+        msg = f"{type(self).__name__} is immutable; {name} cannot be deleted"
+        raise AccessError(msg)
+
+    def __dir__(self) -> list[str]:
+        return [name for name in super().__dir__() if not name.startswith("_")]
 
 
 def attributes_of(module: str, names: Iterable[str]) -> Callable[[str], NoReturn]:

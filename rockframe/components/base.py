@@ -5,14 +5,13 @@ from collections.abc import Collection, Iterable, Mapping
 from inspect import Parameter as Argument
 from inspect import Signature, cleandoc
 from textwrap import fill
-from typing import Any, ClassVar, Final, NoReturn, Self
+from typing import Any, ClassVar, Final, Self
 
 from rockframe.arguments import by_names, several
 from rockframe.components.alternatives import OneOf
 from rockframe.components.parameters import DERIVED, REQUIRED, Declared, SIValues
 from rockframe.components.registry import register_class
 from rockframe.errors import (
-    AccessError,
     ArgumentError,
     ComponentError,
     ModelWarning,
@@ -23,7 +22,7 @@ from rockframe.errors import (
 )
 from rockframe.many import Many, isfinite
 from rockframe.notebook import Polygon, arguments_in_words, card, drawing
-from rockframe.proposals import Proposing, proposing
+from rockframe.proposals import Immutable, proposing
 from rockframe.units import to_ratio
 
 _SECTION: Final = re.compile(r"^\w[\w ]*\n-{3,}$", re.MULTILINE)
@@ -53,7 +52,7 @@ def _row(parameter: Declared[Any, Any]) -> str:
 
 
 @proposing
-class Component(metaclass=Proposing):
+class Component(Immutable):
     """An immutable value object with the parameters that its class declares.
 
     A class of components declares each parameter once, as an attribute:
@@ -173,17 +172,6 @@ class Component(metaclass=Proposing):
             for name, one in self._declared.items()
         }
         return {name: value for name, value in written.items() if value is not None}
-
-    def __setattr__(self, name: str, value: object) -> NoReturn:
-        msg = f"{type(self).__name__} is immutable; build a new one to change {name}"
-        raise AccessError(msg)
-
-    def __delattr__(self, name: str) -> NoReturn:
-        msg = f"{type(self).__name__} is immutable; {name} cannot be deleted"
-        raise AccessError(msg)
-
-    def __dir__(self) -> list[str]:
-        return [name for name in super().__dir__() if not name.startswith("_")]
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Component) or type(other) is not type(self):
@@ -364,7 +352,7 @@ class Component(metaclass=Proposing):
         owner = self._owner(changed)
         for name, value in values.items():
             one = self._declared[name]
-            holds: Any = _is_finite if one.condition is None else one.condition.holds
+            holds: Any = isfinite if one.condition is None else one.condition.holds
             if not isinstance(value, float | Many) or not holds(value):
                 # raises the error for a wrong value
                 plain = isinstance(value, str) or one.measure is None
@@ -415,6 +403,11 @@ class Component(metaclass=Proposing):
         called, has = f"{shown(name)}{nearest(name, listed)}", ", ".join(listed) or "none"
         msg = f"{type(self).__name__}: no parameter is called {called} (it has {has})"
         raise ComponentError(msg)
+
+
+def arguments_in(names: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the arguments of a constructor from its ``locals()``, before it makes others."""
+    return {name: value for name, value in names.items() if name not in ("self", "__class__")}
 
 
 def replaced(
@@ -480,11 +473,6 @@ def _constructor(kind: type[Component]) -> Any:
     __init__.__qualname__ = f"{kind.__qualname__}.__init__"
     __init__.__module__ = kind.__module__
     return __init__
-
-
-def _is_finite(value: object) -> bool:
-    """Whether a value is a finite number; words and counts are not."""
-    return isinstance(value, float | Many) and isfinite(value)
 
 
 def _number_in(value: float | str) -> float:

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Final, Self
 import xarray as xr
 
 from rockframe.components.alternatives import OneOf
-from rockframe.components.base import Component
+from rockframe.components.base import Component, arguments_in
 from rockframe.components.parameters import DERIVED, Parameter, SIValues, Text
 from rockframe.components.shapes.standing import PlaneMass
 from rockframe.constants import CONVENTIONS
@@ -121,18 +121,7 @@ class Member(Component):
         depth: QuantityLike | None = None,
         kind: str | None = None,
     ) -> None:
-        super().__init__(
-            name=name,
-            kind=kind,
-            mass=mass,
-            density=density,
-            x=x,
-            y=y,
-            width=width,
-            height=height,
-            depth=depth,
-            inertia=inertia,
-        )
+        super().__init__(**arguments_in(locals()))
 
     @classmethod
     def box(
@@ -203,11 +192,8 @@ class Member(Component):
                 raise ComponentError(msg)
 
     def _numbers(self, numbers: SIValues) -> MemberSI:
-        width, height, depth = (
-            (numbers.width or 0.0),
-            (numbers.height or 0.0),
-            (numbers.depth or 0.0),
-        )
+        sizes = numbers.width, numbers.height, numbers.depth
+        width, height, depth = (size or 0.0 for size in sizes)
         mass, inertia = numbers.mass, numbers.inertia
         if mass is None:
             mass = numbers.density * width * height * depth
@@ -220,9 +206,7 @@ class Member(Component):
                 "numbers"
             )
             raise ComponentError(msg)
-        return MemberSI(
-            mass, numbers.x, numbers.y, inertia, numbers.width, numbers.height, numbers.depth
-        )
+        return MemberSI(mass, numbers.x, numbers.y, inertia, *sizes)
 
 
 _COLUMNS: Final = {

@@ -4,7 +4,7 @@ from enum import StrEnum
 from typing import Any, ClassVar, Final, Literal
 
 from rockframe.arguments import one_of_words
-from rockframe.components.base import Component
+from rockframe.components.base import Component, arguments_in
 from rockframe.components.parameters import (
     Choice,
     Count,
@@ -65,14 +65,6 @@ def _on_body() -> Count[int]:
     return Count(doc="Number of the body, from the top down.", default=BODY)
 
 
-def _to_body() -> Count[None]:
-    return Count(
-        doc="Number of the body of the other point; the ground, or a wall that moves with it, "
-        "unless given.",
-        default=None,
-    )
-
-
 def _name() -> Text[None]:
     return Text(doc="Name in results; its number unless given.", default=None)
 
@@ -96,7 +88,11 @@ class PointLink(Link):
     on = Place(doc="The point of the body.")
     to = Place(doc="The other point.")
     on_body = _on_body()
-    to_body = _to_body()
+    to_body = Count(
+        doc="Number of the body of the other point; the ground, or a wall that moves with it, "
+        "unless given.",
+        default=None,
+    )
     name = _name()
 
 
@@ -177,12 +173,7 @@ class Restrainer(PointLink):
         to_body: int | None = None,
         name: str | None = None,
     ) -> None:
-        super().__init__(
-            on=on, to=to, stiffness=stiffness, slack=slack, preload=preload, strength=strength,
-            brittle=brittle, breaking_elongation=breaking_elongation, damping=damping,
-            compression=compression, on_body=on_body,
-            to_body=to_body, name=name,
-        )  # fmt: skip
+        super().__init__(**arguments_in(locals()))
 
     def _numbers(self, numbers: SIValues) -> Any:
         faults = list[str]()
@@ -197,8 +188,7 @@ class Restrainer(PointLink):
         if faults:
             msg = f"Restrainer: {'; '.join(faults)}"
             raise ComponentError(msg)
-        _refuse_preload("Restrainer", numbers)
-        return numbers
+        return _check_preload("Restrainer", numbers)
 
 
 class Tendon(Link):
@@ -262,14 +252,10 @@ class Tendon(Link):
         on_body: int = BODY,
         name: str | None = None,
     ) -> None:
-        super().__init__(
-            stiffness=stiffness, preload=preload, at=at, depth=depth, strength=strength,
-            brittle=brittle, on_body=on_body, name=name,
-        )  # fmt: skip
+        super().__init__(**arguments_in(locals()))
 
     def _numbers(self, numbers: SIValues) -> Any:
-        _refuse_preload("Tendon", numbers)
-        return numbers
+        return _check_preload("Tendon", numbers)
 
 
 class Load(Link):
@@ -316,10 +302,7 @@ class Load(Link):
         on_body: int = BODY,
         name: str | None = None,
     ) -> None:
-        super().__init__(
-            at=at, vertical=vertical, horizontal=horizontal, moving_mass=moving_mass,
-            on_body=on_body, name=name,
-        )  # fmt: skip
+        super().__init__(**arguments_in(locals()))
 
     def _numbers(self, numbers: SIValues) -> Any:
         if not (numbers.vertical or numbers.horizontal) and numbers.moving_mass is None:
@@ -328,7 +311,7 @@ class Load(Link):
         return numbers
 
 
-def _refuse_preload(owner: str, numbers: SIValues) -> None:
+def _check_preload(owner: str, numbers: SIValues) -> SIValues:
     """Refuse a preload that is not below the strength."""
     if numbers.preload and numbers.strength and numbers.preload >= numbers.strength:
         msg = (
@@ -336,6 +319,7 @@ def _refuse_preload(owner: str, numbers: SIValues) -> None:
             f"{numbers.strength:.6g} N"
         )
         raise ComponentError(msg)
+    return numbers
 
 
 class WallSide(StrEnum):
@@ -450,7 +434,7 @@ class RearWall(Link):
         doc="Height above its base at which a body touches an elastic wall; its top unless given.",
         default=None,
     )  # fmt: skip
-    on_body = Count(doc="Number of the body, from the top down.", default=BODY)
+    on_body = _on_body()
 
     def __init__(
         self,
@@ -464,10 +448,7 @@ class RearWall(Link):
         height: QuantityLike | None = None,
         on_body: int = BODY,
     ) -> None:
-        super().__init__(
-            side=side, restitution=restitution, wall_restitution=wall_restitution,
-            stiffness=stiffness, damping=damping, gap=gap, height=height, on_body=on_body,
-        )  # fmt: skip
+        super().__init__(**arguments_in(locals()))
 
     @property
     def elastic(self) -> bool:

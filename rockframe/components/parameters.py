@@ -62,7 +62,12 @@ class Declared(Generic[Public, Usual]):
     annotation: Any
 
     def __init__(
-        self, measure: Measure | None, condition: Condition | None, *, doc: str, default: Usual
+        self,
+        measure: Measure | None = None,
+        condition: Condition | None = None,
+        *,
+        doc: str,
+        default: Usual = REQUIRED,
     ) -> None:
         for name, value, kind in (
             ("measure", measure, Measure), ("condition", condition, Condition), ("doc", doc, str)
@@ -262,7 +267,7 @@ class Choice(Declared[Words, Words]):
         if not isinstance(default, StrEnum):  # pyright: ignore[reportUnnecessaryIsInstance]
             msg = f"Choice: default must be one of the words of a StrEnum, got {shown(default)}"
             raise ComponentError(msg)
-        super().__init__(None, None, doc=doc, default=default)
+        super().__init__(doc=doc, default=default)
         self.written_as = "{" + ", ".join(f'"{word}"' for word in type(default)) + "}"
 
     def read(self, value: object, owner: str) -> Words:
@@ -298,7 +303,7 @@ class Text(Declared[str, Usual]):
 
     @hinted()
     def __init__(self, *, doc: str, default: Usual = REQUIRED) -> None:
-        super().__init__(None, None, doc=doc, default=default)
+        super().__init__(doc=doc, default=default)
 
     def read(self, value: object, owner: str) -> str:
         """Check that the argument is a text.
@@ -320,9 +325,6 @@ class Flag(Declared[bool, bool]):
 
     written_as = "bool"
     annotation = bool
-
-    def __init__(self, *, doc: str, default: bool) -> None:
-        super().__init__(None, None, doc=doc, default=default)
 
     def read(self, value: object, owner: str) -> bool:
         """Read a truth value, or the word ``true`` or ``false``."""
@@ -350,9 +352,6 @@ class Count(Declared[int, Usual]):
     written_as = "int"
     annotation = int
 
-    def __init__(self, *, doc: str, default: Usual = REQUIRED) -> None:
-        super().__init__(None, None, doc=doc, default=default)
-
     def read(self, value: object, owner: str) -> int:
         """Read the number."""
         number = value if not isinstance(value, bool) else None
@@ -376,7 +375,7 @@ class Place(Declared[tuple[Quantity, Quantity], Missing]):
     annotation = tuple[QuantityLike, QuantityLike]
 
     def __init__(self, *, doc: str) -> None:
-        super().__init__(LENGTH.like('("-0.5 m", "3 m")'), None, doc=doc, default=REQUIRED)
+        super().__init__(LENGTH.like('("-0.5 m", "3 m")'), doc=doc)
 
     def read(self, value: object, owner: str) -> tuple[float, float]:
         """Convert to SI units."""

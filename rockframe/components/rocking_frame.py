@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Final, Self
 
-from rockframe.components.base import Component
+from rockframe.components.base import Component, arguments_in
 from rockframe.components.block import Block
 from rockframe.components.block_numbers import BlockSI
-from rockframe.components.parameters import REQUIRED, Count, Declared, Missing, Parameter, SIValues
+from rockframe.components.parameters import Count, Declared, Missing, Parameter, SIValues
 from rockframe.components.registry import component_from_dict
 from rockframe.errors import ComponentError, shown
 from rockframe.notebook import Polygon
@@ -28,9 +28,6 @@ class _Column(Declared[Block, Missing]):
     single = False
     written_as = "Block"
     annotation = Block
-
-    def __init__(self, *, doc: str) -> None:
-        super().__init__(None, None, doc=doc, default=REQUIRED)
 
     def read(self, value: object, owner: str) -> Block:
         """Read a block, or the mapping that describes it."""
@@ -115,10 +112,7 @@ class RockingFrame(Component):
         spacing: QuantityLike | None = None,
         beam_height: QuantityLike | None = None,
     ) -> None:
-        super().__init__(
-            column=column, columns=columns, beam_mass=beam_mass, spacing=spacing,
-            beam_height=beam_height,
-        )  # fmt: skip
+        super().__init__(**arguments_in(locals()))
 
     def _numbers(self, numbers: SIValues) -> RockingFrameSI:
         if numbers.columns < FEWEST_COLUMNS:

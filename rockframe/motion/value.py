@@ -7,9 +7,9 @@ from types import MappingProxyType
 from typing import Any, Final, TypeVar
 
 from rockframe.arguments import text, truth
-from rockframe.errors import AccessError, ComponentError, shown
+from rockframe.errors import ComponentError, shown
 from rockframe.motion.quantities import with_quantity
-from rockframe.proposals import Proposing, proposing
+from rockframe.proposals import Immutable, proposing
 from rockframe.signals import Motion, Signal
 from rockframe.signals.integrals import ground_path
 from rockframe.signals.motion import greatest, knots_of
@@ -22,7 +22,7 @@ Made = TypeVar("Made", bound="MotionValue")
 
 
 @proposing
-class MotionValue(metaclass=Proposing):
+class MotionValue(Immutable):
     """A motion in SI units with a name, metadata and a history; immutable.
 
     Parameters
@@ -142,9 +142,6 @@ class MotionValue(metaclass=Proposing):
             f"peak {self.si.peak:.5g} m/s^2{vertical}>"
         )
 
-    def __dir__(self) -> list[str]:
-        return [name for name in super().__dir__() if not name.startswith("_")]
-
     def _repr_html_(self) -> str:
         from rockframe.motion.description import motion_html
 
@@ -158,14 +155,6 @@ class MotionValue(metaclass=Proposing):
 
     def __hash__(self) -> int:
         return hash((type(self).__name__, self.sha256))
-
-    def __setattr__(self, name: str, value: object) -> None:
-        msg = f"{type(self).__name__} is immutable; build a new one to change {name}"
-        raise AccessError(msg)
-
-    def __delattr__(self, name: str) -> None:
-        msg = f"{type(self).__name__} is immutable; {name} cannot be deleted"
-        raise AccessError(msg)
 
     def __reduce__(self) -> tuple[Any, ...]:
         recipe = None if self.recipe is None else dict(self.recipe)

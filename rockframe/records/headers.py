@@ -23,10 +23,10 @@ def first_match(
     return next(((match, line) for match, line in matches if match is not None), None)
 
 
-def read_keys(lines: Iterable[str], first: int = 1) -> Keys:
+def read_keys(lines: Iterable[str]) -> Keys:
     """Read lines ``KEY   : value``; the first one counts if a key is repeated."""
     keys: Keys = {}
-    for line, text in enumerate(lines, start=first):
+    for line, text in enumerate(lines, start=1):
         key, colon, value = text.partition(":")
         if colon and key.strip():
             keys.setdefault(key.strip(), (value.strip(), line))

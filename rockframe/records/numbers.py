@@ -129,8 +129,9 @@ def one_number(text: str, source: Source, line: int) -> float:
     return value
 
 
-def last_fields(source: Source, first: int, count: int = _SAME_SHAPE + 1) -> list[str]:
+def last_fields(source: Source, first: int) -> list[str]:
     """Return the last fields of a file, as printed."""
+    count = _SAME_SHAPE + 1
     fields: list[str] = []
     for line in reversed(source.lines[first:]):
         fields = line.split()[-count:] + fields

@@ -236,13 +236,10 @@ def from_outline(
     >>> round(wall.mass.m_as("kg"), 6), round(wall.eccentricity.m_as("m"), 4)
     (1920.0, -0.0833)
     """
-    owner, value = (
-        f"{cls.__name__}.from_outline",
-        {"mass": mass, "density": density, "depth": depth},
-    )
-    whole, corners = outline_mass(
-        points if unit is None else (points, unit), value, owner, "points"
-    )
+    owner = f"{cls.__name__}.from_outline"
+    given = points if unit is None else (points, unit)
+    values = {"mass": mass, "density": density, "depth": depth}
+    whole, corners = outline_mass(given, values, owner, "points")
     ground, top = (of(corner.y for corner in corners) for of in (min, max))
     slack = ROUNDING * extent_of(np.array([(corner.x, corner.y) for corner in corners]))
     lowest = [corner.x for corner in corners if corner.y <= ground + slack]

@@ -179,9 +179,7 @@ class _Run:
         """Make adjustments for some oscillators; tell whether further ones would not help."""
         for _ in range(most):
             misfits = np.abs(self._peaks.spectrum[chosen] / self._targets[chosen] - 1.0)
-            if misfits.max() <= self._aim:
-                return True
-            if not self._step(chosen):
+            if misfits.max() <= self._aim or not self._step(chosen):
                 return True
         return False
 

@@ -205,9 +205,6 @@ def rotated(
     operation = None
     if known is not None:
         operation = {"rotated": {"other": known, "angle": f"{turn!r} {ANGLE.unit}"}}
-    factors = [one.metadata.get("scale_factor", 1.0) for one in (motion, other)]
-    if len({abs(one) for one in factors if isinstance(one, int | float)}) > 1:
-        metadata["scale_factor"] = None  # neither is that of both
     metadata["component"] = " and ".join(
         str(one.metadata.get("component", one.name)) for one in (motion, other)
     )

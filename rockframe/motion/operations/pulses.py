@@ -94,8 +94,9 @@ def velocity_pulse(
     whole = velocity_pulses.sum_of(wavelets, wavelet, -before, before + velocity.size + after)
     # central differences: their integral by the trapezoidal rule is zero over the whole pulse
     pulse = np.gradient(whole, dt)
-    rest = _padded(si.horizontal.samples, before, after)
-    upwards = None if si.vertical is None else _padded(si.vertical.samples, before, after)
+    still = before, after
+    rest = np.pad(si.horizontal.samples, still)
+    upwards = None if si.vertical is None else np.pad(si.vertical.samples, still)
     steps = (
         *lost_pieces(si),
         f"{before} samples of still ground put before and {after} after it",
@@ -150,7 +151,3 @@ def searched(shortest: QuantityLike, longest: QuantityLike, dt: float, *, owner:
 def velocity_of(signal: Signal) -> Array:
     """Return the velocity of the ground at the samples, from rest [m s^-1]."""
     return knots_of(ground_path(signal)[0])
-
-
-def _padded(samples: Array, before: int, after: int) -> Array:
-    return np.concatenate([np.zeros(before), samples, np.zeros(after)])

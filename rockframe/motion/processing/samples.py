@@ -130,9 +130,8 @@ def padded(signal: Signal, count: int) -> Signal:
         return signal
     pieces = signal.polynomials
     if pieces is not None:
-        pieces = np.concatenate([pieces, np.zeros((missing, pieces.shape[1]))])
-    samples = np.concatenate([signal.samples, np.zeros(missing)])
-    return replace(signal, samples=samples, polynomials=pieces)
+        pieces = np.pad(pieces, ((0, missing), (0, 0)))
+    return replace(signal, samples=np.pad(signal.samples, (0, missing)), polynomials=pieces)
 
 
 def divided_signal(signal: Signal, parts: int) -> Signal:
