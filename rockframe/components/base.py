@@ -405,11 +405,6 @@ class Component(Immutable):
         raise ComponentError(msg)
 
 
-def arguments_in(names: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the arguments of a constructor from its ``locals()``, before it makes others."""
-    return {name: value for name, value in names.items() if name not in ("self", "__class__")}
-
-
 def replaced(
     arguments: Mapping[str, float | str],
     changes: Mapping[str, Any],

@@ -5,7 +5,7 @@ from enum import StrEnum
 from typing import ClassVar, Final, Literal, Self, TypeAlias
 
 from rockframe.components.alternatives import OneOf
-from rockframe.components.base import Component, arguments_in
+from rockframe.components.base import Component
 from rockframe.components.parameters import (
     Choice,
     DampingRatio,
@@ -98,7 +98,12 @@ class RigidGround(Component):
         kinetic_friction: RatioLike | None = None,
         impact: ImpactLike = Impact.COULOMB,
     ) -> None:
-        super().__init__(**arguments_in(locals()))
+        super().__init__(
+            restitution=restitution,
+            friction=friction,
+            kinetic_friction=kinetic_friction,
+            impact=impact,
+        )
 
     def _numbers(self, numbers: SIValues) -> SIValues:
         return check_frictions("RigidGround", numbers)
@@ -182,7 +187,15 @@ class TwoSpringSupport(Component):
         friction: RatioLike | None = None,
         kinetic_friction: RatioLike | None = None,
     ) -> None:
-        super().__init__(**arguments_in(locals()))
+        super().__init__(
+            frequency_ratio=frequency_ratio,
+            stiffness=stiffness,
+            damping_ratio=damping_ratio,
+            damping=damping,
+            restitution=restitution,
+            friction=friction,
+            kinetic_friction=kinetic_friction,
+        )
 
     def _numbers(self, numbers: SIValues) -> SIValues:
         return check_frictions("TwoSpringSupport", numbers)
@@ -253,7 +266,7 @@ class CushionCap(Component):
         density: QuantityLike | None = None,
         depth: QuantityLike | None = None,
     ) -> None:
-        super().__init__(**arguments_in(locals()))
+        super().__init__(height=height, mass=mass, width=width, density=density, depth=depth)
 
     def _shapes(self) -> list[Polygon]:
         si = self.si
@@ -348,7 +361,14 @@ class WinklerSoil(Component):
         friction: RatioLike | None = None,
         kinetic_friction: RatioLike | None = None,
     ) -> None:
-        super().__init__(**arguments_in(locals()))
+        super().__init__(
+            stiffness=stiffness,
+            damping=damping,
+            damping_ratio=damping_ratio,
+            separation=separation,
+            friction=friction,
+            kinetic_friction=kinetic_friction,
+        )
 
     def _numbers(self, numbers: SIValues) -> SIValues:
         return check_frictions("WinklerSoil", numbers)

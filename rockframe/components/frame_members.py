@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Final, Self
 import xarray as xr
 
 from rockframe.components.alternatives import OneOf
-from rockframe.components.base import Component, arguments_in
+from rockframe.components.base import Component
 from rockframe.components.parameters import DERIVED, Parameter, SIValues, Text
 from rockframe.components.shapes.standing import PlaneMass
 from rockframe.constants import CONVENTIONS
@@ -121,7 +121,18 @@ class Member(Component):
         depth: QuantityLike | None = None,
         kind: str | None = None,
     ) -> None:
-        super().__init__(**arguments_in(locals()))
+        super().__init__(
+            name=name,
+            kind=kind,
+            mass=mass,
+            density=density,
+            x=x,
+            y=y,
+            width=width,
+            height=height,
+            depth=depth,
+            inertia=inertia,
+        )
 
     @classmethod
     def box(

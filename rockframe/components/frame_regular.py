@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Final
 import numpy as np
 
 from rockframe.components.alternatives import OneOf
-from rockframe.components.base import Component, arguments_in
+from rockframe.components.base import Component
 from rockframe.components.frame_members import Member
 from rockframe.components.parameters import DERIVED, Declared, Missing, Parameter, SIValues
 from rockframe.errors import ComponentError
@@ -227,7 +227,20 @@ class RegularFrame(Component):
         slab_thickness: QuantityLike = SLAB_THICKNESS,
         infill_thickness: QuantityLike | None = INFILL_THICKNESS,
     ) -> None:
-        super().__init__(**arguments_in(locals()))
+        super().__init__(
+            storeys=storeys,
+            height=height,
+            storey_heights=storey_heights,
+            width=width,
+            depth=depth,
+            column_width=column_width,
+            column_depth=column_depth,
+            beam_height=beam_height,
+            beam_width=beam_width,
+            slab_thickness=slab_thickness,
+            infill_thickness=infill_thickness,
+            density=density,
+        )
 
     def _check(self, values: Mapping[str, object], owner: str) -> None:
         of_all = [values[name] is not None for name in ("storeys", "height")]

@@ -5,7 +5,7 @@ import re
 from dataclasses import dataclass
 from typing import ClassVar, Final
 
-from rockframe.components.base import Component, arguments_in
+from rockframe.components.base import Component
 from rockframe.components.parameters import Parameter, SIValues
 from rockframe.errors import shown
 from rockframe.units import (
@@ -87,7 +87,12 @@ class InitialState(Component):
         vertical_displacement: QuantityLike | None = None,
         vertical_velocity: QuantityLike | None = None,
     ) -> None:
-        super().__init__(**arguments_in(locals()))
+        super().__init__(
+            rotation=rotation,
+            angular_velocity=angular_velocity,
+            vertical_displacement=vertical_displacement,
+            vertical_velocity=vertical_velocity,
+        )
 
     def _numbers(self, numbers: SIValues) -> InitialStateSI:
         return InitialStateSI(

@@ -4,7 +4,7 @@ from enum import StrEnum
 from typing import Any, ClassVar, Final, Literal
 
 from rockframe.arguments import one_of_words
-from rockframe.components.base import Component, arguments_in
+from rockframe.components.base import Component
 from rockframe.components.parameters import (
     Choice,
     Count,
@@ -173,7 +173,12 @@ class Restrainer(PointLink):
         to_body: int | None = None,
         name: str | None = None,
     ) -> None:
-        super().__init__(**arguments_in(locals()))
+        super().__init__(
+            on=on, to=to, stiffness=stiffness, slack=slack, preload=preload, strength=strength,
+            brittle=brittle, breaking_elongation=breaking_elongation, damping=damping,
+            compression=compression, on_body=on_body,
+            to_body=to_body, name=name,
+        )  # fmt: skip
 
     def _numbers(self, numbers: SIValues) -> Any:
         faults = list[str]()
@@ -252,7 +257,10 @@ class Tendon(Link):
         on_body: int = BODY,
         name: str | None = None,
     ) -> None:
-        super().__init__(**arguments_in(locals()))
+        super().__init__(
+            stiffness=stiffness, preload=preload, at=at, depth=depth, strength=strength,
+            brittle=brittle, on_body=on_body, name=name,
+        )  # fmt: skip
 
     def _numbers(self, numbers: SIValues) -> Any:
         return _check_preload("Tendon", numbers)
@@ -302,7 +310,10 @@ class Load(Link):
         on_body: int = BODY,
         name: str | None = None,
     ) -> None:
-        super().__init__(**arguments_in(locals()))
+        super().__init__(
+            at=at, vertical=vertical, horizontal=horizontal, moving_mass=moving_mass,
+            on_body=on_body, name=name,
+        )  # fmt: skip
 
     def _numbers(self, numbers: SIValues) -> Any:
         if not (numbers.vertical or numbers.horizontal) and numbers.moving_mass is None:
@@ -448,7 +459,10 @@ class RearWall(Link):
         height: QuantityLike | None = None,
         on_body: int = BODY,
     ) -> None:
-        super().__init__(**arguments_in(locals()))
+        super().__init__(
+            side=side, restitution=restitution, wall_restitution=wall_restitution,
+            stiffness=stiffness, damping=damping, gap=gap, height=height, on_body=on_body,
+        )  # fmt: skip
 
     @property
     def elastic(self) -> bool:

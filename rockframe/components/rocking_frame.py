@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Final, Self
 
-from rockframe.components.base import Component, arguments_in
+from rockframe.components.base import Component
 from rockframe.components.block import Block
 from rockframe.components.block_numbers import BlockSI
 from rockframe.components.parameters import Count, Declared, Missing, Parameter, SIValues
@@ -112,7 +112,10 @@ class RockingFrame(Component):
         spacing: QuantityLike | None = None,
         beam_height: QuantityLike | None = None,
     ) -> None:
-        super().__init__(**arguments_in(locals()))
+        super().__init__(
+            column=column, columns=columns, beam_mass=beam_mass, spacing=spacing,
+            beam_height=beam_height,
+        )  # fmt: skip
 
     def _numbers(self, numbers: SIValues) -> RockingFrameSI:
         if numbers.columns < FEWEST_COLUMNS:
