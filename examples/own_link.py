@@ -73,9 +73,11 @@ class Rope(ext.OwnLink):
         return ext.LinkNumbers(law, stiffness=13.0 * stiffness)
 
 
+rf.register(Rope)
+
+
 def main():
     """Run a block with the rope and without."""
-    rf.register(Rope)
     block = rf.Block(width="1 m", height="4 m", mass="4 t")
     pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
     rope = Rope(

@@ -34,6 +34,8 @@ STYLES: Final[tuple[Any, ...]] = ("-", "--", "-.", (0, (1, 1)))
 STANDS: Final = "#dfe7ef"
 _LEAST_TICKS: Final = 3
 """Least number of labels of an axis."""
+_OF_NOTHING: Final = (1.0, 10.0)
+"""Ends of a logarithmic axis without data."""
 _MANY_DECADES: Final = 200.0
 """Ratio of the ends of an axis above which only powers of ten have room as labels."""
 GREY: Final = "0.5"
@@ -178,6 +180,9 @@ def label_log_ticks(axes: "Axes", which: str = "xy") -> None:
     for name, axis, scale in both:
         if scale == "log" and name in which:
             low, high = axis.get_view_interval()
+            if not low > 0.0:  # nothing is drawn, such as the intensities of what never overturns
+                low, high = _OF_NOTHING
+                axis.set_view_interval(low, high, ignore=True)
             wide = high > _MANY_DECADES * low
             for subs in ((1.0,) if wide else (1.0, 2.0, 5.0), tuple(range(1, 10)), ()):
                 locator = LogLocator(subs=subs) if subs else MaxNLocator(5)

@@ -77,20 +77,23 @@ class AlongSteps:
         return peak[row, best], time
 
     def above(self, quantity: Callable[[Values], Array], level: float) -> tuple[float, float]:
-        """Return since when and how long in all a quantity is above a level; NaN, 0 if never."""
+        """Return since when and how long in all the magnitude of a quantity is above a level.
+
+        NaN, 0 if never. The quantity has a sign where its magnitude goes through zero in a step.
+        """
         shown = quantity(self.shown)
-        beyond = np.maximum(shown[:-1], shown[1:]) > level
+        beyond = np.maximum(np.abs(shown[:-1]), np.abs(shown[1:])) > level
         which = 1 + np.flatnonzero(beyond & (self.steps.length[1:] > 0.0))
         if not len(which):
             return math.nan, 0.0
         start, end, length = shown[which - 1], shown[which], self.steps.length[which]
-        low, high = np.minimum(start, end), np.maximum(start, end)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            share = (high - level) / (high - low)
-        # from an infinite value: as if the reciprocal were linear
-        share = np.where(np.isinf(high), low / level, share)
-        share = np.where(low > level, 1.0, share)
-        waits = 0.0 if start[0] > level else (1.0 - share[0]) * length[0]
+        # an infinite value is of the sign of the other end
+        start = np.where(np.isinf(start), np.copysign(start, end), start)
+        end = np.where(np.isinf(end), np.copysign(end, start), end)
+        share = _share_above(start, end, level) + _share_above(-start, -end, level)
+        waits = 0.0
+        if abs(start[0]) <= level:  # then only one of both is above it in this step
+            waits = (1.0 - share[0]) * length[0]
         begins = self.steps.time[which[0]] - length[0] + waits
         return float(begins), float(share @ length)
 
@@ -102,6 +105,17 @@ class AlongSteps:
         tops = np.fmax.reduce(shown, axis=1)
         rows = zip(promise[:, 1:], tops, strict=True)
         return np.unique(np.concatenate([1 + _largest(row, top) for row, top in rows]))
+
+
+def _share_above(start: Array, end: Array, level: float) -> Array:
+    """Return the shares of steps in which a quantity, linear in each, is above a level > 0."""
+    low, high = np.minimum(start, end), np.maximum(start, end)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = (high - level) / (high - low)
+    # to an infinite value: as if the reciprocal were linear
+    share = np.where(np.isinf(high), low / level, share)
+    share = np.where(low > level, 1.0, share)
+    return np.where(high > level, share, 0.0)
 
 
 @inlined

@@ -4,6 +4,7 @@ All of them follow from a model's columns, page "Forces and accelerations" of th
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
@@ -71,6 +72,15 @@ def friction_demand(thrust: Array, press: Array, least: float) -> Array:
     return np.where(held, np.where(press > least, ratio, math.inf), 0.0)
 
 
+def signed(name: str) -> Callable[[Values], Array]:
+    """Return a function that gives a friction demand the sign of its thrust.
+
+    The magnitude of a thrust that reverses within a step is not linear there.
+    """
+    thrust = "base_shear" if name == "soil_friction_demand" else "horizontal_reaction"
+    return lambda values: np.copysign(values[name], values[thrust])
+
+
 @dataclass(frozen=True)
 class EventStates:
     """The columns of a model just before and just after the events of a run."""
@@ -125,7 +135,7 @@ def peaks_along(
         lambda values: _settlement(values, load)[None],
     )
     level = min(HALF * most, ENOUGH)
-    lasted = along.above(lambda values: values["friction_demand"], level)[1] if level > 0.0 else 0.0
+    lasted = along.above(signed("friction_demand"), level)[1] if level > 0.0 else 0.0
     fall = math.sqrt(load.body.centre_height / load.options.gravity)
     struck = friction_demand(*events.impulses_on_base(load), NO_FORCE * load.weight * fall)
     forces = {

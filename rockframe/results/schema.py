@@ -159,6 +159,11 @@ def with_variables(
     return dataset.assign(added.data_vars).assign_coords(added.coords)
 
 
+def with_labels(dataset: xr.Dataset, labels: Mapping[str, Any]) -> xr.Dataset:
+    """Add coordinates that have their own attributes, such as axes, to a dataset."""
+    return without_fill_values(dataset.assign_coords(labels))
+
+
 def without_fill_values(dataset: xr.Dataset) -> xr.Dataset:
     """Mark coordinates as without fill value: they have no missing values (CF 2.5.1)."""
     for name in dataset.coords:

@@ -25,6 +25,7 @@ from rockframe.dynamics.events import (
 )
 from rockframe.dynamics.protocol import ContactModel, Ending, Ground
 from rockframe.results.along_steps import AlongSteps, Values
+from rockframe.results.forces import signed
 from rockframe.results.outcome import LEAST_SLIP, Generic
 from rockframe.signals.arrays import Array
 from rockframe.solve.accuracy import LEVELS, AccuracyLevel
@@ -290,7 +291,7 @@ def _sliding(along: AlongSteps, name: str, friction: float, body: str) -> Slidin
         return values[name][None]
 
     (needed,), (when,) = along.largest(demand)
-    first, lasted = along.above(lambda values: values[name], friction)
+    first, lasted = along.above(signed(name), friction)
     if needed > friction and math.isnan(first):  # within a step
         first = when
     return SlidingCheck(body, friction, float(needed), float(first), lasted)

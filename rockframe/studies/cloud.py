@@ -12,7 +12,7 @@ from rockframe.arguments import several, whole_number
 from rockframe.errors import StudyError
 from rockframe.proposals import hinted
 from rockframe.results.outcome import Generic, overturns
-from rockframe.results.schema import build_dataset, with_variables
+from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import unit_behind
@@ -440,7 +440,7 @@ def _labelled(
     found = with_variables(found, of_states, over=tuple(over))
     shares = {f"exceedance_probability{end}": points[:, k] for k, end in enumerate(_ENDS)}
     found = with_variables(found, shares, over=(*over, name))
-    found = found.assign_coords({name: (name, np.exp(along), measure.attrs)})
+    found = with_labels(found, {name: (name, np.exp(along), measure.attrs)})
     found = with_variables(found, {"limit_state": np.array(list(levels), dtype=object)})
     counted = [
         (np.exp(cloud.logs)[:, None], (cloud.responses >= level).astype(np.float64))

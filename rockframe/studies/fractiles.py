@@ -12,7 +12,7 @@ from rockframe.errors import ComponentError, StudyError, shown
 from rockframe.motion.quantities import ArrayLike
 from rockframe.proposals import hinted
 from rockframe.results.outcome import Generic, overturns
-from rockframe.results.schema import build_dataset, with_variables
+from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import unit_behind
 from rockframe.signals.arrays import Array
@@ -134,7 +134,7 @@ def fractile_curves(
         found = with_variables(found, {one: value}, over=over)
     names = np.array([one.name for one in lines], dtype=object)
     found = with_variables(found, {MOTION: names, "quantile": shares})
-    found = found.assign_coords({name: (name, along, measure.attrs)})
+    found = with_labels(found, {name: (name, along, measure.attrs)})
     found = with_variables(found, {_LEVEL: requested})
     unit = values.attrs.get("units", "1")
     for one in ("motion_response", "response_fractile", _LEVEL):

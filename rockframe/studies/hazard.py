@@ -12,7 +12,7 @@ from numpy.polynomial.legendre import leggauss
 from rockframe.arguments import checked_dataset, function_of
 from rockframe.errors import ComponentError, ModelWarning, SchemaError, UnitsError, shown, warn
 from rockframe.proposals import hinted
-from rockframe.results.schema import build_dataset, with_variables
+from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.variable import unit_behind
 from rockframe.signals.arrays import Array
@@ -145,7 +145,7 @@ def annual_rate(
         "quantile": np.array(_SHARES),
     }
     kept = [str(name) for name in curves.coords if set(curves[name].dims) <= set(dims)]
-    found = found.assign_coords({name: curves[name].variable for name in kept})
+    found = with_labels(found, {name: curves[name].variable for name in kept})
     found = with_variables(found, labels)
     for name in ("quantile_intensity", "contributing_intensity"):
         found[name].attrs["units"] = curves[measure].attrs.get("units", "1")
@@ -408,6 +408,11 @@ def _sentence(found: xr.Dataset) -> str:
         return f"Annual rate of {state}: from {known.min():.3g} to {known.max():.3g}."
     if known[0] == 0.0:
         return f"Annual rate of {state}: 0 within the hazard curve."
+    if len(rates) > 1:  # the others have no fragility
+        rate = last["annual_rate"]
+        place = np.unravel_index(int(np.nanargmax(rate.to_numpy())), rate.shape)
+        last = last.isel(dict(zip(rate.dims, place, strict=True)))
+        state += f", of the one of {len(rates)} structures that has a fragility"
     low, _, high = last["quantile_intensity"].to_numpy().ravel()
     years = float(f"{1.0 / known[0]:.4g}")
     text = f"Annual rate of {state}: {known[0]:.3g}, a return period of {years:.12g} years; "

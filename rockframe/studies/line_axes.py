@@ -11,6 +11,7 @@ import xarray as xr
 
 from rockframe.errors import RockframeError, StudyError, nearest, shown
 from rockframe.results.outcome import Generic
+from rockframe.results.schema import with_labels
 from rockframe.results.variables.studies import CASE
 from rockframe.studies.sweeps.arguments import OF_A_SWEEP
 from rockframe.studies.sweeps.axes import Axis, Changes, faults_of_values
@@ -66,7 +67,8 @@ def over_rows(
         others = [dim for dim in wide.dims if dim not in sizes]
         found[name] = wide.transpose(*(dim for dim in sizes if dim in wide.dims), *others)
     made = xr.Dataset(found, attrs=runs.attrs)
-    return made.set_coords([one for one in runs.coords if one in found]).assign_coords(labels)
+    made = made.set_coords([one for one in runs.coords if one in found])
+    return with_labels(made, labels)
 
 
 def read_line_axes(

@@ -10,7 +10,7 @@ import xarray as xr
 from rockframe.arguments import function_of, whole_number
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
-from rockframe.results.schema import SCHEMA, with_variables
+from rockframe.results.schema import SCHEMA, with_labels, with_variables
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
@@ -132,7 +132,7 @@ def overturning_map(
         "impacts_above": _without_stands(after),
     }
     found = with_variables(found, of_frequencies, over=(MOTION,))
-    found = found.assign_coords(_labels(system, levels, frequencies, motions.values()))
+    found = with_labels(found, _labels(system, levels, frequencies, motions.values()))
     found = found.swap_dims({SCALE: "amplitude", MOTION: "frequency"})
     found.attrs |= {
         "title": "Overturning by pulses",

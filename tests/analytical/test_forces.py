@@ -456,3 +456,18 @@ def test_the_friction_of_a_stack_is_that_of_both_its_bases():
     assert "; the cap would slide from " in response.attrs["verdict"]
     with pytest.warns(ModelWarning, match="the block would slide"):
         rf.System(BLOCK, soil, sliding="checked").simulate(PULSE)
+
+
+@pytest.mark.parametrize("values", [(0.09, -0.2), (-0.2, 0.2), (0.0, 0.15, -0.2, 0.05)])
+def test_a_force_that_reverses_within_a_step_is_above_half_its_peak_on_both_sides(values):
+    system = rf.System(BLOCK, rf.RigidGround(friction=0.08), sliding="checked")
+    motion = rf.GroundMotion.from_arrays((values, "g_0"), "0.02 s")
+    with pytest.warns(ModelWarning, match="would slide"):
+        response = system.simulate(motion, accuracy="fast")
+    # at rest the demand is |xg''|/g, linear between samples on either side of zero
+    fine = np.linspace(0.0, len(values) - 1.0, 400_001)
+    needed = np.abs(np.interp(fine, np.arange(len(values)), values))
+    length = 0.02 * (len(values) - 1)
+    for name, level in (("peak_friction_demand_duration", 0.1), ("sliding_duration", 0.08)):
+        lasted = length * np.mean(needed > level)
+        assert response[name].item() == pytest.approx(lasted, rel=1e-4)

@@ -27,8 +27,7 @@ def example():
     spec = importlib.util.spec_from_file_location("own_link", FILE)
     module = importlib.util.module_from_spec(spec)
     sys.modules["own_link"] = module  # where its machine code looks for it
-    spec.loader.exec_module(module)
-    rf.register(module.Rope)
+    spec.loader.exec_module(module)  # which registers the rope: a result that is read needs no more
     return module
 
 

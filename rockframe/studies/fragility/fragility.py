@@ -10,7 +10,7 @@ import xarray as xr
 from rockframe.arguments import iterates, one_of_names, one_of_words, several
 from rockframe.errors import ComponentError, SchemaError, UnitsError, shown
 from rockframe.proposals import hinted
-from rockframe.results.schema import with_variables
+from rockframe.results.schema import with_labels, with_variables
 from rockframe.results.variables.analyses import LIMIT_STATE
 from rockframe.simulation.soundness import share_words
 from rockframe.studies.confidence import read_level
@@ -237,7 +237,7 @@ def fragility(
         [(str(one.name), dict(one.attrs)) for one in measures], means,
         about | period_attribute(runs, arguments, period, owner=_OWNER), fits,
     )  # fmt: skip
-    dataset = dataset.assign_coords(structures.coordinates)
+    dataset = with_labels(dataset, structures.coordinates)
     dataset = with_variables(dataset, labels_of_states(states))
     if of_capacities:
         below = np.array([int((~one.trials.has_lower).sum()) for one in found])

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.results.outcome import Generic
-from rockframe.results.schema import build_dataset, with_variables
+from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import clopper_pearson
@@ -230,7 +230,7 @@ def _with_curves(
     ends = ("", "_lower_bound", "_upper_bound")
     values = {f"exceedance_probability{end}": shares[:, k] for k, end in enumerate(ends)}
     dataset = with_variables(dataset, _arranged(values, over), over=(*over, *sides))
-    return dataset.assign_coords({name: (name, sides[name], about) for name, about in measures})
+    return with_labels(dataset, {name: (name, sides[name], about) for name, about in measures})
 
 
 def _eta(each: _Fitted, rows: Array, means: Means) -> Array:

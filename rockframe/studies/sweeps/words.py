@@ -33,12 +33,15 @@ def cases_verdict(dataset: xr.Dataset) -> str:
     if whole is None or "status" not in dataset:
         return text
     status = dataset["status"]
-    if status.dtype.kind not in "iu":  # such as a mean
-        return text
-    if status.size == whole:  # a lazily read dataset has no verdict before
+    count = status.size
+    if status.dtype.kind not in "iu":
+        if MESSAGE not in dataset or dataset[MESSAGE].dims != status.dims:  # such as a mean
+            return text
+        count = int(status.notnull().sum())  # `where` and `reindex` leave gaps
+    if count == whole:  # a lazily read dataset has no verdict before
         return text or whole_verdict(dataset)
-    some = f"{status.size} of the {whole} cases of the sweep"
-    return cases_sentence(dataset, f"Of {some if status.size < whole else f'{status.size} cases'}")
+    some = f"{count} of the {whole} cases of the sweep"
+    return cases_sentence(dataset, f"Of {some if count < whole else f'{count} cases'}")
 
 
 def whole_verdict(dataset: xr.Dataset) -> str:
@@ -91,7 +94,7 @@ def _counts(runs: xr.Dataset, slips: Generic) -> dict[str, int]:
     if "would_slide" in runs:
         slides = counts_of_slides(runs["would_slide"].to_numpy())
         found |= dict(zip(("would slide", "would hold"), slides, strict=True))
-    return found | {"cases": status.size}
+    return found | {"cases": int(np.count_nonzero(~np.isnan(status)))}
 
 
 def _parts_of(runs: xr.Dataset) -> Iterator[xr.Dataset]:

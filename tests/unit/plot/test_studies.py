@@ -98,3 +98,14 @@ def test_the_bands_of_an_ensemble_are_named():
     bare = found.isel(confidence_level=0) if "confidence_level" in found.dims else found
     none = bare.assign({name: one * np.nan for name, one in bare.items() if name.endswith("bound")})
     assert rf.plot.ensemble(none).figure.legends == []
+
+
+def test_a_spectrum_of_blocks_that_never_overturn_is_drawn():
+    found = rf.overturning_spectrum(
+        SYSTEM, PULSE, periods=([8.0, 20.0], "s"), scale=[0.5, 1.0], free_vibration="2 s", **QUIET
+    )
+    assert np.isinf(found.capacity_intensity).all()
+    (axes,) = rf.plot.overturning_spectrum(found)
+    axes.figure.canvas.draw()
+    assert axes.get_ylim() == (1.0, 10.0)
+    pyplot.close(axes.figure)

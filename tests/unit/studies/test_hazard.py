@@ -315,3 +315,20 @@ def test_refusals_of_intensities_are_signed_by_what_was_called(curve):
             rf.annual_rate(curve, TABLE | {"intensity": wrong})
         with pytest.raises((ComponentError, UnitsError), match=r"^fragility: "):
             rf.fragility(COUNTS | {"intensity": wrong}, "PGA")
+
+
+def test_the_one_structure_that_has_a_fragility_is_told_of():
+    pulses = {f"{k} Hz": rf.GroundMotion.sine_pulse("4 m/s^2", f"{k} Hz") for k in (0.8, 1.1, 1.4)}
+    system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+    runs = rf.sweep(
+        system, pulses, scale=np.linspace(0.5, 3, 6), width=["0.5 m", "1.9 m"], free_vibration="4 s"
+    )
+    curves = rf.fragility(runs, "PGA", limits=[])
+    table = {"intensity": (VALUES * 100, "m/s^2"), "rate": RATES}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ModelWarning)
+        both = rf.annual_rate(curves, table)
+        one = rf.annual_rate(curves.isel(width=[0]), table)
+    assert np.isnan(both.annual_rate.values.ravel()).tolist() == [False, True]
+    alone = "overturning, of the one of 2 structures that has a fragility"
+    assert both.attrs["verdict"] == one.attrs["verdict"].replace("overturning", alone)

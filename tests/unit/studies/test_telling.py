@@ -44,6 +44,14 @@ def test_a_part_of_a_sweep_has_a_verdict_of_its_own(runs, tmp_path):
     assert "case_count" not in twice.attrs
 
 
+def test_cases_that_were_masked_are_not_counted(runs):
+    kept = runs.isel(scale=slice(3))
+    for masked in (runs.where(runs.scale < 3), runs.reindex(scale=[0.5, 1.0, 2.0, 3.0])):
+        assert masked.rockframe.verdict == kept.rockframe.verdict
+        assert masked.isel(scale=[1, 3]).rockframe.verdict == kept.isel(scale=[1]).rockframe.verdict
+    assert runs.where(runs.scale > 0).rockframe.verdict == runs.verdict
+
+
 def test_figures_of_a_part_are_entitled_by_its_own_verdict():
     axes = pytest.importorskip("matplotlib.pyplot")
     drawn = rf.probability_of_overturning(
