@@ -1,7 +1,7 @@
 """Unknowns of a fit: parameters of the system's parts, and circumstances of the test."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any, Final, cast
@@ -9,7 +9,7 @@ from typing import Any, Final, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from rockframe.components import Component
+from rockframe.components import Component, Stack
 from rockframe.components.parameters import Ratio
 from rockframe.errors import ComponentError, nearest, shown
 from rockframe.simulation.system import System
@@ -82,7 +82,8 @@ class TrialSystems:
         self.radius = system.parts.the_block.radius
         self.gravity = options.gravity
         known = dict(self._ratios(system))
-        self.places = {name: _place_of(name, known, owner) for name in names}
+        inside = set(self._ratios_inside())
+        self.places = {name: _place_of(name, known, inside, owner) for name in names}
 
     def _ratios(self, system: System) -> Iterator[tuple[str, PartParameter | None]]:
         """Find the dimensionless parameters of all parts; None for one without a start value."""
@@ -96,6 +97,14 @@ class TrialSystems:
                 yield (
                     name,
                     None if value is None else PartParameter(index, argument, float(value), bounds),
+                )
+
+    def _ratios_inside(self) -> Iterator[str]:
+        """Return the dimensionless parameters of the interfaces of a stack."""
+        for part in self._parts:
+            for interface in part.interfaces if isinstance(part, Stack) else ():
+                yield from (
+                    f"{type(interface).__name__}.{one}" for one, _ in _declared_ratios(interface)
                 )
 
     def _with(self, values: Mapping[str, float]) -> list[Component]:
@@ -126,7 +135,9 @@ def _declared_ratios(part: Component) -> Iterator[tuple[str, Ratio[Any]]]:
             yield name, cast("Ratio[Any]", declared)
 
 
-def _place_of(name: object, known: Mapping[str, PartParameter | None], owner: str) -> PartParameter:
+def _place_of(
+    name: object, known: Mapping[str, PartParameter | None], inside: Collection[str], owner: str
+) -> PartParameter:
     matches = [full for full in known if name in (full, full.partition(".")[2])]
     if len(matches) == 1:
         place = known[matches[0]]
@@ -138,6 +149,14 @@ def _place_of(name: object, known: Mapping[str, PartParameter | None], owner: st
         )
         raise ComponentError(msg)
     choice = ", ".join(repr(full) for full in (matches or known))
+    if not matches and any(name in (full, full.partition(".")[2]) for full in inside):
+        found = f"of the parts of the system, which are {choice}" if known else "of other parts"
+        msg = (
+            f"{owner}: {shown(name)} is a parameter of an interface of the Stack; fitted are those "
+            f"{found}. To find that of an interface, compare the measured rotation with runs of a "
+            "sweep over a function that returns the system"
+        )
+        raise ComponentError(msg)
     found = "several parts have" if matches else "no part of the system has"
     near = "" if matches else nearest(name, {one.rpartition(".")[2] for one in known})
     msg = f"{owner}: {found} the parameter {shown(name)}{near}; expected one of {choice}"
