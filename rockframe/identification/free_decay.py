@@ -55,6 +55,7 @@ def fit_free_decay(
         Dimensionless parameters of the system's parts, such as ``"restitution"``,
         ``"frequency_ratio"``, ``"damping_ratio"``. If several parts have a parameter of this
         name, it is written with the class, as in ``"TwoSpringSupport.damping_ratio"``.
+        Those of the interfaces of a stack are not fitted.
     peaks : (rotations, unit), Quantity or ((times, unit), (rotations, unit)), optional
         Successive peaks of the rotation to both sides, in place of `measured`, with or without
         their times. They may be without signs, except for an eccentric block. The first peak

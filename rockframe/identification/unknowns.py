@@ -1,7 +1,7 @@
 """Unknowns of a fit: parameters of the system's parts, and circumstances of the test."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any, Final
@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from rockframe.components import Component
+from rockframe.components import Component, Stack
 from rockframe.components.parameters import Ratio
 from rockframe.errors import ComponentError, nearest, shown
 from rockframe.identification.measured import OWNER
@@ -76,15 +76,14 @@ class TrialSystems:
         self.radius = system.parts.the_block.radius
         self.gravity = system.options.gravity
         known = dict(self._ratios(system))
-        self.places = {name: _place_of(name, known) for name in names}
+        inside = set(self._ratios_inside())
+        self.places = {name: _place_of(name, known, inside) for name in names}
 
     def _ratios(self, system: System) -> Iterator[tuple[str, PartParameter | None]]:
         """Find the dimensionless parameters of all parts; None for one without a start value."""
         usual = {"restitution": system.parts.the_block.maximum_restitution}
         for index, part in enumerate(self._parts):
-            for argument, declared in sorted(part.declared().items()):
-                if not isinstance(declared, Ratio):
-                    continue
+            for argument, declared in _declared_ratios(part):
                 value = part.to_dict().get(argument, usual.get(argument))
                 condition = declared.condition
                 bounds = (-math.inf, math.inf) if condition is None else condition.bounds
@@ -92,6 +91,14 @@ class TrialSystems:
                 yield (
                     name,
                     None if value is None else PartParameter(index, argument, float(value), bounds),
+                )
+
+    def _ratios_inside(self) -> Iterator[str]:
+        """Return the dimensionless parameters of the interfaces of a stack."""
+        for part in self._parts:
+            for interface in part.interfaces if isinstance(part, Stack) else ():
+                yield from (
+                    f"{type(interface).__name__}.{one}" for one, _ in _declared_ratios(interface)
                 )
 
     def _with(self, values: Mapping[str, float]) -> list[Component]:
@@ -114,7 +121,14 @@ class TrialSystems:
         return System(*self._with(values), **self._options)
 
 
-def _place_of(name: object, known: Mapping[str, PartParameter | None]) -> PartParameter:
+def _declared_ratios(part: Component) -> list[tuple[str, Ratio[Any]]]:
+    declared = sorted(part.declared().items())
+    return [(name, one) for name, one in declared if isinstance(one, Ratio)]
+
+
+def _place_of(
+    name: object, known: Mapping[str, PartParameter | None], inside: Collection[str]
+) -> PartParameter:
     matches = [full for full in known if name in (full, full.partition(".")[2])]
     if len(matches) == 1:
         place = known[matches[0]]
@@ -126,6 +140,14 @@ def _place_of(name: object, known: Mapping[str, PartParameter | None]) -> PartPa
         )
         raise ComponentError(msg)
     choice = ", ".join(repr(full) for full in (matches or known))
+    if not matches and any(name in (full, full.partition(".")[2]) for full in inside):
+        found = f"of the parts of the system, which are {choice}" if known else "of other parts"
+        msg = (
+            f"{OWNER}: {shown(name)} is a parameter of an interface of the Stack; fitted are those "
+            f"{found}. To find that of an interface, compare the measured rotation with runs of a "
+            "sweep over a function that returns the system"
+        )
+        raise ComponentError(msg)
     found = "several parts have" if matches else "no part of the system has"
     near = "" if matches else nearest(name, {one.rpartition(".")[2] for one in known})
     msg = f"{OWNER}: {found} the parameter {shown(name)}{near}; expected one of {choice}"

@@ -113,6 +113,8 @@ SEARCHING: Final = 100
 """Most evaluations of the guards in that search; bisection alone takes 44."""
 LOOKING: Final = 40
 """Most evaluations of the guards in the search of a dip; each halves its bracket."""
+GOLDEN: Final = 0.5 * (math.sqrt(5.0) - 1.0)
+"""Ratio of the golden section, by which a bracket of the least value at rest shrinks."""
 GUESSING: Final = 5
 """Newton's corrections of the root of the cubic, from which the search for a root begins."""
 CONVERGED: Final = 1e-7
@@ -132,18 +134,21 @@ def earliest_crossing(
     """Return the guard that falls through zero first.
 
     A guard is evaluated at the end of the step and, where its cubic dips towards zero, in that
-    dip, whether it begins positive or at zero.
+    dip, whether it begins positive or at zero. Where nothing moves, guards have no rates, and a
+    dip is found by their values.
     """
     found, place, negative = -1, 2.0, 1.0
     for i in range(len(tolerance)):
         end_change = span.h * w.after[len(tolerance) + i]
         c0, c1, c2, c3 = _cubic_of(i, span.h, tolerance, w)
-        if not may_dip(c0, c1, w.after[i], end_change):
+        if count > 0 and not may_dip(c0, c1, w.after[i], end_change):
             continue
         end = -1.0
         bottom, low, high = _dip(c1, c2, c3)
         depth = c0 + bottom * (c1 + bottom * (c2 + bottom * c3))
-        if 0.0 < bottom < 1.0 and depth < DIP_MARGIN * (abs(c1) + abs(end_change)):
+        if count == 0:
+            end = _point_below_zero_at_rest(equations, i, mode, span, tolerance, w)
+        elif 0.0 < bottom < 1.0 and depth < DIP_MARGIN * (abs(c1) + abs(end_change)):
             end = _point_below_zero(
                 equations, i, bottom, low, high, mode, count, span, tolerance, w
             )
@@ -243,6 +248,40 @@ def _point_below_zero(
         else:
             low = bottom
         bottom = 0.5 * (low + high)
+    return -1.0
+
+
+@kernel
+def _point_below_zero_at_rest(
+    equations: BoundEquations, which: int, mode: int, span: Span, tolerance: Vector, w: Workspace
+) -> float:  # fmt: skip
+    """Return a place inside a step without motion at which a guard is negative, or -1.
+
+    The guard follows the ground alone. Its least value is searched where the parabola through three
+    of its values comes near zero, by golden section.
+    """
+    start, end, noise = w.before[which], w.after[which], tolerance[which]
+    zero = 0.0 if start > noise else min(start, 0.0) - noise
+    middle = _guard_inside(equations, which, 0.5, mode, 0, span, tolerance, w)
+    c1, c2 = 4.0 * middle - 3.0 * start - end, 2.0 * (start + end - 2.0 * middle)
+    lowest = start - 0.25 * c1 * c1 / c2 if c2 > 0.0 else math.inf
+    if lowest - zero > DIP_MARGIN * (abs(c1) + abs(c1 + 2.0 * c2)):
+        return -1.0
+    low, high = 0.0, 1.0
+    left, right = 1.0 - GOLDEN, GOLDEN
+    at_left = _guard_inside(equations, which, left, mode, 0, span, tolerance, w)
+    at_right = _guard_inside(equations, which, right, mode, 0, span, tolerance, w)
+    for _ in range(LOOKING):
+        if at_left < zero or at_right < zero:
+            return left if at_left < zero else right
+        if at_left < at_right:
+            high, right, at_right = right, left, at_left
+            left = high - GOLDEN * (high - low)
+            at_left = _guard_inside(equations, which, left, mode, 0, span, tolerance, w)
+        else:
+            low, left, at_left = left, right, at_right
+            right = low + GOLDEN * (high - low)
+            at_right = _guard_inside(equations, which, right, mode, 0, span, tolerance, w)
     return -1.0
 
 

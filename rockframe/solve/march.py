@@ -34,6 +34,7 @@ from rockframe.solve.workspace import (
     has_no_room,
     keep_row,
     load_interval,
+    may_turn,
 )
 
 LEFT_LIMIT: Final = 0
@@ -349,6 +350,8 @@ def march(
         peaks = rotation.may_peak(h, clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT])
         peaks |= other_may_peak(size, limits, h, state, new, clock[at.OTHER_SHARE])
         found = may_fall(system, h, before, after)
+        if count == 0:  # guards follow the ground alone, and have no rates
+            found |= may_turn(degree_x, degree_y, ground)
         seen = begin + tau + h >= clock[at.NEXT_OUTPUT] or has_no_room(codes, counters)
         if found or peaks or seen:
             clock[at.STEP], clock[at.ASKED], clock[at.EXCESS] = h, requested, excess

@@ -314,6 +314,24 @@ def polynomial(u: float, degree: int, first: int, coefficients: Vector) -> float
 
 
 @inlined
+def may_turn(degree_x: int, degree_y: int, coefficients: Vector) -> bool:
+    """Whether the ground acceleration may have a peak inside an interval, not at its ends.
+
+    Of two directions that bend, or of one that bends and another that changes, some sum may have
+    one. A direction by itself has none where its linear term exceeds all others.
+    """
+    if max(degree_x, degree_y) <= 1:
+        return False
+    if min(degree_x, degree_y) > 0:
+        return True
+    first, degree = (0, degree_x) if degree_x > degree_y else (TERMS, degree_y)
+    bends = 0.0
+    for j in range(2, degree + 1):
+        bends += j * abs(coefficients[first + j])
+    return abs(coefficients[first + 1]) <= bends
+
+
+@inlined
 def ground_in(fraction: float, span: Span, coefficients: Vector) -> Ground:
     """Return the ground acceleration at a fraction of a step."""
     u = span.u + fraction * span.du

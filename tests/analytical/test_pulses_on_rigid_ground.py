@@ -191,3 +191,47 @@ def test_the_case_that_nearly_overturns_before_its_impact():
     impact = response.event_time.values[response.event_kind.values == 2][0]
     before = response.relative_rotation.values[response.time.values < impact]
     assert np.abs(before).max() == pytest.approx(0.976, abs=6e-4)
+
+
+# a peak just above uplift, between the ends of the polynomials of the pulse --------------------
+
+
+def just_uplifting(ground, excess, accuracy):
+    """Return the response to a sine whose largest acceleration exceeds that of uplift a little."""
+    block = rf.Block(width="1 m", height="4 m", mass="1 t")
+    motion = rf.GroundMotion.sine_pulse(f"{0.25 * (1.0 + excess)!r} g", "1 Hz", 0.7)
+    signal = motion.si.horizontal
+    assert (signal.samples.max() < 0.25 * GRAVITY) == (excess < 2e-5)
+    return rf.System(block, ground).simulate(motion, accuracy=accuracy, outputs=None)
+
+
+def time_of_uplift(excess):
+    return np.arcsin(1.0 / (1.0 + excess)) / (2.0 * math.pi)
+
+
+@pytest.mark.parametrize("accuracy", ["fast", "standard"])
+@pytest.mark.parametrize("friction", [None, 0.8])
+@pytest.mark.parametrize("excess", [1e-9, 1e-6, 1e-5, 2e-4])
+def test_uplift_at_a_peak_inside_a_polynomial(excess, friction, accuracy):
+    found = just_uplifting(rf.RigidGround(friction=friction), excess, accuracy)
+    # the sine is a polynomial to some 1e-11 of its amplitude
+    slack = 1e-11 / math.sqrt(2.0 * excess) / (2.0 * math.pi) + 1e-12
+    assert found.first_uplift_time.item() == pytest.approx(time_of_uplift(excess), abs=slack)
+
+
+def test_no_uplift_at_a_peak_that_stays_below():
+    found = just_uplifting(rf.RigidGround(), -1e-9, "standard")
+    assert math.isnan(found.first_uplift_time.item())
+    assert found.peak_rotation.item() == 0.0
+
+
+def test_uplift_at_a_peak_of_both_directions():
+    # both peak at 1/4 s; what the block resists falls by tan(theta) of what pushes it upwards
+    block = rf.Block(width="1 m", height="4 m", mass="1 t")
+    excess = 1e-8
+    across = rf.GroundMotion.sine_pulse(f"{0.2 * (1.0 + excess)!r} g", "1 Hz", 0.45)
+    downwards = rf.GroundMotion.sine_pulse(f"{-0.2 * (1.0 + excess)!r} g", "1 Hz", 0.9)
+    motion = across.with_vertical(downwards)
+    assert motion.si.horizontal.samples.max() < 0.2 * GRAVITY
+    found = rf.System(block).simulate(motion, outputs=None)
+    assert found.first_uplift_time.item() == pytest.approx(time_of_uplift(excess), abs=1e-7)

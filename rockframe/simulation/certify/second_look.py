@@ -24,6 +24,9 @@ SAME_FALL: Final = 0.1
 """Relative error of the energy at overturning up to which two runs took the same course."""
 OFF: Final = 0.05
 """Estimated relative error of a peak rotation beyond which a run warns."""
+STILL: Final = 1e-9
+"""Share of the overturning angle up to which a peak rotation is rounding, as after an uplift by a
+ground acceleration that hardly exceeds what the body resists."""
 _AGAIN: Final = "with 1.5 times as many steps"
 _REMEDY: Final = f"repeat the run with accuracy='{AccuracyLevel.STANDARD}'"
 
@@ -117,6 +120,8 @@ def doubts(setting: Setting, plan: Plan, first: Summary, second: Summary) -> Ite
     if first.overturned is None:
         return
     mine, other = (look_at(setting, one, plan.duration) for one in (first, second))
+    if mine.overturned is other.overturned is False and max(mine.share, other.share) <= STILL:
+        return
     if not is_together(mine, other):
         yield f"{_AGAIN} {_ends(other)}: the verdict is not sure; {_REMEDY}"
     error = peak_error(first, second)

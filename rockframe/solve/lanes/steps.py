@@ -23,7 +23,13 @@ from rockframe.dynamics.protocol import POWERS, Equations, Ground
 from rockframe.solve import workspace as at
 from rockframe.solve.equations import gives_powers
 from rockframe.solve.lanes import fields
-from rockframe.solve.lanes.fields import Places, enter_intervals, evaluate_ground, places_of
+from rockframe.solve.lanes.fields import (
+    RECORDED,
+    Places,
+    enter_intervals,
+    evaluate_ground,
+    places_of,
+)
 from rockframe.solve.march import (
     SHORTEST,
     CompiledIn,
@@ -55,6 +61,7 @@ from rockframe.solve.schemes import (
     stage_places,
     stage_rates,
 )
+from rockframe.solve.workspace import may_turn
 
 
 @inlined
@@ -80,6 +87,27 @@ def is_quiet(system: Equations, room: Vector, lane: int) -> bool:
     rotation = rotation_in_step(0, system.coordinates(), limits, state, new)
     peaks = rotation.may_peak(h, clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT])
     return not (falls | peaks | slides(system, room, lane))
+
+
+@kernel
+def leave_turns(
+    lanes: int, room: Vector, pieces_x: ReadOnlyMatrix, pieces_y: ReadOnlyMatrix
+) -> int:
+    """Leave to the driver steps without motion in which the ground may have a peak; give 1 if any.
+
+    At rest the guards follow the ground alone, and may fall inside such a step.
+    """
+    found = 0
+    degree_x, degree_y = pieces_x.shape[1] - 1, pieces_y.shape[1] - 1
+    for lane in range(lanes):
+        own = lane_of(as_integers(room), fields.OWN_WHOLE, lane)
+        x = degree_x if own[fields.COUNT_X] > 0 else 0
+        y = degree_y if own[fields.COUNT_Y] > 0 else 0
+        rests = (own[fields.ACTIVE] == 0) & (own[fields.BUSY] == 1)
+        if rests and may_turn(x, y, lane_of(room, fields.GROUND, lane)):
+            own[fields.TAKEN] = 0
+            own[fields.ASKS] = found = 1
+    return found
 
 
 @inlined
@@ -227,6 +255,8 @@ def step_lanes_in(
         own[fields.TAKEN] = -1 if quiet else 0
         own[fields.ASKS] = asks
         some |= asks
+    if max(pieces_x.shape[1], pieces_y.shape[1]) > RECORDED + 1:
+        some |= leave_turns(lanes, room, pieces_x, pieces_y)
     for lane in range(lanes):
         account_for_rest(system_of(lane_of(room, there.numbers, lane)), room, lane)
     if some == 0:
@@ -426,6 +456,8 @@ def step_lanes_by_tolerance(
         own = lane_of(as_integers(room), fields.OWN_WHOLE, lane)
         own[fields.TAKEN] = -1 if is_quiet(system, room, lane) else 0
         own[fields.ASKS] = 1 if slides(system, room, lane) else 0
+    if max(pieces_x.shape[1], pieces_y.shape[1]) > RECORDED + 1:
+        leave_turns(lanes, room, pieces_x, pieces_y)
     others = 0
     for lane in range(lanes):
         others |= judge(room, lane)

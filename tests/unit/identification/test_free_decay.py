@@ -230,3 +230,19 @@ def test_a_block_before_a_rigid_wall_is_refused(data, run):
     given = data if "peaks" in data else {"measured": run.rotation}
     with pytest.raises(ComponentError, match="before a rigid RearWall and rocks to one side only"):
         rf.fit_free_decay(rf.System(BLOCK, wall), parameters="wall_restitution", **given)
+
+
+def test_interfaces_of_stacks_are_refused_with_what_can_be_fitted():
+    joint = rf.TwoSpringSupport(frequency_ratio=40, damping_ratio=0.1)
+    bodies = [
+        rf.Block(width=f"{w} m", height=f"{h} m", mass="900 kg") for w, h in ((0.5, 1.8), (0.9, 1))
+    ]
+    stack = rf.Stack(*bodies, interfaces=[joint])
+    expected = (
+        r"'damping_ratio' is a parameter of an interface of the Stack; fitted are those of the "
+        r"parts of the system, which are .*'RigidGround\.friction'.*sweep over a function"
+    )
+    with pytest.raises(rf.errors.ComponentError, match=expected):
+        rf.fit_free_decay(
+            rf.System(stack, rf.RigidGround(friction=0.9)), history(), "damping_ratio"
+        )

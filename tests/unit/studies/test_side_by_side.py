@@ -125,6 +125,15 @@ def check_scene(monkeypatch, accuracy, parts, options):
     assert (alone.impact_count > 0).any() or SOIL in parts
 
 
+def test_lanes_leave_peaks_inside_polynomials_to_the_driver(monkeypatch):
+    block = rf.Block(width="1 m", height="4 m", mass="1 t")
+    motion = rf.GroundMotion.sine_pulse("0.25 g", "1 Hz", 0.7)  # with no sample at its peak
+    scales = 1.0 + np.array([-1e-6, 1e-8, 1e-6, 1e-5])
+    lanes, alone = both(monkeypatch, rf.System(block), motion, scale=scales)
+    assert_same_bits(lanes, alone)
+    assert (lanes.impact_count.values.ravel() > 0).tolist() == [False, True, True, True]
+
+
 @pytest.mark.parametrize("course", ["stop", "continue"])
 def test_lanes_go_on_after_overturning(monkeypatch, course):
     system = rf.System(BLOCK, PADS, gravity="9.81 m/s^2")
