@@ -177,7 +177,7 @@ class EquationsWithPowers(Equations, Protocol):
 
 
 class CalledBySteps:
-    """Equations so long that it never pays to compile them into the loop of steps, which calls them.
+    """Equations so long that it never pays to compile them into the steps, which call them.
 
     They have the method `powers` of :class:`EquationsWithPowers`. A mixin of named tuples.
     """
