@@ -130,7 +130,7 @@ def bound(
     If the last element of the tuple is an array, all of them share one copy of it.
     """
     structure = structure_of(bundle)
-    if isinstance(bundle, tuple) and bundle and isinstance(bundle[-1], np.ndarray):
+    if isinstance(bundle, tuple) and isinstance(bundle[-1], np.ndarray):
         bundle = type(bundle)(*bundle[:-1], bundle[-1].copy())  # type: ignore[call-arg]
     return tuple(
         Bound(_source(one, structure, False, seldom), bundle, stands_for) for one in functions

@@ -299,10 +299,14 @@ def is_worth_calling(one: Bound) -> bool:
     if source.address or not COMPILED or not _CALLS_BACK:
         return True
     taken = source.seconds_without
-    if source.failed or 0.0 < taken < WORTHWHILE or 0.0 < taken < source.job.seconds:
+    if source.failed or 0.0 < taken < WORTHWHILE:
         return False
-    with _lock:
-        _make_when_due(source, source.job.seconds)
+    try:
+        if not 0.0 < taken < source.job.seconds:
+            with _lock:
+                _make_when_due(source, source.job.seconds)
+    except Exception:  # reported where the other one is compiled
+        return False
     return bool(source.address)
 
 

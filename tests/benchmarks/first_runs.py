@@ -49,7 +49,7 @@ def time_of(scene: str, accuracy: str, folder: str, how: str) -> float:
 
 def main() -> None:
     """Print the table."""
-    print(f"{'scene':14} {'accuracy':9} {'waiting':>8} {'at once':>8} {'next':>8} {'later':>8}  [s]")
+    print("scene          accuracy   waiting  at once     next    later  [s]")
     for accuracy in ("standard", "fast"):
         for scene in SCENES:
             with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
