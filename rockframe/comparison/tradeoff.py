@@ -257,8 +257,9 @@ def _run_until_compiled(scene: System, plan: Plan) -> None:
     """Run a model until its machine code is compiled, so that no run in plain Python is timed."""
     system = scene.assembly.model.system
     equations = equations_of(
-        system, fixed_steps=plan.accuracy.rtol is None, with_work=bool(plan.energies)
-    )
+        system, fixed_steps=plan.accuracy.rtol is None, with_work=bool(plan.energies),
+        compiled_in=True,
+    )  # fmt: skip
     call_nothing_back(equations)
     deadline = time.perf_counter() + _PATIENCE
     while not (has_machine_code(equations) or runs_as_python(equations)):

@@ -15,6 +15,7 @@ from rockframe.compiled.entries import compiled_within as compiled_within
 from rockframe.compiled.entries import compiling_for as compiling_for
 from rockframe.compiled.entries import entry as entry
 from rockframe.compiled.entries import entry_at_once as entry_at_once
+from rockframe.compiled.entries import is_worth_calling as is_worth_calling
 from rockframe.compiled.entries import seconds_as_python as seconds_as_python
 from rockframe.compiled.entries import still_taking as still_taking
 from rockframe.compiled.entries import table as table

@@ -75,7 +75,7 @@ class Source:
         self.code: Any = None  # the compiled function, or None
         self.address = 0  # its address, or 0
         self.failed = False  # whether it could not be compiled
-        self.seconds_called_back = 0.0  # time spent in it as plain Python [s]
+        self.seconds_without = 0.0  # time spent in what stands in for its machine code [s]
 
     @cached_property
     def job(self) -> "Job":
@@ -101,13 +101,17 @@ _source = cache(Source)
 
 
 class Bound:
-    """A function bound to a tuple: called in plain Python, or by entries as machine code."""
+    """A function bound to a tuple: called in plain Python, or by entries as machine code.
 
-    __slots__ = ("_bundle", "source")
+    It may stand in for another one until it pays to compile that.
+    """
 
-    def __init__(self, source: Source, bundle: Any) -> None:
+    __slots__ = ("_bundle", "source", "stands_for")
+
+    def __init__(self, source: Source, bundle: Any, stands_for: "Bound | None" = None) -> None:
         self.source = source
         self._bundle = bundle
+        self.stands_for = stands_for
 
     def call(self, *arguments: Any) -> Any:
         """Call the function with its tuple; the last argument, the tuple's numbers, is ignored."""
@@ -115,7 +119,11 @@ class Bound:
 
 
 def bound(
-    functions: tuple[Callable[..., Any], ...], bundle: Any, *, seldom: bool = False
+    functions: tuple[Callable[..., Any], ...],
+    bundle: Any,
+    *,
+    seldom: bool = False,
+    stands_for: Bound | None = None,
 ) -> tuple[Bound, ...]:
     """Bind functions to the tuple that is their first argument; `seldom` if rarely called.
 
@@ -124,7 +132,9 @@ def bound(
     structure = structure_of(bundle)
     if isinstance(bundle, tuple) and isinstance(bundle[-1], np.ndarray):
         bundle = type(bundle)(*bundle[:-1], bundle[-1].copy())  # type: ignore[call-arg]
-    return tuple(Bound(_source(one, structure, False, seldom), bundle) for one in functions)
+    return tuple(
+        Bound(_source(one, structure, False, seldom), bundle, stands_for) for one in functions
+    )
 
 
 def bound_in_lanes(function: Callable[..., Any], bundle: Any) -> Bound:

@@ -58,7 +58,7 @@ class CalledBack:
                 _raised.first = _raised.first or raised
                 return 0
             finally:
-                source.seconds_called_back += perf_counter() - began
+                source.seconds_without += perf_counter() - began
 
         self._kept = ctypes.CFUNCTYPE(_NUMBERS[hints["return"]], *words)(called)
         self.address = ctypes.cast(self._kept, ctypes.c_void_p).value or 0

@@ -166,7 +166,11 @@ class Entry:
             ready = meanwhile is None or meanwhile.is_over()
             routine = self._compiled(structure, needed) if ready else None
             if routine is not None:
-                self._catch_up(seldom)
+                from rockframe.compiled.parallel import WORTHWHILE
+
+                for source in seldom:
+                    share = CALLED_BACK * source.job.seconds
+                    _make_when_due(source, share if WAITS else WORTHWHILE)
         if routine is None:
             with meanwhile or nullcontext():
                 return self._plain(*arguments)
@@ -182,31 +186,6 @@ class Entry:
         if self._calls_back:
             seldom = [source for source in _missing(sources) if source.is_seldom_called]
         return [source for source in sources if source not in seldom], seldom
-
-    def _catch_up(self, sources: list[Source]) -> None:
-        """Compile, or load, functions that have been called back in Python for long enough.
-
-        Where entries wait, that is a share of the time to compile them; else a moment, as another
-        process compiles them.
-        """
-        from rockframe.compiled.parallel import WORTHWHILE, Meanwhile, NotCompiledError, make_all
-
-        for source in sources:
-            job = source.job
-            try:
-                patience = CALLED_BACK * job.seconds if WAITS else WORTHWHILE
-                if source.seconds_called_back < patience and not job.is_stored:
-                    continue
-                if not WAITS:
-                    meanwhile = self._awaited.setdefault(source, Meanwhile([job]))
-                    if not meanwhile.is_over(at_once=True):
-                        continue
-                (source.code,) = make_all([job])
-            except NotCompiledError as found:
-                _could_not(job.function, found.problem)
-                source.failed, source.is_seldom_called = True, False
-            else:
-                source.address = source.code.address
 
     def is_compiled_within(self, patience: float, arguments: tuple[Any, ...]) -> bool:
         """See :func:`compiled_within`."""
@@ -279,6 +258,56 @@ class Entry:
             source.code, source.address = code, code.address
         self._routines[structure] = routine
         return routine
+
+
+def _make_when_due(source: Source, patience: float) -> None:
+    """Compile, or load, a function for which others have stood in for some time [s].
+
+    Where entries do not wait, another process compiles it, and this one goes on without it.
+    """
+    from rockframe.compiled.parallel import Meanwhile, NotCompiledError, make_all
+
+    job = source.job
+    try:
+        if source.seconds_without < patience and not job.is_stored:
+            return
+        if not WAITS:
+            meanwhile = _awaited.setdefault(source, Meanwhile([job]))
+            if not meanwhile.is_over(at_once=True):
+                return
+        (source.code,) = make_all([job])
+    except NotCompiledError as found:
+        _could_not(job.function, found.problem)
+        source.failed, source.is_seldom_called = True, False
+    else:
+        source.address = source.code.address
+
+
+_awaited: Final[dict[Source, "Meanwhile"]] = {}
+"""Compilations by other processes of functions for which others stand in."""
+
+
+def is_worth_calling(one: Bound) -> bool:
+    """Whether to call a function for which another one, compiled already but slower, can stand in.
+
+    It is called if it has machine code, if nothing has, and if all is compiled before it runs. It
+    is compiled when the other one has taken as long as that takes.
+    """
+    from rockframe.compiled.parallel import WORTHWHILE
+
+    source = one.source
+    if source.address or not COMPILED or not _CALLS_BACK:
+        return True
+    taken = source.seconds_without
+    if source.failed or 0.0 < taken < WORTHWHILE:
+        return False
+    try:
+        if not 0.0 < taken < source.job.seconds:
+            with _lock:
+                _make_when_due(source, source.job.seconds)
+    except Exception:  # reported where the other one is compiled
+        return False
+    return bool(source.address)
 
 
 def _missing(sources: list[Source]) -> list[Source]:

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from types import ModuleType
-from typing import Any, Final, get_type_hints
+from typing import Annotated, Any, Final, get_origin, get_type_hints
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from rockframe.compiled import store
 from rockframe.compiled.buffers import BufferType, buffer_of
 from rockframe.compiled.calls import (
     OPTIONS,
+    CodeType,
     code_at,
     numba,
     register_inlined,
@@ -118,9 +119,14 @@ def signature_of(function: Callable[..., Any]) -> Any:
 
 
 def _kind_of(hint: Any) -> Any:
-    """Return numba's type of an annotation, of a named tuple by the annotations of its fields."""
+    """Return numba's type of an annotation, of a named tuple by the annotations of its fields.
+
+    A bound function is annotated with the function, ``Annotated[Bound, function]``.
+    """
     if hint in KINDS:
         return KINDS[hint]
+    if get_origin(hint) is Annotated:
+        return CodeType(signature_of(*hint.__metadata__))
     fields = get_type_hints(hint, include_extras=True)
     return numba.types.BaseTuple.from_types([_kind_of(fields[name]) for name in hint._fields], hint)
 
@@ -176,7 +182,7 @@ class Job:
         structure = self.structure if self.bound else ("arguments", *self.structure)
         return called_by(self.function, classes_of_structure(structure))
 
-    @property
+    @cached_property
     def seconds(self) -> float:
         """About how long it takes to compile [s]."""
         return seconds_of([self])

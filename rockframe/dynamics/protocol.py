@@ -177,10 +177,9 @@ class EquationsWithPowers(Equations, Protocol):
 
 
 class CalledBySteps:
-    """Equations so long that the loop of steps calls them; others are compiled into that loop.
+    """Equations so long that it never pays to compile them into the steps, which call them.
 
-    Several kinds of systems so share one compiled loop. They have the method `powers` of
-    :class:`EquationsWithPowers`. A mixin of named tuples.
+    They have the method `powers` of :class:`EquationsWithPowers`. A mixin of named tuples.
     """
 
     __slots__ = ()

@@ -19,8 +19,11 @@ from rockframe.dynamics.protocol import (
 from rockframe.solve import workspace as at
 from rockframe.solve.crossings import extremum, interpolate
 from rockframe.solve.equations import BoundEquations
-from rockframe.solve.march import LEFT_LIMIT, RIGHT_LIMIT, WEIGHTS, rotation_in_step
+from rockframe.solve.march import rotation_in_step
 from rockframe.solve.workspace import (
+    LEFT_LIMIT,
+    RIGHT_LIMIT,
+    WEIGHTS,
     EventTable,
     KnownMode,
     Output,

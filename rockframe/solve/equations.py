@@ -1,9 +1,8 @@
 """A system's equations as the integrator calls them: functions of arrays, of fixed types.
 
 So one integrator, compiled once, serves every system: it knows these functions by their
-addresses, and the system's numbers as a vector. Most equations are compiled into the loop of
-steps. Equations that take long to compile and to evaluate are called from that loop instead: the
-call itself hardly delays them.
+addresses, and the system's numbers as a vector. The loop of steps, too, can call the equations by
+their addresses, or is compiled for a structure of systems, with the equations in it.
 """
 
 import math
@@ -15,37 +14,16 @@ from rockframe.compiled import (
     Vector,
     bound,
     inlined,
+    is_worth_calling,
     kernel,
     numbers_in,
-    part_of,
     put,
 )
-from rockframe.dynamics.protocol import (
-    CalledBySteps,
-    Equations,
-    EquationsWithPowers,
-    Ground,
-    Slope,
-)
+from rockframe.dynamics.protocol import CalledBySteps, Equations, Ground
 from rockframe.solve.accuracy import STABLE
-from rockframe.solve.march import (
-    Scheme,
-    guards_at,
-    march,
-    march_by_tolerance,
-    march_fixed,
-    march_fixed_by_rates,
-)
-from rockframe.solve.schemes import FixedStepsByRates, StepsByTolerance
+from rockframe.solve.evaluation import ByAddress, Called, CompiledIn, guards_at, powered, slope
+from rockframe.solve.march import march_by_tolerance, march_fixed, march_fixed_by_rates
 from rockframe.solve.workspace import KnownMode, Pieces, Progress, StepTable, Workspace
-
-
-@kernel
-def slope(
-    system: Equations, mode: int, state: Vector, ground_x: float, ground_y: float, out: Vector
-) -> None:
-    """Write accelerations, rates of variables of first order, and powers."""
-    put(system.accelerate(mode, state, Ground(ground_x, ground_y)), 0, out)
 
 
 @kernel
@@ -80,29 +58,19 @@ def observed(
     put(system.observe(mode, state, slope, Ground(ground_x, ground_y), memory), 0, out)
 
 
-@kernel
-def powered(
-    system: EquationsWithPowers, mode: int, state: Vector, ground_x: float, ground_y: float,
-    out: Vector,
-) -> None:  # fmt: skip
-    """Write the powers of a state into a slope at the same coordinates but other rates."""
-    powers = system.coordinates() + system.variables()
-    found = system.powers(mode, state, out, Ground(ground_x, ground_y))
-    out[powers], out[powers + 1] = found
-
-
 class BoundEquations(NamedTuple):
     """The bound functions of a system, its numbers, and its sizes.
 
-    Two processes compile the functions, from the first and from the last on; the march takes half
-    of the time. Functions that are called at events only are compiled when that pays.
+    Two processes compile the functions, from the first and from the last on. Functions that are
+    called at events only are compiled when that pays.
     """
 
-    stepping: Bound  # the march, with the equations compiled into it
+    stepping: Bound  # the loop of steps
     slope: Bound
+    powering: Bound  # powers of a slope at other rates; the slope where the loop needs none
     observing: Bound
-    switching: Bound
     guarding: Bound
+    switching: Bound
     stored: Bound
     meaning: Bound
     numbers: Vector
@@ -116,96 +84,13 @@ class BoundEquations(NamedTuple):
         w: Workspace,
     ) -> int:  # fmt: skip
         """Make steps until something happens, or try one; see :mod:`rockframe.solve.march`."""
-        return self.stepping.call(known, trial, pieces, progress, steps, w.of_steps(), self.numbers)
-
-
-class CalledEquations(BoundEquations):
-    """A system whose equations are called from the loop of steps."""
-
-    __slots__ = ()
-
-    @inlined
-    def step_by(
-        self, scheme: Scheme, known: KnownMode, trial: float, pieces: Pieces, progress: Progress,
-        steps: StepTable, w: Workspace,
-    ) -> int:  # fmt: skip
-        """Make steps by a scheme, until something happens."""
-        return march(scheme, Called(self), known, trial, pieces, progress, steps, w.of_steps())
-
-
-class CalledByTolerance(CalledEquations):
-    """Called equations in steps by a tolerance; `stepping` is the slope here."""
-
-    __slots__ = ()
-
-    @kernel
-    def make_steps(
-        self, known: KnownMode, trial: float, pieces: Pieces, progress: Progress, steps: StepTable,
-        w: Workspace,
-    ) -> int:  # fmt: skip
-        """Make steps until something happens, or try one."""
-        scheme = StepsByTolerance(math.inf)
-        return self.step_by(scheme, known, trial, pieces, progress, steps, w)
-
-
-class CalledInFixedSteps(CalledEquations):
-    """Called equations in steps of fixed length; `stepping` writes powers into a slope here."""
-
-    __slots__ = ()
-
-    @kernel
-    def make_steps(
-        self, known: KnownMode, trial: float, pieces: Pieces, progress: Progress, steps: StepTable,
-        w: Workspace,
-    ) -> int:  # fmt: skip
-        """Make steps until something happens, or try one."""
-        scheme = FixedStepsByRates(known.longest)
-        return self.step_by(scheme, known, trial, pieces, progress, steps, w)
-
-
-class Called(NamedTuple):
-    """Equations as the loop of steps calls them, one by one."""
-
-    equations: BoundEquations
-
-    @inlined
-    def coordinates(self) -> int:
-        """Return the number of coordinates."""
-        return self.equations.coordinate_count
-
-    @inlined
-    def variables(self) -> int:
-        """Return the number of variables of first order."""
-        return self.equations.variable_count
-
-    @inlined
-    def guards(self) -> int:
-        """Return the number of guards."""
-        return self.equations.guard_count
-
-    @inlined
-    def write_slope(
-        self, mode: int, state: Vector, ground: Ground, first: int, out: Vector
-    ) -> None:
-        """Write accelerations, rates of variables and powers, from an index on."""
-        one = self.equations
-        one.slope.call(mode, state, ground.x, ground.y, part_of(out, first), one.numbers)
-
-    @inlined
-    def write_guards(
-        self, mode: int, state: Vector, slope: Vector, ground: Ground, limits: Vector, out: Vector
-    ) -> None:
-        """Write guards, then their rates."""
-        one = self.equations
-        one.guarding.call(mode, state, slope, ground.x, ground.y, limits, out, one.numbers)
-
-    @inlined
-    def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
-        """Write the powers at the rates of a state into a slope, and give them."""
-        one = self.equations
-        powers = one.coordinate_count + one.variable_count
-        one.stepping.call(mode, state, ground.x, ground.y, slope, one.numbers)
-        return slope[powers], slope[powers + 1]
+        called = Called(
+            self.slope, self.powering, self.guarding, self.coordinate_count, self.variable_count,
+            self.guard_count, self.numbers,
+        )  # fmt: skip
+        return self.stepping.call(
+            called, known, trial, pieces, progress, steps, w.of_steps(), self.numbers
+        )
 
 
 def gives_powers(system: Equations) -> bool:
@@ -214,41 +99,48 @@ def gives_powers(system: Equations) -> bool:
 
 
 def is_called(system: Equations) -> bool:
-    """Whether equations are called from the loop of steps; such equations give powers, too."""
+    """Whether equations are always called by steps, as they are too long to compile into them."""
     return isinstance(system, CalledBySteps)
 
 
 def equations_of(
-    system: Equations, *, fixed_steps: bool, with_work: bool = False
+    system: Equations,
+    *,
+    fixed_steps: bool,
+    with_work: bool = False,
+    compiled_in: bool | None = None,
 ) -> BoundEquations:
     """Bind a system's equations for the integrator.
 
-    For work at the output times (`with_work`) slopes are evaluated so often that they are compiled.
+    `compiled_in` tells whether the equations are compiled into the loop of steps; by itself they
+    are as soon as runs have taken so long that it pays. For work at the output times (`with_work`)
+    slopes are evaluated so often that they are compiled.
     """
-    kind: type[BoundEquations] = BoundEquations
-    if is_called(system):
-        kind = CalledInFixedSteps if fixed_steps else CalledByTolerance
-        sloping, guarding, observing, *powering = bound(
-            (slope, guards_at, observed, *([powered] if fixed_steps else [])), system
-        )
-        (stepping,) = powering or [sloping]
-        switching, *rest = bound((switched, energies, meaning), system, seldom=True)
-    else:
-        steps = march_by_tolerance
-        if fixed_steps:
-            steps = march_fixed_by_rates if gives_powers(system) else march_fixed
-        stepping, observing = bound((steps, observed), system)
+    march = march_by_tolerance
+    if fixed_steps:
+        march = march_fixed_by_rates if gives_powers(system) else march_fixed
+    own = None if is_called(system) else bound((march,), CompiledIn(system))[0]
+    if own is not None and (is_worth_calling(own) if compiled_in is None else compiled_in):
+        stepping, powering = own, []
+        (observing,) = bound((observed,), system)
         (sloping,) = bound((slope,), system, seldom=not (fixed_steps or with_work))
-        switching, guarding, *rest = bound(
-            (switched, guards_at, energies, meaning), system, seldom=True
+        (guarding,) = bound((guards_at,), system, seldom=True)
+    else:
+        (stepping,) = bound((march,), ByAddress(), stands_for=own)
+        apart = [powered] if march is march_fixed_by_rates else []
+        sloping, guarding, observing, *powering = bound(
+            (slope, guards_at, observed, *apart), system
         )
-    return kind(
-        stepping,
-        sloping,
-        observing,
-        switching,
-        guarding,
-        *rest,  # type: ignore[call-arg]
+    switching, stored, meant = bound((switched, energies, meaning), system, seldom=True)
+    return BoundEquations(
+        stepping=stepping,
+        slope=sloping,
+        powering=powering[0] if powering else sloping,
+        observing=observing,
+        guarding=guarding,
+        switching=switching,
+        stored=stored,
+        meaning=meant,
         numbers=numbers_in(system),
         coordinate_count=system.coordinates(),
         variable_count=system.variables(),
@@ -267,15 +159,16 @@ def has_machine_code(equations: BoundEquations) -> bool:
 
 
 def call_nothing_back(equations: BoundEquations) -> None:
-    """Have the functions called at events compiled in the next run, too: for measuring times."""
+    """Have all functions compiled for the next run: for measuring times."""
     for one in equations:
         if isinstance(one, Bound):
-            one.source.seconds_called_back = math.inf
+            one.source.seconds_without = math.inf
 
 
 def steps_as_machine_code(equations: BoundEquations) -> bool:
     """Whether the functions that steps call are compiled."""
-    return bool(equations.stepping.source.address)
+    bounds = (one for one in equations if isinstance(one, Bound))
+    return all(one.source.address or one.source.is_seldom_called for one in bounds)
 
 
 @inlined

@@ -7,6 +7,7 @@ import math
 from collections.abc import Generator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from time import thread_time
 from typing import Final
 
 import numpy as np
@@ -238,11 +239,15 @@ class InPython:
     @contextmanager
     def counted(self, equations: BoundEquations, clock: Vector) -> Generator[None]:
         """Count what some steps take, and estimate the rest from how far they come."""
-        began = seconds_as_python()
+        began, machine_began = seconds_as_python(), thread_time()
         with still_taking(self._rest):
             yield
         self._rest = 0.0
-        if not steps_as_machine_code(equations):
+        if steps_as_machine_code(equations):
+            if equations.stepping.stands_for is not None:
+                own = equations.stepping.stands_for.source
+                own.seconds_without += thread_time() - machine_began
+        else:
             self.taken += seconds_as_python() - began
             if self.taken > TELLING:
                 parts = self._duration / max(float(clock[at.TIME]), self._interval)

@@ -1,17 +1,19 @@
-"""The loop of steps between events; guards of a step, and whether one may fall inside it.
+"""The loop of steps between events, and whether a guard may fall inside a step.
 
-Written for any system and compiled for each, so that the equations are compiled into the loop.
-The driver (`driver.py`) calls the loop by its address, and handles each step in which more happens
-than motion; `schemes.py` makes a single step.
+It is compiled once for all systems, whose equations it calls, and can also be compiled for a
+structure of systems, with the equations in it (`evaluation.py`). The driver (`driver.py`) calls the
+loop by its address, and handles each step in which more happens than motion; `schemes.py` makes a
+single step.
 """
 
 import math
-from typing import Any, Final, NamedTuple, TypeAlias
+from typing import Final, NamedTuple, TypeAlias
 
-from rockframe.compiled import Vector, inlined, kernel, part_of, put
+from rockframe.compiled import Vector, inlined, kernel, part_of
 from rockframe.dynamics.events import FLIGHT
-from rockframe.dynamics.protocol import POWERS, Equations, Ground, Guards, Slope
+from rockframe.dynamics.protocol import POWERS
 from rockframe.solve import workspace as at
+from rockframe.solve.evaluation import ByAddress, Called, CompiledIn
 from rockframe.solve.schemes import (
     Counted,
     Evaluated,
@@ -23,7 +25,10 @@ from rockframe.solve.schemes import (
     rest_of,
 )
 from rockframe.solve.workspace import (
+    LEFT_LIMIT,
+    RIGHT_LIMIT,
     TERMS,
+    WEIGHTS,
     KnownMode,
     Pieces,
     Progress,
@@ -37,100 +42,12 @@ from rockframe.solve.workspace import (
     may_turn,
 )
 
-LEFT_LIMIT: Final = 0
-RIGHT_LIMIT: Final = 1
-"""Places in `limits` of the largest rotations to either side [rad]. Behind both stand the weights
-of the coordinates in the rotation, then limits and weights of other bodies that may overturn."""
-WEIGHTS: Final = 2
-
-
 DIP_MARGIN: Final = 0.02
 """A dip of a guard's cubic is searched for negative values where its minimum is below this share
 of the guard's variation in the step."""
 DOUBT: Final = 1.01 * DIP_MARGIN
 """The same share for a lower bound of that minimum, with room for rounding."""
 THIRD: Final = 1.0 / 3.0
-
-
-@inlined
-def guards_at(
-    system: Equations, mode: int, state: Vector, slope: Vector, ground_x: float, ground_y: float,
-    limits: Vector, out: Vector,
-) -> None:  # fmt: skip
-    """Write the guards of a state as :func:`put_guards`, with the nearest limit of all bodies."""
-    found = system.guards_in(mode, state, slope, Ground(ground_x, ground_y))
-    put_guards(system, found, state, limits, out)
-    size, last = system.coordinates(), system.guards()
-    row = WEIGHTS + size
-    while row < len(limits):
-        rotation = rate = 0.0
-        for i in range(size):
-            rotation += limits[row + WEIGHTS + i] * state[i]
-            rate += limits[row + WEIGHTS + i] * state[size + i]
-        left = rotation <= 0.0
-        apart = (
-            limits[row + LEFT_LIMIT] + rotation if left else limits[row + RIGHT_LIMIT] - rotation
-        )
-        if apart < out[last]:
-            out[last], out[2 * last + 1] = apart, rate if left else -rate
-        row += WEIGHTS + size
-
-
-@inlined
-def put_guards(
-    system: Equations, found: Guards, state: Vector, limits: Vector, out: Vector
-) -> None:
-    """Write guards, then their rates; the last guard is how far the rotation is from its limit."""
-    size, last = system.coordinates(), system.guards()
-    rotation = rate = 0.0
-    for i in range(size):
-        rotation += limits[WEIGHTS + i] * state[i]
-        rate += limits[WEIGHTS + i] * state[size + i]
-    left = rotation <= 0.0
-    put(found.values, 0, out)
-    put(found.changes, last + 1, out)
-    out[last] = limits[LEFT_LIMIT] + rotation if left else limits[RIGHT_LIMIT] - rotation
-    out[2 * last + 1] = rate if left else -rate
-
-
-class CompiledIn(NamedTuple):
-    """Equations that are compiled into the loop of steps."""
-
-    system: Any
-
-    @inlined
-    def coordinates(self) -> int:
-        """Return the number of coordinates."""
-        return self.system.coordinates()
-
-    @inlined
-    def variables(self) -> int:
-        """Return the number of variables of first order."""
-        return self.system.variables()
-
-    @inlined
-    def guards(self) -> int:
-        """Return the number of guards."""
-        return self.system.guards()
-
-    @inlined
-    def write_slope(
-        self, mode: int, state: Vector, ground: Ground, first: int, out: Vector
-    ) -> None:
-        """Write accelerations, rates of variables and powers, from an index on."""
-        put(self.system.accelerate(mode, state, ground), first, out)
-
-    @inlined
-    def write_guards(
-        self, mode: int, state: Vector, slope: Vector, ground: Ground, limits: Vector, out: Vector
-    ) -> None:
-        """Write guards, then their rates, see :func:`guards_at`."""
-        guards_at(self.system, mode, state, slope, ground.x, ground.y, limits, out)
-
-    @inlined
-    def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
-        """Return the powers of a state whose slope at other rates is known."""
-        return self.system.powers(mode, state, slope, ground)
 
 
 @inlined
@@ -390,29 +307,29 @@ def march(
 
 @kernel
 def march_fixed(
-    system: Equations, known: KnownMode, trial: float, pieces: Pieces, progress: Progress,
-    steps: StepTable, arrays: StepArrays,
+    equations: CompiledIn | ByAddress, called: Called, known: KnownMode, trial: float,
+    pieces: Pieces, progress: Progress, steps: StepTable, arrays: StepArrays,
 ) -> int:  # fmt: skip
     """Make steps of fixed length, see :func:`march`."""
-    scheme = FixedSteps(known.longest)
-    return march(scheme, CompiledIn(system), known, trial, pieces, progress, steps, arrays)
+    system, scheme = equations.evaluated(called), FixedSteps(known.longest)
+    return march(scheme, system, known, trial, pieces, progress, steps, arrays)
 
 
 @kernel
 def march_fixed_by_rates(
-    system: Equations, known: KnownMode, trial: float, pieces: Pieces, progress: Progress,
-    steps: StepTable, arrays: StepArrays,
+    equations: CompiledIn | ByAddress, called: Called, known: KnownMode, trial: float,
+    pieces: Pieces, progress: Progress, steps: StepTable, arrays: StepArrays,
 ) -> int:  # fmt: skip
     """Make steps of fixed length of equations that give powers apart, see :func:`march`."""
-    scheme = FixedStepsByRates(known.longest)
-    return march(scheme, CompiledIn(system), known, trial, pieces, progress, steps, arrays)
+    system, scheme = equations.evaluated(called), FixedStepsByRates(known.longest)
+    return march(scheme, system, known, trial, pieces, progress, steps, arrays)
 
 
 @kernel
 def march_by_tolerance(
-    system: Equations, known: KnownMode, trial: float, pieces: Pieces, progress: Progress,
-    steps: StepTable, arrays: StepArrays,
+    equations: CompiledIn | ByAddress, called: Called, known: KnownMode, trial: float,
+    pieces: Pieces, progress: Progress, steps: StepTable, arrays: StepArrays,
 ) -> int:  # fmt: skip
     """Make steps of the Dormand-Prince pair, see :func:`march`."""
-    scheme = StepsByTolerance(math.inf)
-    return march(scheme, CompiledIn(system), known, trial, pieces, progress, steps, arrays)
+    system, scheme = equations.evaluated(called), StepsByTolerance(math.inf)
+    return march(scheme, system, known, trial, pieces, progress, steps, arrays)

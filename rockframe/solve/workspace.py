@@ -216,7 +216,7 @@ class Workspace(NamedTuple):
     stages: Vector  # velocities and slopes of the stages
     works: Vector  # energies dissipated and put in, error of their difference, errors of the state
     reference: Vector  # largest size so far of each element of the state
-    limits: Vector  # limits of rotations, see rockframe.solve.march
+    limits: Vector  # limits of rotations, see LEFT_LIMIT
     scratch: Vector  # a state inside the step
     scratch_rates: Vector  # its slope
     inside: Vector  # guards and their rates inside the step
@@ -231,6 +231,12 @@ class Workspace(NamedTuple):
             self.both_ends, self.stages, self.works, self.reference, self.limits, self.ground
         )
 
+
+LEFT_LIMIT: Final = 0
+RIGHT_LIMIT: Final = 1
+"""Places in `limits` of the largest rotations to either side [rad]. Behind both stand the weights
+of the coordinates in the rotation, then limits and weights of other bodies that may overturn."""
+WEIGHTS: Final = 2
 
 NO_STEPS: Final = StepTable(np.empty(0), np.empty(0, dtype=np.int64))
 """The table of a run whose steps are not kept."""

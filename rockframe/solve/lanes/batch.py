@@ -26,9 +26,10 @@ from rockframe.solve.driver import run_on
 from rockframe.solve.equations import BoundEquations, known_mode
 from rockframe.solve.lanes import fields
 from rockframe.solve.lanes.fields import is_at_end
-from rockframe.solve.march import WEIGHTS, interval_length, jumps
+from rockframe.solve.march import interval_length, jumps
 from rockframe.solve.workspace import (
     TERMS,
+    WEIGHTS,
     EventTable,
     Output,
     Pieces,
@@ -84,8 +85,8 @@ def equations_in(batch: Batch, row: Vector) -> BoundEquations:
     """Return the equations of a row's system."""
     one, shape = batch.equations, batch.shape
     return BoundEquations(
-        stepping=one.stepping, slope=one.slope, observing=one.observing, switching=one.switching,
-        guarding=one.guarding, stored=one.stored, meaning=one.meaning,
+        stepping=one.stepping, slope=one.slope, powering=one.powering, observing=one.observing,
+        guarding=one.guarding, switching=one.switching, stored=one.stored, meaning=one.meaning,
         numbers=stretch(row, shape.numbers, shape.number_count),
         coordinate_count=one.coordinate_count, variable_count=one.variable_count,
         guard_count=one.guard_count,

@@ -12,9 +12,9 @@ from typing import Final, NamedTuple
 from rockframe.compiled import ReadOnlyMatrix, Vector, as_integers, inlined, lane_of
 from rockframe.dynamics.protocol import POWERS, Equations
 from rockframe.solve import workspace as at
-from rockframe.solve.march import SHORTEST, WEIGHTS, jumps
+from rockframe.solve.march import SHORTEST, jumps
 from rockframe.solve.schemes import STAGES
-from rockframe.solve.workspace import ERRORS, TERMS
+from rockframe.solve.workspace import ERRORS, TERMS, WEIGHTS
 
 # real numbers of a lane (OWN), beside the clock and controls of a run
 LENGTH: Final = 0  # length of the interval of the motion [s]

@@ -22,6 +22,7 @@ from rockframe.compiled import (
 from rockframe.dynamics.protocol import POWERS, Equations, Ground
 from rockframe.solve import workspace as at
 from rockframe.solve.equations import gives_powers
+from rockframe.solve.evaluation import CompiledIn, put_guards
 from rockframe.solve.lanes import fields
 from rockframe.solve.lanes.fields import (
     RECORDED,
@@ -30,14 +31,7 @@ from rockframe.solve.lanes.fields import (
     evaluate_ground,
     places_of,
 )
-from rockframe.solve.march import (
-    SHORTEST,
-    CompiledIn,
-    fit_step,
-    may_fall,
-    put_guards,
-    rotation_in_step,
-)
+from rockframe.solve.march import SHORTEST, fit_step, may_fall, rotation_in_step
 from rockframe.solve.schemes import (
     NODES,
     STAGE_1,

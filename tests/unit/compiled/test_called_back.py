@@ -14,6 +14,7 @@ from rockframe.compiled import (
     bound,
     entry,
     entry_at_once,
+    is_worth_calling,
     kernel,
     numbers_in,
 )
@@ -85,21 +86,21 @@ EXPECTED = (1 + 5 + 28, [3.0 * (0.5 - 2.5) * 4.0 + 7.0, 5.75, 0.0], [33, 6])
 def test_python_machine_code_and_what_calls_back_give_the_same():
     given = arguments(2)
     source = given[0].function.source
-    source.address, source.seconds_called_back = 0, 0.0
+    source.address, source.seconds_without = 0, 0.0
     assert result_of(given) == EXPECTED
     assert source.address == 0
-    assert source.seconds_called_back > 0.0
+    assert source.seconds_without > 0.0
     # of the numbers that are handed over, not of those that it was bound to
     handed, *others = arguments(2)
     other = Handed(handed.function, numbers_in(Scale(-3.0, np.array([1.0, 2.0, 8.0]))))
     through(other, *others)
     assert others[1][0] == -3.0 * (0.5 - 2.5) * 8.0 + 7.0
     assert source.address == 0
-    source.seconds_called_back = 1e9
+    source.seconds_without = 1e9
     assert result_of(arguments(2)) == EXPECTED
     assert source.address != 0
     # what was kept is taken at once
-    source.address, source.seconds_called_back = 0, 0.0
+    source.address, source.seconds_without = 0, 0.0
     assert result_of(arguments(2)) == EXPECTED
     assert source.address != 0
 
@@ -113,7 +114,7 @@ def interrupted(scale: Scale, out: Vector) -> int:
 def test_what_it_raises_arrives():
     given = arguments(-1)
     source = given[0].function.source
-    source.address, source.seconds_called_back = 0, 0.0
+    source.address, source.seconds_without = 0, 0.0
     with pytest.raises(ValueError, match="no such row"):
         through(*given)
     (function,) = bound((interrupted,), Scale(1.0, np.zeros(1)), seldom=True)
@@ -138,7 +139,7 @@ def call(handed: Handed, out: Vector) -> int:
 def test_what_cannot_be_compiled_goes_on_as_python(fallbacks):
     scale = Scale(1.0, np.zeros(1))
     (function,) = bound((hopeless,), scale, seldom=True)
-    function.source.seconds_called_back = 1e9
+    function.source.seconds_without = 1e9
     out = np.zeros(1)
     for _ in range(3):
         assert call(Handed(function, numbers_in(scale)), out) == 3
@@ -166,4 +167,34 @@ def test_what_does_not_return_for_long_calls_nothing_back():
     assert at_length(Handed(function, numbers_in(scale)), out) == 5
     assert out[0] == 2.0
     assert function.source.address != 0
-    assert function.source.seconds_called_back == 0.0
+    assert function.source.seconds_without == 0.0
+
+
+def test_another_function_stands_in_until_it_has_taken_as_long_as_compiling(monkeypatch):
+    scale = Scale(2.0, np.zeros(1))
+    (own,) = bound((plain,), scale)
+    source = own.source
+    assert not is_worth_calling(own)
+    source.seconds_without = 0.5 * source.job.seconds
+    assert not is_worth_calling(own)
+    assert source.address == 0
+    monkeypatch.setattr("rockframe.compiled.parallel.WORTHWHILE", 0.0)
+    source.seconds_without = 2.0 * source.job.seconds
+    assert is_worth_calling(own)
+    assert source.address != 0
+    # another process, which knows nothing of that time, finds it stored
+    _source.cache_clear()
+    (again,) = bound((plain,), scale)
+    assert again.source is not source
+    assert is_worth_calling(again)
+    assert again.source.address != 0
+
+
+def test_what_cannot_be_compiled_is_not_tried_again(fallbacks):
+    (own,) = bound((hopeless,), Scale(1.0, np.zeros(1)))
+    own.source.seconds_without = 1e9
+    for _ in range(3):
+        assert not is_worth_calling(own)
+    assert own.source.failed
+    assert len(fallbacks) == 1
+    fallbacks.clear()
