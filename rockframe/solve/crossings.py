@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 from rockframe.compiled import Vector, kernel
 from rockframe.solve.equations import BoundEquations
 from rockframe.solve.march import DIP_MARGIN, may_dip
-from rockframe.solve.workspace import Span, Workspace, ground_in
+from rockframe.solve.workspace import KnownMode, Span, Workspace, ground_in
 
 
 class Crossing(NamedTuple):
@@ -122,12 +122,7 @@ size of the next one, is rounding."""
 
 @kernel
 def earliest_crossing(
-    equations: BoundEquations,
-    mode: int,
-    count: int,
-    span: Span,
-    tolerance: Vector,
-    w: Workspace,
+    equations: BoundEquations, known: KnownMode, span: Span, tolerance: Vector, w: Workspace
 ) -> Crossing:
     """Return the guard that falls through zero first.
 
@@ -144,14 +139,12 @@ def earliest_crossing(
         bottom, low, high = _dip(c1, c2, c3)
         depth = c0 + bottom * (c1 + bottom * (c2 + bottom * c3))
         if 0.0 < bottom < 1.0 and depth < DIP_MARGIN * (abs(c1) + abs(end_change)):
-            end = _point_below_zero(
-                equations, i, bottom, low, high, mode, count, span, tolerance, w
-            )
+            end = _point_below_zero(equations, i, bottom, low, high, known, span, tolerance, w)
         # a guard that starts at zero, within its rounding noise, falls only if it goes below that
         if end < 0.0 and w.after[i] < (0.0 if w.before[i] > tolerance[i] else -tolerance[i]):
             end = 1.0
         if end >= 0.0:
-            root = _first_root(equations, i, end, mode, count, span, tolerance, w)
+            root = _first_root(equations, i, end, known, span, tolerance, w)
             if root < place:
                 found, place, negative = i, root, end
     return Crossing(found, place, negative)
@@ -193,37 +186,24 @@ def _dip(c1: float, c2: float, c3: float) -> tuple[float, float, float]:
 
 @kernel
 def _guard_inside(
-    equations: BoundEquations,
-    which: int,
-    fraction: float,
-    mode: int,
-    count: int,
-    span: Span,
-    tolerance: Vector,
+    equations: BoundEquations, which: int, fraction: float, known: KnownMode, span: Span,
     w: Workspace,
-) -> float:
+) -> float:  # fmt: skip
     """Return a guard's value at a fraction of the step, from the dense solution."""
-    interpolate(equations, count, fraction, span.h, w)
+    interpolate(equations, known.moving, fraction, span.h, w)
     ground = ground_in(fraction, span, w.ground)
     equations.guarding.call(
-        mode, w.scratch, w.scratch_rates, ground.x, ground.y, w.limits, w.inside, equations.numbers
-    )
+        known.mode, w.scratch, w.scratch_rates, ground.x, ground.y, w.limits, w.inside,
+        equations.numbers,
+    )  # fmt: skip
     return w.inside[which]
 
 
 @kernel
 def _point_below_zero(
-    equations: BoundEquations,
-    which: int,
-    bottom: float,
-    low: float,
-    high: float,
-    mode: int,
-    count: int,
-    span: Span,
-    tolerance: Vector,
-    w: Workspace,
-) -> float:
+    equations: BoundEquations, which: int, bottom: float, low: float, high: float,
+    known: KnownMode, span: Span, tolerance: Vector, w: Workspace,
+) -> float:  # fmt: skip
     """Return a place in a predicted dip at which a guard is negative; -1 if there is none.
 
     Bisection by the guard's rate. For a guard that starts at zero, within its rounding noise,
@@ -232,7 +212,7 @@ def _point_below_zero(
     start, noise = w.before[which], tolerance[which]
     zero = 0.0 if start > noise else min(start, 0.0) - noise
     for _ in range(LOOKING):
-        g = _guard_inside(equations, which, bottom, mode, count, span, tolerance, w)
+        g = _guard_inside(equations, which, bottom, known, span, w)
         if g < zero:
             return bottom
         rate = span.h * w.inside[len(tolerance) + which]
@@ -264,21 +244,15 @@ def _root_of_cubic(c0: float, c1: float, c2: float, c3: float, end: float) -> fl
 
 @kernel
 def _first_root(
-    equations: BoundEquations,
-    which: int,
-    end: float,
-    mode: int,
-    count: int,
-    span: Span,
-    tolerance: Vector,
-    w: Workspace,
-) -> float:
+    equations: BoundEquations, which: int, end: float, known: KnownMode, span: Span,
+    tolerance: Vector, w: Workspace,
+) -> float:  # fmt: skip
     """Return the first root of a guard before `end`, where it is negative.
 
     Newton's method from the root of the cubic through the guard's values and rates at both ends
     of the step, kept inside its bracket by bisection. A guard that starts at zero, within its
-    rounding noise, may rise before it falls: then the root behind its rise is meant, that of the
-    cubic divided by u. Else a corner that has just lifted off would seem to land at once.
+    rounding noise, may rise before it falls: then the root after its rise is returned, that of the
+    cubic divided by u. Otherwise a corner that has just lifted off would seem to land at once.
     """
     guards = len(tolerance)
     start, c1, c2, c3 = _cubic_of(which, span.h, tolerance, w)
@@ -290,7 +264,7 @@ def _first_root(
         place = 0.5 * end
     low, high, last = 0.0, end, math.inf
     for _ in range(SEARCHING):
-        g = _guard_inside(equations, which, place, mode, count, span, tolerance, w)
+        g = _guard_inside(equations, which, place, known, span, w)
         if g > 0.0:
             low = place
         else:

@@ -1,9 +1,9 @@
 """A system's equations as the integrator calls them: functions of arrays, of fixed types.
 
-So one integrator, compiled once, serves every system: it knows these functions by their
+One integrator, compiled once, thus serves every system: it knows these functions by their
 addresses, and the system's numbers as a vector. Most equations are compiled into the loop of
-steps. Equations that take long to compile and to evaluate are called from that loop instead: the
-call itself hardly delays them.
+steps. Equations that take long to compile and to evaluate are called from that loop instead, which
+hardly delays them.
 """
 
 import math
@@ -29,7 +29,6 @@ from rockframe.dynamics.protocol import (
 )
 from rockframe.solve.accuracy import STABLE
 from rockframe.solve.march import (
-    Scheme,
     guards_at,
     march,
     march_by_tolerance,
@@ -53,7 +52,7 @@ def switched(
     system: Equations, mode: int, guard: int, state: Vector, ground_x: float, ground_y: float,
     memory: Vector,
 ) -> int:  # fmt: skip
-    """Carry out the event of a guard that has fallen through zero; give the new mode."""
+    """Carry out the event of a guard that has fallen through zero; return the new mode."""
     return system.switch(mode, guard, state, Ground(ground_x, ground_y), memory)
 
 
@@ -94,8 +93,8 @@ def powered(
 class BoundEquations(NamedTuple):
     """The bound functions of a system, its numbers, and its sizes.
 
-    Two processes compile the functions, from the first and from the last on; the march takes half
-    of the time. Functions that are called at events only are compiled when that pays.
+    Two processes compile the functions, one from the first, one from the last; the march takes
+    half of the time. Functions that are called at events only are compiled when that pays.
     """
 
     stepping: Bound  # the march, with the equations compiled into it
@@ -119,22 +118,8 @@ class BoundEquations(NamedTuple):
         return self.stepping.call(known, trial, pieces, progress, steps, w.of_steps(), self.numbers)
 
 
-class CalledEquations(BoundEquations):
-    """A system whose equations are called from the loop of steps."""
-
-    __slots__ = ()
-
-    @inlined
-    def step_by(
-        self, scheme: Scheme, known: KnownMode, trial: float, pieces: Pieces, progress: Progress,
-        steps: StepTable, w: Workspace,
-    ) -> int:  # fmt: skip
-        """Make steps by a scheme, until something happens."""
-        return march(scheme, Called(self), known, trial, pieces, progress, steps, w.of_steps())
-
-
-class CalledByTolerance(CalledEquations):
-    """Called equations in steps by a tolerance; `stepping` is the slope here."""
+class CalledByTolerance(BoundEquations):
+    """Equations called from steps by a tolerance; `stepping` is the slope here."""
 
     __slots__ = ()
 
@@ -145,11 +130,11 @@ class CalledByTolerance(CalledEquations):
     ) -> int:  # fmt: skip
         """Make steps until something happens, or try one."""
         scheme = StepsByTolerance(math.inf)
-        return self.step_by(scheme, known, trial, pieces, progress, steps, w)
+        return march(scheme, Called(self), known, trial, pieces, progress, steps, w.of_steps())
 
 
-class CalledInFixedSteps(CalledEquations):
-    """Called equations in steps of fixed length; `stepping` writes powers into a slope here."""
+class CalledInFixedSteps(BoundEquations):
+    """Equations called from steps of fixed length; `stepping` writes powers into a slope here."""
 
     __slots__ = ()
 
@@ -160,7 +145,7 @@ class CalledInFixedSteps(CalledEquations):
     ) -> int:  # fmt: skip
         """Make steps until something happens, or try one."""
         scheme = FixedStepsByRates(known.longest)
-        return self.step_by(scheme, known, trial, pieces, progress, steps, w)
+        return march(scheme, Called(self), known, trial, pieces, progress, steps, w.of_steps())
 
 
 class Called(NamedTuple):
@@ -201,7 +186,7 @@ class Called(NamedTuple):
 
     @inlined
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
-        """Write the powers at the rates of a state into a slope, and give them."""
+        """Write the powers at the rates of a state into a slope, and return them."""
         one = self.equations
         powers = one.coordinate_count + one.variable_count
         one.stepping.call(mode, state, ground.x, ground.y, slope, one.numbers)
@@ -267,7 +252,7 @@ def has_machine_code(equations: BoundEquations) -> bool:
 
 
 def call_nothing_back(equations: BoundEquations) -> None:
-    """Have the functions called at events compiled in the next run, too: for measuring times."""
+    """Let the next run compile the functions called at events, too: for measuring times."""
     for one in equations:
         if isinstance(one, Bound):
             one.source.seconds_called_back = math.inf

@@ -38,8 +38,8 @@ from rockframe.solve.workspace import (
 
 LEFT_LIMIT: Final = 0
 RIGHT_LIMIT: Final = 1
-"""Places in `limits` of the largest rotations to either side [rad]. Behind both stand the weights
-of the coordinates in the rotation, then limits and weights of other bodies that may overturn."""
+"""Indices in `limits` of the largest rotations to either side [rad]. The weights of the coordinates
+in the rotation follow, then limits and weights of other bodies that may overturn."""
 WEIGHTS: Final = 2
 
 
@@ -175,7 +175,7 @@ class RotationInStep(NamedTuple):
 def rotation_in_step(
     row: int, size: int, limits: Vector, state: Vector, new: Vector
 ) -> RotationInStep:
-    """Return the rotation whose limits stand in `limits` from `row` on, at both ends of a step."""
+    """Return the rotation whose limits begin at `row` of `limits`, at both ends of a step."""
     r0 = v0 = r1 = v1 = 0.0
     for i in range(size):
         r0 += limits[row + WEIGHTS + i] * state[i]
@@ -230,7 +230,7 @@ TRIED: Final = 7  # a trial step was made
 SHORTEST: Final = 1e-14
 """Shortest step, as a share of the run's duration."""
 JUMP: Final = 1e-12
-"""Relative difference of the ground acceleration at a sample from which on it is a jump."""
+"""Relative difference of the ground acceleration at a sample above which it is a jump."""
 
 
 @inlined
@@ -241,7 +241,7 @@ def jumps(now: float, before: float) -> bool:
 
 @inlined
 def fit_step(h: float, remaining: float) -> float:
-    """Return the step h, changed so that it ends with the interval or leaves no tiny rest of it."""
+    """Return the step h, changed so that it ends with the interval or leaves no tiny rest."""
     if h >= 0.999999 * remaining:
         return remaining
     return min(h, 0.5 * remaining)
