@@ -1,7 +1,7 @@
 """Bound functions: functions whose first argument, a tuple of numbers, is fixed.
 
-Compiled code calls a bound function by its address, whatever the class of the tuple: the numbers
-of the tuple are handed over as the last argument, a vector.
+Compiled code calls a bound function by its address, whatever the class of the tuple: the last
+argument is a vector of the numbers of the tuple.
 """
 
 from collections.abc import Callable, Iterator
@@ -43,7 +43,7 @@ def structure_of(bundle: Any) -> tuple[Any, ...]:
 
 
 class Signature:
-    """Numba's signature of a function, with its hash: each call of an entry looks it up."""
+    """Numba's signature of a function, with its hash, which each call of an entry uses."""
 
     def __init__(self, value: Any) -> None:
         self.value = value

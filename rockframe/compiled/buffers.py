@@ -140,7 +140,7 @@ def _as_integers(_: Any, kept: Any) -> Any:
 def _widen(_: Any) -> Any:
     """Let LLVM use the widest registers in the calling function, in compiled code.
 
-    Where registers have 512 bits, LLVM by itself uses 256 of them, which suits programs that need
+    Where registers have 512 bits, LLVM by default uses 256 of them, which suits programs that need
     wide ones only now and then. llvmlite does not know this attribute, but writes any text.
     """
 

@@ -2,7 +2,7 @@
 
 Functions that are called at events only may take half of the time of compilation, but a thousandth
 of the time of a run. Compiled code calls them like any bound function, by an address; a buffer is
-handed over as its address and its lengths, one after the other.
+passed as its address and its lengths.
 """
 
 import ctypes
@@ -65,7 +65,7 @@ class CalledBack:
 
 
 def _arguments(kinds: list[Any], words: tuple[Any, ...]) -> list[Any]:
-    """Return the arguments of a call from the words handed over; arrays are memory views."""
+    """Return the arguments of a call from the words passed; arrays are memory views."""
     arguments: list[Any] = []
     place = 0
     for kind in kinds:

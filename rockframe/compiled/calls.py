@@ -47,7 +47,7 @@ def register_inlined(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 class _Compiled(numba.types.Dispatcher):
-    """numba's type of a compiled function that is not compiled anew for constant arguments."""
+    """numba's type of a compiled function that is not compiled again for constant arguments."""
 
     def get_call_type(self, context: Any, arguments: Any, keywords: Any) -> Any:
         """Return the types of a call; a constant argument has the type of its kind of number."""
@@ -61,14 +61,14 @@ extending.register_model(_Compiled)(extending.models.OpaqueModel)
 
 @imputils.lower_constant(_Compiled)
 def _no_value(context: Any, builder: Any, kind: Any, value: Any) -> Any:
-    """Hand over no value for a function that is an argument: its type tells which it is."""
+    """Pass no value for a function that is an argument: its type identifies it."""
     return context.get_dummy_value()
 
 
 def _register(function: Callable[..., Any], into_caller: bool) -> None:
     """Let calls of a function mean its compiled counterpart, one for all callers.
 
-    numba's ``register_jitable`` compiles it anew for callers with other options.
+    numba's ``register_jitable`` compiles it again for callers with other options.
     """
     plain = makes_numbers_alone(function)  # and has nothing whose references numba would count
     options: dict[str, Any] = HELPER | {"forceinline": into_caller, "_nrt": not plain}

@@ -50,10 +50,10 @@ _CALLS_BACK: Final = _ASKED != "wait"
 CALLED_BACK: Final = 1.0 / 3.0
 """A function called back is compiled once it has taken this share of the time to compile it.
 
-So little time is lost where it is compiled after all, and none where a few short runs are made.
+Little time is lost if it is compiled in the end, and none if only a few short runs are made.
 """
 PATIENCE: Final = 3.0
-"""Time in plain Python from which on a message tells why a run was slow [s]."""
+"""Time in plain Python after which a message explains why a run was slow [s]."""
 _said_slow: Final[list[bool]] = []
 
 _logger = logging.getLogger("rockframe")
@@ -73,7 +73,7 @@ def entry(function: Function) -> Function:
 def entry_at_once(function: Function) -> Function:
     """Mark an entry that runs as plain Python, with the same results, until it is compiled.
 
-    It must return now and then; as machine code it may call back functions in Python.
+    It must return from time to time; as machine code it may call back functions in Python.
     """
     if not COMPILED:
         return cast("Function", _as_python(function))
@@ -123,7 +123,7 @@ def seconds_as_python() -> float:
 
 
 def warn_of_slow_run(seconds: float) -> None:
-    """Say once, after a long run in plain Python, why, and what machine code would do."""
+    """Warn once, after a long run in plain Python, why it was slow, and how fast others will be."""
     if seconds <= PATIENCE or _said_slow or (_HAS_NUMBA and not COMPILED):
         return
     _said_slow.append(True)
@@ -181,7 +181,7 @@ class Entry:
         return raising(routine, words)
 
     def _needed(self, sources: list[Source]) -> tuple[list[Source], list[Source]]:
-        """Divide bound functions: those to compile before this runs, and those called back."""
+        """Return the bound functions to compile before this runs, and those to call back."""
         seldom: list[Source] = []
         if self._calls_back:
             seldom = [source for source in _missing(sources) if source.is_seldom_called]
@@ -206,10 +206,10 @@ class Entry:
     def _meanwhile(
         self, structure: tuple[Any, ...], sources: list[Source], seldom: list[Source]
     ) -> "Meanwhile | None":
-        """Return the compilation for which plain Python fills in; None where that does not pay.
+        """Return the compilation during which plain Python runs; None where that does not pay.
 
-        That is where there can be no machine code, where there is some, or where all functions that
-        the entry calls are compiled and the entry itself takes a moment.
+        It does not pay if there can be no machine code, if there is some, or if all functions that
+        the entry calls are compiled and the entry itself compiles in a moment.
         """
         from rockframe.compiled.parallel import WORTHWHILE, Meanwhile, time_for
 
@@ -323,7 +323,7 @@ def compiled_within(
 
 @contextmanager
 def compiling_for(words: str) -> Generator[None]:
-    """Set what messages about compilation in this block say it is for."""
+    """Set the purpose that messages about compilation in this block state."""
     before = NEEDED_BY.set(words)
     try:
         yield
@@ -333,7 +333,7 @@ def compiling_for(words: str) -> Generator[None]:
 
 @contextmanager
 def still_taking(seconds: float) -> Generator[None]:
-    """Set how long the caller of this block expects it to take yet in plain Python [s]."""
+    """Set the remaining time in plain Python that the caller of this block expects [s]."""
     before = STILL_TAKES.set(seconds)
     try:
         yield
@@ -342,7 +342,7 @@ def still_taking(seconds: float) -> Generator[None]:
 
 
 def _structure_of(argument: Any, words: list[Any], sources: list[Source]) -> Any:
-    """Return the structure of an argument; add the words that hand it over, and bound functions."""
+    """Return the structure of an argument; append the words that pass it, and bound functions."""
     if isinstance(argument, tuple):
         values = cast("tuple[Any, ...]", argument)
         return (type(values), *[_structure_of(value, words, sources) for value in values])

@@ -45,10 +45,10 @@ KINDS: Final[dict[Any, Any]] = {
 
 
 class Writer:
-    """Writes the source by which a module puts the arguments of a function together."""
+    """Writes the source by which a module makes the arguments of a function."""
 
     def __init__(self) -> None:
-        self.kinds: list[Any] = []  # numba's types of the words that are handed over
+        self.kinds: list[Any] = []  # numba's types of the words that are passed
         self.scope: dict[str, Any] = {}  # names that the source uses
         self.notes: list[str] = []  # comments on what the source depends on but does not show
 
@@ -201,7 +201,7 @@ class Job:
         if self.is_stored:
             try:
                 return self._compiled(keep=True)
-            except Exception:  # damaged: whatever comes of reading it
+            except Exception:  # damaged: reading it may raise anything
                 store.forget_code(file)
                 _logger.warning("machine code in %s was damaged, and is compiled anew", file.parent)
         register_kernels()
@@ -237,8 +237,8 @@ def seconds_of(jobs: Sequence[Job]) -> float:
 def operators_remembered() -> Generator[None]:
     """Let numba resolve an operator on numbers of some types only once in this block.
 
-    By itself it goes through all definitions of an operator, numpy's too, at each place of it: a
-    twelfth of the time of a compilation.
+    By default it searches all definitions of an operator, including numpy's, at each use: a twelfth
+    of the time of a compilation.
     """
     kind, numbers = numba.types.Function, (numba.types.Number, numba.types.Boolean)
     look = kind.get_call_type

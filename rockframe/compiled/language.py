@@ -5,8 +5,8 @@ those of named tuples of numbers, and belong to their classes: other classes may
 other methods, of the same name.
 
 Runs in lanes share one array, ordered by fields: element ``field * LANES + lane`` is a field of one
-lane. A loop over all lanes that reads and writes nothing but such an array is compiled to
-instructions for several lanes at once.
+lane. A loop over all lanes that reads and writes only such an array is compiled to instructions for
+several lanes at once.
 """
 
 from collections.abc import Callable
@@ -34,7 +34,7 @@ NEEDED_BY: Final = ContextVar("needed_by", default="this")
 AS_PYTHON: Final[list[float]] = [0.0]
 """Processor time that entries have spent in plain Python while they were compiled [s]."""
 STILL_TAKES: Final = ContextVar("still_takes", default=0.0)
-"""Time that the caller expects to take yet in plain Python; 0 where it does not know [s]."""
+"""Remaining time in plain Python that the caller expects; 0 where it is unknown [s]."""
 
 
 def kernel(function: Function) -> Function:
@@ -115,7 +115,7 @@ def as_integers(array: Vector) -> Integers:
 
 
 def widest_registers() -> None:
-    """Have the calling function compiled for the widest registers of the processor."""
+    """Let the calling function be compiled for the widest registers of the processor."""
 
 
 def tuple_from(structure: tuple[Any, ...]) -> Callable[[Vector], Any]:

@@ -1,12 +1,12 @@
 """Late linking: functions that only compiled code calls are optimised once, within their entry.
 
-By itself numba optimises each function together with all that it calls and makes machine code of
-it, though only that of the entry is ever run. Here a library of numba stays unoptimised until an
+By default numba optimises each function together with all that it calls and makes machine code of
+it, although only that of the entry is ever run. Here a library of numba stays unoptimised until an
 address in it is needed, or code outside of rockframe links it; it is then linked with all that it
 calls and optimised as a whole. The operations and their order stay the same, and with them each bit
 of each result.
 
-numba does not document this: with an untested version of it everything goes its ordinary way.
+numba does not document this: an untested version of it compiles in its ordinary way.
 """
 
 from collections.abc import Generator
@@ -50,7 +50,7 @@ class _Waiting(_codegen.JITCodeLibrary):
         self._environments.append((name, environment))
 
     def add_linking_library(self, library: Any) -> None:
-        """Link a library, in whatever state it is."""
+        """Link a library, whatever its state."""
         if isinstance(library, _Waiting):
             self._linking_libraries.append(library)
         else:

@@ -1,12 +1,12 @@
 """Compilation of all jobs of a call, by two processes where they are not stored.
 
 numba compiles one function at a time. A helper process starts from the other end of the list of
-jobs, and each process finds in the store what the other one has compiled. Or a second process
-compiles everything while this one goes on in plain Python: compiled or not, a function gives the
-same numbers to the last bit, and a long run returns now and then (``rockframe.solve.integrate``) to
-go on as machine code as soon as there is some. So nobody waits for a compiler longer than for the
-run itself. When a run has taken, or is expected to take, as long as both processes need for the
-remaining jobs, this process compiles, too.
+jobs, and each process finds in the store what the other one has compiled. Alternatively a second
+process compiles everything while this one continues in plain Python: compiled or not, a function
+returns the same bits, and a long run returns from time to time (``rockframe.solve.integrate``), so
+that it continues as machine code once there is some. A user thus never waits longer for a compiler
+than for the run itself. When a run has taken, or is expected to take, as long as both processes
+need for the remaining jobs, this process compiles, too.
 """
 
 import gc
@@ -28,7 +28,7 @@ from rockframe.compiled.language import AS_PYTHON, NEEDED_BY, STILL_TAKES
 _logger = logging.getLogger("rockframe")
 _announced: Final[set[str]] = set()
 _FREEZE: Final = 2.0
-"""Time of a compilation from which on each one is announced, not only the first [s]."""
+"""Time of a compilation above which each one is announced, not only the first [s]."""
 AGAIN: Final = 0.45
 """Time to compile a function for a further job, over that for the first one [1].
 
@@ -127,7 +127,7 @@ def _made(place: int, job: Job, waiting: Callable[[], bool]) -> Any:
 
 @contextmanager
 def _helped(jobs: Sequence[Job]) -> Generator[Callable[[], bool]]:
-    """Start a process that compiles from the last job on; give whether to wait for it still."""
+    """Start a process that compiles from the last job on; yield whether to wait for it."""
     helper = _helper(jobs)
     if helper is None:
         yield lambda: True
@@ -153,7 +153,7 @@ def _helper(jobs: Sequence[Job]) -> "subprocess.Popen[bytes] | None":
 
 
 def start_compiler(jobs: Sequence[Job]) -> "subprocess.Popen[bytes] | None":
-    """Start a process that compiles jobs while this one goes on."""
+    """Start a process that compiles jobs while this one continues."""
     return _process("make_all_of", jobs)
 
 
@@ -227,10 +227,10 @@ def processors() -> int:
 
 
 WORTHWHILE: Final = 0.25
-"""Time spent in plain Python from which on compilation starts: a few short runs need none [s]."""
+"""Time spent in plain Python after which compilation starts: a few short runs need none [s]."""
 
 LONG: Final = 1.0
-"""Remaining time expected in plain Python from which on compilation starts at once [s]."""
+"""Remaining time expected in plain Python above which compilation starts at once [s]."""
 
 PRUDENCE: Final = 1.7
 """Factor by which compiling may take longer than estimated: machines are seldom idle."""
@@ -271,7 +271,7 @@ class Meanwhile:
     def is_over(self, *, at_once: bool = False) -> bool:
         """Whether to load machine code now, or to compile it in this process, which then waits.
 
-        This process compiles as soon as plain Python is expected to take yet as long as compiling
+        This process compiles as soon as plain Python is expected to need as long as compiling
         would. Where no such time is known, it compiles as soon as plain Python has taken as long as
         compiling takes at worst: that is never more than twice the shortest possible time.
         """

@@ -23,7 +23,7 @@ _FOR_OTHERS: Final = {
 
 
 def makes_numbers_alone(function: Any) -> bool:
-    """Whether a function makes nothing but numbers and tuples."""
+    """Whether a function makes only numbers and tuples."""
     code = function.__code__
     named = (function.__globals__.get(name) for name in code.co_names)
     return _MAKING.isdisjoint(each.opname for each in get_instructions(code)) and not any(

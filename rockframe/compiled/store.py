@@ -86,7 +86,7 @@ def _imported(module: ModuleType, source: bytes) -> Iterator[str]:
 
 
 LONGEST: Final = 120.0
-"""Age from which on a lock file counts as left behind by a killed process; longest wait [s]."""
+"""Age after which a lock file counts as left behind by a killed process; longest wait [s]."""
 
 if sys.platform == "win32":
     import msvcrt
@@ -115,7 +115,7 @@ else:
 
 
 def lock(file: Path) -> Callable[[], None] | None:
-    """Lock a file and give the function that unlocks it; None if it is locked already."""
+    """Lock a file and return the function that unlocks it; None if it is locked already."""
     try:
         stream = file.open("r+b")
     except OSError:  # nothing can be written: nobody waits
@@ -138,7 +138,7 @@ def lock(file: Path) -> Callable[[], None] | None:
 
 
 def _marked(mark: Path) -> Callable[[], None] | None:
-    """Make a lock file and give the function that removes it; None if there is one already."""
+    """Make a lock file and return the function that removes it; None if there is one already."""
     with suppress(OSError):
         if time.time() - mark.stat().st_mtime > LONGEST:
             mark.unlink()

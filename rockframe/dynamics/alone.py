@@ -119,7 +119,7 @@ class Alone(InState, OnePart):
 
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Carry out the switch that a guard calls for; give the new mode."""
+        """Carry out the switch that a guard calls for; return the new mode."""
         return switch_part(self, self.part, 0, guard, mode, state, ground, memory)
 
     @kernel
@@ -226,10 +226,6 @@ def rigid_body(
         Whether the kinematics are expanded to second order.
     gravity : float
         Acceleration of gravity [m s^-2].
-
-    Returns
-    -------
-    Body
     """
     return Body(
         height=height,
@@ -260,10 +256,6 @@ def alone(
         Mass of the body [kg].
     rest_rotation : float
         Rotation of the body at rest, :meth:`rockframe.dynamics.statics.StandingChain.rest` [rad].
-
-    Returns
-    -------
-    ContactModel
     """
     part = OnBase(body, base.law)
     vertical = sqrt(base.vertical_stiffness)
@@ -321,7 +313,7 @@ def rounding_at(
     """Return a function of the rotation that estimates the rounding noise of each state variable.
 
     The heights of the base's ends are differences of terms as large as the settlement and the
-    tilt; the base reacts to their rounding, and moves the body to and fro by as much.
+    tilt. The base reacts to their rounding, so that the body moves by as much.
     """
     all_answers = np.concatenate([answers, fastest * answers, np.zeros(variables)])
 

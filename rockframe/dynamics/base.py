@@ -1,12 +1,12 @@
 """The interface of a deformable base: forces, contacts and events under the ends of a body.
 
 A base is a named tuple of its parameters, per unit mass, with the methods below. It knows the
-ends of the body's base line, not the body: any body stands on any base. The argument `left` tells
-which end a method is about: the left one where it is true.
+ends of the body's base line, not the body, so that any body can stand on any base. The argument
+`left` is true for the left end.
 
 The **contact** of a base is a whole number of its own, below :meth:`Base.contacts`. An end
-that *is held* bears, or is about to; where neither end is held, the body flies. The base's own
-variables, which obey equations of first order, stand in the state behind the coordinates.
+that *is held* bears, or is about to; if neither end is held, the body flies. The base's own
+variables obey first-order equations, and follow the coordinates in the state.
 """
 
 from collections.abc import Callable
@@ -41,7 +41,7 @@ class EndEvent(NamedTuple):
 class Base:
     """A deformable base under both ends of a body's base line. A mixin of named tuples.
 
-    Methods that raise `NotImplementedError` have to be defined. The others are as for a base
+    Methods that raise `NotImplementedError` must be defined. The others are implemented for a base
     without own variables that holds ends below its unloaded level, and whose force does not jump
     as an end lands or lifts off.
     """
@@ -104,7 +104,7 @@ class Base:
 
     @inlined
     def touches(self, contact: int, left: bool) -> bool:
-        """Whether an end is held and its force acts as long as it is one of compression."""
+        """Whether an end is held, with a force that acts as long as it is compressive."""
         return self.is_held(contact, left)
 
     @kernel
@@ -120,7 +120,7 @@ class Base:
 
     @inlined
     def read(self, state: Vector, first: int) -> Any:
-        """Return the base's own variables, which stand in a state from an index on."""
+        """Return the base's own variables, which begin at an index of the state."""
         return ()
 
     @inlined

@@ -70,10 +70,6 @@ def pads_numbers(
         eps of a corner that lands on the left and on the right pad [1].
     load : float
         Mass on the pads over the reference mass [1].
-
-    Returns
-    -------
-    BaseNumbers
     """
     rest = 0.5 * load * body.gravity / stiffness
     size = hypot(0.5 * (body.left + body.right), body.height)
@@ -122,10 +118,6 @@ def pads_over(
         Columns of the results that the law fills, of the left pad, then of the right one.
     variable_scales : sequence of float, optional
         Typical sizes of the law's variables at one pad.
-
-    Returns
-    -------
-    BaseNumbers
     """
     pads: Any = elastic.law
     guards = np.full(int(law.states() > 1), pads.noise)
@@ -167,10 +159,6 @@ def springs_under(
         Columns of the results that the law fills, of the leftmost, then of the rightmost spring.
     variable_scales : sequence of float, optional
         Typical sizes of the law's variables at one spring.
-
-    Returns
-    -------
-    BaseNumbers
     """
     weight, width = load * body.gravity, body.left + body.right
     count, of_law = len(places), law.variables()
@@ -233,10 +221,6 @@ def bed_numbers(
         Whether the bed separates also where its pressure would be negative.
     load : float
         Mass on the bed over the reference mass [1].
-
-    Returns
-    -------
-    BaseNumbers
     """
     width = body.left + body.right
     settlement = load * body.gravity / (width * stiffness)

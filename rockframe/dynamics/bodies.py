@@ -152,7 +152,12 @@ class InState:
     def blend_velocities(
         self, before: tuple[float, ...] | Vector, share: float, state: Vector
     ) -> None:
-        """Reduce the changes of velocities since `before` to a share of them."""
+        """Reduce the changes of velocities since `before`, and impulses, to a share of them."""
         n = self.coordinates()
         for i in range(n):
             state[n + i] = blend(before[i], state[n + i], share)
+        self.scale_impulses(share)
+
+    @inlined
+    def scale_impulses(self, share: float) -> None:
+        """Multiply the impulses recorded in an event by a factor: there are none here."""

@@ -12,14 +12,12 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from rockframe.compiled import Matrix, Vector
-from rockframe.dynamics.standing import PLACES, ROUNDING, STENCIL, STEP, of_base
-from rockframe.dynamics.tied import force_at, is_broken
+from rockframe.dynamics.chain.link_rows import ChainLink
+from rockframe.dynamics.standing import PLACES, ROUNDING, STENCIL, STEP, Stand, of_base
+from rockframe.dynamics.tied import Tied, force_at, is_broken
 
 if TYPE_CHECKING:
-    from rockframe.dynamics.chain.link_rows import ChainLink
-    from rockframe.dynamics.standing import Stand
     from rockframe.dynamics.statics import StandingChain
-    from rockframe.dynamics.tied import Tied
 
 TRIES: Final = 40
 """Most steps of Newton's method."""
@@ -64,7 +62,7 @@ class Balance(NamedTuple):
     couples: Vector  # couples that hold rotations, against them
 
     @classmethod
-    def of(cls, chain: "StandingChain", stands: "Sequence[Stand]", held: int = 1) -> "Balance":
+    def of(cls, chain: "StandingChain", stands: Sequence[Stand], held: int = 1) -> "Balance":
         """Return forces and places of bodies as they stand, no couple yet on `held` rotations."""
         tied = chain.tied(stands)
         return cls(
@@ -148,8 +146,8 @@ def balanced(held: HeldBodies, guess: Balance) -> Balance | None:
 
 
 def of_loads(
-    chain: "StandingChain", stands: "Sequence[Stand]",
-    of_links: "Callable[[Sequence[Stand]], Vector]",
+    chain: "StandingChain", stands: Sequence[Stand],
+    of_links: Callable[[Sequence[Stand]], Vector],
     stencil: Sequence[tuple[float, float]] = STENCIL,
 ) -> Matrix:  # fmt: skip
     """Return minus the derivatives of the generalised forces of weights and links."""
@@ -165,9 +163,7 @@ def of_loads(
     return found
 
 
-def of_bases(
-    chain: "StandingChain", stands: "Sequence[Stand]", *, from_rest: bool = False
-) -> Matrix:
+def of_bases(chain: "StandingChain", stands: Sequence[Stand], *, from_rest: bool = False) -> Matrix:
     """Return minus the derivatives of the generalised forces of bases, zero for rigid ones.
 
     With loads that grow `from_rest`, variables of a base's own follow them.
@@ -204,7 +200,7 @@ class _Answer(NamedTuple):
 class _Step:
     """One step of Newton's method from a given place, :eq:`eq-static-steps`."""
 
-    def __init__(self, held: HeldBodies, stands: "Sequence[Stand]", place: Balance) -> None:
+    def __init__(self, held: HeldBodies, stands: Sequence[Stand], place: Balance) -> None:
         self.held, self.chain, self.stands, self.place = held, held.chain, stands, place
         self.coordinates = np.array([value for one in stands for value in one.state[:2]])
         self.sizes = held.chain.sizes
@@ -251,7 +247,7 @@ class _Step:
             self.is_last = self.is_last and answers
 
     def _stretched(
-        self, link: "ChainLink", tied: "Tied", i: int, rounding: float
+        self, link: ChainLink, tied: Tied, i: int, rounding: float
     ) -> tuple[float, bool]:
         """Return change of a link's elongation, and whether its force is then the predicted one.
 
@@ -281,7 +277,7 @@ class _Step:
         couples = self.place.couples + share * self.more_couple
         return Balance(there[::2], there[1::2], presses, stretches, pulls, couples)
 
-    def _answers_of(self, i: int, tied: "Tied") -> list[_Answer]:
+    def _answers_of(self, i: int, tied: Tied) -> list[_Answer]:
         """Return directions in which a link has stiffness; in others its law gives its force."""
         force, hardness = self.chain.pull * tied.force, self.chain.pull * tied.stiffness
         along, pull = tied.direction, self.pulls[i].copy()
@@ -304,7 +300,7 @@ class _Step:
             found.append(_Answer(i, across, compliance, -beside * compliance))
         return found
 
-    def _loads(self, stands: "Sequence[Stand]") -> Vector:
+    def _loads(self, stands: Sequence[Stand]) -> Vector:
         """Return the generalised forces of links, of fixed sizes, as bodies move."""
         found = np.zeros(2 * len(stands))
         points = self.chain.reached(stands)

@@ -19,8 +19,7 @@ from rockframe.dynamics.events import (
     LINK_YIELDS,
     SILENT,
 )
-from rockframe.dynamics.point_law import methods_of_law
-from rockframe.errors import ArgumentError
+from rockframe.dynamics.point_law import complete_law, methods_of_law
 from rockframe.proposals import hinted
 
 Law = TypeVar("Law")
@@ -153,15 +152,7 @@ def link_law(law: type[Law]) -> type[Law]:
     together = {"guard", "switch", "states"}
     if together & own.keys() and not together <= own.keys():
         faults.append(f"{law.__name__} has only some of states, guard and switch")
-    if faults:
-        raise ArgumentError("; ".join(faults))
-    for name, method in own.items():
-        if not name.startswith("_"):
-            (inlined if name in INLINED else kernel)(method)
-    for name, method in vars(LinkLaw).items():
-        if not name.startswith("_") and name not in own:
-            setattr(law, name, method)
-    return law
+    return complete_law(law, own, faults, INLINED.__contains__, [LinkLaw])
 
 
 @link_law
@@ -193,7 +184,7 @@ LOWER: Final = 0
 UPPER: Final = 1
 """Guard of the end of a state by lengthening."""
 CLEAR: Final = 16.0
-"""Margin of a state beyond its end, in roundings of the elongation: no switch to and fro."""
+"""Margin of a state beyond its end, in roundings of the elongation: prevents repeated switches."""
 TAUT_NOISE: Final = 1e3
 """At the start a tie is taut if it is slack by less than this many roundings of elongation."""
 

@@ -37,8 +37,8 @@ CONTACTS: Final = CORNER * CORNER
 
 # guards of a corner, before those of its law's state
 LEAVE: Final = 0  # reaction of a touching corner; gap of one that has lifted off
-# a relaxing pad reaches its corner, the pad of a leaving corner loses its force, or that of an
-# engaging one gets one
+# a relaxing pad reaches its corner, the pad of a leaving corner loses its force, or the pad of an
+# engaging corner gets a force
 REENGAGE: Final = 1
 REVERSE: Final = 2  # a leaving corner stops rising
 CORNER_GUARDS: Final = 3
@@ -189,13 +189,11 @@ class Pads(Base, PadNumbers):
     @inlined
     def flow(self, contact: int, line: BaseLine, own: Any) -> Variables:
         """Return the rates of both laws' variables."""
-        left, right = self.corner(True, line), self.corner(False, line)
-        on_left, on_right = (
-            self.state_if_touching(contact, True), self.state_if_touching(contact, False),
-        )  # fmt: skip
-        return self.law.rates(on_left, left, self.of_corner(own, True)) + self.law.rates(
-            on_right, right, self.of_corner(own, False)
-        )
+        on_left = self.state_if_touching(contact, True)
+        on_right = self.state_if_touching(contact, False)
+        left = self.law.rates(on_left, self.corner(True, line), self.of_corner(own, True))
+        right = self.law.rates(on_right, self.corner(False, line), self.of_corner(own, False))
+        return left + right
 
     @kernel
     def pad_energy(self, left: bool, line: BaseLine, own: Any) -> tuple[float, float]:
@@ -266,7 +264,7 @@ class Pads(Base, PadNumbers):
 
     @kernel
     def settle(self, contact: int, line: BaseLine, own: Any) -> None:
-        """Correct the variables of both laws to what they can be."""
+        """Correct variables of both laws that are out of range."""
         left, right = self.law_state(contact, True), self.law_state(contact, False)
         self.law.settle(left, self.corner(True, line), self.of_corner(own, True))
         self.law.settle(right, self.corner(False, line), self.of_corner(own, False))
@@ -414,15 +412,11 @@ class Pads(Base, PadNumbers):
         """Return the reactions of the left and right pad, and the columns of their laws."""
         left, _ = self.reaction_and_power(contact, True, line, own)
         right, _ = self.reaction_and_power(contact, False, line, own)
-        on_left, on_right = (
-            self.state_if_touching(contact, True), self.state_if_touching(contact, False),
-        )  # fmt: skip
-        seen = self.law.seen(on_left, self.corner(True, line), self.of_corner(own, True))
-        return (
-            (left, right)
-            + seen
-            + self.law.seen(on_right, self.corner(False, line), self.of_corner(own, False))
-        )
+        on_left = self.state_if_touching(contact, True)
+        on_right = self.state_if_touching(contact, False)
+        of_left = self.law.seen(on_left, self.corner(True, line), self.of_corner(own, True))
+        of_right = self.law.seen(on_right, self.corner(False, line), self.of_corner(own, False))
+        return (left, right) + of_left + of_right
 
 
 class ElasticPads(Pads):

@@ -11,7 +11,7 @@ and **variables** of its own, all zero at the start.
 """
 
 import inspect
-from collections.abc import Collection
+from collections.abc import Callable, Collection, Iterable
 from typing import Any, Final, NamedTuple, TypeVar
 
 from rockframe.compiled import Vector, inlined, kernel, stretch
@@ -106,9 +106,9 @@ class PointLaw:
 
     @inlined
     def guard(self, state: int, point: Point, own: Any) -> tuple[float, float]:
-        """Return a function that falls through zero where the law changes to its next state.
+        """Return a function that falls through zero where the law changes state, and its rate.
 
-        And its rate. It is evaluated for points that touch; any other event of a point sets the
+        It is evaluated for points that touch; any other event of a point sets the
         law to state 0.
         """
         return 1.0, 0.0
@@ -196,6 +196,23 @@ def methods_of_law(
     return own, faults
 
 
+def complete_law(
+    law: type[Law], own: dict[str, Any], faults: list[str], inline: Callable[[str], bool],
+    parts: Iterable[type],
+) -> type[Law]:  # fmt: skip
+    """Return a law without faults, its methods marked for compiling, with those it lacks."""
+    if faults:
+        raise ArgumentError("; ".join(faults))
+    for name, method in own.items():
+        if not name.startswith("_"):
+            (inlined if inline(name) else kernel)(method)
+    for part in parts:
+        for name, method in vars(part).items():
+            if not name.startswith("_") and name not in vars(law):
+                setattr(law, name, method)
+    return law
+
+
 @hinted()
 def point_law(law: type[Law]) -> type[Law]:
     """Make a named tuple a law: mark its methods for compiling, and give it those it lacks.
@@ -218,17 +235,9 @@ def point_law(law: type[Law]) -> type[Law]:
     own, faults = methods_of_law(law, PointLaw, NEEDED)
     if ("states" in own) != ("guard" in own) or ("variables" in own) != ("rates" in own):
         faults.append(f"{law.__name__} has only one of states and guard, or variables and rates")
-    if faults:
-        raise ArgumentError("; ".join(faults))
-    for name, method in own.items():
-        if not name.startswith("_"):
-            (kernel if name == "settle" else inlined)(method)
     parts = {_WithVariables: "variables" in own, _WithGuard: "guard" in own, PointLaw: True}
-    for part in (part for part, wanted in parts.items() if wanted):
-        for name, method in vars(part).items():
-            if not name.startswith("_") and name not in vars(law):
-                setattr(law, name, method)
-    return law
+    wanted = (part for part, is_wanted in parts.items() if is_wanted)
+    return complete_law(law, own, faults, lambda name: name != "settle", wanted)
 
 
 @point_law

@@ -7,7 +7,7 @@ mode lasts), and a *switch* (what happens when a guard falls through zero).
 
 State vector: n coordinates, their n rates, then the variables of first order. All energies
 and powers are per unit mass. Modes are whole numbers, which the system packs and unpacks. There
-may be far more modes than a run ever meets: a mode is unpacked when it begins.
+may be far more modes than occur in a run: a mode is unpacked when it begins.
 """
 
 from collections.abc import Callable
@@ -96,7 +96,7 @@ class Equations(Protocol):
         ...
 
     def modes(self) -> int:
-        """Return the number of modes; not every number below it need stand for one."""
+        """Return the number of modes; not every smaller number need represent a mode."""
         ...
 
     def moving_in(self, mode: int) -> int:
@@ -109,7 +109,7 @@ class Equations(Protocol):
     def contact_state_of(self, mode: int, k: int) -> int:
         """Return the :class:`rockframe.dynamics.events.ContactState` of body `k` in a mode.
 
-        Body 0 is the one that the scene is about.
+        Body 0 is the one to which the results refer.
         """
         ...
 
@@ -144,7 +144,7 @@ class Equations(Protocol):
         ...
 
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Carry out the event of a guard that has fallen through zero; give the new mode.
+        """Carry out the event of a guard that has fallen through zero; return the new mode.
 
         Changes the state where it jumps, and writes losses and the kind of event to the memory.
         """
@@ -162,7 +162,7 @@ class Equations(Protocol):
 
 
 class EquationsWithPowers(Equations, Protocol):
-    """Equations that give their powers apart, for works as exact as the motion in fixed steps.
+    """Equations with separate powers, for works as accurate as the motion in fixed steps.
 
     The rates of a stage are not those of the solution, :eq:`eq-fixed-powers`, and the work of the
     ground is linear in them. A system should have `powers` where they cost little.
@@ -249,7 +249,7 @@ BODY_COLUMNS: Final = (
     Column("horizontal_reaction", per_mass=True),
     Column("vertical_reaction", per_mass=True),
 )
-"""What every system gives of the body that the scene is about, in this order.
+"""Columns that every system returns of body 0, to which the results refer, in this order.
 
 Velocities and accelerations are those of the centre of mass, relative to the ground; the
 reactions are those of the body's own base, along and normal to the surface that it stands on.
@@ -399,7 +399,7 @@ class ContactModel:
 
 
 def _of_each(function: Callable[[int], int], modes: Integers) -> Integers:
-    """Apply a function to modes, once to each different one: most last for many samples."""
+    """Apply a function to modes, once to each different mode: most last for many samples."""
     differs = np.ones(len(modes) + 1, dtype=np.bool_)  # at both ends, too
     np.not_equal(modes[1:], modes[:-1], out=differs[1:-1])
     changes = np.flatnonzero(differs)

@@ -285,10 +285,6 @@ def corner_of(
         Ratio of the angular velocities after and before an impact on this corner [1].
     small_rotation : bool
         Whether sines and cosines are expanded.
-
-    Returns
-    -------
-    RockingCorner
     """
     angle = atan2(distance, height)
     tangent = angle if small_rotation else tan(angle)
@@ -310,10 +306,6 @@ def rigid_ground(
         Whether sines and cosines are expanded.
     gravity : float
         Acceleration of gravity [m s^-2].
-
-    Returns
-    -------
-    ContactModel
     """
     frequency = max(sqrt(gravity * one.radius / one.inertia) for one in (left, right))
     least = left if left.angle < right.angle else right

@@ -1,4 +1,4 @@
-"""Links of several laws in one scene: a law that stands for one of several."""
+"""Links of several laws in one scene: a law that represents one of several."""
 
 from collections.abc import Sequence
 from typing import Any, Final, NamedTuple
@@ -16,7 +16,7 @@ from rockframe.dynamics.links import (
 
 @link_law
 class OneOfTwo(NamedTuple):
-    """A law that is one of two; nested, one of several. Each link follows one of them."""
+    """A law that is one of two, or nested, one of several. Each link follows one of them."""
 
     which: float  # 0 for the first
     first: Any

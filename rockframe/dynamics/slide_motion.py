@@ -85,17 +85,25 @@ class Loads(NamedTuple):
     turning: float  # moment about the centre of mass [m^2 s^-2]
 
 
-class SlideMotion(OnRigidGround):
-    """Motion, guards, energies and columns of a block. A mixin of named tuples."""
+class SlideNumbers(NamedTuple):
+    """The numbers of a block on rigid ground with friction, per unit mass."""
 
-    __slots__ = ()
     left: float  # from the foot of the centre of mass to the left corner
     right: float
     height: float  # of the centre of mass
     inertia: float  # about the centre of mass
     static: float  # coefficients of friction; infinite where the ground holds the block
     kinetic: float
+    impulsive: float  # in impacts; infinite: no slip of the striking corner
+    left_lever: float  # of the impulse on the left corner as it strikes, eq-slide-lever [1]
+    right_lever: float
     gravity: float
+
+
+class SlideMotion(OnRigidGround, SlideNumbers):
+    """Motion, guards, energies and columns of a block. A mixin of systems."""
+
+    __slots__ = ()
 
     @kernel
     def coordinates(self) -> int:

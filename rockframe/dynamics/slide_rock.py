@@ -1,19 +1,22 @@
-"""A block that slides, rocks and flies on rigid ground with friction: its events, page "Sliding".
+"""A block that slides, rocks and flies on rigid ground with friction: its events, and its model.
 
-As a guard falls to zero another mode of :mod:`rockframe.dynamics.slide_motion` follows; an impact
-also changes the rates, :eq:`eq-slide-impact`.
+Page "Sliding" of the manual. As a guard falls to zero another mode of
+:mod:`rockframe.dynamics.slide_motion` follows; an impact also changes the rates,
+:eq:`eq-slide-impact`.
 """
 
 import math
-from typing import NamedTuple
+
+import numpy as np
 
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics import events
 from rockframe.dynamics.body import REST_AMPLITUDE
 from rockframe.dynamics.coulomb import ImpulseResponse, coulomb_impulse
 from rockframe.dynamics.events import IMPACT, REST, SEPARATION, SILENT, UPLIFT
-from rockframe.dynamics.protocol import IMPACT_LOSS, LAST_EVENT, Ground
+from rockframe.dynamics.protocol import IMPACT_LOSS, LAST_EVENT, ContactModel, Ground, Start
 from rockframe.dynamics.slide_motion import (
+    COLUMNS,
     FLIES_LEFT,
     FLIES_RIGHT,
     FULL,
@@ -24,6 +27,7 @@ from rockframe.dynamics.slide_motion import (
     PEAK_LEFT,
     PEAK_RIGHT,
     PRESSING,
+    REMEMBERED,
     RISE,
     ROTATION,
     ROUNDING,
@@ -40,15 +44,13 @@ from rockframe.dynamics.slide_motion import (
     SlideMotion,
 )
 from rockframe.dynamics.trigonometry import sine_cosine
+from rockframe.many import atan2, hypot, sqrt
 
 
 class SlideSwitches(SlideMotion):
-    """Switches of mode, and impacts, of a block. A mixin of named tuples."""
+    """Switches of mode, and impacts, of a block. A mixin of systems."""
 
     __slots__ = ()
-    impulsive: float  # coefficient of friction in impacts; infinite: no slip of the striking corner
-    left_lever: float  # of the impulse on the left corner as it strikes, eq-slide-lever [1]
-    right_lever: float
 
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
@@ -311,7 +313,7 @@ class SlideSwitches(SlideMotion):
 
     @kernel
     def stays_if_small(self, bears: int, mode: int, state: Vector, ground: Ground) -> bool:
-        """Stop a corner that has struck and rises negligibly; give whether it was stopped.
+        """Stop a corner that has struck and rises negligibly; return whether it was stopped.
 
         It is stopped if, free, it would fall back, and if the other corner is clear of the ground.
         """
@@ -329,22 +331,59 @@ class SlideSwitches(SlideMotion):
         return True
 
 
-class SlideNumbers(NamedTuple):
-    """The numbers of a block, as its motion and its switches have them."""
-
-    left: float
-    right: float
-    height: float
-    inertia: float
-    static: float
-    kinetic: float
-    impulsive: float
-    left_lever: float
-    right_lever: float
-    gravity: float
-
-
-class SlideRock(SlideNumbers, SlideSwitches):  # pyright: ignore[reportGeneralTypeIssues]
+class SlideRock(SlideSwitches):
     """A block on rigid ground with friction, per unit mass: a system."""
 
     __slots__ = ()
+
+
+def ill_posed_friction(inertia: float, square: float) -> float:
+    """Return the least coefficient at which a slipping corner may jam, :eq:`eq-slide-painleve`.
+
+    `inertia` is that about the centre of mass over the mass [m^2]; `square` is the square of the
+    distance between the centre of mass and the corner [m^2].
+    """
+    ratio = inertia / square
+    return 2.0 * sqrt(ratio * (1.0 + ratio))
+
+
+def impulse_lever(*, restitution: float, own: float, width: float, about_foot: float) -> float:
+    """Return the lever of the impulse as a block rocks onto its other corner, :eq:`eq-slide-lever`.
+
+    It is over the distance `own` of the striking corner from the foot of the centre of mass [m];
+    `about_foot` is the inertia about that foot over the mass [m^2].
+    """
+    lost = 1.0 - restitution
+    return lost * about_foot / (own * (width - lost * own))
+
+
+def slide_rock(system: SlideRock, *, mass: float) -> ContactModel:
+    """Assemble the model of a block that slides and rocks, from its mass [kg]."""
+    gravity = system.gravity
+    least = min(system.left, system.right)
+    angle, radius = atan2(least, system.height), hypot(least, system.height)
+    frequency = sqrt(gravity * radius / (system.inertia + radius * radius))
+    size = np.array([angle, least, least])
+
+    def initial(start: Start) -> tuple[int, Vector, Vector]:
+        rotation, rate = start.rotation or 0.0, start.angular_velocity
+        leans = rotation or rate
+        bears = FULL if leans == 0.0 else ON_RIGHT if leans > 0.0 else ON_LEFT
+        state = np.array([rotation, 0.0, 0.0, rate, 0.0, 0.0])
+        return SLIPS * bears + HELD, state, np.zeros(len(REMEMBERED))
+
+    return ContactModel(
+        name="sliding on rigid ground",
+        system=system,
+        rotation_limits=(angle, angle),
+        rotation_weights=np.array([1.0, 0.0, 0.0]),
+        scales=np.concatenate([size, frequency * size]),
+        guard_tolerance=np.array([1e-15, 1e-15, *(1e-14,) * 4]),
+        columns=COLUMNS,
+        memory=REMEMBERED,
+        mass=mass,
+        fastest_frequency=frequency,
+        damping_rate=0.0,
+        energy_scale=gravity * radius * angle,
+        initial=initial,
+    )

@@ -1,7 +1,7 @@
 """Sliding contact: an end that touches its base without a normal force while the body slips.
 
 An end can come down while the horizontal hold that its contact causes would lift it off again.
-Then neither contact nor flight is a solution: held, the end leaves; free, it comes back. The
+Then neither contact nor flight is a solution: a held end leaves, a free one comes back. The
 hold can act only while the end presses, so its impulse ends when the end's speed has come to
 that of the base beneath it, :eq:`eq-partial-hold`. With the rest of its slip the end *slides*:
 it stays at its level with no reaction, and the held point slips against a force that is just

@@ -1,7 +1,7 @@
 """Statics of one body on its base, or on a corner of a rigid base, at a given rotation.
 
 The force that the base carries, or the height, is given too. Forces are those of the equations of
-motion, :eq:`eq-static-chain`. All is per unit mass.
+motion, :eq:`eq-static-chain`, per unit mass.
 """
 
 import math
@@ -28,7 +28,7 @@ ROUNDING: Final = 4.0 * sys.float_info.epsilon
 TRIES: Final = 200
 """Most iterations for a height."""
 SECANTS: Final = 8
-"""Iterations by secants only; after them every second one bisects, as contact may end between."""
+"""Iterations by secants alone; then every second one bisects, as contact may end in between."""
 SHARP: Final = 1e-9
 """Accuracy of the uplift angle: full contact before it less this share, partial beyond [1]."""
 HALVINGS: Final = 60
@@ -42,7 +42,7 @@ RATES: Final = ("angular_velocity", "vertical_velocity")
 
 
 class StandingBody(NamedTuple):
-    """A body on its base in a chain of bodies, with what is fixed for statics."""
+    """A body on its base in a chain of bodies, with the numbers that are fixed for statics."""
 
     part: OnBase
     mass: float  # over the reference mass [1]

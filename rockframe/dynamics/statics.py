@@ -1,17 +1,19 @@
 """Statics of bodies on one another, with the forces of their equations of motion.
 
-Each body stands on the deck of the one beneath it. For given rotations on the bases, the load above
-a base gives the force that it carries, its law the height at which it does; unbalanced moments
-remain, :eq:`eq-static-chain`. All is per unit mass.
+Each body stands on the deck of the one beneath it. For given rotations on the bases, a base carries
+the load above it, at a height that follows from its law; unbalanced moments remain,
+:eq:`eq-static-chain`. All numbers are per unit mass.
 """
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final, NamedTuple, cast
+from functools import partial
+from typing import Final, NamedTuple, cast
 
 import numpy as np
 
 from rockframe.compiled import Matrix, Vector
+from rockframe.dynamics.chain.link_rows import ChainLink
 from rockframe.dynamics.equilibrium import Balance, HeldBodies, Path, followed
 from rockframe.dynamics.standing import (
     PLACES,
@@ -22,11 +24,8 @@ from rockframe.dynamics.standing import (
     on_corner,
     settled,
 )
+from rockframe.dynamics.tied import Reached, Tied, is_broken, reached, tied
 from rockframe.dynamics.trigonometry import sine_cosine, versine
-
-if TYPE_CHECKING:
-    from rockframe.dynamics.chain.link_rows import ChainLink
-    from rockframe.dynamics.tied import Reached, Tied
 
 FAR: Final = 10.0
 """Change of a body's height over its size beyond which no equilibrium is searched [1]."""
@@ -44,7 +43,7 @@ class StandingChain(NamedTuple):
 
     bodies: tuple[StandingBody, ...]
     along_gravity: float = 0.0
-    ties: "tuple[ChainLink, ...]" = ()
+    ties: tuple[ChainLink, ...] = ()
     pull: float = 1.0
 
     @property
@@ -91,10 +90,8 @@ class StandingChain(NamedTuple):
 
     def _has_broken(self, stands: Sequence[Stand]) -> bool:
         """Whether a link is broken with the bodies where they are."""
-        from rockframe.dynamics.tied import is_broken
-
-        tied = self.tied(stands) if stands and self.ties else []
-        return any(is_broken(one, of.elongation) for one, of in zip(self.ties, tied, strict=False))
+        found = self.tied(stands) if stands and self.ties else []
+        return any(is_broken(one, of.elongation) for one, of in zip(self.ties, found, strict=False))
 
     def _alone_at(self, rotation: float) -> list[Stand] | None:
         """Return a single body at a rotation, with links as after slow loading up to there."""
@@ -112,13 +109,7 @@ class StandingChain(NamedTuple):
         """
         from scipy.optimize import brentq
 
-        standing, rotation = self.bodies[0], stand.state.rotation
-
-        def at(height: float) -> tuple[list[Stand], float]:
-            stands = self._with_arms([lifted(standing, rotation, height)])
-            load = self.weights(stands)[0][1] + self.tie_loads(stands)[1]
-            return stands, float(stands[0].force.upward + load)
-
+        standing, at = self.bodies[0], partial(self._lifted, stand.state.rotation)
         here, far = stand.state.vertical, FAR * standing.part.body.size()
         found, lack = at(here)
         if abs(lack) <= 4.0 * ROUNDING * self.weight:
@@ -134,6 +125,12 @@ class StandingChain(NamedTuple):
         found, lack = at(cast("float", height))
         return found if abs(lack) <= LEFT * self.weight else None
 
+    def _lifted(self, rotation: float, height: float) -> tuple[list[Stand], float]:
+        """Return a single body at a rotation and a height, and the upward force on it."""
+        stands = self._with_arms([lifted(self.bodies[0], rotation, height)])
+        load = self.weights(stands)[0][1] + self.tie_loads(stands)[1]
+        return stands, float(stands[0].force.upward + load)
+
     def uplift_rotation(self, side: float) -> float:
         """Return rotation to a side at which an end of a single body with links lifts off [rad].
 
@@ -146,9 +143,7 @@ class StandingChain(NamedTuple):
         def lack(rotation: float) -> float:
             lying = lifted(standing, rotation, 0.0)
             height = standing.part.base.level(side > 0.0, lying.line, lying.own)
-            stands = self._with_arms([lifted(standing, rotation, height)])
-            load = self.weights(stands)[0][1] + self.tie_loads(stands)[1]
-            return float(stands[0].force.upward + load)
+            return self._lifted(rotation, height)[1]
 
         far = side * standing.allowed_rotation
         while lack(far) < 0.0:
@@ -232,19 +227,15 @@ class StandingChain(NamedTuple):
         bears = all(one.press >= 0.0 for one in stands)
         return self._with_arms(stands) if bears else None
 
-    def reached(self, stands: Sequence[Stand]) -> "list[Reached]":
+    def reached(self, stands: Sequence[Stand]) -> list[Reached]:
         """Return displacements of the points of the links."""
-        from rockframe.dynamics.tied import reached
-
         return reached(self.bodies, stands, self.ties)
 
     def tied(
         self, stands: Sequence[Stand], states: Sequence[int] | None = None,
         stretches: Sequence[float] | None = None,
-    ) -> "list[Tied]":  # fmt: skip
+    ) -> list[Tied]:  # fmt: skip
         """Return elongations and forces of the links."""
-        from rockframe.dynamics.tied import tied
-
         return tied(self.bodies, stands, self.ties, states, stretches)
 
     def tie_loads(self, stands: Sequence[Stand], states: Sequence[int] | None = None) -> Vector:

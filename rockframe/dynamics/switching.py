@@ -154,15 +154,14 @@ def repin_landing(
     system: Bodies, part: OnBase, k: int, old: int, new: int, left: bool, target: float,
     state: Vector, memory: Vector,
 ) -> bool:  # fmt: skip
-    """Hold a body that lands on one end after flight; give whether it slides.
+    """Hold a body that lands on one end after flight; return whether it slides.
 
     The hold's impulse ends where the end has reached the speed `target`, at which the base no
     longer presses, :eq:`eq-partial-hold`.
     """
     speed, _ = end_speed(part, left, system.state_of(k, state))
-    before, lost, place = (
-        system.velocities(state), memory[REPINNING_LOSS], memory[HELD_PLACE + k],
-    )  # fmt: skip
+    before = system.velocities(state)
+    lost, place = memory[REPINNING_LOSS], memory[HELD_PLACE + k]
     was_at = system.state_of(k, state).horizontal
     hold = repin(system, part, k, old, new, state, memory)
     body = system.state_of(k, state)
@@ -228,9 +227,8 @@ def after_separation(
     """
     was, now = system.part_mode(mode, k), system.part_mode(new, k)
     repins = not has_same_hold(part, was, now)
-    before, lost, place = (
-        system.velocities(state), memory[REPINNING_LOSS], memory[HELD_PLACE + k],
-    )  # fmt: skip
+    before = system.velocities(state)
+    lost, place = memory[REPINNING_LOSS], memory[HELD_PLACE + k]
     if repins:
         repin(system, part, k, mode, new, state, memory)
     flies = part.flies(now.contact)
@@ -267,7 +265,7 @@ def switch_end(
     system: Bodies, part: OnBase, k: int, left: bool, which: int, mode: int, state: Vector,
     ground: Ground, memory: Vector,
 ) -> int:  # fmt: skip
-    """Carry out the switch of an end's contact with its base; give the new mode."""
+    """Carry out the switch of an end's contact with its base; return the new mode."""
     was = system.part_mode(mode, k)
     line = part.body.base_line_at(system.state_of(k, state))
     own = part.base.read(state, system.own_place(k))
@@ -325,7 +323,7 @@ def next_pivot(
 def change_pivot(
     system: Bodies, part: OnBase, k: int, mode: int, state: Vector, ground: Ground, memory: Vector
 ) -> int:
-    """Change the leading corner, and with it the held point; give the new mode."""
+    """Change the leading corner, and with it the held point; return the new mode."""
     was, pivot = system.part_mode(mode, k), next_pivot(system, part, k, mode, state, ground)
     memory[LAST_EVENT] = SILENT
     if was.pivot != PIVOT_CENTRE:
@@ -341,7 +339,7 @@ def change_pivot(
 def end_sliding(
     system: Bodies, part: OnBase, k: int, flies: bool, mode: int, state: Vector, memory: Vector
 ) -> int:
-    """Let a sliding end lift off, or hold it as its slip has come to zero; give the new mode."""
+    """Let a sliding end lift off, or hold it as its slip has come to zero; return the new mode."""
     was = system.part_mode(mode, k)
     left = part.base.is_held(was.contact, True)
     line = part.body.base_line_at(system.state_of(k, state))
@@ -405,7 +403,7 @@ def switch_part(
     system: Bodies, part: OnBase, k: int, which: int, mode: int, state: Vector, ground: Ground,
     memory: Vector,
 ) -> int:  # fmt: skip
-    """Carry out the switch that a guard of a body calls for; give the new mode."""
+    """Carry out the switch that a guard of a body calls for; return the new mode."""
     count = part.base.end_guards()
     if which == 2 * count + PIVOT:
         new = change_pivot(system, part, k, mode, state, ground, memory)

@@ -132,7 +132,7 @@ class TiedFrame(FrameNumbers, OnRigidGround):
 
     @inlined
     def lever(self, rotation: float) -> float:
-        """Return derivative of the elongation by the rotation, 2 b cos(a/2), without sign [m]."""
+        """Return the derivative of the elongation by the rotation, 2 b cos(a/2), unsigned [m]."""
         return 2.0 * self.half_width * sine_cosine(0.5 * rotation)[1]
 
     @inlined
@@ -219,7 +219,7 @@ class TiedFrame(FrameNumbers, OnRigidGround):
 
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Let the columns lift off or land, or change the state of a tendon; give the new mode."""
+        """Let columns lift off or land, or change the state of a tendon; return the new mode."""
         rocks = mode % bare.MODES
         memory[LINK_PLACE] = 0.0
         if guard < bare.GUARDS:
@@ -268,11 +268,8 @@ class TiedFrame(FrameNumbers, OnRigidGround):
             out[bare.RIGHT_REACTION] += pull * cosine
         else:
             # reactions differ as the moment does, over the one at which rocking starts with tendons
-            left, right, corner = (
-                out[bare.LEFT_REACTION],
-                out[bare.RIGHT_REACTION],
-                self.rocking.right,
-            )
+            left, right = out[bare.LEFT_REACTION], out[bare.RIGHT_REACTION]
+            corner = self.rocking.right
             half = corner.radius * sine_cosine(corner.angle)[0]
             limit, share = half * (left + right) + self.lever(0.0) * pull, 0.0
             if limit > 0.0:

@@ -6,7 +6,7 @@ on every rotation and height between its points, :eq:`eq-link-statics`.
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,10 +14,8 @@ from rockframe.compiled import Matrix, Vector
 from rockframe.dynamics.chain.link_rows import GROUND, ChainLink
 from rockframe.dynamics.events import LinkState
 from rockframe.dynamics.links import Stretch
+from rockframe.dynamics.standing import Stand, StandingBody
 from rockframe.dynamics.trigonometry import sine_cosine, versine
-
-if TYPE_CHECKING:
-    from rockframe.dynamics.standing import Stand, StandingBody
 
 Ends = tuple[tuple[float, float], tuple[float, float]]
 """Both points of a link (x, y) [m]."""
@@ -75,7 +73,7 @@ class Reached(NamedTuple):
 
 
 def reached(
-    bodies: "Sequence[StandingBody]", stands: "Sequence[Stand]", ties: Sequence[ChainLink]
+    bodies: Sequence[StandingBody], stands: Sequence[Stand], ties: Sequence[ChainLink]
 ) -> list[Reached]:
     """Return the relative displacements of the points of links, for given places of bodies."""
     frames, found = _frames(bodies, stands) if ties else [], list[Reached]()
@@ -87,8 +85,8 @@ def reached(
 
 
 def tied(
-    bodies: "Sequence[StandingBody]",
-    stands: "Sequence[Stand]",
+    bodies: Sequence[StandingBody],
+    stands: Sequence[Stand],
     ties: Sequence[ChainLink],
     states: Sequence[int] | None = None,
     stretches: Sequence[float] | None = None,
@@ -136,8 +134,7 @@ def _answer(
 ) -> tuple[float, int, float, float]:
     """Return a link's force, its state, and the force's derivatives by elongation and rate."""
     law: Any = tie.numbers.law
-    length = math.hypot(*tie.apart)
-    reach = length + math.hypot(*tie.on_point) + math.hypot(*tie.to_point)
+    length, reach = math.hypot(*tie.apart), tie.reach
     stretch, own = Stretch(elongation, 0.0, 0.0, length, 1e-15 * reach), np.zeros(law.variables())
     starting = law.starting(stretch, own)
     found = starting if state is None else state
@@ -189,7 +186,7 @@ def rocked(
     return found
 
 
-def _frames(bodies: "Sequence[StandingBody]", stands: "Sequence[Stand]") -> list[_Frame]:
+def _frames(bodies: Sequence[StandingBody], stands: Sequence[Stand]) -> list[_Frame]:
     """Return displacements of bodies from where they are given, and their axes."""
     found, place, turned = list[_Frame](), np.zeros(2), 0.0
     sine, cosine = 0.0, 1.0
@@ -209,7 +206,7 @@ def _frames(bodies: "Sequence[StandingBody]", stands: "Sequence[Stand]") -> list
 
 
 def _point(
-    k: int, point: tuple[float, float], stands: "Sequence[Stand]", frames: Sequence[_Frame]
+    k: int, point: tuple[float, float], stands: Sequence[Stand], frames: Sequence[_Frame]
 ) -> tuple[Vector, Matrix]:
     """Return the displacement of a point of a body, and its derivatives by all coordinates."""
     way = np.zeros((2, 2 * len(stands)))
@@ -229,7 +226,7 @@ def _point(
     return one.place + turned, way
 
 
-def _between(k: int, j: int, stands: "Sequence[Stand]", frames: Sequence[_Frame]) -> Vector:
+def _between(k: int, j: int, stands: Sequence[Stand], frames: Sequence[_Frame]) -> Vector:
     """Return the place of the centre of mass of body k from that of body j below it."""
     return sum(
         (stands[i].across * frames[i].along + stands[i].arm * frames[i].normal

@@ -45,8 +45,7 @@ from rockframe.dynamics.slide_motion import (
     SLIP,
     Loads,
 )
-from rockframe.dynamics.slide_rock import SlideRock, SlideSwitches
-from rockframe.dynamics.slide_rock_model import slide_rock
+from rockframe.dynamics.slide_rock import SlideRock, SlideSwitches, slide_rock
 from rockframe.dynamics.trigonometry import sine_cosine, versine
 from rockframe.dynamics.vibrations import greatest_share
 
@@ -108,11 +107,11 @@ class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[repo
 
     @inlined
     def begin_event(self, memory: Vector) -> None:
-        """Reset the memory of the last event: nothing but its link, which is set elsewhere."""
+        """Reset the memory of the last event: only its link, which is set elsewhere."""
 
     @inlined
     def all_idle(self, mode: int) -> bool:
-        """Whether no link acts in a mode, as far as that is known without asking each."""
+        """Whether it is known, without asking each link, that none acts in a mode."""
         return mode < MODES and self.begins_idle != 0.0
 
     @kernel
@@ -192,7 +191,7 @@ class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[repo
     def switch_body(
         self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Carry out the switch that a guard of the block calls for; give the new mode."""
+        """Carry out the switch that a guard of the block calls for; return the new mode."""
         return self.switch_contact(mode, guard, state, ground, memory)
 
     @kernel

@@ -53,8 +53,8 @@ def audit(
 ) -> None:
     """Check the balance of the energies since the start of the run, :eq:`eq-audit`.
 
-    The imbalance is related to the largest energy of the motion: gravity and elastic energy count
-    by what they differ from those at rest, which would hide the errors of a quiet run.
+    The imbalance is related to the largest energy of the motion: gravity and elastic energy enter
+    as differences from their values at rest, which would hide the errors of a quiet run.
     """
     equations.stored.call(mode, w.state, w.answers, equations.numbers)
     energies = Energies(w.answers[0], w.answers[1], w.answers[2], w.answers[3])
@@ -75,22 +75,16 @@ def audit(
 
 @kernel
 def work_between(
-    equations: BoundEquations,
-    start: float,
-    end: float,
-    mode: int,
-    count: int,
-    span: Span,
-    w: Workspace,
+    equations: BoundEquations, start: float, end: float, known: KnownMode, span: Span, w: Workspace
 ) -> Work:
     """Integrate the powers of dashpots and ground over a part of a step, by Gauss's rule."""
     powers = equations.coordinate_count + equations.variable_count
     dissipated = supplied = 0.0
     for i in range(len(GAUSS_POINTS)):
         fraction = start + GAUSS_POINTS[i] * (end - start)
-        interpolate(equations, count, fraction, span.h, w)
+        interpolate(equations, known.moving, fraction, span.h, w)
         ground = ground_in(fraction, span, w.ground)
-        equations.slope.call(mode, w.scratch, ground.x, ground.y, w.powers, equations.numbers)
+        equations.slope.call(known.mode, w.scratch, ground.x, ground.y, w.powers, equations.numbers)
         weight = GAUSS_WEIGHTS[i] * (end - start) * span.h
         dissipated += weight * w.powers[powers]
         supplied += weight * w.powers[powers + 1]
@@ -99,22 +93,17 @@ def work_between(
 
 @kernel
 def work_until(
-    equations: BoundEquations,
-    fraction: float,
-    work: Work,
-    mode: int,
-    count: int,
-    span: Span,
+    equations: BoundEquations, fraction: float, work: Work, known: KnownMode, span: Span,
     w: Workspace,
-) -> Work:
+) -> Work:  # fmt: skip
     """Return the work up to a fraction of a step, so that all of the step has the given work.
 
     Within the step it grows by the powers of the dense solution.
     """
     if fraction >= 1.0:
         return work
-    first = work_between(equations, 0.0, fraction, mode, count, span, w)
-    second = work_between(equations, fraction, 1.0, mode, count, span, w)
+    first = work_between(equations, 0.0, fraction, known, span, w)
+    second = work_between(equations, fraction, 1.0, known, span, w)
     # dissipated energy only grows: it is scaled, not shifted, to the work of the step
     both = first.dissipated + second.dissipated
     share = first.dissipated / both if both > 0.0 else fraction
@@ -124,16 +113,9 @@ def work_until(
 
 @inlined
 def store_outputs(
-    equations: BoundEquations,
-    end: float,
-    span: Span,
-    mode: int,
-    count: int,
-    work: Work,
-    progress: Progress,
-    output: Output,
-    w: Workspace,
-) -> None:
+    equations: BoundEquations, end: float, span: Span, known: KnownMode, work: Work,
+    progress: Progress, output: Output, w: Workspace,
+) -> None:  # fmt: skip
     """Store the output samples that lie in the step that ends at `end`."""
     clock = progress.clock
     step = progress.controls[at.OUTPUT_STEP]
@@ -144,17 +126,17 @@ def store_outputs(
         if ahead < -ON_SAMPLE * step and span.h + ahead > 0.0:
             fraction = 1.0 + ahead / span.h
         if len(output.work) > 0:
-            so_far = work_until(equations, fraction, work, mode, count, span, w)
+            so_far = work_until(equations, fraction, work, known, span, w)
             output.work[row, 0] = clock[at.DISSIPATED] + so_far.dissipated
             output.work[row, 1] = clock[at.SUPPLIED] + so_far.supplied
         if fraction < 1.0:
-            interpolate(equations, count, fraction, span.h, w)
+            interpolate(equations, known.moving, fraction, span.h, w)
             for i in range(len(w.scratch)):
                 output.state[row, i] = w.scratch[i]
         else:
             for i in range(len(w.new)):
                 output.state[row, i] = w.new[i]
-        output.mode[row] = mode
+        output.mode[row] = known.mode
         row += 1
     progress.counters[at.OUTPUTS] = row
 
@@ -171,22 +153,20 @@ def follow_peak(
     clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT] = peaks_in_step(
         0, size, count, h, clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT], w
     )
-    row = WEIGHTS + size
-    while row < len(w.limits):
+    for row in range(WEIGHTS + size, len(w.limits), WEIGHTS + size):
         left, right = w.limits[row + LEFT_LIMIT], w.limits[row + RIGHT_LIMIT]
         share = clock[at.OTHER_SHARE]
         peaks = peaks_in_step(row, size, count, h, share * left, share * right, w)
         clock[at.OTHER_SHARE] = max(share, peaks[0] / left, peaks[1] / right)
-        row += WEIGHTS + size
 
 
 @inlined
 def peaks_in_step(
     row: int, size: int, count: int, h: float, left: float, right: float, w: Workspace
 ) -> tuple[float, float]:
-    """Return peaks of a rotation to both sides, raised by a step; `row` is where its limits are.
+    """Return the peaks of a rotation to both sides after a step, as absolute values [rad].
 
-    Peaks are absolute values [rad].
+    `row` is the index of its limits.
     """
     rotation = rotation_in_step(row, size, w.limits, w.state, w.new)
     peaks = rotation.may_peak(h, left, right)
@@ -206,7 +186,7 @@ def peaks_in_step(
 
 @kernel
 def reach_limit(time: float, size: int, progress: Progress, w: Workspace) -> tuple[int, int]:
-    """Record overturning, or the end of the fall after it; give kind of event and status."""
+    """Record overturning, or the end of the fall after it; return kind of event and status."""
     clock = progress.clock
     if not math.isnan(clock[at.OVERTURNING_TIME]):
         return TOPPLED, at.FELL
@@ -233,9 +213,9 @@ def record_event(
     events: EventTable,
     w: Workspace,
 ) -> int:
-    """Count an event and fill its row of the table, where the state before it stands already.
+    """Count an event and fill its row of the table, which has the state before it already.
 
-    Give `CHATTER` where events repeat themselves or follow one another too closely.
+    Returns `CHATTER` if events repeat themselves or follow one another too closely.
     """
     clock, counters = progress.clock, progress.counters
     row = counters[at.EVENTS]
@@ -255,7 +235,7 @@ def record_event(
         counters[at.FLIGHTS] += 1
     if after.contact != FULL and math.isnan(clock[at.FIRST_UPLIFT]):
         clock[at.FIRST_UPLIFT] = time
-    repeats = row > 0 and before.mode == after.mode  # and so it would do without end
+    repeats = row > 0 and before.mode == after.mode  # it would repeat endlessly
     for i in range(events.codes.shape[1] if repeats else 0):
         repeats &= events.codes[row, i] == events.codes[row - 1, i]
     for i in range(events.values.shape[1] if repeats else 0):

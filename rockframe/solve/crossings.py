@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 from rockframe.compiled import Vector, kernel
 from rockframe.solve.equations import BoundEquations
 from rockframe.solve.march import DIP_MARGIN, may_dip
-from rockframe.solve.workspace import Span, Workspace, ground_in
+from rockframe.solve.workspace import KnownMode, Span, Workspace, ground_in
 
 
 class Crossing(NamedTuple):
@@ -124,12 +124,7 @@ size of the next one, is rounding."""
 
 @kernel
 def earliest_crossing(
-    equations: BoundEquations,
-    mode: int,
-    count: int,
-    span: Span,
-    tolerance: Vector,
-    w: Workspace,
+    equations: BoundEquations, known: KnownMode, span: Span, tolerance: Vector, w: Workspace
 ) -> Crossing:
     """Return the guard that falls through zero first.
 
@@ -141,22 +136,20 @@ def earliest_crossing(
     for i in range(len(tolerance)):
         end_change = span.h * w.after[len(tolerance) + i]
         c0, c1, c2, c3 = _cubic_of(i, span.h, tolerance, w)
-        if count > 0 and not may_dip(c0, c1, w.after[i], end_change):
+        if known.moving > 0 and not may_dip(c0, c1, w.after[i], end_change):
             continue
         end = -1.0
         bottom, low, high = _dip(c1, c2, c3)
         depth = c0 + bottom * (c1 + bottom * (c2 + bottom * c3))
-        if count == 0:
-            end = _point_below_zero_at_rest(equations, i, mode, span, tolerance, w)
+        if known.moving == 0:
+            end = _point_below_zero_at_rest(equations, i, known, span, tolerance, w)
         elif 0.0 < bottom < 1.0 and depth < DIP_MARGIN * (abs(c1) + abs(end_change)):
-            end = _point_below_zero(
-                equations, i, bottom, low, high, mode, count, span, tolerance, w
-            )
+            end = _point_below_zero(equations, i, bottom, low, high, known, span, tolerance, w)
         # a guard that starts at zero, within its rounding noise, falls only if it goes below that
         if end < 0.0 and w.after[i] < (0.0 if w.before[i] > tolerance[i] else -tolerance[i]):
             end = 1.0
         if end >= 0.0:
-            root = _first_root(equations, i, end, mode, count, span, tolerance, w)
+            root = _first_root(equations, i, end, known, span, tolerance, w)
             if root < place:
                 found, place, negative = i, root, end
     return Crossing(found, place, negative)
@@ -198,37 +191,24 @@ def _dip(c1: float, c2: float, c3: float) -> tuple[float, float, float]:
 
 @kernel
 def _guard_inside(
-    equations: BoundEquations,
-    which: int,
-    fraction: float,
-    mode: int,
-    count: int,
-    span: Span,
-    tolerance: Vector,
+    equations: BoundEquations, which: int, fraction: float, known: KnownMode, span: Span,
     w: Workspace,
-) -> float:
+) -> float:  # fmt: skip
     """Return a guard's value at a fraction of the step, from the dense solution."""
-    interpolate(equations, count, fraction, span.h, w)
+    interpolate(equations, known.moving, fraction, span.h, w)
     ground = ground_in(fraction, span, w.ground)
     equations.guarding.call(
-        mode, w.scratch, w.scratch_rates, ground.x, ground.y, w.limits, w.inside, equations.numbers
-    )
+        known.mode, w.scratch, w.scratch_rates, ground.x, ground.y, w.limits, w.inside,
+        equations.numbers,
+    )  # fmt: skip
     return w.inside[which]
 
 
 @kernel
 def _point_below_zero(
-    equations: BoundEquations,
-    which: int,
-    bottom: float,
-    low: float,
-    high: float,
-    mode: int,
-    count: int,
-    span: Span,
-    tolerance: Vector,
-    w: Workspace,
-) -> float:
+    equations: BoundEquations, which: int, bottom: float, low: float, high: float,
+    known: KnownMode, span: Span, tolerance: Vector, w: Workspace,
+) -> float:  # fmt: skip
     """Return a place in a predicted dip at which a guard is negative; -1 if there is none.
 
     Bisection by the guard's rate. For a guard that starts at zero, within its rounding noise,
@@ -237,7 +217,7 @@ def _point_below_zero(
     start, noise = w.before[which], tolerance[which]
     zero = 0.0 if start > noise else min(start, 0.0) - noise
     for _ in range(LOOKING):
-        g = _guard_inside(equations, which, bottom, mode, count, span, tolerance, w)
+        g = _guard_inside(equations, which, bottom, known, span, w)
         if g < zero:
             return bottom
         rate = span.h * w.inside[len(tolerance) + which]
@@ -253,7 +233,8 @@ def _point_below_zero(
 
 @kernel
 def _point_below_zero_at_rest(
-    equations: BoundEquations, which: int, mode: int, span: Span, tolerance: Vector, w: Workspace
+    equations: BoundEquations, which: int, known: KnownMode, span: Span, tolerance: Vector,
+    w: Workspace,
 ) -> float:  # fmt: skip
     """Return a place inside a step without motion at which a guard is negative, or -1.
 
@@ -262,26 +243,26 @@ def _point_below_zero_at_rest(
     """
     start, end, noise = w.before[which], w.after[which], tolerance[which]
     zero = 0.0 if start > noise else min(start, 0.0) - noise
-    middle = _guard_inside(equations, which, 0.5, mode, 0, span, tolerance, w)
+    middle = _guard_inside(equations, which, 0.5, known, span, w)
     c1, c2 = 4.0 * middle - 3.0 * start - end, 2.0 * (start + end - 2.0 * middle)
     lowest = start - 0.25 * c1 * c1 / c2 if c2 > 0.0 else math.inf
     if lowest - zero > DIP_MARGIN * (abs(c1) + abs(c1 + 2.0 * c2)):
         return -1.0
     low, high = 0.0, 1.0
     left, right = 1.0 - GOLDEN, GOLDEN
-    at_left = _guard_inside(equations, which, left, mode, 0, span, tolerance, w)
-    at_right = _guard_inside(equations, which, right, mode, 0, span, tolerance, w)
+    at_left = _guard_inside(equations, which, left, known, span, w)
+    at_right = _guard_inside(equations, which, right, known, span, w)
     for _ in range(LOOKING):
         if at_left < zero or at_right < zero:
             return left if at_left < zero else right
         if at_left < at_right:
             high, right, at_right = right, left, at_left
             left = high - GOLDEN * (high - low)
-            at_left = _guard_inside(equations, which, left, mode, 0, span, tolerance, w)
+            at_left = _guard_inside(equations, which, left, known, span, w)
         else:
             low, left, at_left = left, right, at_right
             right = low + GOLDEN * (high - low)
-            at_right = _guard_inside(equations, which, right, mode, 0, span, tolerance, w)
+            at_right = _guard_inside(equations, which, right, known, span, w)
     return -1.0
 
 
@@ -303,21 +284,15 @@ def _root_of_cubic(c0: float, c1: float, c2: float, c3: float, end: float) -> fl
 
 @kernel
 def _first_root(
-    equations: BoundEquations,
-    which: int,
-    end: float,
-    mode: int,
-    count: int,
-    span: Span,
-    tolerance: Vector,
-    w: Workspace,
-) -> float:
+    equations: BoundEquations, which: int, end: float, known: KnownMode, span: Span,
+    tolerance: Vector, w: Workspace,
+) -> float:  # fmt: skip
     """Return the first root of a guard before `end`, where it is negative.
 
     Newton's method from the root of the cubic through the guard's values and rates at both ends
     of the step, kept inside its bracket by bisection. A guard that starts at zero, within its
-    rounding noise, may rise before it falls: then the root behind its rise is meant, that of the
-    cubic divided by u. Else a corner that has just lifted off would seem to land at once.
+    rounding noise, may rise before it falls: then the root after its rise is returned, that of the
+    cubic divided by u. Otherwise a corner that has just lifted off would seem to land at once.
     """
     guards = len(tolerance)
     start, c1, c2, c3 = _cubic_of(which, span.h, tolerance, w)
@@ -329,7 +304,7 @@ def _first_root(
         place = 0.5 * end
     low, high, last = 0.0, end, math.inf
     for _ in range(SEARCHING):
-        g = _guard_inside(equations, which, place, mode, count, span, tolerance, w)
+        g = _guard_inside(equations, which, place, known, span, w)
         if g > 0.0:
             low = place
         else:

@@ -75,10 +75,10 @@ def time_of(progress: Progress) -> float:
 def evaluate_anew(
     equations: BoundEquations, mode: int, tolerance: Vector, progress: Progress, w: Workspace
 ) -> int:
-    """Evaluate accelerations and guards anew, after an event or a jump of the ground.
+    """Evaluate accelerations and guards again, after an event or a jump of the ground.
 
-    Gives a guard that is negative, or zero and falling, already at the start of the mode, or -1. A
-    guard that rises may be negative by its change within the rounding error of time.
+    Returns a guard that is negative, or zero and falling, already at the start of the mode, or -1.
+    A rising guard may be negative by its change within the rounding error of time.
     """
     clock, guards = progress.clock, len(tolerance)
     ground = ground_in(0.0, span_of(0.0, progress), w.ground)
@@ -110,23 +110,19 @@ def step_to_event(
     equations: BoundEquations, known: KnownMode, whole: float, tolerance: Vector, pieces: Pieces,
     progress: Progress, steps: StepTable, w: Workspace,
 ) -> tuple[float, int]:  # fmt: skip
-    """Repeat a step up to the first crossing of a guard; give its length and the guard, or -1.
+    """Repeat a step up to the first crossing of a guard; return its length and the guard, or -1.
 
     The crossing is found on the dense solution, then corrected by repeated steps. If another guard
     is negative at the end of the shortened step, its crossing is searched in that step.
     """
-    found = earliest_crossing(
-        equations, known.mode, known.moving, span_of(whole, progress), tolerance, w
-    )
+    found = earliest_crossing(equations, known, span_of(whole, progress), tolerance, w)
     if found.guard < 0:
         return whole, -1
     h = correct_crossing(equations, known, whole, found, tolerance, pieces, progress, steps, w)
     for _ in range(len(tolerance)):
         if h == 0.0 or not another_has_fallen(found.guard, tolerance, w):
             break
-        earlier = earliest_crossing(
-            equations, known.mode, known.moving, span_of(h, progress), tolerance, w
-        )
+        earlier = earliest_crossing(equations, known, span_of(h, progress), tolerance, w)
         if earlier.guard in (-1, found.guard) or earlier.place > 1.0 - SMALL:
             break
         found = earlier
@@ -148,15 +144,15 @@ def correct_crossing(
     equations: BoundEquations, known: KnownMode, whole: float, crossing: Crossing,
     tolerance: Vector, pieces: Pieces, progress: Progress, steps: StepTable, w: Workspace,
 ) -> float:  # fmt: skip
-    """Repeat a step up to where a guard falls through zero; give its length [s].
+    """Repeat a step up to where a guard falls through zero; return its length [s].
 
     Newton's method on the end of the repeated step, kept by bisection between lengths at which the
     guard is positive and negative: in a step that is long compared with a damped vibration the
     dense solution is far from it. The bracket also keeps a guard that rises from zero and falls
     again from its first root, the start. Where the dense solution has a dip below zero that
     repeated steps do not have, the event is where the guard is smallest. The value of a guard that
-    falls to zero and stays there, as friction does where nothing presses, does not tell how far its
-    root is: the step is halved then.
+    falls to zero and stays there, as friction does where nothing presses, does not show how far its
+    root is: then the step is halved.
     """
     crossed, place, negative = crossing
     now = time_of(progress)
@@ -212,7 +208,7 @@ def carry_out(
     equations: BoundEquations, crossed: int, time: float, known: KnownMode, memory: Vector,
     progress: Progress, events: EventTable, w: Workspace,
 ) -> tuple[KnownMode, int]:  # fmt: skip
-    """Carry out the event of a crossed guard; give the new mode and a status."""
+    """Carry out the event of a crossed guard; return the new mode and a status."""
     clock = progress.clock
     row = progress.counters[at.EVENTS]
     for i in range(len(w.state)):
@@ -252,8 +248,7 @@ def take_step(
 ) -> None:  # fmt: skip
     """Take over a step of length h, or its part up to an event; plan the next one."""
     controls, clock, counters = progress.controls, progress.clock, progress.counters
-    mode, count, steps = known.mode, known.moving, output.steps
-    fixed = controls[at.RTOL] == at.FIXED_STEPS
+    steps, fixed = output.steps, controls[at.RTOL] == at.FIXED_STEPS
     if fixed:
         shortest = SHORTEST * controls[at.DURATION]
         clock[at.NEXT_STEP] = rest_of(clock[at.ASKED], h, shortest, controls)
@@ -263,13 +258,13 @@ def take_step(
     span = span_of(h, progress)
     work, ground = Work(w.works[0], w.works[1]), ground_in(1.0, span, w.ground)
     clock[at.INTO_INTERVAL] += h
-    store_outputs(equations, time_of(progress), span, mode, count, work, progress, output, w)
+    store_outputs(equations, time_of(progress), span, known, work, progress, output, w)
     if h > 0.0:
-        follow_peak(equations, count, h, clock, w)
+        follow_peak(equations, known.moving, h, clock, w)
         if len(steps.codes) > 0:
             keep_row(
-                time_of(progress), h, mode, ground, len(w.new), len(w.last) - POWERS, w.new,
-                w.last, counters, steps.values, steps.codes,
+                time_of(progress), h, known.mode, ground, len(w.new), len(w.last) - POWERS,
+                w.new, w.last, counters, steps.values, steps.codes,
             )  # fmt: skip
     if known.contact == FLIGHT:
         clock[at.FLIGHT_TIME] += h

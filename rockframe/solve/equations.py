@@ -1,6 +1,6 @@
 """A system's equations as the integrator calls them: functions of arrays, of fixed types.
 
-So one integrator, compiled once, serves every system: it knows these functions by their
+One integrator, compiled once, thus serves every system: it knows these functions by their
 addresses, and the system's numbers as a vector. The loop of steps, too, can call the equations by
 their addresses, or is compiled for a structure of systems, with the equations in it.
 """
@@ -31,7 +31,7 @@ def switched(
     system: Equations, mode: int, guard: int, state: Vector, ground_x: float, ground_y: float,
     memory: Vector,
 ) -> int:  # fmt: skip
-    """Carry out the event of a guard that has fallen through zero; give the new mode."""
+    """Carry out the event of a guard that has fallen through zero; return the new mode."""
     return system.switch(mode, guard, state, Ground(ground_x, ground_y), memory)
 
 
@@ -159,7 +159,7 @@ def has_machine_code(equations: BoundEquations) -> bool:
 
 
 def call_nothing_back(equations: BoundEquations) -> None:
-    """Have all functions compiled for the next run: for measuring times."""
+    """Let the next run compile all functions: for measuring times."""
     for one in equations:
         if isinstance(one, Bound):
             one.source.seconds_without = math.inf

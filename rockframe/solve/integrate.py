@@ -103,26 +103,7 @@ def begun(
 ) -> Begun:
     """Return the arrays of a run as they are before its first step.
 
-    Parameters
-    ----------
-    model : ContactModel
-        The equations.
-    start : Start or Ending
-        Start of the run, or the end of another run of the same model, from which it continues.
-    accuracy : Accuracy
-        Settings.
-    interval : float
-        Interval between samples of the motion [s].
-    duration : float
-        Length of the run [s].
-    output_step : float or None
-        Spacing of the output samples [s].
-    stop_at_overturning : bool
-        Whether the run ends when the rotation reaches its limit.
-
-    Returns
-    -------
-    Begun
+    Arguments as of :func:`integrate`, and the `interval` between samples of the motion [s].
 
     Raises
     ------
@@ -133,7 +114,7 @@ def begun(
         mode, state, memory = model.initial(start)
     else:
         mode, state, memory = start.mode, start.state.copy(), start.memory.copy()
-        # losses are counted anew in each run
+        # each run counts its own losses
         memory[[IMPACT_LOSS, REPINNING_LOSS, IMPULSIVE_INPUT, LINK_LOSS]] = 0.0
     contact = model.system.contact_state_of(mode, 0)
     shortest_period = 2.0 * math.pi / model.fastest_frequency
@@ -203,7 +184,7 @@ STEP_ROOM = 1024
 STEPS_PER_INTERVAL = 3.0
 """Steps for which memory is allocated, more than most runs need: unwritten memory costs nothing."""
 MOST_STEPS_KEPT = 2_000_000
-"""Rows of the table of steps, some hundred megabytes, from which on it grows no more."""
+"""Most rows of the table of steps, some hundred megabytes: then it grows no more."""
 STEPS_UNHEARD = 2_000_000
 """Steps of machine code, a second or less, between checks for a keyboard interrupt."""
 STEPS_CALLING_BACK = 5000
@@ -211,7 +192,7 @@ STEPS_CALLING_BACK = 5000
 STEPS_AT_ONCE = 100
 """Steps in plain Python between checks whether machine code is ready."""
 TELLING = 0.1
-"""Time in plain Python from which on the remaining time of the run is estimated [s]."""
+"""Time in plain Python after which the remaining time of the run is estimated [s]."""
 AND_AGAIN = 2.0
 """Time of a run of fixed steps with its histories and the run that checks it with half as many
 steps more, over the time of the run itself. Measured for blocks on one another: 1.9.

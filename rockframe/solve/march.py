@@ -93,7 +93,7 @@ class RotationInStep(NamedTuple):
 def rotation_in_step(
     row: int, size: int, limits: Vector, state: Vector, new: Vector
 ) -> RotationInStep:
-    """Return the rotation whose limits stand in `limits` from `row` on, at both ends of a step."""
+    """Return the rotation whose limits begin at `row` of `limits`, at both ends of a step."""
     r0 = v0 = r1 = v1 = 0.0
     for i in range(size):
         r0 += limits[row + WEIGHTS + i] * state[i]
@@ -148,7 +148,7 @@ TRIED: Final = 7  # a trial step was made
 SHORTEST: Final = 1e-14
 """Shortest step, as a share of the run's duration."""
 JUMP: Final = 1e-12
-"""Relative difference of the ground acceleration at a sample from which on it is a jump."""
+"""Relative difference of the ground acceleration at a sample above which it is a jump."""
 
 
 @inlined
@@ -159,7 +159,7 @@ def jumps(now: float, before: float) -> bool:
 
 @inlined
 def fit_step(h: float, remaining: float) -> float:
-    """Return the step h, changed so that it ends with the interval or leaves no tiny rest of it."""
+    """Return the step h, changed so that it ends with the interval or leaves no tiny rest."""
     if h >= 0.999999 * remaining:
         return remaining
     return min(h, 0.5 * remaining)

@@ -22,7 +22,7 @@ from rockframe.solve.trajectory import Trajectory
 from rockframe.solve.workspace import BESIDE
 
 MANY: Final = 500
-"""Number of rows without slopes from which on it pays to compile the slope."""
+"""Number of rows without slopes from which compiling the slope pays."""
 NO_SAMPLES: Final = np.zeros(0, dtype=np.int64)
 NO_COLUMNS: Final = np.zeros((0, 0))
 

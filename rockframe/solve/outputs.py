@@ -52,7 +52,7 @@ class OutputRows:
         return count if apart <= 0.5 * ON_SAMPLE * self.step else 0
 
     def read_from_steps(self, steps: Steps) -> None:
-        """Find the expected output times in the steps, as far as the run came, and their modes."""
+        """Find the expected output times that the run reached in its steps, and their modes."""
         if not self._expected:
             return
         # the first row at, or just before, each multiple of the output step

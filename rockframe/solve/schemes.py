@@ -200,7 +200,7 @@ def fixed_step(
 
     Arguments as of :func:`rockframe.solve.march.march`, with the ground in the middle and at
     the end of the step. Writes the energies dissipated and put in by the ground, integrated with
-    the weights of the velocities. Gives whether all rates and variables at its end are finite.
+    the weights of the velocities. Returns whether all rates and variables at its end are finite.
     """
     size = system.coordinates()
     half, sixth = 0.5 * h, h / 6.0
@@ -289,7 +289,7 @@ class FixedSteps(NamedTuple):
         self, system: Evaluated, mode: int, count: int, span: Span, ground: Vector, state: Vector,
         first: Vector, new: Vector, last: Vector, stages: Vector, works: Vector,
     ) -> bool:  # fmt: skip
-        """Make a step; give whether its end is finite."""
+        """Make a step; return whether its end is finite."""
         in_middle, at_end = ground_in(0.5, span, ground), ground_in(1.0, span, ground)
         return fixed_step(
             self, system, mode, count, span.h, in_middle, at_end, state, first, new, last, stages,
@@ -348,8 +348,8 @@ class StepsByTolerance(NamedTuple):
 
         Arguments as of :func:`rockframe.solve.march.march`. Writes to `works` the energies
         dissipated and put in by the ground, integrated with the weights of the fifth order, the
-        error of their difference, and the local errors of the state. Gives True: whether the end
-        of the step is finite is seen from these errors.
+        error of their difference, and the local errors of the state. Returns True: these
+        errors show whether the end of the step is finite.
         """
         size = system.coordinates()
         slope = size + system.variables() + POWERS

@@ -107,7 +107,7 @@ class Events:
 
 @dataclass(frozen=True, kw_only=True)
 class Summary:
-    """What became of a run."""
+    """The outcome of a run."""
 
     status: Status  # how the run ended
     end_time: float  # [s]
@@ -162,7 +162,7 @@ class Trajectory(Summary):
     """A run: its histories, events and, if they were kept, its steps."""
 
     time: Vector  # output times [s]
-    # states at these, except where `outputs_in_steps` says that `steps` has them
+    # states at these, except those that `steps` has, see `outputs_in_steps`
     other_state: Matrix
     mode: Integers  # modes of the model
     work: Matrix  # energies dissipated by dashpots and put in by the ground; no rows unless stored
@@ -172,7 +172,7 @@ class Trajectory(Summary):
     start_energy: float  # kinetic, gravity and elastic energy at the start, the last less at rest
     as_python: bool  # whether its system runs as plain Python for good: it cannot be compiled
     steps: Steps | None  # None if they were not kept
-    # rows of `steps` that are the second and following output times, as far as these are ends
+    # rows of `steps` at the second and following output times, if these are ends of steps
     outputs_in_steps: Integers
 
     @cached_property

@@ -1,8 +1,8 @@
 """The arrays of a run, and the index of each number in them.
 
-The integrator can pause, as where its table of events is full, and go on: all that it must remember
-stands in three small arrays, :class:`Progress`. Also the ground acceleration inside one interval of
-the motion, a polynomial. Energies are per unit mass [m^2 s^-2].
+The integrator can pause, for example when its table of events is full, and continue later: its
+progress is in three small arrays, :class:`Progress`. This module also evaluates the polynomial of
+the ground acceleration in an interval of the motion. Energies are per unit mass [m^2 s^-2].
 """
 
 from enum import IntEnum
@@ -40,8 +40,8 @@ class Status(IntEnum):
     def overturned(self) -> bool | None:
         """Whether the block overturned; None if the run was cut off before that was known.
 
-        This is the verdict of a run. A run that stops at overturning overturns where it reaches the
-        overturning angle; a run that goes on beyond it, only where the block falls flat.
+        This is the verdict of a run. In a run that stops at overturning, the block overturns when
+        it reaches the overturning angle; in a run that continues, only when it falls flat.
         """
         return self is not Status.COMPLETED if self.finished else None
 
@@ -113,7 +113,7 @@ STOP_AT_OVERTURNING: Final = 11  # 1 if the run ends there
 HALF: Final = 12  # half of `both_ends` that is the start of the next step
 DEGREE_X: Final = 13  # degree of the ground's polynomial in the present interval
 DEGREE_Y: Final = 14
-STALE: Final = 15  # whether slope and guards at the state are to be evaluated anew
+STALE: Final = 15  # whether slope and guards at the state must be evaluated again
 LAST_INTERVAL: Final = 16  # interval at whose end the run pauses
 STEPS_KEPT: Final = 17  # rows in the table of steps
 PAUSE_AT: Final = 18  # number of steps, refused ones included, after which the run pauses
@@ -131,7 +131,7 @@ CODES: Final = 2
 """Whole numbers in such a row."""
 
 ERRORS: Final = 3
-"""Index in `works` from which on the errors of the state stand."""
+"""Index in `works` of the first error of the state."""
 
 
 class KnownMode(NamedTuple):
@@ -234,8 +234,8 @@ class Workspace(NamedTuple):
 
 LEFT_LIMIT: Final = 0
 RIGHT_LIMIT: Final = 1
-"""Places in `limits` of the largest rotations to either side [rad]. Behind both stand the weights
-of the coordinates in the rotation, then limits and weights of other bodies that may overturn."""
+"""Indices in `limits` of the largest rotations to either side [rad]. The weights of the coordinates
+in the rotation follow, then limits and weights of other bodies that may overturn."""
 WEIGHTS: Final = 2
 
 NO_STEPS: Final = StepTable(np.empty(0), np.empty(0, dtype=np.int64))
@@ -295,7 +295,7 @@ class Work(NamedTuple):
 
 @inlined
 def load_interval(index: int, pieces: ReadOnlyMatrix, first: int, coefficients: Vector) -> int:
-    """Write the polynomial of one direction in interval `index`; give its degree.
+    """Write the polynomial of one direction in interval `index`; return its degree.
 
     The polynomial is in u, from 0 to 1 over the interval. A direction without
     samples, and the time after the last sample, have a ground that stands still.
@@ -312,7 +312,7 @@ def load_interval(index: int, pieces: ReadOnlyMatrix, first: int, coefficients: 
 
 @inlined
 def polynomial(u: float, degree: int, first: int, coefficients: Vector) -> float:
-    """Evaluate at u the polynomial whose coefficients stand from index `first` on."""
+    """Evaluate at u the polynomial whose coefficients begin at index `first`."""
     value = coefficients[first + degree]
     for j in range(degree - 1, -1, -1):
         value = value * u + coefficients[first + j]

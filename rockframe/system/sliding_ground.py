@@ -48,7 +48,7 @@ class SlidingSetting(RigidGroundSetting):
 
     def contact_model(self) -> ContactModel:
         """Return the equations of slip, rotation and rise."""
-        from rockframe.dynamics.slide_rock_model import slide_rock
+        from rockframe.dynamics.slide_rock import slide_rock
 
         gravity = self.slope.normal_gravity
         system = slide_rock_of(self.body, self.friction, self.restitution, gravity)
@@ -122,8 +122,7 @@ def slide_rock_of(
     body: SupportedBody, friction: BaseFriction, restitutions: Sequence[float], gravity: float
 ) -> "SlideRock":
     """Return equations of a block that slides and rocks, with the restitutions of its corners."""
-    from rockframe.dynamics.slide_rock import SlideRock
-    from rockframe.dynamics.slide_rock_model import impulse_lever
+    from rockframe.dynamics.slide_rock import SlideRock, impulse_lever
 
     left, right = (
         impulse_lever(
@@ -181,7 +180,7 @@ def impact_words(impact: Impact) -> str:
 
 def ill_posed(body: SupportedBody, kinetic: float) -> list[str]:
     """Return a fault for friction with which a slipping corner may jam, :eq:`eq-slide-painleve`."""
-    from rockframe.dynamics.slide_rock_model import ill_posed_friction
+    from rockframe.dynamics.slide_rock import ill_posed_friction
 
     limit = ill_posed_friction(
         body.inertia / body.mass, max(body.left, body.right) ** 2 + body.centre_height**2

@@ -155,7 +155,7 @@ class TiedSetting(StackSetting):
 
     def contact_model(self) -> ContactModel:
         """Return the equations of slip, rotation and rise, with links."""
-        from rockframe.dynamics.slide_rock_model import slide_rock
+        from rockframe.dynamics.slide_rock import slide_rock
         from rockframe.dynamics.tied_slide_rock import tied_slide_rock
 
         self._rest  # noqa: B018 - refuses a block that its links tip over

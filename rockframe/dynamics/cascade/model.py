@@ -36,10 +36,6 @@ def cascade(
         Distance of this centre of mass to the right of the middle of the cap [m].
     rest_rotation : float
         Rotation of the first body at rest [rad].
-
-    Returns
-    -------
-    ContactModel
     """
     ratio = first.mass / second.mass
     system = Cascade(_part_of(second), _part_of(first), ratio, top, cap_centre, beside)

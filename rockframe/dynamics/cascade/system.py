@@ -164,7 +164,7 @@ class Cascade(Stacked, Stages):
 
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Carry out the switch that a guard calls for; give the new mode."""
+        """Carry out the switch that a guard calls for; return the new mode."""
         count = self.upper.guards()
         if guard < count:
             below = self.lower_rates(mode, state, ground)

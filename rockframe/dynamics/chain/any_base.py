@@ -53,27 +53,17 @@ class AnyBase(Base, LawNumbers):
         return Bed(self.n0, self.n1, self.n2, self.n3, self.n4 != 0.0)
 
     @kernel
-    def contacts(self) -> int:
-        """Return the number of contacts, the larger of the two laws."""
-        return max(self.pads().contacts(), self.bed().contacts())
-
-    @kernel
     def end_guards(self) -> int:
-        """Return number of guards of an end on pads; those of a bed are idle except the first."""
+        """Return the number of guards of an end on pads; on a bed all but the first are idle."""
         return CORNER_GUARDS
 
     @inlined
     def guards_of(self, contact: int, left: bool, line: BaseLine, own: Variables) -> Guards:
-        """Return guards of an end, and their rates; those of a bed are idle except the first."""
+        """Return the guards of an end, and their rates; on a bed all but the first are idle."""
         if self.which == ON_PADS:
             return self.pads().guards_of(contact, left, line, own)
         found = self.bed().guards_of(contact, left, line, own)
         return Guards((found.values[0], 1.0, 1.0), (found.changes[0], 0.0, 0.0))
-
-    @inlined
-    def in_flight(self) -> int:
-        """Return the contact of a bed in which no end is held."""
-        return self.bed().in_flight()
 
     @kernel
     def observed(self, contact: int, line: BaseLine, own: Variables) -> Variables:
@@ -92,7 +82,7 @@ class AnyBase(Base, LawNumbers):
 
     @inlined
     def touches(self, contact: int, left: bool) -> bool:
-        """Whether an end is held and its force acts as long as it is one of compression."""
+        """Whether an end is held, with a force that acts as long as it is compressive."""
         if self.which == ON_PADS:
             return self.pads().touches(contact, left)
         return self.bed().touches(contact, left)

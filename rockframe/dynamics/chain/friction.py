@@ -1,4 +1,4 @@
-"""A chain of bodies all of which may slip, on deformable bases, :eq:`eq-slip-on-base`."""
+"""A chain of bodies on deformable bases, all of which may slip, :eq:`eq-slip-on-base`."""
 
 import math
 
@@ -49,7 +49,7 @@ class SlippingChain(SlipperyBases):
     def switch_body(
         self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Carry out the switch that a guard of a body calls for; give the new mode."""
+        """Carry out the switch that a guard of a body calls for; return the new mode."""
         k = guard // GUARDS
         which, slip = guard - k * GUARDS, guard - k * GUARDS - 2 * CORNER_GUARDS
         point = self.point_of(k, mode, state, memory)
@@ -84,7 +84,7 @@ class SlippingChain(SlipperyBases):
     def let_slip(
         self, lets_go: int, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Return mode in which friction can hold all held bodies, and opposes the slip of others.
+        """Return the mode in which friction can hold all held bodies, and opposes other slips.
 
         Where no mode satisfies that with static friction, kinetic friction decides what is held.
         """
@@ -109,7 +109,7 @@ class SlippingChain(SlipperyBases):
 
     @kernel
     def end_short_slips(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Return mode in which bodies are held whose slip would stop within a negligible way."""
+        """Return the mode in which bodies are held whose slip would stop after a negligible way."""
         for k in range(self.body_count):
             mode = self.end_short_slip(k, mode, state, ground, memory)
         return self.let_slip(-1, mode, state, ground, memory)

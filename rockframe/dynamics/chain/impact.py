@@ -120,7 +120,7 @@ def bear(
     system: Any, k: int, count: int, bears: int, holds: int, sense: float, impulsive: bool,
     room: Vector, rows: Vector,
 ) -> int:  # fmt: skip
-    """Add the constraints of a body on a rigid base; give the number of all so far."""
+    """Add the constraints of a body on a rigid base; return the number of all so far."""
     i = k * PLACES
     room[i + at.LEFT_CORNER] = room[i + at.RIGHT_CORNER] = -1.0
     if holds == 0:
@@ -286,7 +286,7 @@ def bearing_corners(
         near = Near(closed, reference, NEIGHBOURS)
         far = Near(closed, reference, count if count <= MOST_TRIED else FAR_NEIGHBOURS)
     taken, other, admissible, held = -1, -1, 0, 0
-    must_press = ~before | max(leaving, 0)  # to go on bearing, the leaving corner too
+    must_press = ~before | max(leaving, 0)  # the leaving corner, too, if it is to bear on
     lowest = second = math.inf
     # first sets that are admissible within rounding; in each round first the near ones
     for trial in range(2 if impulsive else 1 + ALL_WAYS):
@@ -340,8 +340,9 @@ def with_one_held(
 ) -> tuple[int, int]:  # fmt: skip
     """Find a set of which one corner, alone on its body, is held though it does not press.
 
-    Released, it would fall back, or another one would have to pull. Of several sets the one nearest
-    to `before`, if possible with the corner `leaving`. Gives the set and the corner, or 0.
+    Released, it would fall back, or another corner would have to pull. Among several sets, the one
+    nearest to `before` is taken, if possible with the corner `leaving`. Returns the set and the
+    corner, or 0.
     """
     taken, held, least, closed = before, 0, math.inf, near.closed
     some, follower = before & closed, closed  # `before` comes first and excludes most others

@@ -28,7 +28,6 @@ from rockframe.dynamics.chain.motion import (
     write_relative,
 )
 from rockframe.dynamics.chain.rows import CONSTRAINT, PLACES
-from rockframe.dynamics.sliding import blend
 from rockframe.dynamics.switching import end_speed
 
 MOST_SHARES: Final = 60
@@ -95,16 +94,6 @@ class RigidImpulses(RigidCorners):
         for k in range(self.body_count):
             for j in range(at.IMPULSES):
                 room[k * PLACES + at.LEFT_IMPULSE + j] *= share
-
-    @kernel
-    def blend_velocities(
-        self, before: tuple[float, ...] | Vector, share: float, state: Vector
-    ) -> None:
-        """Reduce the changes of velocities since `before`, and impulses, to a share of them."""
-        n = self.coordinates()
-        for i in range(n):
-            state[n + i] = blend(before[i], state[n + i], share)
-        self.scale_impulses(share)
 
     @inlined
     def must_meet_anew(self, closed: int, mode: int) -> bool:

@@ -63,6 +63,11 @@ class ChainLink(NamedTuple):
     numbers: LinkNumbers
     along: tuple[float, float] = (0.0, 0.0)  # unit vector along which a load or a wall acts
 
+    @property
+    def reach(self) -> float:
+        """Length that the rounding noise of the elongation is proportional to [m]."""
+        return math.hypot(*self.apart) + math.hypot(*self.on_point) + math.hypot(*self.to_point)
+
 
 class LinkedLists(NamedTuple):
     """The numbers of a chain with links."""
@@ -127,7 +132,7 @@ class Linkable:
         def switch_body(
             self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
         ) -> int:
-            """Carry out the switch that a guard of a body calls for; give the new mode."""
+            """Carry out the switch that a guard of a body calls for; return the new mode."""
             raise NotImplementedError
 
         def begin_event(self, memory: Vector) -> None:

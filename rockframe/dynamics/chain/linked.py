@@ -50,7 +50,7 @@ class Linked(LinkPoints):
 
     @kernel
     def pull(self, mode: int, state: Vector, room: Vector) -> float:
-        """Load all bodies by their links, :eq:`eq-link-loads`; give the power these dissipate."""
+        """Load all bodies by their links, :eq:`eq-link-loads`; return the power these dissipate."""
         lies, out, lost = self.lies(), self.slopes(), 0.0
         self.lay(mode, state, room)
         for k in range(self.body_count):
@@ -120,19 +120,19 @@ class Linked(LinkPoints):
 
     @inlined
     def all_idle(self, mode: int) -> bool:
-        """Whether no link acts in a mode, as far as that is known without asking each."""
+        """Whether it is known, without asking each link, that none acts in a mode."""
         return False
 
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Carry out the switch that a guard calls for; give the new mode."""
+        """Carry out the switch that a guard calls for; return the new mode."""
         return self.switch_one(mode, guard, state, ground, memory)
 
     @kernel
     def switch_one(
         self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Carry out the switch of a body or of a link; give the new mode."""
+        """Carry out the switch of a body or of a link; return the new mode."""
         place, first = self.link_place(), self.own_guards()
         if guard < first:
             memory[place] = 0.0

@@ -122,12 +122,12 @@ class RestOnGround(ChainLinks):
 
     @kernel
     def moving_in(self, mode: int) -> int:
-        """Return number of coordinates that move: not the lowest body's where ground holds it."""
+        """Return the number of coordinates that move: all but one of a lowest body that is held."""
         return DEGREES * self.body_count - (1 if self.rests_on_ground(mode) else 0)
 
     @inlined
     def lowest_place(self, mode: int, body: BodyState, state: Vector) -> float:
-        """Return horizontal place of the lowest body, where held from that of the held point."""
+        """Return the horizontal place of the lowest body, if held from that of the held point."""
         if not self.rests_on_ground(mode):
             return body.horizontal
         k = self.body_count - 1
@@ -145,7 +145,7 @@ class RestOnGround(ChainLinks):
 
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Carry out the switch that a guard calls for; give the new mode."""
+        """Carry out the switch that a guard calls for; return the new mode."""
         new = self.switch_one(mode, guard, state, ground, memory)
         if guard >= self.own_guards():
             new = self.hold_again(new, state, ground, memory)
@@ -198,7 +198,7 @@ class LinkedSlippingRigidChain(  # pyright: ignore[reportGeneralTypeIssues]
 
     @inlined
     def hold_again(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Return mode in which bodies slip that friction cannot hold after an event of a link."""
+        """Return the mode in which bodies slip that friction cannot hold after a link's event."""
         self.begin_slips(mode, state, memory)
         new = self.hold_as_far(mode, state, ground, memory)
         self.end_slips(new, state, memory)

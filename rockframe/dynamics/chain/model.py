@@ -55,7 +55,7 @@ class AtRest(NamedTuple):
 
 def chain_of(links: Sequence[ChainBody], ties: Sequence[ChainLink] = ()) -> Chain:
     """Return the system of stacked bodies, from the top down, without their ties."""
-    kind = RigidChain if some_rigid(links) else Chain
+    kind = RigidChain if any(is_rigid(one.base) for one in links) else Chain
     rows = [row_of(one.body, one.base, one.mass, one.top, one.beside) for one in links]
     for row in rows:
         row[at.FORCE_SIZE] = max(row[at.FORCE_SIZE], rounding_of_ties(ties) / ROUNDING_OF_FORCES)
@@ -67,11 +67,6 @@ def slipping(bare: Chain, frictions: Sequence[tuple[float, float, float]]) -> Ch
     gives = not isinstance(bare, RigidChain) and all(math.isfinite(one[0]) for one in frictions)
     kind = SlippingChain if gives else SlippingRigidChain
     return kind(bare.body_count, np.concatenate([bare.rows, coefficients(frictions)]))
-
-
-def some_rigid(links: Sequence[ChainBody]) -> bool:
-    """Whether some of the bases are rigid."""
-    return any(is_rigid(one.base) for one in links)
 
 
 def chain(
@@ -104,10 +99,6 @@ def chain(
     frictions : sequence of tuple of float
         Coefficients of friction of each base: static, kinetic and in impacts; empty where no base
         can slip, infinite for one that cannot.
-
-    Returns
-    -------
-    ContactModel
     """
     top, count = links[0].body, len(links)
     bare = chain_of(links, ties)
@@ -204,12 +195,7 @@ def _columns(base: BaseNumbers, k: int) -> tuple[Column, ...]:
 
 def rounding_of_ties(ties: Sequence[ChainLink]) -> float:
     """Return the noise in forces of corners from the rounding of the lengths of stiff ties."""
-    return ROUNDING * sum(one.numbers.stiffness * reach_of(one) for one in ties)
-
-
-def reach_of(tie: ChainLink) -> float:
-    """Return the length that the rounding noise of a link's elongation is proportional to [m]."""
-    return math.hypot(*tie.apart) + math.hypot(*tie.on_point) + math.hypot(*tie.to_point)
+    return ROUNDING * sum(one.numbers.stiffness * one.reach for one in ties)
 
 
 def links_shown(ties: Sequence[ChainLink]) -> int:
@@ -228,7 +214,7 @@ def scales_of_links(system: Linked, ties: Sequence[ChainLink]) -> list[float]:
 
 def tie_tolerance(tie: ChainLink) -> Vector:
     """Return the rounding noise of a link's guards."""
-    return np.full(GUARDS_OF_LINK, ROUNDING * reach_of(tie))
+    return np.full(GUARDS_OF_LINK, ROUNDING * tie.reach)
 
 
 def columns_of_ties(ties: int, shown: int) -> Iterator[Column]:
@@ -325,10 +311,8 @@ def _write_start(
 def _initial(system: Chain, starts: Starts, start: Start) -> tuple[int, Vector, Vector]:
     """Return mode, state and memory at the start: all at rest but body 0, as `start` says."""
     count = len(starts.links)
-    state, memory = (
-        np.zeros(2 * DEGREES * count + system.variables()),
-        np.zeros(len(MEMORY) + count),
-    )
+    state = np.zeros(2 * DEGREES * count + system.variables())
+    memory = np.zeros(len(MEMORY) + count)
     placed, mode = _placed(system.on_base(0), starts, start), 0
     for k, one in enumerate(placed):
         moving = k == 0

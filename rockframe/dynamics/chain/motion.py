@@ -49,10 +49,8 @@ def place_bodies(system: Rows, mode: int, state: Vector, room: Vector) -> None:
         across = 0.0 if lowest else body.horizontal
         arm = 0.0 if lowest else below + part.body.height + body.vertical
         along, normal = sway + arm * rate, body.vertical_velocity - across * rate
-        speed_x, speed_y = (
-            speed_x + along * cosine + normal * sine,
-            speed_y - along * sine + normal * cosine,
-        )
+        speed_x = speed_x + along * cosine + normal * sine
+        speed_y = speed_y - along * sine + normal * cosine
         room[i + at.SINE], room[i + at.COSINE] = sine, cosine
         room[i + at.ACROSS], room[i + at.ARM] = across, arm
         room[i + at.SWAY], room[i + at.RISE] = sway, body.vertical_velocity
@@ -297,9 +295,8 @@ def solve_motion(
             room[i + at.X] = room[i + at.Y] = room[i + at.ROTATION] = 0.0
             continue
         per_mass = system.number(k, at.PER_MASS)
-        room[i + at.X], room[i + at.Y] = (
-            room[i + at.LOAD_X] * per_mass, room[i + at.LOAD_Y] * per_mass,
-        )  # fmt: skip
+        room[i + at.X] = room[i + at.LOAD_X] * per_mass
+        room[i + at.Y] = room[i + at.LOAD_Y] * per_mass
         room[i + at.ROTATION] = room[i + at.LOAD_MOMENT] * system.number(k, at.PER_INERTIA)
     for r in range(start, count):
         first = r * CONSTRAINT

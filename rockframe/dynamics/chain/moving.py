@@ -99,7 +99,7 @@ class MovingBodies(Rows):
     def hold_or_slide(
         self, k: int, count: int, standing: Mode, state: Vector, room: Vector, rows: Vector
     ) -> int:
-        """Add the constraint of a body's held point, or of its sliding end; give the count."""
+        """Add the constraint of a body's held point, or of its sliding end; return the count."""
         i = k * PLACES
         room[i + at.THRUST] = room[i + at.DRAG]
         if room[i + at.HELD] != FREE:
@@ -167,10 +167,8 @@ class MovingBodies(Rows):
     @kernel
     def find_forces(self, mode: int, state: Vector, ground: Ground) -> Vector:
         """Return what `accelerate` gives, leave all forces, and note for which mode and state."""
-        found, note = (
-            self.accelerate_first(self.body_count, mode, state, ground),
-            self.solved_room(),
-        )
+        found = self.accelerate_first(self.body_count, mode, state, ground)
+        note = self.solved_room()
         note[0], note[2], note[3] = mode >> HALF_OF_BITS, ground.x, ground.y
         note[1] = mode - (mode >> HALF_OF_BITS << HALF_OF_BITS)
         for i in range(2 * self.coordinates()):
@@ -236,7 +234,7 @@ class MovingBodies(Rows):
 
     @inlined
     def pull(self, mode: int, state: Vector, room: Vector) -> float:
-        """Load bodies by their links; give the power these dissipate: there are none here."""
+        """Load bodies by their links; return the power these dissipate: there are none here."""
         return 0.0
 
     @inlined

@@ -34,7 +34,7 @@ class OnCap(Chain):
 
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Carry out the switch that a guard calls for, and name it; give the new mode."""
+        """Carry out the switch that a guard calls for, and name it; return the new mode."""
         new, of_soil = self.switch_body(mode, guard, state, ground, memory), LOWER + 1.0
         names_itself = int(memory[LAST_EVENT]) in (SLIP, STICK, REVERSAL)
         if memory[HELD_PLACE + self.body_count] == of_soil and not names_itself:

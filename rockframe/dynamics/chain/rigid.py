@@ -62,7 +62,7 @@ class RigidChain(RigidImpulses):
     def switch_body(
         self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Carry out the switch that a guard of a body calls for; give the new mode."""
+        """Carry out the switch that a guard of a body calls for; return the new mode."""
         self.begin_event(memory)
         return self.switch_contacts(mode, guard, state, ground, memory)
 
@@ -74,11 +74,8 @@ class RigidChain(RigidImpulses):
         k, count = guard // GUARDS, self.body_count
         contact, which = self.part_mode(mode, k).contact, guard - k * GUARDS
         left = which < CORNER_GUARDS
-        if (
-            self.is_rigid(k)
-            and contact & PULLED != 0
-            and (self.on_base(k).base.is_held(contact, left))
-        ):
+        pulls = contact & PULLED != 0 and self.on_base(k).base.is_held(contact, left)
+        if self.is_rigid(k) and pulls:
             self.write_contacts(mode, state, memory)
             opens = which % CORNER_GUARDS == OPENING
             corners = self.bearing(mode) & ~(BOTH << 2 * k) if opens else self.bearing(mode)
@@ -114,7 +111,7 @@ class RigidChain(RigidImpulses):
     def switch_corner(
         self, k: int, left: bool, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Let a corner lift off from a rigid base, or land on it; give the new mode."""
+        """Let a corner lift off from a rigid base, or land on it; return the new mode."""
         part, standing = self.on_base(k), self.part_mode(mode, k)
         bore = part.base.is_held(standing.contact, left)
         self.write_contacts(mode, state, memory)
@@ -140,7 +137,7 @@ class RigidChain(RigidImpulses):
 
     @kernel
     def catch_up(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Let a pad that rises behind an end touch it again; give the new mode.
+        """Let a pad that rises behind an end touch it again; return the new mode.
 
         After an impact elsewhere has slowed the end down, its pad presses it, but with a falling
         force. If holding the end would not last, and its impulse would throw a corner down that is
@@ -153,9 +150,8 @@ class RigidChain(RigidImpulses):
         if holds or not self.presses_less(k, left, mode, state, ground):
             new = self.part_where_pulled(k, left, mode, state, ground, memory)
             return self.switch_on_base(new, guard, state, ground, memory)
-        before, lost, place = (
-            self.velocities(state), memory[REPINNING_LOSS], memory[HELD_PLACE + k],
-        )  # fmt: skip
+        before = self.velocities(state)
+        lost, place = memory[REPINNING_LOSS], memory[HELD_PLACE + k]
         new = self.switch_on_base(mode, guard, state, ground, memory)
         contact = self.part_mode(new, k).contact
         if contact != part.base.unpressed(contact, left) or not self.throws_down(new, state):
@@ -211,7 +207,7 @@ class RigidChain(RigidImpulses):
     def hold_if_small(
         self, k: int, left: bool, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Hold a corner of a body in flight if its rebound is negligible; give the mode."""
+        """Hold a corner of a body in flight if its rebound is negligible; return the mode."""
         part, corner = self.on_base(k), (LEFT_ONLY if left else RIGHT_ONLY) << 2 * k
         if not part.flies(self.part_mode(mode, k).contact):
             return mode
@@ -256,7 +252,7 @@ class RigidChain(RigidImpulses):
 
     @kernel
     def let_stand(self, corners: int, pulled: int, mode: int, state: Vector, memory: Vector) -> int:
-        """Let bodies stand on corners, by impulses that may be tension; give the new mode."""
+        """Let bodies stand on corners, by impulses that may be tension; return the new mode."""
         self.write_contacts(mode, state, memory)
         flying = self.with_bearing(mode, 0, 0)
         had = self.energies(flying, state).kinetic  # places the bodies, too
@@ -296,7 +292,7 @@ class RigidChain(RigidImpulses):
         self, mode: int, closed: int, before: int, leaving: int, state: Vector, ground: Ground,
         memory: Vector,
     ) -> int:  # fmt: skip
-        """Find which of the closed corners bear, and let these bear; give the new mode.
+        """Find which of the closed corners bear, and let these bear; return the new mode.
 
         After an impact if `leaving` is 0, else under new forces as that corner lifts off.
         """

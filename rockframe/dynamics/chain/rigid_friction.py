@@ -1,7 +1,7 @@
 """A chain in which some bases have friction, and on others no body can slip.
 
-Which corners bear and which bodies slip is found anew as friction comes to its bound, as a slip
-ends, and as a contact changes.
+Which corners bear and which bodies slip is found again when friction reaches its bound, when a slip
+ends, and when a contact changes.
 """
 
 import math
@@ -52,7 +52,7 @@ class SlippingRigidChain(TriedSlips):
     def switch_body(
         self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Carry out the switch that a guard of a body calls for; give the new mode."""
+        """Carry out the switch that a guard of a body calls for; return the new mode."""
         k, room = guard // GUARDS, self.places()
         which = guard - k * GUARDS - 2 * CORNER_GUARDS
         self.begin_event(memory)
@@ -90,7 +90,7 @@ class SlippingRigidChain(TriedSlips):
 
     @kernel
     def let_wait(self, mode: int, state: Vector, ground: Ground) -> int:
-        """Mark ends as lifted off while still pressed, if the new forces would return them at once.
+        """Mark ends as lifted off while still pressed, if new forces would return them immediately.
 
         As an end lifts off the held point changes, and with it the slips and the corners that bear.
         """

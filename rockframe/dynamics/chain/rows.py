@@ -81,7 +81,7 @@ BLOW_MOMENT: Final = 29
 BLOW_ALONG: Final = 30
 IMPULSES: Final = 8  # numbers from LEFT_IMPULSE on
 # senses of slip along the base, 1 to the right, -1 to the left, 0 for none; half without friction
-SLIPS: Final = 31  # in the trial at hand
+SLIPS: Final = 31  # in the present trial
 STARTS: Final = 32  # in which friction that is overcome lets the body start to slip
 RUBS: Final = 33  # friction over normal force at a corner that slips, with its sign [1]
 DRAG: Final = 34  # friction among the loads, of a body that slips on a base that is not rigid
@@ -237,7 +237,7 @@ class Rows(InState, CalledBySteps, Lists):
 
     @inlined
     def standing_state(self, k: int, standing: Mode, state: Vector) -> BodyState:
-        """Return placement and rates of a body, free of what its contacts rule out."""
+        """Return placement and rates of a body, without motion that its contacts exclude."""
         return self.state_of(k, state)
 
     @inlined

@@ -51,7 +51,7 @@ class SlipperyBases(SlippingBodies):
     def switch_end(
         self, k: int, left: bool, which: int, mode: int, state: Vector, memory: Vector
     ) -> int:
-        """Carry out the switch of an end's contact; give the mode, with the body released."""
+        """Carry out the switch of an end's contact; return the mode, with the body released."""
         part, was = self.on_base(k), self.part_mode(mode, k)
         line = part.body.base_line_at(self.state_of(k, state))
         found = part.base.switch(was.contact, left, which, line, ())
@@ -115,15 +115,13 @@ class SlipperyBases(SlippingBodies):
 
     @kernel
     def strike_ends(self, k: int, mode: int, state: Vector) -> int:
-        """Reduce the speeds of both ends in one impact, each by its own factor eps; gives 0.
+        """Reduce the speeds of both ends in one impact, each by its own factor eps; return 0.
 
-        Where friction would lift one of them the other strikes alone: gives this one, as LEFT_ONLY
-        or RIGHT_ONLY, and leaves the velocities as they are.
+        Where friction would lift one of them, the other strikes alone: returns LEFT_ONLY or
+        RIGHT_ONLY for this one, and leaves the velocities as they are.
         """
-        line, base = (
-            self.on_base(k).body.base_line_at(self.state_of(k, state)),
-            self.on_base(k).base,
-        )
+        body, base = self.on_base(k)
+        line = body.base_line_at(self.state_of(k, state))
         slip, noise = self.slip_rate(k, mode, state)
         if abs(slip) <= noise:
             slip = 0.0

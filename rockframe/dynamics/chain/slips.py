@@ -85,21 +85,23 @@ class SlippingBodies(Chain):
     @inlined
     def slip_rate(self, k: int, mode: int, state: Vector) -> tuple[float, float]:
         """Return the velocity of slip of the point named by the mode, and its rounding noise."""
+        return self.slip_on(k, self.part_mode(mode, k).pivot, state)
+
+    @kernel
+    def slip_on(self, k: int, pivot: int, state: Vector) -> tuple[float, float]:
+        """Return the velocity of slip of a point of a base, and its rounding noise."""
         part, body = self.on_base(k), self.state_of(k, state)
-        pin = part.body.pin(self.part_mode(mode, k).pivot)
-        turning = part.body.reach(pin, part.body.attitude(body.rotation)).rate
-        turning *= body.angular_velocity
+        pin = part.body.pin(pivot)
+        about = part.body.reach(pin, part.body.attitude(body.rotation)).rate * body.angular_velocity
         sway = body.horizontal_velocity
-        return sway - turning, NOISE * (abs(sway) + abs(turning))
+        return sway - about, NOISE * (abs(sway) + abs(about))
 
     @inlined
     def point_of(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
         """Return the place along the base of the point that is held, or slips."""
         part, body = self.on_base(k), self.state_of(k, state)
-        pin, attitude = (
-            part.body.pin(self.part_mode(mode, k).pivot),
-            part.body.attitude(body.rotation),
-        )
+        pin = part.body.pin(self.part_mode(mode, k).pivot)
+        attitude = part.body.attitude(body.rotation)
         return self.place(k, mode, state, memory) - part.body.about_pin(pin, attitude)
 
     @inlined
@@ -189,10 +191,8 @@ class SlippingBodies(Chain):
         mass = 0.0
         for j in range(k + 1):
             mass += self.number(j, at.MASS)
-        thrust, weight = (
-            abs(self.places()[k * PLACES + at.THRUST]),
-            mass * self.number(k, at.GRAVITY),
-        )
+        thrust = abs(self.places()[k * PLACES + at.THRUST])
+        weight = mass * self.number(k, at.GRAVITY)
         return ROUNDING * thrust + (ROUNDING + NOISE * friction) * weight
 
     @kernel
@@ -223,7 +223,7 @@ class SlippingBodies(Chain):
 
     @kernel
     def let_all_go(self, mode: int, state: Vector, memory: Vector) -> int:
-        """Release bodies that friction holds on deformable bases; give the new mode.
+        """Release bodies that friction holds on deformable bases; return the new mode.
 
         Their friction is finite, and has no impulse in an impact elsewhere.
         """
@@ -234,7 +234,7 @@ class SlippingBodies(Chain):
 
     @kernel
     def let_go(self, k: int, mode: int, state: Vector, memory: Vector) -> int:
-        """Release a held body along its base; give the mode in which it may move."""
+        """Release a held body along its base; return the mode in which it may move."""
         part, was = self.on_base(k), self.part_mode(mode, k)
         if part.is_free(was):
             return mode

@@ -86,14 +86,14 @@ class Chain(MovingBodies):
 
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Carry out the switch that a guard calls for; give the new mode."""
+        """Carry out the switch that a guard calls for; return the new mode."""
         return self.switch_body(mode, guard, state, ground, memory)
 
     @inlined
     def switch_body(
         self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Carry out the switch that a guard of a body calls for; give the new mode."""
+        """Carry out the switch that a guard of a body calls for; return the new mode."""
         return self.switch_on_base(mode, guard, state, ground, memory)
 
     @inlined
@@ -189,9 +189,8 @@ class Chain(MovingBodies):
                 x = self.place(k, mode, state, memory)
             out[j], out[j + 1], out[j + 2], out[j + 3] = rotation, rate, rise, room[i + at.SPEED_Y]
             out[j + 4], out[j + 5], out[j + 6] = x, shear, room[i + at.SPEED_X]
-            out[j + 7], out[j + 8], out[j + 9] = (
-                room[i + at.ROTATION], room[i + at.X], room[i + at.Y],
-            )  # fmt: skip
+            out[j + 7] = room[i + at.ROTATION]
+            out[j + 8], out[j + 9] = room[i + at.X], room[i + at.Y]
             out[j + 10], out[j + 11] = room[i + at.THRUST], room[i + at.PRESS]
             out[j + 12], out[j + 13] = body.rotation, body.vertical
             put(self.observed_base(k, standing, body), j + COLUMNS - OBSERVED, out)

@@ -52,7 +52,7 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @inlined
     def slip_sense(self, k: int) -> float:
-        """Return the sense of slip of a body on its base in the trial at hand: 0, held."""
+        """Return the sense of slip of a body on its base in the present trial: 0, held."""
         return float(self.places()[k * PLACES + at.SLIPS])
 
     @inlined
@@ -64,7 +64,7 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @kernel
     def note_slips(self, mode: int) -> None:
-        """Write the senses of slips of a mode as those of the trial at hand."""
+        """Write the senses of slips of a mode as those of the present trial."""
         room = self.places()
         for k in range(self.body_count):
             room[k * PLACES + at.SLIPS] = self.sense_in(mode, k)
@@ -98,7 +98,7 @@ class TriedSlips(SlipperyBases, RigidChain):
     def hold_as_tried(
         self, k: int, count: int, standing: Mode, state: Vector, room: Vector, rows: Vector
     ) -> int:
-        """Hold a body on a deformable base, or load it by friction, in the trial at hand."""
+        """Hold a body on a deformable base, or load it by friction, in the present trial."""
         if not self.is_slippery(k) or self.on_base(k).flies(standing.contact):
             return self.hold_or_slide(k, count, standing, state, room, rows)
         i, sense = k * PLACES, self.slip_sense(k)
@@ -121,15 +121,6 @@ class TriedSlips(SlipperyBases, RigidChain):
         if self.is_rigid(k):
             return self.corner_force(k, True) + self.corner_force(k, False)
         return float(self.places()[k * PLACES + at.PRESS])
-
-    @kernel
-    def slip_on(self, k: int, pivot: int, state: Vector) -> tuple[float, float]:
-        """Return the velocity of slip of a point of a base, and its rounding noise."""
-        part, body = self.on_base(k), self.state_of(k, state)
-        pin = part.body.pin(pivot)
-        about = part.body.reach(pin, part.body.attitude(body.rotation)).rate * body.angular_velocity
-        sway = body.horizontal_velocity
-        return sway - about, NOISE_OF_SLIP * (abs(sway) + abs(about))
 
     @kernel
     def note_free_slips(self, mode: int, state: Vector) -> None:
@@ -212,8 +203,8 @@ class TriedSlips(SlipperyBases, RigidChain):
     ) -> Attempt:
         """Let a set of the closed corners bear, and find which of their bodies slip, base by base.
 
-        In an impact the velocities after it decide. Under new forces bodies that slip go on, and
-        held ones start to slip if friction cannot hold them.
+        In an impact the velocities after it decide. Under new forces, slipping bodies continue to
+        slip, and held ones start to slip if friction cannot hold them.
         """
         self.note_first_slips(mode, some, impulsive, state)
         found = Attempt(0, math.inf)
@@ -229,7 +220,7 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @kernel
     def note_first_slips(self, mode: int, some: int, impulsive: bool, state: Vector) -> int:
-        """Write the slips with which a trial begins; give the set of bodies whose slip is open."""
+        """Write the first slips of a trial; return the set of bodies whose slip is open."""
         room, loose = self.places(), 0
         for k in range(self.body_count):
             i, pivot = k * PLACES, self.tried_at(k, mode, some, impulsive)
@@ -272,7 +263,7 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @kernel
     def noted_way(self) -> int:
-        """Return the number, in base 3, of the slips of all bodies in the trial at hand."""
+        """Return the number, in base 3, of the slips of all bodies in the present trial."""
         way = 0
         for k in range(self.body_count - 1, -1, -1):
             way = 3 * way + int(self.places()[k * PLACES + at.SLIPS]) % 3
@@ -390,7 +381,7 @@ class TriedSlips(SlipperyBases, RigidChain):
         self, mode: int, some: int, closed: int, impulsive: bool, holding: int, noise: float,
         state: Vector,
     ) -> int:  # fmt: skip
-        """Correct the slip of one body in the trial at hand, and give its number; else -1.
+        """Correct the slip of one body in the present trial, and give its number; else -1.
 
         A held body slips if friction, of the coefficient `holding`, cannot hold it; a slipping one
         is held if it does not slip. Accelerations up to `noise` count as zero.
@@ -422,13 +413,13 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @inlined
     def thrust_of(self, k: int) -> float:
-        """Return the force along its base that holds a body in the trial at hand."""
+        """Return the force along its base that holds a body in the present trial."""
         which = int(self.places()[k * PLACES + at.HOLDS_ALONG])
         return float(self.constraints()[which * CONSTRAINT + at.FORCE])
 
     @kernel
     def cannot_hold(self, k: int, friction: float, impulsive: bool) -> bool:
-        """Whether the force that holds a body in the trial at hand exceeds its friction."""
+        """Whether the force that holds a body in the present trial exceeds its friction."""
         press = self.pressed(k)
         least = NOISE * abs(press)
         if not impulsive:  # a body that has just started to slip is not held at the bound

@@ -66,10 +66,6 @@ def coupled(block: ChainBody, cap: ChainBody, mass: float, rest: StackRest) -> C
         Mass of the block [kg].
     rest : StackRest
         Placement of block and cap at rest, :meth:`rockframe.dynamics.statics.StandingChain.rest`.
-
-    Returns
-    -------
-    ContactModel
     """
     body, system = block.body, system_of(block, cap)
     fastest, damping_rate = fastest_vibration((block, cap))

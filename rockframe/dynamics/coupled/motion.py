@@ -76,17 +76,6 @@ class CoupledMotion(NamedTuple):
 
 @inlined
 def configuration(
-    pair: Pair, modes: Modes, states: States, upper: Attitude, lower: Attitude
-) -> Configuration:
-    """Return the geometry of states, with the held points of modes."""
-    return configuration_with(
-        pair, modes, states, upper, lower,
-        pair.upper.is_free(modes.upper), pair.lower.is_free(modes.lower),
-    )  # fmt: skip
-
-
-@inlined
-def configuration_with(
     pair: Pair, modes: Modes, states: States, upper: Attitude, lower: Attitude, block_free: bool,
     cap_free: bool,
 ) -> Configuration:  # fmt: skip

@@ -20,7 +20,6 @@ from rockframe.dynamics.coupled.motion import (
     block_velocity,
     cap_sway,
     configuration,
-    configuration_with,
     normal_change,
     solve_motion,
 )
@@ -57,7 +56,7 @@ class Coupled(Stacked, Pair):
 
     @inlined
     def moving_in(self, mode: int) -> int:
-        """Return number of coordinates that move: all, or all but a held cap's horizontal one."""
+        """Return the number of coordinates that move: all but a held cap's horizontal one."""
         return COORDINATES if self.lower.is_free(self.modes_in(mode).lower) else LOWER_HORIZONTAL
 
     @inlined
@@ -69,8 +68,11 @@ class Coupled(Stacked, Pair):
     @kernel
     def place_in(self, mode: int, states: States) -> Configuration:
         """Return the geometry of states, with the held points of a mode."""
-        upper, lower = self.attitudes(states)
-        return configuration(self, self.modes_in(mode), states, upper, lower)
+        modes, (upper, lower) = self.modes_in(mode), self.attitudes(states)
+        return configuration(
+            self, modes, states, upper, lower,
+            self.upper.is_free(modes.upper), self.lower.is_free(modes.lower),
+        )  # fmt: skip
 
     @inlined
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> tuple[float, ...]:
@@ -86,7 +88,10 @@ class Coupled(Stacked, Pair):
         on_cap = self.lower.base.force(cap_contact, cap_line, cap_own)
         forces = Forces(on_block.upward, on_block.moment, on_cap.upward, on_cap.moment)
         dissipated = on_block.dissipated + on_cap.dissipated
-        place = configuration(self, modes, states, upper, lower)
+        place = configuration(
+            self, modes, states, upper, lower,
+            self.upper.is_free(modes.upper), self.lower.is_free(modes.lower),
+        )  # fmt: skip
         free = place
         block_rate, cap_rate = states.upper.angular_velocity, states.lower.angular_velocity
         s, c = place.sine, place.cosine
@@ -101,7 +106,7 @@ class Coupled(Stacked, Pair):
         swing = place.cap_reach.bend * cap_rate * cap_rate
         drift = place.block_reach.bend * block_rate * block_rate
         if modes.upper.slides or modes.lower.slides:
-            place = configuration_with(
+            place = configuration(
                 self, modes, states, upper, lower,
                 place.block_free and not modes.upper.slides,
                 place.cap_free and not modes.lower.slides,
@@ -182,7 +187,7 @@ class Coupled(Stacked, Pair):
 
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Carry out the switch that a guard calls for; give the new mode."""
+        """Carry out the switch that a guard calls for; return the new mode."""
         count = self.upper.guards()
         if guard < count:
             new = switch_part(self, self.upper, UPPER, guard, mode, state, ground, memory)

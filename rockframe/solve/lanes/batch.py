@@ -1,7 +1,7 @@
 """A batch of runs in lanes: quiet steps of all lanes together, all else one run at a time.
 
-`steps.py` makes a step in all lanes. A run that comes to an event is copied from its lane to its
-row, goes on to the end of its interval by the driver of single runs, and is copied back. The
+`steps.py` makes a step in all lanes. A run that reaches an event is copied from its lane to its
+row; the driver of single runs continues it to the end of its interval, and it is copied back. The
 results of a run depend neither on its lane, nor on its neighbours, nor on when it starts.
 """
 
@@ -216,7 +216,7 @@ def return_to_lane(batch: Batch, row: Vector, lane: int, everything: bool) -> No
 
 @kernel
 def start_next_run(batch: Batch, lane: int) -> None:
-    """Start the next run, and give it to a lane after its first interval; none if none is left."""
+    """Start the next run, if one is left, and copy it to a lane after its first interval."""
     shape = batch.shape
     lane_of(as_integers(batch.room), fields.OWN_WHOLE, lane)[fields.BUSY] = 0
     while batch.taken[LANES] < shape.rows:
@@ -247,7 +247,7 @@ def continue_alone(batch: Batch, lane: int) -> None:
 
 @kernel
 def see_to_lanes(batch: Batch) -> int:
-    """Run lanes alone that need the driver, and move all into an interval; give how many run."""
+    """Run lanes alone that need the driver, and move all into an interval; return how many run."""
     busy = 0
     for lane in range(LANES):
         own = lane_of(as_integers(batch.room), fields.OWN_WHOLE, lane)

@@ -1,7 +1,7 @@
-"""The fields of a run in lanes: what each number is, and where it stands; the ground in all lanes.
+"""The fields of a run in lanes: meaning and index of each number; the ground in all lanes.
 
 A row holds a whole run, one number after the other, so that the driver of single runs can work
-on it. The room of the lanes holds the same fields, each of sixteen runs next to one another.
+on it. The room of the lanes holds the same fields, each for sixteen runs next to one another.
 
 At the end of an interval of the motion all lanes move to the next one together. The end of the
 motion, the end of a run and jumps of the ground are left to the driver of single runs.
@@ -23,7 +23,7 @@ STEP: Final = 2  # length of the step [s]
 PLACE: Final = 3  # where in the interval the ground is evaluated, from 0 to 1
 MIDDLE_X: Final = 4  # ground acceleration in the middle of a step of fixed length [m s^-2]
 MIDDLE_Y: Final = 5
-NOW_X: Final = 6  # at the stage at hand; after the last stage, at the end of the step [m s^-2]
+NOW_X: Final = 6  # at the present stage; after the last one, at the end of the step [m s^-2]
 NOW_Y: Final = 7
 REALS: Final = 8
 
@@ -38,7 +38,7 @@ FIRST_Y: Final = 6
 COUNT_Y: Final = 7
 STATUS: Final = 8  # how the run ended
 TAKEN: Final = 9  # all bits set where the last step is accepted, none where it is not
-ENTERS: Final = 10  # whether the lane goes on to its next interval
+ENTERS: Final = 10  # whether the lane moves to its next interval
 REFUSED: Final = 11  # whether the error of the last step was too large
 WHOLES: Final = 12
 
@@ -140,7 +140,7 @@ def is_at_end(room: Vector, lane: int) -> bool:
 
 @inlined
 def comes_to_next(room: Vector, lane: int) -> bool:
-    """Whether a lane is at the end of an interval, and run and motion go on after it."""
+    """Whether a lane is at the end of an interval after which run and motion continue."""
     whole, controls = as_integers(room), lane_of(room, CONTROLS, lane)
     own, numbers = lane_of(room, OWN, lane), lane_of(whole, OWN_WHOLE, lane)
     index, length = lane_of(whole, COUNTERS, lane)[at.INTERVAL], own[LENGTH]
@@ -154,7 +154,7 @@ def comes_to_next(room: Vector, lane: int) -> bool:
 def load_next(
     room: Vector, lane: int, pieces: ReadOnlyMatrix, count: int, row: int, first: int
 ) -> None:
-    """Write the polynomial of one direction in the next interval, if the lane goes on to it."""
+    """Write the polynomial of one direction in the next interval, if the lane moves to it."""
     own = lane_of(as_integers(room), OWN_WHOLE, lane)
     index = lane_of(as_integers(room), COUNTERS, lane)[at.INTERVAL] + 1
     ground = lane_of(room, GROUND, lane)
@@ -165,7 +165,7 @@ def load_next(
 
 @inlined
 def enter_next(room: Vector, lane: int) -> int:
-    """Move a lane to its next interval, unless the ground jumps; give 1 if it must wait, else 0."""
+    """Move a lane to its next interval unless the ground jumps; return 1 if it waits, else 0."""
     whole = as_integers(room)
     clock, controls = lane_of(room, CLOCK, lane), lane_of(room, CONTROLS, lane)
     own, numbers = lane_of(room, OWN, lane), lane_of(whole, OWN_WHOLE, lane)
@@ -186,7 +186,7 @@ def enter_next(room: Vector, lane: int) -> int:
 def enter_intervals(
     lanes: int, room: Vector, pieces_x: ReadOnlyMatrix, pieces_y: ReadOnlyMatrix
 ) -> int:
-    """Move all lanes at the end of an interval to the next; give 1 if some must wait, else 0."""
+    """Move all lanes at the end of an interval to the next; return 1 if some must wait, else 0."""
     for lane in range(lanes):
         own = lane_of(as_integers(room), OWN_WHOLE, lane)
         own[ENTERS] = 1 if comes_to_next(room, lane) else 0

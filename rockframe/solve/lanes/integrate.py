@@ -96,19 +96,10 @@ def kind_of(model: ContactModel) -> Any:
 
 
 def lanes_compiled(run: LaneRun, patience: float) -> bool:
-    """Tell whether runs of a kind can be made in lanes.
+    """Whether runs of the kind of `run` can be made in lanes.
 
-    Parameters
-    ----------
-    run : LaneRun
-        One of them.
-    patience : float
-        Longest time that compiling may take now [s].
-
-    Returns
-    -------
-    bool
-        False also where compiling is impossible: there are no lanes in plain Python.
+    Compiles what they need if that takes at most `patience` [s]. There are no lanes in plain
+    Python.
     """
     rows, one = _Rows([run]), np.zeros(1, dtype=np.int64)
     return compiled_within(patience, advance_batch, rows.batch([None], one, one), rows.steps)

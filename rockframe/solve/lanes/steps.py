@@ -2,8 +2,9 @@
 
 The loops over lanes hold nothing but arithmetic on one array, so that they are compiled to
 instructions for several lanes at once. A lane does what :func:`rockframe.solve.march.march`
-does in a quiet step (one without event, reversal beyond the peaks or sliding), in the same order,
-to the last bit. A step that is not quiet is not accepted: the driver of single runs makes it.
+does in a quiet step (one without event, reversal beyond the peaks or sliding), in the same order
+and with the same bits. A step that is not quiet is not accepted: the driver of single runs makes
+it.
 """
 
 import math
@@ -178,7 +179,7 @@ def choose_step(room: Vector, lane: int) -> None:
 
 @inlined
 def make_step(scheme: FixedSteps, system: Equations, room: Vector, lane: int) -> bool:
-    """Make the step of one lane; give whether its end is finite."""
+    """Make the step of one lane; return whether its end is finite."""
     there = places_of(system)
     own, whole = lane_of(room, fields.OWN, lane), as_integers(room)
     mode = system.without_sliding(lane_of(whole, fields.COUNTERS, lane)[at.MODE])
@@ -264,12 +265,8 @@ def step_lanes_in(
 @inlined
 def begin_step(system: Equations, room: Vector, lane: int) -> None:
     """Choose the length of a lane's step, and write its first stage."""
-    there, own = places_of(system), lane_of(room, fields.OWN, lane)
-    clock, controls = lane_of(room, fields.CLOCK, lane), lane_of(room, fields.CONTROLS, lane)
-    remaining = own[fields.LENGTH] - clock[at.INTO_INTERVAL]
-    requested = fit_step(min(clock[at.NEXT_STEP], controls[at.MAX_STEP]), remaining)
-    clock[at.ASKED] = requested
-    own[fields.STEP] = requested
+    choose_step(room, lane)
+    there = places_of(system)
     begin_stages(
         system, lane_of(room, there.state, lane), lane_of(room, there.first, lane),
         lane_of(room, there.stages, lane),
@@ -376,7 +373,7 @@ def end_step(system: Equations, room: Vector, lane: int) -> None:
 
 @inlined
 def judge(room: Vector, lane: int) -> int:
-    """Accept a lane's step, refuse it, or leave it to the driver; give 0 if it is accepted.
+    """Accept a lane's step, refuse it, or leave it to the driver; return 0 if it is accepted.
 
     Sliding is left to the driver, whatever the error: lanes compute their steps without it.
     """
@@ -404,7 +401,7 @@ def keep_sizes(system: Equations, room: Vector, lane: int) -> None:
 
 @inlined
 def choose_next(room: Vector, lane: int, there: Places) -> int:
-    """Choose a lane's next step after one accepted or refused; give 1 if the driver is needed."""
+    """Choose a lane's next step after one accepted or refused; return 1 if the driver is needed."""
     clock, controls = lane_of(room, fields.CLOCK, lane), lane_of(room, fields.CONTROLS, lane)
     whole = lane_of(as_integers(room), fields.OWN_WHOLE, lane)
     h, excess = lane_of(room, fields.OWN, lane)[fields.STEP], clock[at.EXCESS]
