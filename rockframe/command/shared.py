@@ -9,6 +9,7 @@ from dataclasses import replace
 from math import floor
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Final
 
 import xarray as xr
@@ -41,6 +42,10 @@ _NO_MOTION: Final = (
 )
 _SCREENING: Final = ("fragility", "ida", "map")
 """Commands whose runs are those of sweeps, which may screen."""
+_WIDTH: Final = 100
+"""Widest table that is printed in one piece, in characters."""
+_HEAD: Final = 14
+"""Width of the heads of its columns where it is wider."""
 _MOST_VALUES: Final = 100_000
 _LONGEST_HEAD: Final = 65536
 """Largest part of the first line of a table that is read [bytes]."""
@@ -360,9 +365,30 @@ RUN: Final = result_kind("the result of a run", axes=False)
 STUDY: Final = result_kind("the result of a study", axes=True)
 
 
-def printed(values: Any) -> str:
-    """Write a table of pandas in columns, with four digits."""
-    return values.to_string(float_format=lambda value: f"{value:.4g}")
+def printed(values: "pd.DataFrame") -> str:
+    """Write a table of pandas in columns, with four digits; a wide one with heads of several lines.
+
+    What is still wider continues below, with the labels of the rows again.
+    """
+    usual: Any = {"float_format": lambda value: f"{value:.4g}"}
+    text = values.to_string(**usual)
+    if max(map(len, text.splitlines()), default=0) <= _WIDTH:
+        return text
+    heads = [_lines_of_head(str(one)) for one in values]
+    most = max(map(len, heads))
+    lines = [tuple([""] * (most - len(one)) + one) for one in heads]
+    wrapped = values.set_axis(type(values)(lines).set_index([*range(most)]).index, axis=1)
+    wrapped = wrapped.rename_axis(columns=[None] * most)
+    text = wrapped.to_string(**usual, line_width=_WIDTH, sparsify=False)
+    kept = (line.rstrip().removesuffix("\\").rstrip() for line in text.splitlines())
+    return re.sub(r"\n{3,}", "\n\n", "\n".join(kept)).strip("\n")
+
+
+def _lines_of_head(head: str) -> list[str]:
+    """Divide the head of a column into short lines, the last of which is its unit."""
+    name, bracket, unit = head.partition(" [")
+    lines = wrap(name.replace("_", " "), _HEAD, break_long_words=False)
+    return [*lines, f"[{unit}"] if bracket else lines
 
 
 def system_words(system: System) -> str:

@@ -300,7 +300,7 @@ def test_what_was_asked_for_is_shown_in_the_units_of_the_reader(tmp_path):
     assert row in words
     moment = run.base_overturning_moment / 1e3
     assert f"base overturning moment kN m {float(moment.min()):.4g}" in words
-    assert f"largest absolute rotation {np.degrees(float(run.peak_rotation)):.4g} °" in words
+    assert f"largest absolute rotation {np.degrees(float(run.peak_rotation)):.4g}°" in words
 
 
 def test_the_parts_of_a_part_have_tables_of_their_own():

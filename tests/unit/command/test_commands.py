@@ -149,6 +149,44 @@ def test_motions_are_listed_with_their_measures(typed, folder):
     assert (folder / "m.svg").exists()
 
 
+def test_many_motions_are_a_table_that_is_not_too_wide(typed, folder):
+    for number in range(1, 12):
+        pulse = rf.GroundMotion.sine_pulse(f"{number} m/s^2", "1 Hz")
+        pulse.to_at2(f"a_record_with_a_name_{number}.AT2")
+    code, told, _ = typed("motion", *sorted(path.name for path in folder.glob("a_*.AT2")))
+    assert code == 0
+    lines = told.splitlines()
+    assert max(map(len, lines)) <= 100
+    parts = told.split("\n\n")
+    assert len(parts) > 1  # the labels of the rows are repeated
+    assert all(part.count("a_record_with_a_name_11") == 1 for part in parts)
+    assert " ".join(told.split()).count("[m s^-1]") == 4
+    assert all("\\" not in line and line == line.rstrip() for line in lines)
+
+
+def test_a_file_without_a_unit_is_told_the_option_once(typed, folder):
+    (folder / "index.txt").write_text("\n".join(f"{0.01 * k:.2f}" for k in range(200)))
+    code, _, error = typed("run", "scene.toml", "--motion", "index.txt", "--time-step", "0.01 s")
+    assert code == 2
+    assert error.count("--unit") == 1
+    assert "unit='g'" not in error
+
+
+@pytest.mark.parametrize("command", ["ida", "fragility", "map"])
+def test_the_scene_is_named_before_the_verdict(typed, command):
+    files = () if command == "map" else ("record.AT2", "record.AT2")
+    options = {
+        "map": ("--amplitude", "1:5:2 m/s^2", "--frequency", "1:2:1 Hz"),
+        "ida": ("--scales", "0.5:3:0.5"),
+        "fragility": ("--scales", "0.5:3:0.5"),
+    }[command]
+    code, told, _ = typed("-q", command, "scene.toml", *files, *options)
+    assert code == 0
+    assert "Scene:" not in told  # --quiet leaves out what was asked
+    code, told, _ = typed(command, "scene.toml", *files, *options)
+    assert told.index("Scene:") < told.index("Verdict:")
+
+
 def test_a_study_goes_on_with_its_store(typed, folder):
     (folder / "study.toml").write_text(TEMPLATES["study"].replace('accuracy = "fast"', "chunk = 5"))
     code, told, _ = typed("study", "study.toml", "--csv", "runs.csv")
