@@ -449,6 +449,12 @@ def test_a_dynamic_analysis_has_its_capacities(tmp_path, monkeypatch):
         written = f"{one:.4g}" if np.isfinite(one) else "infinite"
         assert f"overturning {name} {written}" in words.split("Capacities")[1]
     assert "capacity scale: least scale of the motion that was found to exceed" in words
+    fit = rf.fragility(found, "PGA", trials="capacities")
+    fit = fit.squeeze()
+    assert int(fit.fragility_status) == 0
+    assert f"Fit Capacity against overturning: median {float(fit.median_intensity):.4g}" in (
+        words.replace("median peak ground acceleration", "median")
+    )
     monkeypatch.setattr(cases, "MOST_ROWS", 1)
     words = words_of(rf.report(found, tmp_path / "least.html"))
     least = str(capacities.motion[int(np.argmin(capacities.to_numpy()))].item())
@@ -540,6 +546,25 @@ def test_measures_say_of_which_component_and_threshold_they_are(tmp_path):
         told = words_of(rf.report(run, tmp_path / "r.html", certify=False, units=units))
         assert words in told
         assert "last exceedance of 0.05 g" in told
+
+
+def test_limits_refer_to_a_certificate_only_where_the_page_has_one(tmp_path):
+    system, pulse = rf.System(BLOCK), rf.GroundMotion.sine_pulse("-3 m/s^2", "2 Hz")
+
+    def limits(found, **given):
+        return words_of(rf.report(found, tmp_path / "r.html", **given)).split("Limits of")[1]
+
+    run = system.simulate(pulse)
+    assert "The certificate shows how near" in limits(run)
+    told = limits(run, certify=False)
+    assert "The certificate shows" not in told
+    assert "which this page does not have" in told
+    runs = rf.sweep(system, pulse, scale=[0.5, 1.0])
+    for study in (runs, rf.critical_scale(system, pulse), rf.fragility(runs, "PGA")):
+        told = limits(study)
+        assert "The certificate shows" not in told
+        assert "Studies have no certificates" in told
+        assert "The verdict on a case holds only if" in told
 
 
 def test_the_limits_are_those_of_the_manual():
