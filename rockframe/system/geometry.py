@@ -231,7 +231,7 @@ def system_html(scene: Assembly, name: str) -> str:
 
 
 def _pieces(part: Component) -> list[tuple[str, Component]]:
-    """Return a part, behind the bodies and bases that it is made of, with what they are called."""
+    """Return the bodies and bases of which a part consists, then the part, each with its name."""
     found: list[tuple[str, Component]] = [(type(part).__name__, part)]
     if isinstance(part, RockingFrame):
         return [("column", part.column), *found]
