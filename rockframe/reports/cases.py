@@ -99,7 +99,7 @@ def _verdict(dataset: xr.Dataset, place: int) -> str:
     one = status.isel(dict.fromkeys(status.dims, 0)).copy()
     one.values = status.to_numpy().ravel()[place]
     if one.item() != RunStatus.COMPLETED:
-        return value_of(one)
+        return "overturned" if overturned_by(one.to_numpy()) == 1.0 else value_of(one)
     passed = dataset["overturned"].to_numpy().ravel()[place] == 1
     return "overturned" if passed else "did not overturn"
 

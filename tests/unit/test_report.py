@@ -585,3 +585,15 @@ def test_a_case_that_was_picked_out_of_a_sweep_has_its_own_system(tmp_path):
     with pytest.raises(SchemaError, match=r"sweep over width.*rf\.case\(dataset\)\.system"):
         rf.System.from_dataset(one)
     assert rf.System.from_dataset(runs) == system
+
+
+def test_cases_that_fell_flat_are_said_to_have_overturned(tmp_path):
+    pulse = rf.GroundMotion.sine_pulse("6 m/s^2", "0.5 Hz")
+    runs = rf.sweep(rf.System(BLOCK), pulse, scale=[0.1, 1.0], overturning="continue",
+                    free_vibration="5 s")  # fmt: skip
+    assert bool(runs.overturned.sel(scale=1.0).item())
+    cases_told = words_of(rf.report(runs, tmp_path / "r.html")).split("Cases")[1]
+    table = cases_told.split("mean of")[0]
+    assert "toppled" not in table
+    assert table.count("did not overturn") == 1
+    assert table.count("overturned") == 1
