@@ -61,13 +61,13 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
         words = str(problem).removeprefix(f"{fragility.__name__}: ").replace(NOT_GIVEN, _IN_STORE)
         raise FileError(arguments.scene, words) from problem
     dataset = with_project(dataset, str(runs.attrs.get(ATTRIBUTE, "")))
-    if found is not None:
-        answer.subject("Scene", system_words(found.system))
-    answer.subject("Runs", str(runs.attrs["verdict"]))
     answer.says("Verdict", dataset.attrs["verdict"])
     if "median_intensity" in dataset and dataset["median_intensity"].dims == ("limit_state",):
         for state, row in dataset.groupby("limit_state", squeeze=False):
             answer.text(_line(str(state), row.squeeze("limit_state")))
+    if found is not None:
+        answer.subject("Scene", system_words(found.system))
+    answer.subject("Runs", str(runs.attrs["verdict"]))
     concluded(dataset, arguments, answer, outputs)
     return 0 if finished(runs) else 1
 

@@ -51,8 +51,8 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
         **typed_intensity(arguments, incremental_dynamic_analysis),
     }
     dataset = analysed(incremental_dynamic_analysis, found, found.motions, values, arguments)
-    answer.subject("Scene", system_words(found.system))
     answer.says("Verdict", dataset.attrs["verdict"])
+    answer.subject("Scene", system_words(found.system))
     fitted = fragility(dataset, dataset.attrs["intensity"], trials="capacities",
                        **typed_options(arguments, "period"))  # fmt: skip
     answer.says("Fit", fitted.attrs["verdict"])

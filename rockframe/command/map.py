@@ -46,9 +46,9 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     }
     pulse, words = _pulse(found, arguments.pulse)
     dataset = analysed(overturning_map, found, pulse, values, arguments)
+    answer.says("Verdict", dataset.attrs["verdict"])
     answer.subject("Scene", f"{system_words(found.system)} ({dataset.attrs['model']})")
     answer.subject("Pulse", words)
-    answer.says("Verdict", dataset.attrs["verdict"])
     answer.text("\n".join(_lines(dataset)))
     concluded(dataset, arguments, answer, outputs)
     return 0 if finished(dataset) else 1
