@@ -192,6 +192,7 @@ class RockframeAccessor:
 
     def _repr_html_(self) -> str:
         from rockframe.notebook import card, curve
+        from rockframe.units.shown import in_degrees
 
         value, lines = self._dataset, self.summary.splitlines()
         kind = str(value.attrs.get("title", ""))
@@ -202,7 +203,7 @@ class RockframeAccessor:
             rows[name.replace("_", " ")] = words
         for name in ("peak_rotation", "uplift_angle", "overturning_angle"):
             if name in value and value[name].ndim == 0:
-                rows[name.replace("_", " ")] = f"{math.degrees(value[name].item()):.4g}°"
+                rows[name.replace("_", " ")] = in_degrees(value[name].item())
         history = value.get("rotation")
         trace = ""
         if history is not None and history.ndim == 1:  # of a case of a sweep, up to its end

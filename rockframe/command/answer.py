@@ -2,8 +2,10 @@
 
 import json
 import math
+import re
 import sys
 from collections.abc import Mapping
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Final
 
 from rockframe.command.streams import STREAM, is_terminal
@@ -11,12 +13,17 @@ from rockframe.errors import FileError
 from rockframe.version import __version__
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray as xr
 
 _LABEL: Final = 9
 """Width of the label at the head of a line [characters]."""
 _MOST_SHOWN: Final = 40
 """Largest number of rows of a table that is printed."""
+_WIDTH: Final = 100
+"""Widest table that is printed in one piece, in characters."""
+_HEAD: Final = 14
+"""Width of the heads of its columns where it is wider."""
 _ALONG: Final = {"time", "event", "sample_after_end"}
 """Dimensions of histories, which only the files of results hold."""
 
@@ -115,9 +122,30 @@ class Answer:
         self._told[label.lower().replace(" ", "_")] = words
 
 
-def printed(values: Any) -> str:
-    """Write a table of pandas in columns, with four digits."""
-    return values.to_string(float_format=lambda value: f"{value:.4g}")
+def printed(values: "pd.DataFrame") -> str:
+    """Write a table of pandas in columns, with four digits; a wide one with heads of several lines.
+
+    What is still wider continues below, with the labels of the rows again.
+    """
+    usual: Any = {"float_format": lambda value: f"{value:.4g}"}
+    text = values.to_string(**usual)
+    if max(map(len, text.splitlines()), default=0) <= _WIDTH:
+        return text
+    heads = [_lines_of_head(str(one)) for one in values]
+    most = max(map(len, heads))
+    lines = [tuple([""] * (most - len(one)) + one) for one in heads]
+    wrapped = values.set_axis(type(values)(lines).set_index([*range(most)]).index, axis=1)
+    wrapped = wrapped.rename_axis(columns=[None] * most)
+    text = wrapped.to_string(**usual, line_width=_WIDTH, sparsify=False)
+    kept = (line.rstrip().removesuffix("\\").rstrip() for line in text.splitlines())
+    return re.sub(r"\n{3,}", "\n\n", "\n".join(kept)).strip("\n")
+
+
+def _lines_of_head(head: str) -> list[str]:
+    """Divide the head of a column into short lines, the last of which is its unit."""
+    name, bracket, unit = head.partition(" [")
+    lines = wrap(name.replace("_", " "), _HEAD, break_long_words=False)
+    return [*lines, f"[{unit}"] if bracket else lines
 
 
 def _number(one: "xr.Variable") -> dict[str, Any]:

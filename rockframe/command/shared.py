@@ -376,5 +376,7 @@ def _accuracy(text: str, command: str) -> str | float:
         accuracy_of(value, owner="--accuracy")
     except SolverError as problem:
         words = str(problem).replace(" or an Accuracy(...)", "")
-        raise ComponentError(re.sub("^Accuracy: ", "--accuracy: ", words)) from problem
+        words = re.sub("^Accuracy: ", "--accuracy: ", words)
+        words = words.replace("--accuracy: accuracy ", "--accuracy ")  # the name once
+        raise ComponentError(words) from problem
     return value

@@ -110,13 +110,13 @@ class Block(Component):
         default=DERIVED,
     )
     centre_height = Parameter(
-        LENGTH,
+        LENGTH.like("1.8 m"),
         POSITIVE,
         doc="Height of the centre of mass above the base; H/2 unless given.",
         default=DERIVED,
     )
     eccentricity = Parameter(
-        LENGTH,
+        LENGTH.like("0.1 m"),
         doc="Distance of the centre of mass to the right of the middle of the base.",
         default=DERIVED,
     )

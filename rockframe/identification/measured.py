@@ -12,6 +12,7 @@ from rockframe.errors import ComponentError, UnitsError, shown
 from rockframe.signals.arrays import Array
 from rockframe.system.bodies import OverturningAngles
 from rockframe.units import ANGLE, TIME, Measure, check_own_unit, to_si
+from rockframe.units.shown import in_degrees
 
 OWNER: Final = "fit_free_decay"
 _UNITS: Final = {"rotation": "deg", "time": "s"}
@@ -199,4 +200,4 @@ def _place(measured: History | MeasuredPeaks, index: int) -> str:
 
 
 def _angle(value: float) -> str:
-    return f"{value:.6g} rad ({math.degrees(value):.4g} deg)"
+    return f"{value:.6g} rad ({in_degrees(value)})"

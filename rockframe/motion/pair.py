@@ -83,7 +83,7 @@ class HorizontalPair(metaclass=Proposing):
             apart = abs((known[1] - known[0] + 180.0) % 360.0 - 180.0)
             if abs(apart - _RIGHT_ANGLE) > _TOLERANCE:
                 msg = (
-                    f"{owner}: the components point to {known[0]:g} and {known[1]:g} degrees, "
+                    f"{owner}: the components point to {known[0]:g}° and {known[1]:g}°, "
                     "which are not at a right angle"
                 )
                 raise ComponentError(msg)

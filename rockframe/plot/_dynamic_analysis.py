@@ -32,8 +32,11 @@ _STYLED: Final = (1, 0, 2)
 _HEIGHTS: Final = 400
 _ROOM: Final = 1.15
 """End of the axis over the highest intensity at which a verdict changes."""
+_END: Final = "all were run up to here"
 _CAPPED: Final = 1.0
 """Peaks over the overturning angle above this are drawn at this value."""
+_ROUNDING: Final = 1e-9
+"""By which the peak of a run that ends at the overturning angle may lie below it."""
 
 
 def of_one_structure(dataset: xr.Dataset) -> xr.Dataset:
@@ -70,9 +73,10 @@ def dynamic_analysis(
     The left panel has a grey line for each motion. A filled marker shows where the motion first
     overturns, hollow markers show where the verdict changes again. For four motions or more the
     fractiles are drawn too: the peaks below which 16, 50 and 84 % of the motions stay at an
-    intensity. Where one becomes horizontal, only that share still stands. Fewer motions have one
-    colour each. The right panel shows the share of motions whose capacity is below an intensity,
-    for each limit state.
+    intensity. Where one becomes horizontal, only that share still stands. They end at the largest
+    intensity up to which all motions were run, a dotted line. Fewer motions have one colour each.
+    The right panel shows the share of motions whose capacity is below an intensity, for each limit
+    state.
 
     Parameters
     ----------
@@ -149,9 +153,12 @@ def _peaks(
         lines.append(line)
     if several:
         up = np.linspace(0.0, min(along[-1] for along, _ in lines), _HEIGHTS)
-        for number, (share, values) in enumerate(_fractiles(lines, up)):
+        fractiles = _fractiles(lines, up)
+        for number, (share, values) in enumerate(fractiles):
             words, style = f"{100.0 * share:.0f} %", style_of(_STYLED[number])
             axes.plot(values, up, color=VERMILLION, ls=style, lw=1.6, label=words)
+        if np.min([one[-1] for _, one in fractiles]) < _CAPPED:
+            axes.axhline(up[-1], color=VERMILLION, ls=":", lw=0.8, label=_END)
     axes.set(xlabel=r"peak of $|\alpha|/\theta$ [-]", xlim=(0.0, 1.03))
 
 
@@ -176,7 +183,8 @@ def _until_flips(along: Any, peaks: Any, flips: Any) -> tuple[Any, Any]:
     """Return the intensities and peaks of a motion, also where the verdict changes."""
     up = np.concatenate([along, flips])
     order = np.argsort(up, kind="stable")
-    return up[order], np.concatenate([peaks.clip(max=_CAPPED), np.full(len(flips), _CAPPED)])[order]
+    capped = np.where(peaks >= _CAPPED - _ROUNDING, _CAPPED, peaks)
+    return up[order], np.concatenate([capped, np.full(len(flips), _CAPPED)])[order]
 
 
 def _fractiles(lines: list[tuple[Any, Any]], up: Any) -> list[tuple[float, Any]]:

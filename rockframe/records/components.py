@@ -60,7 +60,7 @@ class Orientation:
     def __str__(self) -> str:
         if self.vertical is not None:
             return self.vertical
-        return "" if self.azimuth is None else f"{self.azimuth:g} degrees"
+        return "" if self.azimuth is None else f"{self.azimuth:g}°"
 
 
 UNKNOWN: Final = Orientation()
@@ -159,7 +159,7 @@ class FileComponent:
     >>> unit = choose_unit(Source("a.sim", b"SIMPLE", ""), Request(), "gal", None)[0]
     >>> north = FileComponent("N", lambda: Record(0.01, [0.0, 2.0], unit, {}), orientation_of("N"))
     >>> north.label, north.read().samples
-    ("'N' (0 degrees)", [0.0, 2.0])
+    ("'N' (0°)", [0.0, 2.0])
     """
 
     name: str | None

@@ -154,8 +154,7 @@ def choose_unit(
     if name is None:
         raise source.refuse(
             found="no unit of the samples",
-            expected="a unit in the header, or the argument unit, for example unit='g' (on the "
-            "command line --unit g)",
+            expected="a unit in the header, or the argument unit, for example unit='g'",
         )
     if known is None:
         expected = "an acceleration unit such as g, gal, cm/s^2 or m/s^2 (or the argument unit)"

@@ -14,7 +14,7 @@ from rockframe.results.outcome import overturned_by
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.variable import TIME
 from rockframe.units import Unit
-from rockframe.units.shown import ReaderUnits, raised
+from rockframe.units.shown import ReaderUnits, behind, raised
 
 MOST_ROWS: Final = 300
 """Largest number of rows of a table of cases; of more cases it has the worst ones."""
@@ -99,7 +99,7 @@ def _verdict(dataset: xr.Dataset, place: int) -> str:
     one = status.isel(dict.fromkeys(status.dims, 0)).copy()
     one.values = status.to_numpy().ravel()[place]
     if one.item() != RunStatus.COMPLETED:
-        return value_of(one)
+        return "overturned" if overturned_by(one.to_numpy()) == 1.0 else value_of(one)
     passed = dataset["overturned"].to_numpy().ravel()[place] == 1
     return "overturned" if passed else "did not overturn"
 
@@ -208,9 +208,8 @@ def labels_of(
     found: dict[str, str] = {}
     for name, value in labels_at(dataset, place, of).items():
         unit = units.of(str(dataset[name].attrs.get("units", Unit.ONE)) if name in dataset else "1")
-        words = "" if unit.words == Unit.ONE else f" {raised(unit.words)}"
         shown = value / unit.size if isinstance(value, float) else value
-        found[name] = f"{written(shown)}{words}"
+        found[name] = f"{written(shown)}{behind(raised(unit.words))}"
     return found
 
 

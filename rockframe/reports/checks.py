@@ -14,7 +14,7 @@ from rockframe.proposals import proposing
 from rockframe.reports import page
 from rockframe.reports.page import KIND
 from rockframe.units import Unit
-from rockframe.units.shown import ReaderUnits, UnitsLike, raised, reader_units
+from rockframe.units.shown import ReaderUnits, UnitsLike, behind, raised, reader_units
 from rockframe.writing import write_file
 
 _SAID: Final = {True: ("satisfied", "good"), False: ("not satisfied", "bad")}
@@ -65,7 +65,7 @@ class CheckedLine:
         """
         chosen = None if units is None else units.chosen.get(str(self.unit))
         if chosen is not None:  # no other prefix of the unit
-            return f"{self.value / chosen.size:.6g} {chosen.words}"
+            return f"{self.value / chosen.size:.6g}{behind(chosen.words)}"
         return number_with_unit(self.value, "" if self.unit is Unit.ONE else str(self.unit))
 
 

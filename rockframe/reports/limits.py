@@ -16,6 +16,7 @@ class Limit:
     words: str  # its meaning for a result
     # whether it concerns a scene with these parts
     concerns: Callable[[Parts], bool] = lambda _: True
+    of_study: str = ""  # its meaning for the results of a study, where that differs
 
 
 SLIDING: Final = "Sliding"
@@ -26,6 +27,8 @@ LIMITS: Final = (
         "The base does not slide while it is in contact. The verdict holds only if the coefficient "
         "of friction is at least the one that it states as needed.",
         lambda parts: not parts.own,
+        "The base does not slide while it is in contact. The verdict on a case holds only if the "
+        "coefficient of friction is at least the peak friction demand of its run.",
     ),
     Limit(
         "Deformation",
@@ -101,10 +104,17 @@ GENERAL: Final = (
     "Overturning means that the rotation reaches the angle of unstable equilibrium, at which the "
     "weight no longer restores the body, not that the body falls to the ground.",
     "Rocking near that angle is sensitive: small differences of the motion or of a parameter "
-    "grow, so that a single verdict near a boundary means little. The certificate shows how near "
-    "the boundary is.",
+    "grow, so that a single verdict near a boundary means little.",
 )
 """Limits of every verdict."""
+CERTIFIED: Final = "The certificate shows how near the boundary is."
+NOT_CERTIFIED: Final = (
+    "The certificate of a run, which this page does not have, shows how near the boundary is."
+)
+NOT_OF_STUDIES: Final = (
+    "Studies have no certificates: that of one case, run by itself, shows how near the boundary is."
+)
+"""What follows the last of them."""
 
 
 def limits_of(parts: Parts | None, *, slides: bool = False) -> list[Limit]:

@@ -18,7 +18,7 @@ from rockframe.motion import GroundMotion
 from rockframe.plot._checks import RUN
 from rockframe.plot._response import SLIPS, has_slid, histories_of
 from rockframe.reports import page
-from rockframe.reports.limits import GENERAL, limits_of
+from rockframe.reports.limits import CERTIFIED, GENERAL, NOT_CERTIFIED, NOT_OF_STUDIES, limits_of
 from rockframe.reports.motions import Aim, record_rows, spectra_section
 from rockframe.reports.values import extremes_of, table_of, value_of
 from rockframe.results.outcome import LEAST_SLIP, verdict_of
@@ -189,16 +189,25 @@ def _histories(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
         yield page.columns(rows, ("", "unit", "least", "greatest"))
 
 
-def limits_section(system: System | None, assumptions: Sequence[str] = ()) -> Iterator[str]:
+def limits_section(
+    dataset: xr.Dataset, system: System | None, assumptions: Sequence[str] = (), *, study: bool
+) -> Iterator[str]:
     """Return the assumptions, and what the model neglects."""
     parts = None if system is None else system.parts
     slides = system is not None and system.setting.slides
-    left_out = [(one.title, one.words) for one in limits_of(parts, slides=slides)]
+    left_out = [
+        (one.title, one.of_study if study and one.of_study else one.words)
+        for one in limits_of(parts, slides=slides)
+    ]
+    known = CERTIFIED if "certificate" in dataset.attrs else NOT_CERTIFIED
+    *general, sensitive = GENERAL
+    if "proof" not in dataset.attrs:  # the proof says that of its own verdict
+        sensitive = f"{sensitive} {NOT_OF_STUDIES if study else known}"
     if assumptions:
         yield page.subtitle("Assumptions")
         yield page.items(assumptions)
         yield page.subtitle("What the model neglects")
-    yield page.items([*GENERAL, *left_out])
+    yield page.items([*general, sensitive, *left_out])
 
 
 def provenance_section(dataset: xr.Dataset, file: str) -> Iterator[str]:

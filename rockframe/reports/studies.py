@@ -17,8 +17,9 @@ from rockframe.reports.cases import capacity_table, case_tables, from_worst, lab
 from rockframe.reports.project import Project
 from rockframe.reports.values import table_of, value_of
 from rockframe.results.outcome import LEAST_SLIP, overturned_by
+from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.simulation.system import System
-from rockframe.studies import case
+from rockframe.studies import case, fragility
 from rockframe.studies.sweeps.axes import Changes
 from rockframe.studies.sweeps.case import NOT_GIVEN, system_of_case
 from rockframe.studies.sweeps.words import cases_verdict, slips_of_cases
@@ -33,6 +34,9 @@ def verdict_sections(
     verdict = [*about.conclusions()]
     if sentence:
         verdict.append(_banner(dataset, units.of_sentence(sentence)))
+    fit = _fit_of_capacities(dataset)
+    if fit:
+        verdict.append(page.banner("Fit", raised(units.of_sentence(fit)), ""))
     yield page.section("Verdict", [*verdict, *by_codes])
     figure = _figure(dataset, units)
     if figure:
@@ -110,6 +114,21 @@ def is_study(dataset: xr.Dataset) -> bool:
         return _is_sweep(dataset) or drawn_by(dataset) != "response"
     except SchemaError:
         return False
+
+
+def _fit_of_capacities(dataset: xr.Dataset) -> str:
+    """Describe the lognormal fit to the capacities of a dynamic analysis; empty without one."""
+    measure = dataset.attrs.get("intensity")
+    if "capacity_scale" not in dataset or measure not in dataset:
+        return ""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RockframeWarning)  # on what the sentence says, too
+            found = fragility(dataset, str(measure), trials="capacities")
+    except RockframeError:  # such as of a part of an analysis
+        return ""
+    fitted = (found["fragility_status"] == FragilityStatus.FITTED).any()
+    return str(found.attrs["verdict"]) if fitted else ""
 
 
 def _is_sweep(dataset: xr.Dataset) -> bool:

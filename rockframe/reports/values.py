@@ -9,7 +9,7 @@ import xarray as xr
 
 from rockframe.results.variables.variable import words_of_flags
 from rockframe.units import Unit
-from rockframe.units.shown import ReaderUnits, raised
+from rockframe.units.shown import ReaderUnits, behind, in_degrees, raised
 
 _TRUTH: Final = {"true": "yes", "false": "no"}
 _GAP: Final = re.compile(r", NaN if .*$")
@@ -31,8 +31,8 @@ def value_of(variable: xr.DataArray, units: ReaderUnits | None = None) -> str:
     unit = (units or ReaderUnits()).of(str(variable.attrs.get("units", Unit.ONE)))
     number = f"{value / unit.size + 0.0:.4g}"  # no negative zero
     if unit.words == Unit.RADIAN:
-        return f"{number} rad ({math.degrees(value):.3g}°)"
-    return number if unit.words == Unit.ONE else f"{number} {raised(unit.words)}"
+        return f"{number} rad ({in_degrees(value, 3)})"
+    return f"{number}{behind(raised(unit.words))}"
 
 
 def number_in(value: float, unit: str, units: ReaderUnits) -> str:

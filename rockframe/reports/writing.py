@@ -207,14 +207,17 @@ def _of_run(
     about: Project,
     units: ReaderUnits,
     aim: Aim | None = None,
+    *,
+    study: bool = False,
 ) -> list[str]:
     """Return the sections on a run that follow its verdict."""
     motion = None if system is None else system.motion
+    limits = sections.limits_section(dataset, system, about.assumptions, study=study)
     return [
         page.section("Response", sections.response_section(dataset, units)),
         page.section("Scene", sections.scene_section(dataset, system, units)),
         page.section("Ground motion", sections.motion_section(dataset, motion, units, aim)),
-        page.section("Limits of validity", sections.limits_section(system, about.assumptions)),
+        page.section("Limits of validity", limits),
     ]
 
 
@@ -227,7 +230,7 @@ def _of_study(
         run, system = worst
         inner = [page.paragraph(words), sections.outcome_of(run, units)]
         body = [page.section("The worst case in full", inner)]
-        return [*body, *_of_run(run, system, about, units)]
+        return [*body, *_of_run(run, system, about, units, study=True)]
     body = [page.section("The worst case", [page.paragraph(words)])] if words else []
     system = _system_of(dataset, None)
     if system is not None:
@@ -235,7 +238,7 @@ def _of_study(
         intro = [page.paragraph(differs)] if differs else []
         scene = [*intro, *sections.scene_section(dataset, system, units)]
         body.append(page.section("Scene", scene))
-    limits = sections.limits_section(system, about.assumptions)
+    limits = sections.limits_section(dataset, system, about.assumptions, study=True)
     return [*body, page.section("Limits of validity", limits)]
 
 

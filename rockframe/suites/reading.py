@@ -202,7 +202,8 @@ class _Found:
 
 
 def _nothing(path: str, found: _Found, upwards: int) -> RecordError:
-    what = f"no horizontal component in {upwards + len(found.left)} files"
+    count = upwards + len(found.left)
+    what = f"no horizontal component in {count} file{'' if count == 1 else 's'}"
     if upwards:
         what += f", {upwards} vertical ones"
     listed = "; ".join(f"{one.path}: {one.reason}" for one in found.left[:_LISTED])

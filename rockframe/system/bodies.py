@@ -1,6 +1,6 @@
 """Bodies on a base: sizes, inertia and restitution, block and cap as one body, and their load."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any, Final, NamedTuple
@@ -97,7 +97,10 @@ class SupportedBody(BodyGeometry):
         return moment + values[LINK_MOMENT] if LINK_MOMENT in values else moment
 
     def sunk(self, rotation: Array, height: Array, *, small: bool) -> Array:
-        """Return how much lower than at rest the middle of the base is, :eq:`eq-settlement` [m]."""
+        """Return how much lower than at rest the middle of the base is, :eq:`eq-settlement` [m].
+
+        `height` is the rise of the centre of mass from rest.
+        """
         half, beside = 0.5 * rotation, self.eccentricity * rotation
         if not small:
             half = np.sin(half)
@@ -125,7 +128,7 @@ class SupportedBody(BodyGeometry):
 
 @dataclass(frozen=True)
 class OnCorners(SupportedBody):
-    """A body on rigid ground with forces other than those of its weight and its base."""
+    """A body on rigid ground on which forces act besides its weight and those of its base."""
 
     @property
     def foot(self) -> float:
@@ -141,7 +144,10 @@ class OnCorners(SupportedBody):
         return self.foot * (shift * cosine + lift)
 
     def sunk(self, rotation: Array, height: Array, *, small: bool) -> Array:
-        """Return how much lower than at rest the middle of the base is: it rises [m]."""
+        """Return how much lower than at rest the middle of the base is [m].
+
+        It is zero or negative, as the body rotates about a corner and the middle rises.
+        """
         return -self.foot * np.abs(rotation if small else np.sin(rotation))
 
 
@@ -174,14 +180,19 @@ def body_of_block(block: BlockSI, kind: type[SupportedBody] = SupportedBody) -> 
     )  # fmt: skip
 
 
-_Mass = tuple[float, float, float, float]
-"""A mass, its inertia, and x and y of its centre from the middle of the base; in SI units."""
+class PlacedMass(NamedTuple):
+    """A mass in a body, in SI units."""
+
+    mass: float
+    inertia: float  # about its own centre
+    x: float  # of its centre, from the middle of the base to the right
+    y: float  # and above it
 
 
 def with_mass(body: SupportedBody, mass: float, x: float, y: float) -> SupportedBody:
     """Return a body with an added point mass [kg] at x and y from the middle of its base [m]."""
-    own = (body.mass, body.inertia, body.eccentricity, body.centre_height)
-    return _two_as_one(body.half_width, own, (mass, 0.0, x, y))
+    own = PlacedMass(body.mass, body.inertia, body.eccentricity, body.centre_height)
+    return joined_body(body.half_width, (own, PlacedMass(mass, 0.0, x, y)))
 
 
 def cap_under(block: BlockSI, cap: CushionCapSI) -> Cap:
@@ -193,17 +204,20 @@ def cap_under(block: BlockSI, cap: CushionCapSI) -> Cap:
 def one_body(block: BlockSI, cap: Cap) -> SupportedBody:
     """Return block and cap as one body, :eq:`eq-one-body`."""
     block_height = 2.0 * cap.half_height + block.centre_height
-    upper = (block.mass, block.inertia, block.eccentricity, block_height)
-    return _two_as_one(cap.half_width, upper, (cap.mass, cap.inertia, 0.0, cap.half_height))
+    upper = PlacedMass(block.mass, block.inertia, block.eccentricity, block_height)
+    lower = PlacedMass(cap.mass, cap.inertia, 0.0, cap.half_height)
+    return joined_body(cap.half_width, (upper, lower))
 
 
-def _two_as_one(half_width: float, one: _Mass, other: _Mass) -> SupportedBody:
-    """Return the body on a base that two rigidly joined masses make."""
-    (m1, own1, x1, y1), (m2, own2, x2, y2) = one, other
-    mass = m1 + m2
-    height, beside = (m1 * y1 + m2 * y2) / mass, (m1 * x1 + m2 * x2) / mass
-    inertia = own1 + m1 * ((y1 - height) ** 2 + (x1 - beside) ** 2)
-    inertia = inertia + own2 + m2 * ((y2 - height) ** 2 + (x2 - beside) ** 2)
+def joined_body(half_width: float, masses: Sequence[PlacedMass]) -> SupportedBody:
+    """Return the body on a base that rigidly joined masses make."""
+    # sums without math.fsum, since a mass may have a value in each of many cases
+    mass = sum((one.mass for one in masses), 0.0)
+    beside = sum((one.mass * one.x for one in masses), 0.0) / mass
+    height = sum((one.mass * one.y for one in masses), 0.0) / mass
+    inertia = 0.0
+    for one in masses:
+        inertia = inertia + one.inertia + one.mass * ((one.y - height) ** 2 + (one.x - beside) ** 2)
     shape_factor = mass * (half_width**2 + height**2) / inertia
     return SupportedBody(half_width, height, mass, inertia, shape_factor, beside)
 

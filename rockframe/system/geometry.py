@@ -14,6 +14,7 @@ from rockframe.system.assembly import Assembly
 from rockframe.system.rocking_frame import TiedFrameSetting
 from rockframe.system.setting import Setting
 from rockframe.system.stack import StackSetting
+from rockframe.units.shown import in_degrees
 
 
 class LowerBody(NamedTuple):
@@ -217,20 +218,20 @@ def system_html(scene: Assembly, name: str) -> str:
         text = ", ".join(f"{one} {value}" for one, value in numbers.items())
         rows[words if alike == 1 else f"{words} {alike}"] = text
     left, right = setting.overturning_angles
-    to_left, to_right = (f"{np.degrees(side):.4g}°" for side in (left, right))
+    to_left, to_right = (in_degrees(side) for side in (left, right))
     both = f"{to_left} to the left, {to_right} to the right"
     rows["overturning angle"] = to_left if left == right else both
     if np.isfinite(setting.uplift_angle):
-        rows["uplift angle"] = f"{np.degrees(setting.uplift_angle):.4g}°"
+        rows["uplift angle"] = in_degrees(setting.uplift_angle)
     if options.inclination:
-        rows["inclination"] = f"{np.degrees(options.inclination):.4g}°"
+        rows["inclination"] = in_degrees(options.inclination)
     if scene.parts.motion is not None:
         rows["motion"] = scene.parts.motion.name
     return card(name, rows, drawing(shapes_of(geometry_of(scene))))
 
 
 def _pieces(part: Component) -> list[tuple[str, Component]]:
-    """Return a part, behind the bodies and bases that it is made of, with what they are called."""
+    """Return the bodies and bases of which a part consists, then the part, each with its name."""
     found: list[tuple[str, Component]] = [(type(part).__name__, part)]
     if isinstance(part, RockingFrame):
         return [("column", part.column), *found]

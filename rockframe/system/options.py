@@ -77,7 +77,7 @@ MEASURED: Final = {
     "gravity": Measured(ACCELERATION, POSITIVE, "acceleration of gravity", STANDARD_GRAVITY),
     "inclination": Measured(
         ANGLE,
-        Condition("between -90 deg and 90 deg", lambda angle: abs(angle) < 0.5 * math.pi),
+        Condition("between -90° and 90°", lambda angle: abs(angle) < 0.5 * math.pi),
         "angle by which the base rises to the right",
         0.0,
     ),

@@ -173,7 +173,7 @@ class Setting(ABC):
         """Describe equations, restraint, uplift angles, numbers, and what is left out."""
 
     def friction_to_rock(self) -> dict[str, float]:
-        """Give, by what it is, the friction below which a base slides before an end lifts."""
+        """Return the coefficient of friction below which a base slides before it rocks, by name."""
         body = self.body
         return {f"{TO_ROCK} b/h": min(body.left, body.right) / body.centre_height}
 

@@ -17,7 +17,14 @@ from rockframe.dynamics.statics import StandingChain
 from rockframe.dynamics.tied import Tied, at_rest
 from rockframe.dynamics.vibrations import ChainBody
 from rockframe.errors import AssemblyError
-from rockframe.system.bodies import BaseLoad, SupportedBody, body_of_block, with_mass
+from rockframe.system.bodies import (
+    BaseLoad,
+    PlacedMass,
+    SupportedBody,
+    body_of_block,
+    joined_body,
+    with_mass,
+)
 from rockframe.system.fitting import BaseFriction
 from rockframe.system.links import PlacedLink, base_of, placed
 from rockframe.system.options import Options, restraint_words
@@ -412,15 +419,11 @@ def combined_body(
         base += bodies[k + 1].centre_height + tops[k + 1]
         beside += offsets[k]
         places.append((bodies[k], base + bodies[k].centre_height, beside))
-    mass = math.fsum(body.mass for body, _, _ in places)
-    height = math.fsum(body.mass * level for body, level, _ in places) / mass
-    across = math.fsum(body.mass * (x + body.eccentricity) for body, _, x in places) / mass
-    inertia = math.fsum(
-        body.inertia + body.mass * ((level - height) ** 2 + (x + body.eccentricity - across) ** 2)
+    masses = [
+        PlacedMass(body.mass, body.inertia, x + body.eccentricity, level)
         for body, level, x in places
-    )
-    shape_factor = mass * (lowest.half_width**2 + height**2) / inertia
-    return SupportedBody(lowest.half_width, height, mass, inertia, shape_factor, across)
+    ]
+    return joined_body(lowest.half_width, masses)
 
 
 def refuse_options(what: str, options: Options, *, small: bool) -> None:

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from textwrap import wrap
 from typing import TYPE_CHECKING, Final
 
+from rockframe.units.shown import in_degrees
+
 if TYPE_CHECKING:
     from rockframe.system.parts import Parts
     from rockframe.system.setting import Setting
@@ -57,7 +59,7 @@ def sliding_words(held: Words, *frictions: tuple[str, str], restraint: str | Non
 
 def angle_words(radians: float) -> str:
     """Write an angle in radians and degrees."""
-    return f"{radians:.6g} rad ({math.degrees(radians):.4g} deg)"
+    return f"{radians:.6g} rad ({in_degrees(radians)})"
 
 
 def uplift_words(radians: float) -> str:

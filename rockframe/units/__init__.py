@@ -32,7 +32,6 @@ from rockframe.units.reading import (
     QuantityLike,
     RatioLike,
     check_own_unit,
-    foreign_quantity,
     own_unit,
     products,
     quantity,
@@ -40,6 +39,7 @@ from rockframe.units.reading import (
     to_si,
     to_si_values,
 )
+from rockframe.units.spelling import foreign_quantity
 
 __all__ = [
     "ACCELERATION",

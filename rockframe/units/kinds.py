@@ -60,7 +60,7 @@ class Measure:
 LENGTH: Final = Measure("a length", Unit.METRE, "4 m")
 MASS: Final = Measure("a mass", Unit.KILOGRAM, "99 t")
 DENSITY: Final = Measure("a density", Unit.KILOGRAM_PER_CUBIC_METRE, "2500 kg/m^3")
-INERTIA: Final = Measure("a moment of inertia", Unit.KILOGRAM_METRE_SQUARED, "1.2e6 kg*m^2")
+INERTIA: Final = Measure("a moment of inertia", Unit.KILOGRAM_METRE_SQUARED, "3e5 kg*m^2")
 THICKNESS: Final = LENGTH.like("0.3 m")
 TIME: Final = Measure("a time", Unit.SECOND, "20 s")
 TIME_STEP: Final = TIME.like("0.01 s")

@@ -17,7 +17,8 @@ from rockframe.units.reading import to_si
 if TYPE_CHECKING:
     import xarray as xr
 
-_WRITTEN: Final = {"g_0": "g", "deg": "°", "degree": "°", "degrees": "°"}
+DEGREE: Final = "°"
+_WRITTEN: Final = {"g_0": "g", **dict.fromkeys(("deg", "degree", "degrees"), DEGREE)}
 _READ: Final = {("g", kinds.ACCELERATION): "g_0"}
 """Meaning of a unit symbol that has another meaning elsewhere: ``g`` is also the gram."""
 _BELOW: Final = re.compile(r"\s*/\s*([^\W\d_]+)(?:\^(\d+))?")
@@ -61,12 +62,24 @@ KINDS: Final[Mapping[str, Measure]] = {
 class Shown:
     """A unit in which numbers are shown."""
 
-    words: str  # spelling after numbers
+    words: str  # spelling after numbers, for :func:`behind`
     size: float  # value of one unit in the SI unit
 
     def of(self, values: Any) -> npt.NDArray[np.float64]:
         """Convert values from the SI unit to this one."""
         return np.asarray(values, np.float64) / self.size
+
+
+def behind(unit: str) -> str:
+    """Write a unit to follow a number: after a space, degrees without one; none for 1."""
+    if unit in ("", kinds.Unit.ONE):
+        return ""
+    return unit if unit.startswith(DEGREE) else f" {unit}"  # ISO 80000-1: 4.7°, but 5 °C
+
+
+def in_degrees(radians: float, digits: int = _DIGITS) -> str:
+    """Write an angle in degrees."""
+    return f"{math.degrees(radians):.{digits}g}{DEGREE}"
 
 
 def shown_unit(value: object, measure: Measure, *, owner: str, name: str) -> Shown:
@@ -138,7 +151,7 @@ class ReaderUnits:
         )
         numbers = f"({across}, {up})" if across else last
         before = f"{first} {found['word']} " if first else ""
-        return f"{before}{numbers} {unit.words}"
+        return f"{before}{numbers}{behind(unit.words)}"
 
 
 def _with_digits(number: str, size: float) -> str:

@@ -304,7 +304,7 @@ def test_azimuths_and_starts_must_fit():
 
     rf.HorizontalPair(told(azimuth=10), told(azimuth=100))
     rf.HorizontalPair(told(azimuth=350.5), told(azimuth=260))
-    with pytest.raises(ComponentError, match="point to 10 and 90 degrees"):
+    with pytest.raises(ComponentError, match="point to 10° and 90°"):
         rf.HorizontalPair(told(azimuth=10), told(azimuth=90))
     with pytest.raises(ComponentError, match="first starts at 10:00, second at 10:01"):
         rf.HorizontalPair(told(record_time="10:00"), told(record_time="10:01"))

@@ -17,7 +17,7 @@ SOFT = rf.TwoSpringSupport(stiffness="60 kN/m", damping_ratio=0.1)
 
 def test_it_needs_a_unit_and_stays_below_a_right_angle():
     for given, words in ((3.0, "bare number"), ("3", "no unit"), ("3 m", "angle"),
-                         ("90 deg", "between -90 deg and 90 deg")):  # fmt: skip
+                         ("90 deg", "between -90° and 90°")):  # fmt: skip
         with pytest.raises(AssemblyError, match=words):
             rf.System(BLOCK, inclination=given)
     assert rf.System(BLOCK, inclination="-0 deg") == rf.System(BLOCK)

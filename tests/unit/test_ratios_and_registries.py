@@ -15,8 +15,9 @@ from unit.dimensional_arguments import FOREIGN, make_block, make_pads, make_puls
 
 import rockframe as rf
 from rockframe.errors import ComponentError, UnitsError
+from rockframe.reports.values import value_of
 from rockframe.units import LENGTH, to_si, to_si_values
-from rockframe.units.shown import reader_units
+from rockframe.units.shown import behind, in_degrees, reader_units
 
 pytestmark = pytest.mark.unit
 
@@ -187,7 +188,7 @@ def test_sentences_are_told_in_the_units_of_the_reader():
         ("0.0544 m at most, 3 mm, 2 months", "54.4 mm at most, 3 mm, 2 months"),
         ("Block(width='0.6 m', mass='5000.0 kg')", "Block(width='600 mm', mass='5 t')"),
         # the same behind it in degrees goes; and a rounded number has a digit less in them
-        ("0.244979 rad (14.04 deg), 0.01663 rad", "14.036 °, 0.953 °"),
+        ("0.244979 rad (14.04°), 0.01663 rad", "14.036°, 0.953°"),
         ("0.5 rad/s", "0.5 rad/s"),
     ):
         assert units.of_sentence(text) == wanted
@@ -248,3 +249,18 @@ def test_a_masked_value_is_not_zero():
         0.005,
         0.007,
     ]
+
+
+def test_degrees_follow_a_number_without_a_space_everywhere():
+    """ISO 80000-1: a space before every unit, but none before the sign of degrees."""
+    assert [behind(unit) for unit in ("1", "", "m s^-1", "°", "° s^-1")] == [
+        "", "", " m s^-1", "°", "° s^-1"]  # fmt: skip
+    assert (in_degrees(math.pi / 7), in_degrees(math.pi / 7, 2)) == ("25.71°", "26°")
+    angle = xr.DataArray(0.25, attrs={"units": "rad"})
+    units = reader_units({"angle": "deg"}, owner="a page")
+    assert value_of(angle) == "0.25 rad (14.3°)"
+    assert value_of(angle, units) == "14.32°" == units.of_sentence("0.25 rad")
+    block = rf.Block(width="0.5 m", height="2 m", mass="1 t")
+    text = rf.System(block, inclination="2 deg").describe()
+    assert "(14.04°)" in text
+    assert " deg" not in text.replace("2 deg", "")

@@ -300,7 +300,7 @@ def test_what_was_asked_for_is_shown_in_the_units_of_the_reader(tmp_path):
     assert row in words
     moment = run.base_overturning_moment / 1e3
     assert f"base overturning moment kN m {float(moment.min()):.4g}" in words
-    assert f"largest absolute rotation {np.degrees(float(run.peak_rotation)):.4g} °" in words
+    assert f"largest absolute rotation {np.degrees(float(run.peak_rotation)):.4g}°" in words
 
 
 def test_the_parts_of_a_part_have_tables_of_their_own():
@@ -449,6 +449,12 @@ def test_a_dynamic_analysis_has_its_capacities(tmp_path, monkeypatch):
         written = f"{one:.4g}" if np.isfinite(one) else "infinite"
         assert f"overturning {name} {written}" in words.split("Capacities")[1]
     assert "capacity scale: least scale of the motion that was found to exceed" in words
+    fit = rf.fragility(found, "PGA", trials="capacities")
+    fit = fit.squeeze()
+    assert int(fit.fragility_status) == 0
+    assert f"Fit Capacity against overturning: median {float(fit.median_intensity):.4g}" in (
+        words.replace("median peak ground acceleration", "median")
+    )
     monkeypatch.setattr(cases, "MOST_ROWS", 1)
     words = words_of(rf.report(found, tmp_path / "least.html"))
     least = str(capacities.motion[int(np.argmin(capacities.to_numpy()))].item())
@@ -542,6 +548,25 @@ def test_measures_say_of_which_component_and_threshold_they_are(tmp_path):
         assert "last exceedance of 0.05 g" in told
 
 
+def test_limits_refer_to_a_certificate_only_where_the_page_has_one(tmp_path):
+    system, pulse = rf.System(BLOCK), rf.GroundMotion.sine_pulse("-3 m/s^2", "2 Hz")
+
+    def limits(found, **given):
+        return words_of(rf.report(found, tmp_path / "r.html", **given)).split("Limits of")[1]
+
+    run = system.simulate(pulse)
+    assert "The certificate shows how near" in limits(run)
+    told = limits(run, certify=False)
+    assert "The certificate shows" not in told
+    assert "which this page does not have" in told
+    runs = rf.sweep(system, pulse, scale=[0.5, 1.0])
+    for study in (runs, rf.critical_scale(system, pulse), rf.fragility(runs, "PGA")):
+        told = limits(study)
+        assert "The certificate shows" not in told
+        assert "Studies have no certificates" in told
+        assert "The verdict on a case holds only if" in told
+
+
 def test_the_limits_are_those_of_the_manual():
     left_out = read("theory/validity.md").split("## Omitted effects")[1].split("\n## ")[0]
     assert re.findall(r"^(\w.*)\n: ", left_out, re.MULTILINE) == [one.title for one in LIMITS]
@@ -560,3 +585,15 @@ def test_a_case_that_was_picked_out_of_a_sweep_has_its_own_system(tmp_path):
     with pytest.raises(SchemaError, match=r"sweep over width.*rf\.case\(dataset\)\.system"):
         rf.System.from_dataset(one)
     assert rf.System.from_dataset(runs) == system
+
+
+def test_cases_that_fell_flat_are_said_to_have_overturned(tmp_path):
+    pulse = rf.GroundMotion.sine_pulse("6 m/s^2", "0.5 Hz")
+    runs = rf.sweep(rf.System(BLOCK), pulse, scale=[0.1, 1.0], overturning="continue",
+                    free_vibration="5 s")  # fmt: skip
+    assert bool(runs.overturned.sel(scale=1.0).item())
+    cases_told = words_of(rf.report(runs, tmp_path / "r.html")).split("Cases")[1]
+    table = cases_told.split("mean of")[0]
+    assert "toppled" not in table
+    assert table.count("did not overturn") == 1
+    assert table.count("overturned") == 1

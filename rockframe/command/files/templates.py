@@ -157,7 +157,12 @@ TEMPLATES: Final = {
 """Texts by the kind of scene."""
 
 
+_TABLES: Final = ("initial",)
+"""Arguments of runs that have a table of their own."""
 _WIDTH: Final = 96
+_UNIT: Final = re.compile(r"\[[^\]]*\]")
+_FIXED: Final = "\N{NO-BREAK SPACE}"
+"""In place of spaces within units, where no line ends."""
 _HEAD: Final = """\
 # Every table and every key of the files of scenes and studies.
 # All keys are optional but those marked "must be given".
@@ -170,6 +175,23 @@ _PARAMETERS: Final = re.compile(
 _ENTRY: Final = re.compile(
     r"^(\*{0,2}\w[\w, *]*?) : .*\n((?:[ ]{4}.*\n?|\n(?=[ ]{4}))+)", re.MULTILINE
 )
+
+_SAMPLES: Final = {
+    # of the system
+    "gravity": '"9.81 m/s^2"', "inclination": '"2 deg"',
+    # of motions
+    "file": '"record.AT2"', "format": '"peer-at2"', "component": '"NS"', "unit": '"g"',
+    "time_step": '"0.01 s"', "response": '"station.xml"',
+    "operations": "[{ scaled = { factor = 1.5 } }]",
+    # of runs and sweeps
+    "duration": '"20 s"', "free_vibration": '"5 s"', "output_step": '"0.01 s"',
+    "outputs": '["energy"]', "points": '{ top = ["0 m", "3.2 m"] }', "period": '"0.5 s"',
+    "chunk": "100", "known": '["other_study"]',
+    # of studies
+    "scene": '"scene.toml"', "motions": '["records/*.AT2"]', "cases": '"cases.csv"',
+    "store": '"study"', "output": '"study.nc"',
+}  # fmt: skip
+"""Values of keys that have no default to show."""
 
 
 def every_key() -> str:
@@ -185,7 +207,11 @@ def _lines() -> Iterator[str]:
     yield from _of_function("system", "options of the system", System.__init__, of=System)
     yield from _of_motion()
     yield from _of_function("run", "how it is simulated", System.simulate, names=run_keys())
-    yield from _of_component("run.initial", "state at the start of the run", InitialState)
+    yield from _of_component(
+        "run.initial",
+        "state at the start of the run, at rest unless given; of a study [sweep.initial]",
+        InitialState,
+    )
     yield from _title("project", "for reports")
     yield from (f'{name} = ""' for name in LINES)
     yield f'{CONCLUSION} = ""'.ljust(18) + "# a sentence"
@@ -233,7 +259,7 @@ def _example(one: Declared[Any, Any]) -> str:
     if isinstance(one, Choice):
         return f'"{one.default}"'
     if one.measure is None:
-        return "true" if isinstance(one, Flag) else "2" if isinstance(one, Count) else '"..."'
+        return "true" if isinstance(one, Flag) else "2" if isinstance(one, Count) else '"anchor"'
     if isinstance(one.default, int | float) and not isinstance(one.default, bool):
         return f"{one.default}"
     if one.measure.example.startswith("("):  # a point
@@ -254,9 +280,12 @@ def _of_function(
     meanings = _meanings(function if of is None else of)
     names = arguments_of(function, without=("parts",)) if names is None else names
     for name in names:
+        if name in _TABLES:
+            continue
         default = signature(function).parameters[name].default
-        usual = "" if default in (Parameter.empty, None, ()) else f" = {_written(default)}"
-        yield from _commented(f"# {name}{usual}", meanings.get(name, ""))
+        bare = default in (Parameter.empty, None, ())
+        value = _SAMPLES[name] if bare else _written(default)
+        yield from _commented(f"# {name} = {value}", meanings.get(name, ""))
 
 
 def _of_motion() -> Iterator[str]:
@@ -265,7 +294,8 @@ def _of_motion() -> Iterator[str]:
     for name, must in motion_keys().items():
         words = {"file": "path of the record", "operations": "list of operations on the motion"}
         meaning = words.get(name, meanings.get(name, ""))
-        yield from _commented(f"# {name}", f"{'must be given: ' if must else ''}{meaning}")
+        must_be = "must be given: " if must else ""
+        yield from _commented(f"# {name} = {_SAMPLES[name]}", f"{must_be}{meaning}")
     yield f"# or {CONSTRUCTOR}, with its arguments:"
     for name in MOTIONS:
         keys = arguments_of(getattr(GroundMotion, name))
@@ -286,8 +316,10 @@ def _of_study() -> Iterator[str]:
         ("store", "folder that keeps finished cases"),
         ("output", "file of the results"),
     ):
-        yield from _commented(f"# {name}", words)
+        yield from _commented(f"# {name} = {_SAMPLES[name]}", words)
     yield from _title("axes", "lists of values of what varies: parameters, options, scale")
+    yield from _commented("# scale = [0.5, 1.0, 2.0]", "factors of the motion")
+    yield from _commented('# width = ["0.7 m", "0.8 m"]', "a parameter of a part")
     yield from _of_function("sweep", "how the cases are simulated", sweep, names=sweep_keys())
 
 
@@ -302,7 +334,9 @@ def _keys(words: str) -> Iterator[str]:
 def _commented(head: str, words: str) -> Iterator[str]:
     """Write a key, followed by its meaning in wrapped lines."""
     column = max(len(head) + 2, 34)
-    pieces = wrap(words, max(_WIDTH - column, 40)) or [""]
+    kept = _UNIT.sub(lambda unit: unit[0].replace(" ", _FIXED), words)
+    lines = wrap(kept, max(_WIDTH - column, 40), break_on_hyphens=False) or [""]
+    pieces = [line.replace(_FIXED, " ") for line in lines]
     yield f"{head.ljust(column)}{pieces[0]}".rstrip()
     yield from (f"#{' ' * (column - 1)}{piece}" for piece in pieces[1:])
 
@@ -330,4 +364,5 @@ def _meanings(documented: object) -> dict[str, str]:
 
 def _without_markup(words: str) -> str:
     """Remove the markup of reStructuredText."""
+    words = re.sub(r", :eq:`[^`]*`", "", words)  # equations of the manual
     return re.sub(r":\w+:`[~.]?([^`]*)`", r"\1", words).replace("``", "").replace("`", "")

@@ -23,6 +23,7 @@ from rockframe.errors import ComponentError
 from rockframe.proposals import hinted
 from rockframe.signals.arrays import Array
 from rockframe.units import DENSITY, LENGTH, MASS, POSITIVE, THICKNESS, Measure, QuantityLike, to_si
+from rockframe.units.shown import in_degrees
 
 _THIN: Final = 1e-12  # thickness over size below which an outline has no area
 
@@ -161,11 +162,11 @@ def _refuse_single(corners: Sequence[OutlineCorner], owner: str) -> None:
         f"is {rise:.4g} m higher. A base needs two lowest points at one height"
     )
     if (second - first) % len(corners) in (1, len(corners) - 1):
-        slope = math.copysign(math.degrees(math.atan2(rise, abs(run))), run)
+        slope = math.copysign(math.atan2(rise, abs(run)), run)
         msg += (
-            f": the edge between these is inclined by {slope:.4g} deg; rotate the outline until "
-            f"it is level, and for ground with this slope give System(..., "
-            f"inclination='{slope:.4g} deg')"
+            f": the edge between these is inclined by {in_degrees(slope)}; rotate the outline "
+            f"until it is level, and for ground with this slope give System(..., "
+            f"inclination='{math.degrees(slope):.4g} deg')"
         )
     raise ComponentError(msg)
 

@@ -338,11 +338,12 @@ def with_one_held(
     system: Any, mode: int, near: Near, pulled: int, before: int, leaving: int, noise: float,
     state: Vector,
 ) -> tuple[int, int]:  # fmt: skip
-    """Find a set of which one corner, alone on its body, is held though it does not press.
+    """Return a set of corners, one of which is held though it does not press, and that corner.
 
-    Released, it would fall back, or another corner would have to pull. Among several sets, the one
-    nearest to `before` is taken, if possible with the corner `leaving`. Returns the set and the
-    corner, or 0.
+    It is the only corner of its body in the set. Without it the set would not be admissible: the
+    corner would fall back, or another one would have to pull. If there are several such sets, the
+    one nearest to `before` is taken, preferably with `leaving` as the held corner. The corner is 0
+    if there is none.
     """
     taken, held, least, closed = before, 0, math.inf, near.closed
     some, follower = before & closed, closed  # `before` comes first and excludes most others

@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.chain import rows as at
-from rockframe.dynamics.chain.corners import RigidCorners
+from rockframe.dynamics.chain.corner_guards import CornerGuards
 from rockframe.dynamics.chain.impact import (
     BOTH,
     LEFT_ONLY,
@@ -54,7 +54,7 @@ class Met(NamedTuple):
     driven: float  # velocity of slip, positive in the sense of the friction
 
 
-class RigidImpulses(RigidCorners):
+class RigidImpulses(CornerGuards):
     """Stacked bodies that get impulses from rigid bases in an event. A mixin of systems."""
 
     __slots__ = ()

@@ -9,7 +9,8 @@ from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION
 from rockframe.dynamics.body import REST_AMPLITUDE
 from rockframe.dynamics.chain import rows as at
-from rockframe.dynamics.chain.corners import OPENING, PULLED
+from rockframe.dynamics.chain.corner_guards import OPENING
+from rockframe.dynamics.chain.corners import PULLED
 from rockframe.dynamics.chain.impact import (
     BOTH,
     LEFT_ONLY,

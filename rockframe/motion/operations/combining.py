@@ -25,6 +25,7 @@ from rockframe.records import VERTICAL as EITHER
 from rockframe.signals import Motion, Signal
 from rockframe.signals.motion import COEFFICIENTS, VERTICAL
 from rockframe.units import ANGLE, QuantityLike, to_si
+from rockframe.units.shown import in_degrees
 
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array
@@ -192,10 +193,7 @@ def rotated(
         pieces += across * _polynomials(partner)
     turned = Signal(si.time_step, along * mine.samples + across * partner.samples, pieces)
     result = Motion(turned, None if si.vertical is None else padded(si.vertical, count))
-    steps = [
-        f"rotated by {math.degrees(turn):.9g} degrees towards {other.name} "
-        f"(sha256 {other.sha256[:12]})"
-    ]
+    steps = [f"rotated by {in_degrees(turn, 9)} towards {other.name} (sha256 {other.sha256[:12]})"]
     for label, one in (("this", motion), ("the other", other)):
         if len(one) < count:
             steps.append(f"{label} component padded with {count - len(one)} zeros")
@@ -208,7 +206,7 @@ def rotated(
     metadata["component"] = " and ".join(
         str(one.metadata.get("component", one.name)) for one in (motion, other)
     )
-    metadata["component"] += f" rotated by {math.degrees(turn):.6g} degrees"
+    metadata["component"] += f" rotated by {in_degrees(turn, 6)}"
     return following(motion, result, *steps, operation=operation, metadata=metadata)
 
 
@@ -232,7 +230,7 @@ def _azimuths(motion: MotionValue, other: MotionValue, owner: str) -> tuple[floa
     for right, sign in ((90.0, 1.0), (270.0, -1.0)):
         if abs(apart - right) <= _RIGHT_ANGLE_TOLERANCE:
             return own, sign
-    msg = f"{owner}: azimuths of {own:.6g} and {theirs:.6g} degrees are not at a right angle"
+    msg = f"{owner}: azimuths of {own:.6g}° and {theirs:.6g}° are not at a right angle"
     raise ComponentError(msg)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from rockframe.proposals import proposing
 from rockframe.units import Unit
+from rockframe.units.shown import behind
 
 TIME: Final = ("time",)
 EVENT: Final = ("event",)
@@ -83,9 +84,8 @@ class Variable:
 
 
 def unit_behind(attributes: Mapping[Any, Any]) -> str:
-    """Return the unit of values with a space before it, to follow a number; empty where it is 1."""
-    unit = str(attributes.get("units", Unit.ONE))
-    return "" if unit == Unit.ONE else f" {unit}"
+    """Return the unit of values as it follows a number; empty where it is 1."""
+    return behind(str(attributes.get("units", Unit.ONE)))
 
 
 def words_of_flags(attributes: Mapping[Any, Any]) -> dict[Any, str]:

@@ -113,8 +113,10 @@ def fragility(
     bands : {"profile", "jackknife", "sandwich"}, optional
         Source of the confidence bounds: the profile of the likelihood, which assumes independent
         runs; fits that leave out each motion in turn; or the sandwich covariance with the runs of
-        one motion as a cluster. If motions were run more than once, the default is ``"jackknife"``,
-        or ``"sandwich"`` for more than 80 motions.
+        one motion as a cluster. If motions were run more than once, or with a common dispersion,
+        the default is ``"jackknife"``, or ``"sandwich"`` for more than 80 motions. Otherwise, as
+        for capacities and counts, it is ``"profile"``, or ``"sandwich"`` for two measures. Neither
+        two measures nor a common dispersion have a profile.
     confidence : float, optional
         Nominal confidence level of all bounds [1]. The measured coverage with few motions is in
         :ref:`coverage of bounds <coverage>`; the verdict says when it is lower than nominal.

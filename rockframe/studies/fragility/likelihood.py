@@ -22,9 +22,10 @@ DIRECTIONS: Final = 360
 FLAT: Final = 1e-9
 """Slope, over the spread of the logarithms of intensities, up to which it is a rounding error."""
 _DOUBLINGS: Final = 30
-"""Of the length of a ray; one that is within the region still has no end."""
+"""Number of times that the length of a ray is doubled; if its end is then still within the region,
+the region is unbounded along the ray."""
 _BLOCK: Final = 2_000_000
-"""Most values that are held at once."""
+"""Largest number of values in memory at once."""
 
 
 class Bands(StrEnum):
@@ -234,16 +235,16 @@ def boundary(trials: Trials, found: Fit, level: float) -> Array:
             return 2.0 * (greatest - log_likelihood(trials, at)) - drop
 
         inner, outer = np.zeros(reach.shape), np.full(reach.shape, np.inf)
-        for _ in range(_DOUBLINGS):  # the end of each ray comes to lie outside, if there is one
+        for _ in range(_DOUBLINGS):  # lengthen each ray until its end is outside the region
             beyond = excess(reach)
-            # there is no likelihood where the upper end of a bracket is below its lower end
+            # the likelihood is zero where the upper end of a bracket is below its lower end
             nowhere, within = ~np.isfinite(beyond), beyond < 0.0
             if not (nowhere | within).any():
                 break
             inner, outer = np.where(within, reach, inner), np.where(nowhere, reach, outer)
             further = np.minimum(2.0 * reach, 0.5 * (inner + outer))
             reach = np.where(nowhere | within, further, reach)
-        for _ in range(60):  # Newton's steps for a convex function end from above
+        for _ in range(60):  # Newton's method: of a convex function it converges from above
             over = excess(reach)
             slope = -2.0 * _slopes_along(trials, best[:, None] + reach * ray, ray)
             step = np.divide(over, slope, out=np.zeros_like(over), where=over > 0.0)
@@ -259,10 +260,11 @@ def boundary(trials: Trials, found: Fit, level: float) -> Array:
 
 
 def _within(trials: Trials, drop: float) -> tuple[Array, Array, float]:
-    """Return coefficients of separated trials near their likelihood's bound, with that bound.
+    """Return coefficients of separated trials, the information there, and the bound.
 
-    With the information at these coefficients. If the gap is a single intensity at which some
-    trials exceed, their share is the most likely probability there.
+    The likelihood of separated trials has a bound but no maximum: it increases with the slope. At
+    the coefficients twice the log-likelihood is at most `drop` below the bound. If the gap is a
+    single intensity at which some trials exceed, their share is the most likely probability there.
     """
     from scipy.special import ndtri
 

@@ -107,10 +107,10 @@ class Study:
 
     @property
     def patience(self) -> float | None:
-        """Longest time to compile what lanes need: what they save in turn [s].
+        """Longest time that compilation for lanes may take, a share of the time that they save [s].
 
-        None where no cases run in lanes: not compiled, with samples, or too few. Their numbers
-        are the same either way.
+        None if no cases run in lanes: without compilation, with histories or points, or if there
+        are too few cases. Results are the same with and without lanes.
         """
         sampled = self.histories is not None or bool(self.arguments.points)
         if not COMPILED or sampled or self.grid.count < FEWEST_IN_LANES:
@@ -119,7 +119,7 @@ class Study:
         return COMPILING_SHARE * saved
 
     def to_dict(self) -> dict[str, Any]:
-        """Tell all that the results depend on: every field, and what a function makes of cases."""
+        """Return all that the results depend on: every field, and some scenes of a function."""
         # the source of a function need not determine its scenes
         scenes = [
             digest_of(description_of(one)) if isinstance(one, Assembly) else type(one).__name__

@@ -80,7 +80,7 @@ def test_a_table_without_a_unit_is_asked_for_the_option(typed, folder):
     (folder / "x.csv").write_text(f"{rows}\n")
     code, _, problem = typed("motion", "x.csv")
     assert code == 2
-    assert "--unit g" in problem
+    assert problem.count("--unit 'g'") == 1
     code, _, problem = typed("motion", "x.csv", "--unit", "g")
     assert code == 0
 
@@ -147,6 +147,29 @@ def test_motions_are_listed_with_their_measures(typed, folder):
     code, *_ = typed("motion", "record.AT2", "--picture", "m.svg")
     assert code == 0
     assert (folder / "m.svg").exists()
+
+
+def test_many_motions_are_a_table_that_is_not_too_wide(typed, folder):
+    for number in range(1, 12):
+        pulse = rf.GroundMotion.sine_pulse(f"{number} m/s^2", "1 Hz")
+        pulse.to_at2(f"a_record_with_a_name_{number}.AT2")
+    code, told, _ = typed("motion", *sorted(path.name for path in folder.glob("a_*.AT2")))
+    assert code == 0
+    lines = told.splitlines()
+    assert max(map(len, lines)) <= 100
+    parts = told.split("\n\n")
+    assert len(parts) > 1  # the labels of the rows are repeated
+    assert all(part.count("a_record_with_a_name_11") == 1 for part in parts)
+    assert " ".join(told.split()).count("[m s^-1]") == 4
+    assert all("\\" not in line and line == line.rstrip() for line in lines)
+
+
+def test_a_file_without_a_unit_is_told_the_option_once(typed, folder):
+    (folder / "index.txt").write_text("\n".join(f"{0.01 * k:.2f}" for k in range(200)))
+    code, _, error = typed("run", "scene.toml", "--motion", "index.txt", "--time-step", "0.01 s")
+    assert code == 2
+    assert error.count("--unit") == 1
+    assert "unit='g'" not in error
 
 
 def test_a_study_goes_on_with_its_store(typed, folder):

@@ -127,7 +127,7 @@ def test_without_a_name_a_file_of_several_is_refused_and_listed(write):
     with pytest.raises(RecordError) as caught:
         GroundMotion.read(write(cwa(), "r.dat"))
     error = caught.value
-    assert error.found == "3 components: 'U' (up), 'N' (0 degrees), 'E' (90 degrees)"
+    assert error.found == "3 components: 'U' (up), 'N' (0°), 'E' (90°)"
     assert "component='N'" in error.expected
     assert "component=('N', 'U')" in error.expected
 

@@ -177,7 +177,7 @@ class TestWithObspy:
             miniseed(COUNTS + 7 * k, channel=name) for k, (name, *_) in enumerate(channels)
         )
         path = write(data, "r.mseed")
-        with pytest.raises(RecordError, match=r"3 components: .*'HN1' \(30 degrees\)"):
+        with pytest.raises(RecordError, match=r"3 components: .*'HN1' \(30°\)"):
             GroundMotion.read(path)
         assert GroundMotion.read(path, component="30").metadata["component"] == "HN1"
         both = GroundMotion.read(path, component=("XX.MADE..HNE", "Z"))

@@ -56,7 +56,7 @@ def test_the_vertical_component_is_padded_with_the_horizontal_ones():
 
 def test_the_components_are_named():
     turned = motion(ONE, "H1", 0).rotated(motion(OTHER, "H2", 90), azimuth="-30 deg")
-    assert turned.metadata["component"] == "H1 and H2 rotated by -30 degrees"
+    assert turned.metadata["component"] == "H1 and H2 rotated by -30°"
     assert turned.metadata["azimuth"] == pytest.approx(330.0)
 
 
@@ -127,5 +127,5 @@ def test_partners_that_are_refused():
         motion(ONE, "one").rotated(OTHER, "30 deg")
     with pytest.raises(ComponentError, match=r"time steps differ"):
         motion(ONE, "one").rotated(motion(OTHER, "other", step=0.01), "30 deg")
-    with pytest.raises(ComponentError, match="0 and 60 degrees are not at a right angle"):
+    with pytest.raises(ComponentError, match="0° and 60° are not at a right angle"):
         motion(ONE, "one", 0).rotated(motion(OTHER, "other", 60), azimuth="30 deg")

@@ -381,3 +381,26 @@ def test_any_history_of_a_run_has_a_panel():
             np.testing.assert_allclose(rows[0].get_ydata(), unit.of(first), rtol=1e-12)
         plt.close(axes.figure)
     assert "slip [mm]" in shown
+
+
+def test_where_the_fractiles_of_a_dynamic_analysis_end_is_told():
+    """Two motions are too weak to overturn: above their largest intensity there are fewer lines."""
+    system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+    motions = {
+        f"{a}": rf.GroundMotion.sine_pulse(f"{a} m/s^2", "1 Hz") for a in (0.3, 0.4, 3, 4, 5)
+    }
+    found = rf.incremental_dynamic_analysis(
+        system,
+        motions,
+        scale=[0.5, 1.0, 2.0, 4.0],
+        intensity="PGA",
+        free_vibration="3 s",
+        progress=False,
+    )
+    panel = rf.plot.dynamic_analysis(found)[0]
+    named = {line.get_label(): line for line in panel.get_lines()}
+    (end,) = np.unique(named["all were run up to here"].get_ydata())
+    assert end == pytest.approx(1.2, rel=1e-3)  # four times the weakest motion
+    assert all(named[f"{share} %"].get_ydata()[-1] == end for share in (16, 50, 84))
+    strong = rf.plot.dynamic_analysis(found.isel(motion=[2, 3, 3, 4]))[0]  # all overturn
+    assert "all were run up to here" not in [line.get_label() for line in strong.get_lines()]

@@ -294,7 +294,7 @@ def test_a_corner_that_touches_before_the_body_overturns_is_warned_about():
         (
             [(0, 0), (1, 0.02), (1, 3), (0, 3)],
             r"stands on one point, points\[0\] \(0 m, 0 m\); the next lowest, points\[1\] "
-            r"\(1 m, 0.02 m\), is 0.02 m higher.* inclined by 1.146 deg",
+            r"\(1 m, 0.02 m\), is 0.02 m higher.* inclined by 1.146°",
         ),
         ([(0, 0), (1, 1), (0, 3), (-1, 1.5)], r"next lowest, points\[1\].*is 1 m higher"),
         (

@@ -190,7 +190,7 @@ def test_what_does_not_make_a_pair_is_told(tmp_path):
     [
         ("nowhere", "no such file or folder"),
         ([], "no horizontal component in 0 files"),
-        ([b"nothing"], "no horizontal component in 1 files"),
+        ([b"nothing"], "no horizontal component in 1 file;"),
         (3.5, "names no file|no such file"),
         (packed({"a.VT2": b"x"}), "a velocity"),
         (packed({"RSN6_A-UP.AT2": FILES["RSN6_MADE_S6-UP.AT2"]}), "1 vertical ones"),
