@@ -293,11 +293,11 @@ def is_worth_calling(one: Bound) -> bool:
     It is called if it has machine code, if nothing has, and if all is compiled before it runs. It
     is compiled when the other one has taken as long as that takes.
     """
-    from rockframe.compiled.parallel import WORTHWHILE
-
     source = one.source
     if source.address or not COMPILED or not _CALLS_BACK:
         return True
+    from rockframe.compiled.parallel import WORTHWHILE
+
     taken = source.seconds_without
     if source.failed or 0.0 < taken < WORTHWHILE:
         return False
