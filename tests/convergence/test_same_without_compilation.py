@@ -10,9 +10,11 @@ import pytest
 from plainly import plainly
 
 import rockframe as rf
-from rockframe.compiled import COMPILED
-from rockframe.solve import integrate
+from rockframe.compiled import COMPILED, bound
+from rockframe.solve import equations, integrate
 from rockframe.solve.equations import equations_of
+from rockframe.solve.evaluation import CompiledIn
+from rockframe.solve.march import march_by_tolerance
 
 pytestmark = [
     pytest.mark.skipif(not COMPILED, reason="this run does without compilation"),
@@ -99,3 +101,18 @@ def test_compiled_and_plain_are_the_same(name, monkeypatch):
             np.testing.assert_array_equal(values, plain.variables[variable], err_msg=variable)
     if parts == (PADS,):
         assert plain.impact_count > (3 if "small" in name else 2)
+
+
+def test_runs_whose_steps_call_the_equations_count_their_time(monkeypatch):
+    """After some seconds it pays to compile the equations into the steps."""
+    system = rf.System(BLOCK)
+    (own,) = bound((march_by_tolerance,), CompiledIn(system.assembly.model.system))
+    monkeypatch.setattr(equations, "is_worth_calling", lambda _: False)
+    counted = [own.source.seconds_without]
+    for _ in range(3):
+        system.simulate(MOTION)
+        counted.append(own.source.seconds_without)
+    assert np.all(np.diff(counted) > 0.0)
+    monkeypatch.setattr(equations, "is_worth_calling", lambda _: True)
+    system.simulate(MOTION)
+    assert own.source.seconds_without == counted[-1]
