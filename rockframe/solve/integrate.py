@@ -220,16 +220,17 @@ class InPython:
     @contextmanager
     def counted(self, equations: BoundEquations, clock: Vector) -> Generator[None]:
         """Count what some steps take, and estimate the rest from how far they come."""
-        began, machine_began = seconds_as_python(), thread_time()
+        was_compiled, began_as_python = steps_as_machine_code(equations), seconds_as_python()
+        began = thread_time()
         with still_taking(self._rest):
             yield
         self._rest = 0.0
-        if steps_as_machine_code(equations):
+        if was_compiled:  # and nothing was compiled in this time
             if equations.stepping.stands_for is not None:
                 own = equations.stepping.stands_for.source
-                own.seconds_without += thread_time() - machine_began
-        else:
-            self.taken += seconds_as_python() - began
+                own.seconds_without += thread_time() - began
+        elif not steps_as_machine_code(equations):
+            self.taken += seconds_as_python() - began_as_python
             if self.taken > TELLING:
                 parts = self._duration / max(float(clock[at.TIME]), self._interval)
                 self._rest = self.taken * (parts - 1.0) * self._over_its_own

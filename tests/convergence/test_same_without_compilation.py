@@ -12,6 +12,7 @@ from plainly import plainly
 import rockframe as rf
 from rockframe.compiled import COMPILED, bound
 from rockframe.solve import equations, integrate
+from rockframe.solve import workspace as at
 from rockframe.solve.equations import equations_of
 from rockframe.solve.evaluation import CompiledIn
 from rockframe.solve.march import march_by_tolerance
@@ -116,3 +117,20 @@ def test_runs_whose_steps_call_the_equations_count_their_time(monkeypatch):
     monkeypatch.setattr(equations, "is_worth_calling", lambda _: True)
     system.simulate(MOTION)
     assert own.source.seconds_without == counted[-1]
+
+
+def test_compilation_does_not_count_as_time_of_steps(monkeypatch):
+    system = rf.System(BLOCK)
+    system.simulate(MOTION)  # compiled by now
+    called = equations_of(system.assembly.model.system, fixed_steps=False, compiled_in=False)
+    own = called.stepping.stands_for.source
+    before = own.seconds_without
+    waiting, clock = integrate.InPython(1.0, 0.01, 1.0), np.ones(at.CLOCK)
+    address = called.stepping.source.address
+    monkeypatch.setattr(called.stepping.source, "address", 0)
+    with waiting.counted(called, clock):
+        called.stepping.source.address = address
+    assert own.seconds_without == before
+    with waiting.counted(called, clock):
+        np.linalg.norm(np.ones(1000))
+    assert own.seconds_without > before
