@@ -260,6 +260,10 @@ class Entry:
         return routine
 
 
+_in_background: Final[dict[Source, "Meanwhile"]] = {}
+"""Compilations by other processes of functions for which others stand in."""
+
+
 def _make_when_due(source: Source, patience: float) -> None:
     """Compile, or load, a function for which others have stood in for some time [s].
 
@@ -272,7 +276,7 @@ def _make_when_due(source: Source, patience: float) -> None:
         if source.seconds_without < patience and not job.is_stored:
             return
         if not WAITS:
-            meanwhile = _awaited.setdefault(source, Meanwhile([job]))
+            meanwhile = _in_background.setdefault(source, Meanwhile([job]))
             if not meanwhile.is_over(at_once=True):
                 return
         (source.code,) = make_all([job])
@@ -281,10 +285,6 @@ def _make_when_due(source: Source, patience: float) -> None:
         source.failed, source.is_seldom_called = True, False
     else:
         source.address = source.code.address
-
-
-_awaited: Final[dict[Source, "Meanwhile"]] = {}
-"""Compilations by other processes of functions for which others stand in."""
 
 
 def is_worth_calling(one: Bound) -> bool:

@@ -112,9 +112,9 @@ def equations_of(
 ) -> BoundEquations:
     """Bind a system's equations for the integrator.
 
-    `compiled_in` tells whether the equations are compiled into the loop of steps; by itself they
-    are as soon as runs have taken so long that it pays. For work at the output times (`with_work`)
-    slopes are evaluated so often that they are compiled.
+    `compiled_in` tells whether the equations are compiled into the loop of steps; with None they
+    are as soon as runs have taken so long that this pays. For work at the output times
+    (`with_work`) slopes are evaluated so often that they are compiled.
     """
     march = march_by_tolerance
     if fixed_steps:

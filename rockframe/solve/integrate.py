@@ -209,7 +209,7 @@ def _steps_at_once(equations: BoundEquations) -> int:
 
 
 class InPython:
-    """How long a run takes in plain Python, as long as its steps are not there as machine code."""
+    """Time of a run in plain Python, or in steps that stand in for others not yet compiled."""
 
     def __init__(self, duration: float, interval: float, over_its_own: float) -> None:
         self.taken = 0.0  # so far [s]
