@@ -78,7 +78,7 @@ def _shifted(_: Any, kept: Any, first: Any) -> Any:
 
 
 @extending.intrinsic
-def _stretch(_: Any, kept: Any, first: Any, count: Any) -> Any:
+def _new_view(_: Any, kept: Any, first: Any, count: Any) -> Any:
     """Return a buffer of some elements, or rows, of another, in compiled code."""
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
@@ -156,14 +156,14 @@ def _widest_registers() -> Callable[..., Any]:
     return lambda: _widen()
 
 
-@extending.overload(language.part_of, strict=False, jit_options=_INTO_CALLERS)
-def _part_of(array: Any, first: Any) -> Callable[..., Any]:
+@extending.overload(language.view_from, strict=False, jit_options=_INTO_CALLERS)
+def _view_from(array: Any, first: Any) -> Callable[..., Any]:
     return lambda array, first: _shifted(array, first)
 
 
-@extending.overload(language.stretch, strict=False, jit_options=_INTO_CALLERS)
-def _stretch_of(array: Any, first: Any, count: Any) -> Callable[..., Any]:
-    return lambda array, first, count: _stretch(array, first, count)
+@extending.overload(language.view_of, strict=False, jit_options=_INTO_CALLERS)
+def _view_of(array: Any, first: Any, count: Any) -> Callable[..., Any]:
+    return lambda array, first, count: _new_view(array, first, count)
 
 
 @extending.overload(language.lane_of, strict=False, jit_options=_INTO_CALLERS)

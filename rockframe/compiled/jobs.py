@@ -28,7 +28,7 @@ from rockframe.compiled.calls import (
     register_inlined,
     register_kernels,
 )
-from rockframe.compiled.language import KERNELS, Integers, ReadOnlyMatrix, Vector, part_of
+from rockframe.compiled.language import KERNELS, Integers, ReadOnlyMatrix, Vector, view_from
 from rockframe.compiled.linking import linked_once
 
 VECTOR: Final = BufferType(numba.float64, 1, True)
@@ -65,7 +65,7 @@ class Writer:
                 continue
             self.kinds.append(part)
             if part is np.ndarray:
-                taken.append(f"{self._name(part_of)}(numbers, {len(self.kinds) - 1})")
+                taken.append(f"{self._name(view_from)}(numbers, {len(self.kinds) - 1})")
                 continue
             number = f"numbers[{len(self.kinds) - 1}]"
             taken.append({bool: f"{number} != 0.0", int: f"int({number})"}.get(part, number))

@@ -86,12 +86,12 @@ def filled(like: Bundle, numbers: Vector) -> Bundle:
     return kind(*numbers[: len(kind._fields)])
 
 
-def part_of(array: Vector, first: int) -> Vector:
+def view_from(array: Vector, first: int) -> Vector:
     """Return the part of an array from an index on; no copy."""
     return array[first:]
 
 
-def stretch(array: Array, first: int, count: int) -> Array:
+def view_of(array: Array, first: int, count: int) -> Array:
     """Return some elements of an array, or rows of a matrix, from an index on; no copy."""
     some: Any = array[first : first + count]
     return some

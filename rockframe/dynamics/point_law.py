@@ -14,7 +14,7 @@ import inspect
 from collections.abc import Callable, Collection, Iterable
 from typing import Any, Final, NamedTuple, TypeVar
 
-from rockframe.compiled import Vector, inlined, kernel, stretch
+from rockframe.compiled import Vector, inlined, kernel, view_of
 from rockframe.dynamics.base import Variables
 from rockframe.dynamics.body import BaseLine
 from rockframe.dynamics.protocol import Guards
@@ -156,11 +156,11 @@ class _WithVariables:
 
     @inlined
     def read(self: Any, state: Vector, first: int, points: int) -> Any:
-        return stretch(state, first, points * self.variables())
+        return view_of(state, first, points * self.variables())
 
     @inlined
     def of_point(self: Any, own: Vector, i: int) -> Vector:
-        return stretch(own, i * self.variables(), self.variables())
+        return view_of(own, i * self.variables(), self.variables())
 
     @kernel
     def reset(self: Any, own: Vector) -> None:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any, Final, NamedTuple
 
-from rockframe.compiled import Vector, part_of
+from rockframe.compiled import Vector, view_from
 from rockframe.dynamics.links import (
     Bumper,
     LinkEvent,
@@ -94,8 +94,8 @@ class OneOfTwo(NamedTuple):
         behind = 1 + self.first.number_count()
         return OneOfTwo(
             numbers[0],
-            self.first.with_numbers(part_of(numbers, 1)),
-            self.second.with_numbers(part_of(numbers, behind)),
+            self.first.with_numbers(view_from(numbers, 1)),
+            self.second.with_numbers(view_from(numbers, behind)),
         )
 
 

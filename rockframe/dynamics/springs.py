@@ -8,7 +8,7 @@ side is not clear; both ends are held where only springs between the outermost o
 
 from typing import Any, Final, NamedTuple
 
-from rockframe.compiled import Vector, constant, inlined, kernel, stretch, with_numbers
+from rockframe.compiled import Vector, constant, inlined, kernel, view_of, with_numbers
 from rockframe.dynamics.base import (
     SIMULTANEOUS,
     Base,
@@ -87,13 +87,13 @@ class Springs(Base, SpringNumbers):
     @inlined
     def read(self, state: Vector, first: int) -> Vector:
         """Read the variables."""
-        return stretch(state, first, len(self.steady))
+        return view_of(state, first, len(self.steady))
 
     @inlined
     def of_law(self, own: Vector, i: int) -> Any:
         """Return the variables of the law of one spring."""
         count = len(self.places)
-        return self.law.of_point(stretch(own, count, len(self.steady) - count), i)
+        return self.law.of_point(view_of(own, count, len(self.steady) - count), i)
 
     @inlined
     def point(self, i: int, line: BaseLine) -> Point:
@@ -236,7 +236,7 @@ class Springs(Base, SpringNumbers):
     def starting(self, line: BaseLine, own: Vector) -> int:
         """Return the contact at the start of a run; springs pressed too much have yielded."""
         count = len(self.places)
-        self.law.reset(stretch(own, count, len(self.steady) - count))
+        self.law.reset(view_of(own, count, len(self.steady) - count))
         for i in range(count):
             point, mine = self.point(i, line), self.of_law(own, i)
             self.law.settle(0, point, mine)

@@ -11,7 +11,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from rockframe.compiled import Vector, inlined, kernel, numbers_in, part_of, put, stretch
+from rockframe.compiled import Vector, inlined, kernel, numbers_in, put, view_from, view_of
 from rockframe.dynamics import rigid_ground as bare
 from rockframe.dynamics.links import GUARDS, LinkNumbers, Stretch
 from rockframe.dynamics.pads import ROUNDING
@@ -93,12 +93,17 @@ class TiedFrame(FrameNumbers, OnRigidGround):
     def row_of_link(self, i: int) -> Vector:
         """Return the row of a tendon."""
         width = NUMBERS + self.law.number_count()
-        return stretch(self.rows, i * width, width)
+        return view_of(self.rows, i * width, width)
+
+    @inlined
+    def law_of(self, row: Vector) -> Any:
+        """Return the law of a tendon, by its row."""
+        return self.law.with_numbers(view_from(row, NUMBERS))
 
     @inlined
     def room(self, first: int, count: int) -> Vector:
         """Return a part of the workspace behind the rows."""
-        return stretch(
+        return view_of(
             self.rows, self.link_count * (NUMBERS + self.law.number_count()) + first, count
         )
 
@@ -128,7 +133,7 @@ class TiedFrame(FrameNumbers, OnRigidGround):
     def of_link(self, i: int, state: Vector) -> Vector:
         """Return the variables of a tendon."""
         each = self.law.variables()
-        return stretch(state, 2 + i * each, each)
+        return view_of(state, 2 + i * each, each)
 
     @inlined
     def lever(self, rotation: float) -> float:
@@ -153,7 +158,7 @@ class TiedFrame(FrameNumbers, OnRigidGround):
         link, force = self.stretched(mode, state, 0.0), 0.0
         for i in range(self.link_count):
             row = self.row_of_link(i)
-            law = self.law.with_numbers(part_of(row, NUMBERS))
+            law = self.law_of(row)
             force += law.force(self.link_state(mode, row), link, self.of_link(i, state))
         return self.columns * force
 
@@ -171,10 +176,10 @@ class TiedFrame(FrameNumbers, OnRigidGround):
         link, lost = self.stretched(mode, state, 0.0), 0.0
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.of_link(i, state)
-            law, each = self.law.with_numbers(part_of(row, NUMBERS)), self.law.variables()
+            law, each = self.law_of(row), self.law.variables()
             standing = self.link_state(mode, row)
             lost += law.power(standing, link, own)
-            law.rates(standing, link, own, stretch(out, 1 + i * each, each))
+            law.rates(standing, link, own, view_of(out, 1 + i * each, each))
         out[0] = found[0] - self.rocking.side(rocks) * resisting / inertia
         out[1 + self.variables()] = self.columns * lost
         out[2 + self.variables()] = found[2]
@@ -189,7 +194,7 @@ class TiedFrame(FrameNumbers, OnRigidGround):
         link, lost = self.stretched(mode, state, 0.0), 0.0
         for i in range(self.link_count):
             row = self.row_of_link(i)
-            law = self.law.with_numbers(part_of(row, NUMBERS))
+            law = self.law_of(row)
             lost += law.power(self.link_state(mode, row), link, self.of_link(i, state))
         return self.columns * lost, self.rocking.powers(rocks, state, slope, ground)[1]
 
@@ -209,7 +214,7 @@ class TiedFrame(FrameNumbers, OnRigidGround):
         link = self.stretched(mode, state, slope[0])
         for i in range(self.link_count):
             row = self.row_of_link(i)
-            law, standing = self.law.with_numbers(part_of(row, NUMBERS)), self.link_state(mode, row)
+            law, standing = self.law_of(row), self.link_state(mode, row)
             for which in range(GUARDS):
                 j = bare.GUARDS + GUARDS * i + which
                 values[j], changes[j] = 1.0, 0.0
@@ -228,7 +233,7 @@ class TiedFrame(FrameNumbers, OnRigidGround):
             return mode - rocks + new
         i = (guard - bare.GUARDS) // GUARDS
         row, link = self.row_of_link(i), self.stretched(mode, state, 0.0)
-        standing, law = self.link_state(mode, row), self.law.with_numbers(part_of(row, NUMBERS))
+        standing, law = self.link_state(mode, row), self.law_of(row)
         which = guard - bare.GUARDS - GUARDS * i
         found = law.switch(which, standing, link, self.of_link(i, state))
         memory[LAST_EVENT] = found.event
@@ -243,7 +248,7 @@ class TiedFrame(FrameNumbers, OnRigidGround):
         link, stored, at_rest = self.stretched(mode, state, 0.0), 0.0, 0.0
         for i in range(self.link_count):
             row = self.row_of_link(i)
-            law = self.law.with_numbers(part_of(row, NUMBERS))
+            law = self.law_of(row)
             stored += law.energy(self.link_state(mode, row), link, self.of_link(i, state))
             at_rest += row[STORED]
         elastic = self.columns * stored
@@ -279,7 +284,7 @@ class TiedFrame(FrameNumbers, OnRigidGround):
         link = self.stretched(mode, state, 0.0)
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.of_link(i, state)
-            law, standing = self.law.with_numbers(part_of(row, NUMBERS)), self.link_state(mode, row)
+            law, standing = self.law_of(row), self.link_state(mode, row)
             j = OWN_COLUMNS + EACH_COLUMNS * i
             out[j], out[j + 1] = law.force(standing, link, own), link.elongation
             out[j + 2] = law.shown(standing)

@@ -12,7 +12,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from rockframe.compiled import Vector, inlined, kernel, put, stretch
+from rockframe.compiled import Vector, inlined, kernel, put, view_of
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.link_rows import (
     MOVED_X,
@@ -83,7 +83,7 @@ class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[repo
     @inlined
     def places(self) -> Vector:
         """Return the room for speeds, loads and accelerations of the block."""
-        return stretch(self.rows, 0, PLACES)
+        return view_of(self.rows, 0, PLACES)
 
     @inlined
     def behind_bodies(self) -> int:

@@ -6,7 +6,7 @@ faster one, by a fifth, but is compiled for each structure of systems and takes 
 
 from typing import Annotated, Any, NamedTuple
 
-from rockframe.compiled import Bound, Vector, inlined, kernel, part_of, put
+from rockframe.compiled import Bound, Vector, inlined, kernel, put, view_from
 from rockframe.dynamics.protocol import Equations, EquationsWithPowers, Ground, Guards, Slope
 from rockframe.solve.workspace import LEFT_LIMIT, RIGHT_LIMIT, WEIGHTS
 
@@ -147,7 +147,7 @@ class Called(NamedTuple):
         self, mode: int, state: Vector, ground: Ground, first: int, out: Vector
     ) -> None:
         """Write accelerations, rates of variables and powers, from an index on."""
-        self.slope.call(mode, state, ground.x, ground.y, part_of(out, first), self.numbers)
+        self.slope.call(mode, state, ground.x, ground.y, view_from(out, first), self.numbers)
 
     @inlined
     def write_guards(

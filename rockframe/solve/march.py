@@ -9,7 +9,7 @@ single step.
 import math
 from typing import Final, NamedTuple, TypeAlias
 
-from rockframe.compiled import Vector, inlined, kernel, part_of
+from rockframe.compiled import Vector, inlined, kernel, view_from
 from rockframe.dynamics.events import FLIGHT
 from rockframe.dynamics.protocol import POWERS
 from rockframe.solve import workspace as at
@@ -244,9 +244,9 @@ def march(
         h = trial if trial > 0.0 else min(requested, scheme.longest)
         span = Span(h, tau / time_step, h / time_step, degree_x, degree_y)
         here, there = half * stride, stride - half * stride
-        state, new = part_of(ends, here), part_of(ends, there)
-        first, last = part_of(ends, here + width), part_of(ends, there + width)
-        before, after = part_of(ends, here + slope_end), part_of(ends, there + slope_end)
+        state, new = view_from(ends, here), view_from(ends, there)
+        first, last = view_from(ends, here + width), view_from(ends, there + width)
+        before, after = view_from(ends, here + slope_end), view_from(ends, there + slope_end)
         done = scheme.make_step(
             system, mode, count, span, ground, state, first, new, last, stages, works
         )

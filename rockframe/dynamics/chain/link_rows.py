@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
-from rockframe.compiled import Vector, inlined, kernel, numbers_in, part_of, stretch
+from rockframe.compiled import Vector, inlined, kernel, numbers_in, view_from, view_of
 from rockframe.dynamics.links import GUARDS, LinkNumbers
 from rockframe.dynamics.pads import ROUNDING
 from rockframe.dynamics.protocol import POWERS, Energies, Ground, Guards, Slope
@@ -174,12 +174,12 @@ class LinkRows(Linkable):
     @inlined
     def row_of_link(self, i: int) -> Vector:
         """Return the row of a link."""
-        return stretch(self.rows, self.behind_bodies() + i * self.link_width(), self.link_width())
+        return view_of(self.rows, self.behind_bodies() + i * self.link_width(), self.link_width())
 
     @inlined
     def law_of(self, row: Vector) -> Any:
         """Return the law of a link, by its row."""
-        return self.law.with_numbers(part_of(row, NUMBERS))
+        return self.law.with_numbers(view_from(row, NUMBERS))
 
     @inlined
     def link_state(self, mode: int, row: Vector) -> int:
@@ -190,18 +190,18 @@ class LinkRows(Linkable):
     def of_link(self, i: int, state: Vector) -> Vector:
         """Return the variables of a link in a state."""
         each = self.law.variables()
-        return stretch(state, 2 * self.coordinates() + i * each, each)
+        return view_of(state, 2 * self.coordinates() + i * each, each)
 
     @inlined
     def lies(self) -> Vector:
         """Return the room for displacements of bodies, and for the loads of links on them."""
-        return stretch(self.rows, self.behind_links(), LIES * self.body_count)
+        return view_of(self.rows, self.behind_links(), LIES * self.body_count)
 
     @inlined
     def slopes(self) -> Vector:
         """Return the room for accelerations, rates of the links' variables, and powers."""
         first = self.behind_links() + LIES * self.body_count
-        return stretch(self.rows, first, self.coordinates() + self.variables() + POWERS)
+        return view_of(self.rows, first, self.coordinates() + self.variables() + POWERS)
 
     @inlined
     def behind_slopes(self) -> int:
@@ -212,7 +212,7 @@ class LinkRows(Linkable):
     @inlined
     def guard_room(self, which: int) -> Vector:
         """Return the room for guards (0) or their rates (1)."""
-        return stretch(self.rows, self.behind_slopes() + which * self.guards(), self.guards())
+        return view_of(self.rows, self.behind_slopes() + which * self.guards(), self.guards())
 
     @inlined
     def columns(self) -> int:
@@ -222,7 +222,7 @@ class LinkRows(Linkable):
     @inlined
     def column_room(self) -> Vector:
         """Return the room for columns."""
-        return stretch(self.rows, self.behind_slopes() + 2 * self.guards(), self.columns())
+        return view_of(self.rows, self.behind_slopes() + 2 * self.guards(), self.columns())
 
     def behind_room(self) -> int:
         """Return the index behind the whole array, that is its length."""

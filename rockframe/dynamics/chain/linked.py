@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rockframe.compiled import Vector, inlined, kernel, numbers_in, stretch
+from rockframe.compiled import Vector, inlined, kernel, numbers_in, view_of
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.link_points import LinkPoints, Moved
 from rockframe.dynamics.chain.link_rows import (
@@ -59,7 +59,7 @@ class Linked(LinkPoints):
             row, own = self.row_of_link(i), self.of_link(i, state)
             law, standing = self.law_of(row), self.link_state(mode, row)
             each = law.variables()
-            rates = stretch(out, self.coordinates() + i * each, each)
+            rates = view_of(out, self.coordinates() + i * each, each)
             if law.idles(standing):
                 for j in range(each):
                     rates[j] = 0.0

@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from rockframe.compiled import Vector, inlined, kernel, numbers_in, part_of, stretch
+from rockframe.compiled import Vector, inlined, kernel, numbers_in, view_from, view_of
 from rockframe.dynamics.base_numbers import BaseNumbers
 from rockframe.dynamics.bed import Bed, Rigid
 from rockframe.dynamics.bodies import DEGREES, InState
@@ -170,18 +170,18 @@ class Rows(InState, CalledBySteps, Lists):
     @inlined
     def places(self) -> Vector:
         """Return the workspace of all bodies: frames, forces and accelerations."""
-        return stretch(self.rows, self.body_count * ROW, self.body_count * PLACES)
+        return view_of(self.rows, self.body_count * ROW, self.body_count * PLACES)
 
     @inlined
     def constraints(self) -> Vector:
         """Return the room for constraints."""
         width = MOST_CONSTRAINTS * CONSTRAINT
-        return stretch(self.rows, self.body_count * (ROW + PLACES), self.body_count * width)
+        return view_of(self.rows, self.body_count * (ROW + PLACES), self.body_count * width)
 
     @inlined
     def slopes(self) -> Vector:
         """Return the room for accelerations and powers."""
-        return stretch(self.rows, self.after_constraints(), DEGREES * self.body_count + POWERS)
+        return view_of(self.rows, self.after_constraints(), DEGREES * self.body_count + POWERS)
 
     @inlined
     def after_constraints(self) -> int:
@@ -192,32 +192,32 @@ class Rows(InState, CalledBySteps, Lists):
     def guard_room(self, which: int) -> Vector:
         """Return the room for guards (0) or their rates (1)."""
         first = self.after_constraints() + self.body_count * (DEGREES + which * GUARDS) + POWERS
-        return stretch(self.rows, first, GUARDS * self.body_count)
+        return view_of(self.rows, first, GUARDS * self.body_count)
 
     @inlined
     def velocity_room(self) -> Vector:
         """Return the room for velocities."""
         first = self.after_constraints() + self.body_count * (DEGREES + 2 * GUARDS) + POWERS
-        return stretch(self.rows, first, DEGREES * self.body_count)
+        return view_of(self.rows, first, DEGREES * self.body_count)
 
     @inlined
     def column_room(self) -> Vector:
         """Return the room for columns."""
         first = self.after_constraints() + self.body_count * (2 * DEGREES + 2 * GUARDS) + POWERS
-        return stretch(self.rows, first, COLUMNS * self.body_count)
+        return view_of(self.rows, first, COLUMNS * self.body_count)
 
     @inlined
     def matrix(self) -> Vector:
         """Return the room for the matrix of the constraints: what each does to each other one."""
         room = 2 * DEGREES + 2 * GUARDS + COLUMNS
         first = self.after_constraints() + self.body_count * room + POWERS
-        return stretch(self.rows, first, (MOST_CONSTRAINTS * self.body_count) ** 2)
+        return view_of(self.rows, first, (MOST_CONSTRAINTS * self.body_count) ** 2)
 
     @inlined
     def solved_room(self) -> Vector:
         """Return the room for the mode, ground acceleration and state of the last solution."""
         first = self.behind_chain() - SOLVED_FOR - 2 * DEGREES * self.body_count
-        return part_of(self.rows, first)
+        return view_from(self.rows, first)
 
     @inlined
     def behind_chain(self) -> int:
@@ -227,9 +227,9 @@ class Rows(InState, CalledBySteps, Lists):
     @inlined
     def on_base(self, k: int) -> OnBase:
         """Return a body on its base."""
-        r = part_of(self.rows, k * ROW)
+        r = view_from(self.rows, k * ROW)
         body = Body(r[0], r[1], r[2], r[3], r[4], r[5], int(r[6]), r[7] != 0.0)
-        n = part_of(r, BASE)
+        n = view_from(r, BASE)
         base = AnyBase(
             int(r[LAW]), n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10], n[11],
         )  # fmt: skip

@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from rockframe.compiled import Vector, inlined, kernel, stretch
+from rockframe.compiled import Vector, inlined, kernel, view_of
 from rockframe.dynamics import events
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION
 from rockframe.dynamics.chain import rows as at
@@ -56,7 +56,7 @@ class SlippingBodies(Chain):
     def column_room(self) -> Vector:
         """Return the room for columns."""
         first = self.behind_chain() + FRICTIONS * self.body_count
-        return stretch(self.rows, first, (COLUMNS + SLIP_COLUMNS) * self.body_count)
+        return view_of(self.rows, first, (COLUMNS + SLIP_COLUMNS) * self.body_count)
 
     @inlined
     def behind_friction(self) -> int:

@@ -18,7 +18,7 @@ from rockframe.compiled import (
     inlined,
     kernel,
     lane_of,
-    stretch,
+    view_of,
 )
 from rockframe.dynamics.events import FLIGHT
 from rockframe.solve import workspace as at
@@ -87,7 +87,7 @@ def equations_in(batch: Batch, row: Vector) -> BoundEquations:
     return BoundEquations(
         stepping=one.stepping, slope=one.slope, powering=one.powering, observing=one.observing,
         guarding=one.guarding, switching=one.switching, stored=one.stored, meaning=one.meaning,
-        numbers=stretch(row, shape.numbers, shape.number_count),
+        numbers=view_of(row, shape.numbers, shape.number_count),
         coordinate_count=one.coordinate_count, variable_count=one.variable_count,
         guard_count=one.guard_count,
     )  # fmt: skip
@@ -96,8 +96,8 @@ def equations_in(batch: Batch, row: Vector) -> BoundEquations:
 @inlined
 def note_mode(batch: Batch, row: Vector) -> None:
     """Write what a run's mode means for its steps to its row."""
-    counters = as_integers(stretch(row, fields.COUNTERS, at.COUNTERS))
-    whole = as_integers(stretch(row, fields.OWN_WHOLE, fields.WHOLES))
+    counters = as_integers(view_of(row, fields.COUNTERS, at.COUNTERS))
+    whole = as_integers(view_of(row, fields.OWN_WHOLE, fields.WHOLES))
     known = known_mode(equations_in(batch, row), counters[at.MODE], batch.w.answers)
     whole[fields.ACTIVE] = known.moving
     whole[fields.FLIES] = int(known.contact == FLIGHT)
@@ -161,36 +161,36 @@ def enter_interval(batch: Batch, lane: int) -> bool:
 def run_alone(batch: Batch, row: Vector) -> int:
     """Run on to the end of the interval, or of the run, by the driver of single runs."""
     shape, equations, w = batch.shape, batch.equations, batch.w
-    counters = as_integers(stretch(row, fields.COUNTERS, at.COUNTERS))
-    whole = as_integers(stretch(row, fields.OWN_WHOLE, fields.WHOLES))
+    counters = as_integers(view_of(row, fields.COUNTERS, at.COUNTERS))
+    whole = as_integers(view_of(row, fields.OWN_WHOLE, fields.WHOLES))
     width, slope, guards = len(w.scratch), len(w.powers), len(w.inside)
     size = equations.coordinate_count
     state, new = shape.state, shape.state + shape.half
     behind = shape.numbers + shape.number_count
     own = Workspace(
-        stretch(row, state, 2 * shape.half),
-        stretch(row, state, width), stretch(row, state + width, slope),
-        stretch(row, state + width + slope, guards),
-        stretch(row, new, width), stretch(row, new + width, slope),
-        stretch(row, new + width + slope, guards),
-        w.stages, w.works, stretch(row, state - width, width),
-        stretch(row, fields.LIMITS, WEIGHTS + size), w.scratch,
+        view_of(row, state, 2 * shape.half),
+        view_of(row, state, width), view_of(row, state + width, slope),
+        view_of(row, state + width + slope, guards),
+        view_of(row, new, width), view_of(row, new + width, slope),
+        view_of(row, new + width + slope, guards),
+        w.stages, w.works, view_of(row, state - width, width),
+        view_of(row, fields.LIMITS, WEIGHTS + size), w.scratch,
         w.scratch_rates, w.inside, w.powers, w.ground, w.answers,
     )  # fmt: skip
-    tolerance = stretch(row, behind + shape.memory, equations.guard_count + 1)
+    tolerance = view_of(row, behind + shape.memory, equations.guard_count + 1)
     pieces = Pieces(
-        stretch(batch.pieces.x, whole[fields.FIRST_X], whole[fields.COUNT_X]),
-        stretch(batch.pieces.y, whole[fields.FIRST_Y], whole[fields.COUNT_Y]),
+        view_of(batch.pieces.x, whole[fields.FIRST_X], whole[fields.COUNT_X]),
+        view_of(batch.pieces.y, whole[fields.FIRST_Y], whole[fields.COUNT_Y]),
     )
     progress = Progress(
-        stretch(row, fields.CONTROLS, at.CONTROLS), stretch(row, fields.CLOCK, at.CLOCK), counters
+        view_of(row, fields.CONTROLS, at.CONTROLS), view_of(row, fields.CLOCK, at.CLOCK), counters
     )
     counters[at.LAST_INTERVAL] = counters[at.INTERVAL]
     result = at.MORE_ROOM
     while result == at.MORE_ROOM:  # events are counted, and not kept
         counters[at.EVENTS] = 0
         result = run_on(
-            equations_in(batch, row), tolerance, stretch(row, behind, shape.memory), pieces,
+            equations_in(batch, row), tolerance, view_of(row, behind, shape.memory), pieces,
             progress, batch.output, batch.events, own,
         )  # fmt: skip
     return result
@@ -200,9 +200,9 @@ def run_alone(batch: Batch, row: Vector) -> int:
 def return_to_lane(batch: Batch, row: Vector, lane: int, everything: bool) -> None:
     """Copy a run that has paused into a lane: everything, or only fields that have changed."""
     shape = batch.shape
-    counters = as_integers(stretch(row, fields.COUNTERS, at.COUNTERS))
-    whole = as_integers(stretch(row, fields.OWN_WHOLE, fields.WHOLES))
-    controls = stretch(row, fields.CONTROLS, at.CONTROLS)
+    counters = as_integers(view_of(row, fields.COUNTERS, at.COUNTERS))
+    whole = as_integers(view_of(row, fields.OWN_WHOLE, fields.WHOLES))
+    controls = view_of(row, fields.CONTROLS, at.CONTROLS)
     note_mode(batch, row)
     intervals = max(whole[fields.COUNT_X], whole[fields.COUNT_Y])
     row[fields.OWN + fields.LENGTH] = interval_length(counters[at.INTERVAL], intervals, controls)
@@ -223,25 +223,25 @@ def start_next_run(batch: Batch, lane: int) -> None:
         k = batch.taken[LANES]
         batch.taken[LANES] += 1
         batch.taken[lane] = k
-        row = stretch(batch.rows, k * shape.width, shape.width)
+        row = view_of(batch.rows, k * shape.width, shape.width)
         result = run_alone(batch, row)
         if result == at.PAUSED:
             return_to_lane(batch, row, lane, True)
             return
-        as_integers(stretch(row, fields.OWN_WHOLE, fields.WHOLES))[fields.STATUS] = result
+        as_integers(view_of(row, fields.OWN_WHOLE, fields.WHOLES))[fields.STATUS] = result
 
 
 @kernel
 def continue_alone(batch: Batch, lane: int) -> None:
     """Run a lane's run alone to the end of its interval; start another one if it ends there."""
     shape = batch.shape
-    row = stretch(batch.rows, batch.taken[lane] * shape.width, shape.width)
+    row = view_of(batch.rows, batch.taken[lane] * shape.width, shape.width)
     copy_to_row(batch, row, lane, 0, shape.state + shape.half)
     result = run_alone(batch, row)
     if result == at.PAUSED:
         return_to_lane(batch, row, lane, False)
         return
-    as_integers(stretch(row, fields.OWN_WHOLE, fields.WHOLES))[fields.STATUS] = result
+    as_integers(view_of(row, fields.OWN_WHOLE, fields.WHOLES))[fields.STATUS] = result
     start_next_run(batch, lane)
 
 

@@ -21,9 +21,9 @@ from rockframe.compiled import (
     inlined,
     kernel,
     numbers_in,
-    part_of,
     put,
-    stretch,
+    view_from,
+    view_of,
 )
 
 pytestmark = [
@@ -107,8 +107,8 @@ def tabulate(
         if arrays.values[i] < 0.0:
             found += 1
     put(pair.all_own(), 2, out)
-    out[0] = float(len(stretch(out, 2, 3))) + part_of(out, 3)[0]
-    out[1] = stretch(out, 2, 3)[1]
+    out[0] = float(len(view_of(out, 2, 3))) + view_from(out, 3)[0]
+    out[1] = view_of(out, 2, 3)[1]
     arrays.counts[0] += len(out)
     return found
 
