@@ -15,22 +15,22 @@ import numpy as np
 from rockframe.compiled import Vector, inlined, kernel, put, view_of
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.link_rows import (
-    MOVED_X,
-    MOVED_Y,
-    OWN_RATE,
-    OWN_SINE,
-    OWN_VERSINE,
+    BODY_ROTATION_RATE,
+    BODY_SINE,
+    BODY_VERSINE,
+    DISPLACEMENT_X,
+    DISPLACEMENT_Y,
     ChainLink,
 )
-from rockframe.dynamics.chain.linked import Linked, rows_of_links, with_room
+from rockframe.dynamics.chain.linked import LinkMechanics, link_law_and_rows, with_workspace
 from rockframe.dynamics.chain.model import (
-    columns_of_ties,
-    links_shown,
-    rounding_of_ties,
-    scales_of_links,
-    tie_tolerance,
+    link_columns,
+    link_force_rounding,
+    link_guard_tolerance,
+    link_scales,
+    visible_links,
 )
-from rockframe.dynamics.chain.rows import PLACES
+from rockframe.dynamics.chain.rows import BODY_STRIDE
 from rockframe.dynamics.protocol import ContactModel, Energies, Ground, Guards, Slope, Start
 from rockframe.dynamics.slide_motion import (
     COLUMNS,
@@ -75,38 +75,38 @@ class TiedNumbers(NamedTuple):
     rows: Vector  # workspace of the block; then rows of the links and their workspace
 
 
-class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[reportGeneralTypeIssues]
+class TiedSlideRock(TiedNumbers, LinkMechanics, SlideSwitches):  # pyright: ignore[reportGeneralTypeIssues]
     """A block on rigid ground with friction and links, per unit mass: a system."""
 
     __slots__ = ()
 
     @inlined
-    def places(self) -> Vector:
+    def workspace(self) -> Vector:
         """Return the room for speeds, loads and accelerations of the block."""
-        return view_of(self.rows, 0, PLACES)
+        return view_of(self.rows, 0, BODY_STRIDE)
 
     @inlined
-    def behind_bodies(self) -> int:
+    def bodies_end(self) -> int:
         """Return the index behind the workspace of the block."""
-        return PLACES
+        return BODY_STRIDE
 
     @inlined
-    def own_guards(self) -> int:
+    def body_guard_count(self) -> int:
         """Return the number of guards of the block."""
         return GUARDS
 
     @inlined
-    def own_columns(self) -> int:
+    def body_column_count(self) -> int:
         """Return the number of columns of the block."""
         return OWN_COLUMNS
 
     @inlined
-    def link_place(self) -> int:
+    def link_event_index(self) -> int:
         """Return the index in the memory of the last event's link."""
         return LINK_PLACE
 
     @inlined
-    def begin_event(self, memory: Vector) -> None:
+    def reset_event(self, memory: Vector) -> None:
         """Reset the memory of the last event: only its link, which is set elsewhere."""
 
     @inlined
@@ -115,33 +115,36 @@ class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[repo
         return mode < MODES and self.begins_idle != 0.0
 
     @kernel
-    def lay(self, mode: int, state: Vector, room: Vector) -> None:
+    def write_poses(self, mode: int, state: Vector, workspace: Vector) -> None:
         """Write displacement, rotation and velocity of the block."""
-        lies, side = self.lies(), self.side(self.bears_in(mode))
+        poses, side = self.poses(), self.side(self.bears_in(mode))
         sine, cosine = sine_cosine(state[ROTATION])
         lacks = versine(sine, cosine)
         away = side * self.distance(side)
-        lies[MOVED_X] = state[SLIP] + self.height * sine + away * lacks
-        lies[MOVED_Y] = state[RISE] + away * sine - self.height * lacks
-        lies[OWN_SINE], lies[OWN_VERSINE] = sine, lacks
-        lies[OWN_RATE] = state[SIZE + ROTATION]
-        room[at.SPEED_X], room[at.SPEED_Y] = self.speeds(mode, state)
+        poses[DISPLACEMENT_X] = state[SLIP] + self.height * sine + away * lacks
+        poses[DISPLACEMENT_Y] = state[RISE] + away * sine - self.height * lacks
+        poses[BODY_SINE], poses[BODY_VERSINE] = sine, lacks
+        poses[BODY_ROTATION_RATE] = state[SIZE + ROTATION]
+        workspace[at.SPEED_X], workspace[at.SPEED_Y] = self.speeds(mode, state)
 
     @inlined
-    def set_out(self, mode: int, state: Vector, room: Vector) -> None:
+    def write_kinematics_and_poses(self, mode: int, state: Vector, workspace: Vector) -> None:
         """Write displacement, rotation and velocity of the block, as :meth:`lay`."""
-        self.lay(mode, state, room)
+        self.write_poses(mode, state, workspace)
 
     @inlined
     def pulled(self, mode: int, state: Vector, ground: Ground) -> tuple[Loads, float]:
         """Return loads on the block, :eq:`eq-slide-tied`, and the power that links dissipate."""
         if self.all_idle(mode):
             return Loads(ground.x, self.gravity + ground.y, 0.0), 0.0
-        room = self.places()
-        room[at.LOAD_X] = room[at.LOAD_Y] = room[at.LOAD_MOMENT] = 0.0
-        lost = self.pull(mode, state, room)
-        across, weight = ground.x - room[at.LOAD_X], self.gravity + ground.y - room[at.LOAD_Y]
-        return Loads(across, weight, room[at.LOAD_MOMENT]), lost
+        workspace = self.workspace()
+        workspace[at.LOAD_X] = workspace[at.LOAD_Y] = workspace[at.LOAD_MOMENT] = 0.0
+        lost = self.apply_link_forces(mode, state, workspace)
+        across, weight = (
+            ground.x - workspace[at.LOAD_X],
+            self.gravity + ground.y - workspace[at.LOAD_Y],
+        )
+        return Loads(across, weight, workspace[at.LOAD_MOMENT]), lost
 
     @kernel
     def loads(self, mode: int, state: Vector, ground: Ground) -> Loads:
@@ -173,19 +176,23 @@ class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[repo
     @kernel
     def guards_of_bodies(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
         """Write the guards of the block, and their rates."""
-        values, changes = self.guard_room(0), self.guard_room(1)
+        values, changes = self.guard_workspace(0), self.guard_workspace(1)
         found = self.guards_under(mode, state, slope, self.loads(mode, state, ground))
         put(found.values, 0, values)
         put(found.changes, 0, changes)
         return Guards(values, changes)
 
     @kernel
-    def forces_from(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> None:
+    def forces_from_slope(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> None:
         """Write the acceleration of the block, from a slope."""
-        room = self.places()
-        self.lay(mode, state, room)
+        workspace = self.workspace()
+        self.write_poses(mode, state, workspace)
         sway, rise = self.centre_acceleration(mode, state, slope)
-        room[at.X], room[at.Y], room[at.ROTATION] = sway, rise, slope[ROTATION]
+        (
+            workspace[at.ACCELERATION_X],
+            workspace[at.ACCELERATION_Y],
+            workspace[at.ANGULAR_ACCELERATION],
+        ) = sway, rise, slope[ROTATION]
 
     @inlined
     def switch_body(
@@ -204,8 +211,10 @@ class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[repo
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> Vector:
         """Write motion, reactions and slip of the block, and its displacement for links."""
-        self.set_out(mode, state, self.places())  # links without force are observed, too
-        out = self.column_room()
+        self.write_kinematics_and_poses(
+            mode, state, self.workspace()
+        )  # links without force are observed, too
+        out = self.column_workspace()
         put(self.columns_under(mode, state, slope, self.loads(mode, state, ground)), 0, out)
         return out
 
@@ -213,14 +222,18 @@ class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[repo
 def tied_slide_rock(bare: SlideRock, ties: Sequence[ChainLink], *, mass: float) -> ContactModel:
     """Assemble the model of a block that slides and rocks with links, from its mass [kg]."""
     alone = slide_rock(bare, mass=mass)
-    law, rows = rows_of_links(ties, MODES, 1)
-    filled = np.concatenate([np.zeros(PLACES), *rows])
-    system: TiedSlideRock = with_room(TiedSlideRock(*bare, 1, len(ties), 0.0, law, filled), filled)
+    law, rows = link_law_and_rows(ties, MODES, 1)
+    filled = np.concatenate([np.zeros(BODY_STRIDE), *rows])
+    system: TiedSlideRock = with_workspace(
+        TiedSlideRock(*bare, 1, len(ties), 0.0, law, filled), filled
+    )
     each = [system.law_of(system.row_of_link(i)) for i in range(len(ties))]
     system = system._replace(begins_idle=float(all(one.idles(0) for one in each)))
     upright, at_rest, _ = alone.initial(Start())
     none = np.zeros(system.variables())
-    system.keep_energies(system.start_links(upright, state := np.append(at_rest, none)), state)
+    system.store_rest_energies(
+        system.start_links(upright, state := np.append(at_rest, none)), state
+    )
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:
         mode, state, memory = alone.initial(start)
@@ -230,8 +243,8 @@ def tied_slide_rock(bare: SlideRock, ties: Sequence[ChainLink], *, mass: float) 
     frequency, damping = fastest_pull(bare, ties)
     own_tolerance = alone.guard_tolerance.copy()
     forces = own_tolerance[PRESSING:]
-    own_tolerance[PRESSING:] = np.maximum(forces, rounding_of_ties(ties) / bare.gravity)
-    tied, own = links_shown(ties), alone.columns
+    own_tolerance[PRESSING:] = np.maximum(forces, link_force_rounding(ties) / bare.gravity)
+    tied, own = visible_links(ties), alone.columns
     if bare.static == math.inf:  # no columns of slip where there cannot be any
         own = tuple(
             replace(one, name=f"unused_{one.name}") if one.name in SLIP_COLUMNS else one
@@ -240,9 +253,9 @@ def tied_slide_rock(bare: SlideRock, ties: Sequence[ChainLink], *, mass: float) 
     return replace(
         alone,
         system=system,
-        scales=np.append(alone.scales, scales_of_links(system, ties)),
-        guard_tolerance=np.concatenate([own_tolerance, *map(tie_tolerance, ties)]),
-        columns=(*own, *columns_of_ties(len(ties), tied)),
+        scales=np.append(alone.scales, link_scales(system, ties)),
+        guard_tolerance=np.concatenate([own_tolerance, *map(link_guard_tolerance, ties)]),
+        columns=(*own, *link_columns(len(ties), tied)),
         memory=(*alone.memory, "link_of_event"),
         links=tied,
         selects=True,

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from rockframe.dynamics.chain.rigid import KEPT, RigidChain
+from rockframe.dynamics.chain.rigid import SET_MEMORY, RigidChain
 from rockframe.dynamics.events import (
     OVERTURNING,
     REVERSAL,
@@ -184,7 +184,7 @@ def ambiguities(
 ) -> tuple[dict[str, int], list[str]]:
     """Count changes of contact after which motion on rigid bases is not unique, and say so."""
     events = run.events
-    sets, taken, other = (events.memory[:, model.memory.index(name)] for name in KEPT)
+    sets, taken, other = (events.memory[:, model.memory.index(name)] for name in SET_MEMORY)
     by_force = np.isin(events.kind, (UPLIFT, SEPARATION, SILENT))
     slips = np.isin(events.kind, (SLIP, STICK, REVERSAL))
     impacts = ~by_force & ~slips & ~np.isin(events.kind, (OVERTURNING, TOPPLED))

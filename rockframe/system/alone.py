@@ -119,14 +119,14 @@ class SlidingAloneSetting(AloneSetting):
 
     def contact_model(self) -> ContactModel:
         """Return the equations of slip, rotation and rise: those of a chain of one body."""
-        from rockframe.dynamics.chain.model import AtRest, ChainBody, chain
+        from rockframe.dynamics.chain.model import AtRest, ChainBody, chain_model
 
         body, rest = self.load.rigid_body, None
         if self.leans and self.support.standing.rest is not None:
             stands = self.support.standing.rest[0].state
             rest = [AtRest(stands.rotation, stands.vertical)]
         one = ChainBody(body, self.support.base_numbers, 1.0, 0.0, 0.0)
-        return chain([one], self.body.mass, rest, frictions=[self.friction])
+        return chain_model([one], self.body.mass, rest, frictions=[self.friction])
 
     def slips_of(self, ending: Ending) -> tuple[SlipRange, ...]:
         """Return how far the body slipped."""

@@ -39,7 +39,7 @@ class SlipRange(NamedTuple):
 def chain_slips(setting: "Setting", count: int, ending: Ending) -> tuple[SlipRange, ...]:
     """Return the slips of the `count` highest bodies of a chain."""
     chain = cast("SlippingBodies", setting.compile().system)
-    return tuple(SlipRange(*chain.slips(k, ending)) for k in range(count))
+    return tuple(SlipRange(*chain.slip_range(k, ending)) for k in range(count))
 
 
 @dataclass(frozen=True)

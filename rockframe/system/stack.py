@@ -391,11 +391,11 @@ class StackSetting(Setting):
 
     def contact_model(self) -> ContactModel:
         """Return the equations of stacked bodies."""
-        from rockframe.dynamics.chain.model import chain
+        from rockframe.dynamics.chain.model import chain_model
 
         rest = self._placed_at_rest()
         limits = [whole.overturning_angles for whole in self.wholes]
-        return chain(
+        return chain_model(
             self.links, self.body.mass, rest if self.leans else None, limits, self.chain_ties,
             self._held_height if self.ties and len(self.bodies) == 1 and self.groups else None,
             self.frictions,

@@ -5,8 +5,8 @@ import pytest
 from plainly import plainly
 
 import rockframe as rf
-from rockframe.dynamics.chain.impact import write_corners
-from rockframe.dynamics.chain.motion import load_bodies
+from rockframe.dynamics.chain.impact import write_trial_data
+from rockframe.dynamics.chain.motion import set_inertia_loads
 from rockframe.dynamics.events import EventKind
 from rockframe.errors import AssemblyError, ModelWarning
 from rockframe.system.assembly import assemble
@@ -209,13 +209,13 @@ def test_the_friction_of_each_base_is_told():
 def test_the_energy_that_chooses_among_impacts_is_what_they_lose(corners, slip):
     stack = rf.Stack(STATUE, PLINTH, interfaces=[ground(0.3)])
     system = assemble((stack, ground(0.4))).setting.contact_model().system
-    state, flying = np.zeros(12), system.with_bearing(0, 0, 0)
+    state, flying = np.zeros(12), system.with_bearing_corners(0, 0, 0)
     # the upper body comes down turning, and both slip
     state[6:] = 0.7, -0.4, 0.0, 0.0, slip, -0.5 * slip
     had = system.energies(flying, state).kinetic
-    load_bodies(system, 0.0, 0.0, system.places())
-    write_corners(system, True, state)
+    set_inertia_loads(system, 0.0, 0.0, system.workspace())
+    write_trial_data(system, True, state)
     found = system.try_corners(flying, corners, 0b1111, True, 0.0, state)
-    assert [system.slip_sense(k) for k in range(2)] == [np.sign(slip), -np.sign(slip)]
+    assert [system.trial_sense(k) for k in range(2)] == [np.sign(slip), -np.sign(slip)]
     system.change_velocities(state)
     assert found.loss == pytest.approx(had - system.energies(flying, state).kinetic, rel=1e-12)

@@ -166,7 +166,7 @@ def test_both_ends_that_land_at_once_keep_what_their_restitution_leaves(beside):
         given = {"friction": min(friction, 1e9), "kinetic_friction": min(friction, 0.6)}
         model = rf.System(block, PADS.replace(restitution=0.3, **given)).setting.compile()
         system, (full, rest, memory) = model.system, model.initial(Start())
-        mode, part = system.slipping(full, 0, 1.0), system.on_base(0)
+        mode, part = system.with_slip_sense(full, 0, 1.0), system.on_base(0)
         for slips in (0.0, *rng.normal(size=30)):
             state = rest.copy()
             state[3:] = 0.2 * rng.normal() * (slips != 0.0), -1.0, slips

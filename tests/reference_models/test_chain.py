@@ -10,8 +10,8 @@ from reference_models.stacks.scene import mirrored
 
 import rockframe as rf
 from rockframe.compiled import COMPILED
-from rockframe.dynamics.chain.model import chain_of
-from rockframe.dynamics.chain.rows import COLUMNS, GUARDS, OBSERVED, row_of
+from rockframe.dynamics.chain.model import bare_chain
+from rockframe.dynamics.chain.rows import BASE_COLUMNS, COLUMNS, GUARDS, body_row
 from rockframe.dynamics.coupled.model import system_of
 from rockframe.dynamics.on_base import Mode
 from rockframe.dynamics.pads import CORNER, CORNER_GUARDS
@@ -35,7 +35,7 @@ def pair():
         rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.2),
     )
     both = assemble(parts).setting.bodies()
-    return system_of(*both), chain_of(both)
+    return system_of(*both), bare_chain(both)
 
 
 def standing(rng, base, corners: int, size: int) -> Mode:
@@ -106,7 +106,10 @@ def test_what_is_observed_is_what_two_bodies_show(pair):
     memory = np.random.default_rng(5).normal(size=len(MEMORY) + 1)
     # motion and forces of the block, the cap's motion, the block on the cap, then the bases
     cap = COLUMNS + np.arange(4)
-    bases = [*range(COLUMNS - OBSERVED, COLUMNS - 1), *range(2 * COLUMNS - OBSERVED, 2 * COLUMNS)]
+    bases = [
+        *range(COLUMNS - BASE_COLUMNS, COLUMNS - 1),
+        *range(2 * COLUMNS - BASE_COLUMNS, 2 * COLUMNS),
+    ]
     places = np.array([*range(12), *cap, 12, 13, *bases])
     for state, mode, ours, ground in states(pair):
         slope = by_hand.accelerate(mode, state, ground)
@@ -128,7 +131,7 @@ def test_a_chain_tells_what_it_cannot_carry(pair):
         ).setting.support.base_numbers,
     )
     with pytest.raises(TypeError, match="stands on pads, on a bed or on rigid bases, got tuple"):
-        row_of(body, replace(numbers, law=(1.0,)), 1.0, 0.0, 0.0)
+        body_row(body, replace(numbers, law=(1.0,)), 1.0, 0.0, 0.0)
 
 
 if COMPILED:

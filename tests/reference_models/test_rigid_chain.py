@@ -13,17 +13,17 @@ from rockframe.dynamics.alone import rigid_body
 from rockframe.dynamics.base_numbers import rigid_numbers
 from rockframe.dynamics.bodies import ROTATION
 from rockframe.dynamics.chain import rows as at
-from rockframe.dynamics.chain.impact import attempt, write_corners
-from rockframe.dynamics.chain.model import chain
+from rockframe.dynamics.chain.impact import solve_trial, write_trial_data
+from rockframe.dynamics.chain.model import chain_model
 from rockframe.dynamics.chain.motion import (
-    UNKNOWN,
-    load_along,
-    load_bodies,
-    place_bodies,
-    press_at,
+    NOT_ELIMINATED,
+    add_base_load,
+    add_tangential_load,
+    set_inertia_loads,
+    write_kinematics,
 )
-from rockframe.dynamics.chain.rigid import ADMISSIBLE, TAKEN
-from rockframe.dynamics.chain.rows import PLACES
+from rockframe.dynamics.chain.rigid import ADMISSIBLE_COUNT, CHOSEN_CORNERS
+from rockframe.dynamics.chain.rows import BODY_STRIDE
 from rockframe.dynamics.protocol import HELD_PLACE, IMPACT_LOSS, Ground, Start
 from rockframe.dynamics.vibrations import ChainBody
 from rockframe.solve.accuracy import accuracy_of
@@ -42,7 +42,7 @@ def alone(block):
     setting = assemble((block,)).setting
     law = setting.load.law(setting.body.mass)
     one = ChainBody(law, rigid_numbers(law), 1.0, 0.0, 0.0)
-    return setting, chain([one], setting.body.mass)
+    return setting, chain_model([one], setting.body.mass)
 
 
 def model_of(pair: Pair):
@@ -56,7 +56,7 @@ def model_of(pair: Pair):
             gravity=pair.gravity,
         )  # fmt: skip
         links.append(ChainBody(body, rigid_numbers(body), one.mass / measure, one.above, beside))
-    return chain(links, measure)
+    return chain_model(links, measure)
 
 
 def landing(pair: Pair, place, speed, touching):
@@ -76,23 +76,23 @@ def landing(pair: Pair, place, speed, touching):
     )  # fmt: skip
     weight = {"joint": 1, "ground": 4}
     closed = sum(weight[key] * ENDS[end] for key, some in touching.items() for end in some)
-    flying = system.with_bearing(0, 0, 0)
+    flying = system.with_bearing_corners(0, 0, 0)
     had = system.energies(flying, state).kinetic
     assert 2.0 * had * upper.mass == pytest.approx(pair.masses @ speed**2, rel=1e-11)
     new = system.choose_bearing_corners(flying, closed, 0, 0, state, STILL, memory)
     after = system.energies(new, state).kinetic
     assert memory[IMPACT_LOSS] == pytest.approx(had - after, abs=1e-12 * had)
-    room = system.places()
+    workspace = system.workspace()
     six = [
-        room[k * PLACES + i] if i >= 0 else sum(state[6 + 2 * j] for j in range(k, 2))
+        workspace[k * BODY_STRIDE + i] if i >= 0 else sum(state[6 + 2 * j] for j in range(k, 2))
         for k in (1, 0)
         for i in (at.SPEED_X, at.SPEED_Y, -1)
     ]
     kept = HELD_PLACE + 2
-    taken = int(memory[kept + TAKEN])
+    taken = int(memory[kept + CHOSEN_CORNERS])
     bears = {number: name for name, number in ENDS.items()}
     pattern = Pattern(bears[taken >> 2], bears[taken & 3])
-    return pattern, int(memory[kept + ADMISSIBLE]), np.array(six), after / had
+    return pattern, int(memory[kept + ADMISSIBLE_COUNT]), np.array(six), after / had
 
 
 def test_one_body_is_housners():
@@ -121,7 +121,7 @@ def test_one_body_is_housners():
             integrate(each, start, motion, accuracy_of("reference"), duration=6.0, output_step=0.05)
             for each in (setting.compile(), model)
         )
-        if (ours.events.memory[:, HELD_PLACE + 1 + ADMISSIBLE] != 1.0).any():
+        if (ours.events.memory[:, HELD_PLACE + 1 + ADMISSIBLE_COUNT] != 1.0).any():
             continue  # the corner does not press, and may part: Housner's block is held
         compared += 1
         assert ours.status == housner.status, one
@@ -137,11 +137,11 @@ def test_one_body_is_housners():
 def test_one_body_loses_in_an_impact_what_housners_does(slenderness):
     _, model = alone(rf.Block(width="1 m", height=f"{slenderness} m", mass="1 t"))
     system, state, memory = model.system, np.zeros(6), np.zeros(len(model.memory))
-    mode = system.with_bearing(0, 2, 0)
+    mode = system.with_bearing_corners(0, 2, 0)
     state[3] = -1.0
-    system.hold_contacts(mode, state, memory)
+    system.fix_held_points(mode, state, memory)
     new = system.switch(mode, 0, state, STILL, memory)
-    assert system.bearing(new) == 1
+    assert system.bearing_corners(new) == 1
     expected = 1.0 - 1.5 * math.sin(math.atan(1.0 / slenderness)) ** 2
     assert state[3] == pytest.approx(-expected, abs=4e-16)
 
@@ -185,12 +185,12 @@ def test_random_impacts_of_two_blocks():
 def changes():
     """What changes where bodies lie or what loads them."""
     return {
-        "places": lambda system, state, room: place_bodies(system, 0, state, room),
-        "loads": lambda system, state, room: load_bodies(system, 0.1, 0.2, room),
-        "press": lambda system, state, room: press_at(system, 0, 1.0, 0.1, room),
-        "friction": lambda system, state, room: load_along(system, 0, 1.0, room),
-        "levers": lambda system, state, room: write_corners(system, True, state),
-        "forces": lambda system, state, room: system.solve(system.body_count, 0, room),
+        "places": lambda system, state, workspace: write_kinematics(system, 0, state, workspace),
+        "loads": lambda system, state, workspace: set_inertia_loads(system, 0.1, 0.2, workspace),
+        "press": lambda system, state, workspace: add_base_load(system, 0, 1.0, 0.1, workspace),
+        "friction": lambda system, state, workspace: add_tangential_load(system, 0, 1.0, workspace),
+        "levers": lambda system, state, workspace: write_trial_data(system, True, state),
+        "forces": lambda system, state, workspace: system.solve(system.body_count, 0, workspace),
     }
 
 
@@ -199,18 +199,18 @@ def test_what_was_eliminated_is_forgotten_as_places_or_loads_change(change):
     stone, block = rf.RigidGround(friction=0.3), rf.Block(width="1 m", height="1 m", mass="1 t")
     stack = rf.Stack(block, block, interfaces=[stone])
     system = rf.System(stack, stone).assembly.model.system
-    state, room = np.zeros(2 * system.coordinates()), system.places()
-    last = (system.body_count - 1) * PLACES + at.TRIED
-    place_bodies(system, 0, state, room)
-    load_bodies(system, 0.0, 9.8, room)
-    write_corners(system, False, state)
-    attempt(system, 0, 0b1111, 0b1111, False, False, 1e-12, state)
-    assert room[last] != UNKNOWN
-    changes()[change](system, state, room)
-    assert room[last] == UNKNOWN
-    room[(system.body_count - 1) * PLACES + at.SOLVED] = 1.0
-    changes()[change](system, state, room)
-    assert not system.forces_stand(0, state, STILL)
+    state, workspace = np.zeros(2 * system.coordinates()), system.workspace()
+    last = (system.body_count - 1) * BODY_STRIDE + at.TRIAL_CODE
+    write_kinematics(system, 0, state, workspace)
+    set_inertia_loads(system, 0.0, 9.8, workspace)
+    write_trial_data(system, False, state)
+    solve_trial(system, 0, 0b1111, 0b1111, False, False, 1e-12, state)
+    assert workspace[last] != NOT_ELIMINATED
+    changes()[change](system, state, workspace)
+    assert workspace[last] == NOT_ELIMINATED
+    workspace[(system.body_count - 1) * BODY_STRIDE + at.FORCES_VALID] = 1.0
+    changes()[change](system, state, workspace)
+    assert not system.forces_are_valid(0, state, STILL)
 
 
 def column(count):
@@ -225,30 +225,30 @@ def test_forces_stand_for_the_mode_state_and_ground_that_they_were_solved_for_al
     system, standing, state = column(12)
     ground = Ground(0.5, 0.1)
     system.find_forces(standing, state, ground)
-    assert system.forces_stand(standing, state, ground)
+    assert system.forces_are_valid(standing, state, ground)
     slips = system.with_part(standing, 0, system.part_mode(standing, 0)._replace(slides=True))
     moved = state.copy()
     moved[-1] = 1e-12
-    assert not system.forces_stand(slips, state, ground)
-    assert not system.forces_stand(standing, moved, ground)
-    assert not system.forces_stand(standing, state, Ground(0.5, 0.2))
+    assert not system.forces_are_valid(slips, state, ground)
+    assert not system.forces_are_valid(standing, moved, ground)
+    assert not system.forces_are_valid(standing, state, Ground(0.5, 0.2))
     large = 2**60  # beyond which floats do not tell modes apart
     system.find_forces(standing, state, ground)
-    note = system.solved_room()
+    note = system.solved_inputs()
     note[0], note[1] = large >> 32, 0.0
-    assert system.forces_stand(large, state, ground)
-    assert not system.forces_stand(large + 1, state, ground)
+    assert system.forces_are_valid(large, state, ground)
+    assert not system.forces_are_valid(large + 1, state, ground)
 
 
 def test_bodies_that_rest_on_the_ground_are_ground_to_those_above():
     """The motion is that of which all forces are solved for, of one that rocks on two at rest."""
     system, standing, state = column(3)
-    rocks = system.with_bearing(standing, 0b111101, 0)
+    rocks = system.with_bearing_corners(standing, 0b111101, 0)
     state[ROTATION], state[system.coordinates() + ROTATION] = 0.02, -0.3
     ground = Ground(0.7, -0.2)
     every = np.array(system.find_forces(rocks, state, ground))
     found = np.array(system.accelerate(rocks, state, ground))
-    assert not system.forces_stand(rocks, state, ground)
+    assert not system.forces_are_valid(rocks, state, ground)
     assert np.abs(every[: system.coordinates()]).max() > 1.0
     np.testing.assert_allclose(found, every, rtol=1e-12, atol=1e-12)
     at_rest = np.array(system.accelerate(standing, state * 0.0, ground))

@@ -10,7 +10,7 @@ import rockframe as rf
 from rockframe.dynamics.alone import rigid_body
 from rockframe.dynamics.base_numbers import pads_numbers
 from rockframe.dynamics.chain.link_rows import GROUND, ChainLink
-from rockframe.dynamics.chain.model import AtRest, chain
+from rockframe.dynamics.chain.model import AtRest, chain_model
 from rockframe.dynamics.events import EventKind
 from rockframe.dynamics.links import LinkNumbers, Tie
 from rockframe.dynamics.protocol import Start
@@ -103,7 +103,7 @@ def by_package(scene: dict):
                 LinkNumbers(law, k, one["damping"], (1e-3,)),
             )
         )  # fmt: skip
-    model = chain([ChainBody(body, base, 1.0, h, 0.0)], 1.0, [AtRest(0.0, 0.0)], (), links)
+    model = chain_model([ChainBody(body, base, 1.0, h, 0.0)], 1.0, [AtRest(0.0, 0.0)], (), links)
     motion = rf.GroundMotion.from_arrays(
         (np.array(scene["motion"]), "m/s^2"), time_step=f"{TIME_STEP} s"
     )

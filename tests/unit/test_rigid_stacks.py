@@ -11,7 +11,7 @@ from plainly import plainly
 
 import rockframe as rf
 from rockframe.dynamics.chain import rows as at
-from rockframe.dynamics.chain.impact import Near, next_set
+from rockframe.dynamics.chain.impact import NearbySubsets, next_subset
 from rockframe.dynamics.events import IMPACT, ContactState, EventKind
 from rockframe.dynamics.protocol import IMPACT_LOSS, Ground, Start
 from rockframe.dynamics.switching import end_speed
@@ -334,11 +334,11 @@ def test_a_stack_that_falls_as_one_lands_as_one():
 
 @pytest.mark.parametrize("most", [0, 1, 3, 8])
 def test_sets_near_one_are_found_from_the_highest_down(most):
-    near = Near(0b110110111, 0b010010101, most)
-    found, some = [], next_set(near.closed, near)
+    near = NearbySubsets(0b110110111, 0b010010101, most)
+    found, some = [], next_subset(near.closed, near)
     while some >= 0:
         found.append(some)
-        some = next_set(some - 1, near)
+        some = next_subset(some - 1, near)
     subsets = [one for one in range(near.closed, -1, -1) if one & ~near.closed == 0]
     assert found == [one for one in subsets if (one ^ near.reference).bit_count() <= most]
 
@@ -485,7 +485,7 @@ def test_a_body_upon_one_that_lands_gets_no_more_than_friction_gives(restitution
 
     def velocity(mode, state):
         system.energies(int(mode), state)
-        return np.array([system.places()[one] for one in (at.SPEED_X, at.SPEED_Y)])
+        return np.array([system.workspace()[one] for one in (at.SPEED_X, at.SPEED_Y)])
 
     blows = 0
     for i in np.flatnonzero(events.kind == IMPACT):
@@ -510,7 +510,7 @@ def test_a_short_slip_ends_without_energy_of_what_slips_above(sense, above):
     stack = rf.Stack(STATUE, light, interfaces=[joint], offsets=["0.15 m"])
     model = rf.System(stack, pads, restraint="centre").setting.compile()
     system, (mode, state, memory) = model.system, model.initial(Start())
-    mode = system.slipping(system.slipping(mode, 0, above), 1, sense)
+    mode = system.with_slip_sense(system.with_slip_sense(mode, 0, above), 1, sense)
     rate = system.coordinates() + system.horizontal_of(1)
     state[system.coordinates() + system.horizontal_of(0)], state[rate] = above, 1e-6 * sense
     had = system.energies(mode, state).kinetic

@@ -12,7 +12,7 @@ from rockframe.dynamics.point_law import Viscoelastic
 ON_PADS: Final = 0
 ON_BED: Final = 1
 ON_RIGID: Final = 2  # a bed without stiffness: constraints hold its ends
-BASE_NUMBERS: Final = 12
+MAX_LAW_NUMBERS: Final = 12
 """Numbers of a law, as many as the longest takes, which is that of pads."""
 
 

@@ -10,13 +10,13 @@ from rockframe.compiled import Vector, inlined, kernel, put
 from rockframe.dynamics.base import Guards
 from rockframe.dynamics.bed import RAISED, both_contacts
 from rockframe.dynamics.chain import rows as at
-from rockframe.dynamics.chain.corners import NONE, PULLED, RigidCorners
-from rockframe.dynamics.chain.rows import GUARDS, PLACES
+from rockframe.dynamics.chain.corners import IN_TENSION, NO_CONSTRAINT, RigidCorners
+from rockframe.dynamics.chain.rows import BODY_STRIDE, GUARDS
 from rockframe.dynamics.on_base import Mode
 from rockframe.dynamics.pads import CORNER_GUARDS
 from rockframe.dynamics.protocol import Ground, Slope
 
-OPENING: Final = 1
+RELEASE_GUARD: Final = 1
 """Guard of the fall of a corner that is held without pressing, behind that of its force."""
 
 
@@ -28,30 +28,30 @@ class CornerGuards(RigidCorners):
     @inlined
     def find_corner_forces(self, mode: int, state: Vector, ground: Ground) -> None:
         """Find the forces of corners on rigid bases, unless those in the workspace are valid."""
-        if not self.forces_stand(mode, state, ground):
+        if not self.forces_are_valid(mode, state, ground):
             self.find_forces(mode, state, ground)
 
     @kernel
     def guards_of_bodies(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
         """Write the guards of each body in turn, and their rates."""
-        values, changes = self.guard_room(0), self.guard_room(1)
+        values, changes = self.guard_workspace(0), self.guard_workspace(1)
         self.find_corner_forces(mode, state, ground)
         for k in range(self.body_count):
             if self.is_rigid(k):
                 self.write_corner_guards(k, self.part_mode(mode, k), state, values, changes)
                 self.write_slip_guards(k, mode, state, values, changes)
             elif self.is_slippery(k):
-                self.write_idle(k, values, changes)
+                self.write_inactive_guards(k, values, changes)
                 self.write_slip_guards(k, mode, state, values, changes)
         for k in range(self.body_count):
             standing = self.part_mode(mode, k)
-            if self.is_rigid(k) and standing.contact & PULLED != 0:
+            if self.is_rigid(k) and standing.contact & IN_TENSION != 0:
                 left = self.on_base(k).base.is_held(standing.contact, True)
                 i = GUARDS * k + (0 if left else CORNER_GUARDS)
                 values[i] = -values[i]
                 # it stays held if, released, it would fall, or others would pull or close
-                falls = self.fall_if_let_go(k, left, mode, state, ground)
-                values[i + OPENING] = max(falls, self.most_pull(mode))
+                falls = self.fall_if_released(k, left, mode, state, ground)
+                values[i + RELEASE_GUARD] = max(falls, self.largest_tension(mode))
         slides = self.some_end_slides(mode)
         for k in range(self.body_count):
             if not self.is_rigid(k):
@@ -61,19 +61,24 @@ class CornerGuards(RigidCorners):
         return Guards(values, changes)
 
     @kernel
-    def most_pull(self, mode: int) -> float:
+    def largest_tension(self, mode: int) -> float:
         """Return largest tension in a corner that bears in the last solution, over FORCE_SIZE."""
         most = -math.inf
         for k in range(self.body_count):
-            if self.is_rigid(k) and self.part_mode(mode, k).contact & PULLED == 0:
+            if self.is_rigid(k) and self.part_mode(mode, k).contact & IN_TENSION == 0:
                 for side in range(2):
-                    if self.places()[k * PLACES + at.LEFT_CORNER + side] != NONE:
-                        pull = -self.corner_force(k, side == 0) / self.number(k, at.FORCE_SIZE)
+                    if (
+                        self.workspace()[k * BODY_STRIDE + at.LEFT_CONSTRAINT + side]
+                        != NO_CONSTRAINT
+                    ):
+                        pull = -self.corner_force(k, side == 0) / self.row_value(k, at.FORCE_SCALE)
                         most = max(most, pull)
         return most
 
     @kernel
-    def fall_if_let_go(self, k: int, left: bool, mode: int, state: Vector, ground: Ground) -> float:
+    def fall_if_released(
+        self, k: int, left: bool, mode: int, state: Vector, ground: Ground
+    ) -> float:
         """Return the downward acceleration of a held corner if it were released, over gravity.
 
         Maximum over this corner and those that practically touch their bases but do not bear.
@@ -82,24 +87,24 @@ class CornerGuards(RigidCorners):
         x = self.horizontal_of(lowest)
         held, still = state[x], state[self.coordinates() + x]
         if k == lowest:
-            self.free_lowest(mode, state)
+            self.write_lowest_position(mode, state)
         free = self.with_part(mode, k, Mode(both_contacts(RAISED, RAISED), 0, False))
-        free = self.let_slip_if_amiss(free, state, ground)
+        free = self.with_overcome_friction(free, state, ground)
         for other in range(self.body_count):
             if self.is_rigid(other):
                 rises = self.end_accelerations(other, free, state, ground)
                 for side in range(2):
                     let_go = other == k and left == (side == 0)
-                    if let_go or self.is_near(other, side == 0, -rises[side], free, state):
-                        most = max(most, -rises[side] / self.number(other, at.GRAVITY))
+                    if let_go or self.is_closing(other, side == 0, -rises[side], free, state):
+                        most = max(most, -rises[side] / self.row_value(other, at.GRAVITY))
         self.set_sway(lowest, held, still, state)
         return most
 
     @kernel
-    def is_near(self, k: int, left: bool, fall: float, mode: int, state: Vector) -> bool:
+    def is_closing(self, k: int, left: bool, fall: float, mode: int, state: Vector) -> bool:
         """Whether a corner that does not bear is practically at its base and falls onto it."""
         part, standing = self.on_base(k), self.part_mode(mode, k)
-        line = part.body.base_line_at(self.standing_state(k, standing, state))
+        line = part.body.base_line_at(self.constrained_state(k, standing, state))
         level, speed = line.left, line.left_speed
         if not left:
             level, speed = line.right, line.right_speed
@@ -107,11 +112,11 @@ class CornerGuards(RigidCorners):
         return near and not part.base.is_held(standing.contact, left)
 
     @kernel
-    def throws_down(self, mode: int, state: Vector) -> bool:
+    def has_sinking_corner(self, mode: int, state: Vector) -> bool:
         """Whether a corner that is at its rigid base, but does not bear, moves down."""
         for k in range(self.body_count):
             part, standing = self.on_base(k), self.part_mode(mode, k)
-            line = part.body.base_line_at(self.standing_state(k, standing, state))
+            line = part.body.base_line_at(self.constrained_state(k, standing, state))
             for side in range(2):
                 gap, speed = line.left, line.left_speed
                 if side == 1:
@@ -122,16 +127,16 @@ class CornerGuards(RigidCorners):
         return False
 
     @inlined
-    def free_lowest(self, mode: int, state: Vector) -> None:
+    def write_lowest_position(self, mode: int, state: Vector) -> None:
         """Write place and rate of the lowest body; while held, its state has the held point's."""
         k, x = self.body_count - 1, self.horizontal_of(self.body_count - 1)
         standing = self.part_mode(mode, k)
         if not self.on_base(k).is_free(standing):
-            place, rate = self.sway_at(k, standing, state[x], state)
+            place, rate = self.position_from_pin(k, standing, state[x], state)
             self.set_sway(k, place, rate, state)
 
     @inlined
-    def let_slip_if_amiss(self, mode: int, state: Vector, ground: Ground) -> int:
+    def with_overcome_friction(self, mode: int, state: Vector, ground: Ground) -> int:
         """Return the mode in which bodies slip that friction cannot hold: it holds all here."""
         return mode
 
@@ -140,10 +145,10 @@ class CornerGuards(RigidCorners):
         self, k: int, standing: Mode, state: Vector, values: Vector, changes: Vector
     ) -> None:
         """Write the guards of both corners: the force of one that bears, the gap of another."""
-        part, body = self.on_base(k), self.standing_state(k, standing, state)
-        line, force_size = part.body.base_line_at(body), self.number(k, at.FORCE_SIZE)
+        part, body = self.on_base(k), self.constrained_state(k, standing, state)
+        line, force_size = part.body.base_line_at(body), self.row_value(k, at.FORCE_SCALE)
         flies, resting = part.flies(standing.contact), self.level_corners(k, body)
-        self.write_idle(k, values, changes)
+        self.write_inactive_guards(k, values, changes)
         for side in range(2):
             i = GUARDS * k + CORNER_GUARDS * side
             if part.base.is_held(standing.contact, side == 0):
@@ -160,7 +165,7 @@ class CornerGuards(RigidCorners):
                 values[i], changes[i] = abs(values[i]), 0.0
 
     @inlined
-    def write_idle(self, k: int, values: Vector, changes: Vector) -> None:
+    def write_inactive_guards(self, k: int, values: Vector, changes: Vector) -> None:
         """Write guards of a body that do not fall."""
         for i in range(GUARDS):
             values[GUARDS * k + i], changes[GUARDS * k + i] = 1.0, 0.0

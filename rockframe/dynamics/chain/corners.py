@@ -15,22 +15,22 @@ from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION, VERTICAL
 from rockframe.dynamics.body import PIVOT_CENTRE, PIVOT_LEFT, PIVOT_RIGHT, Attitude, BodyState
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.any_base import ON_RIGID
-from rockframe.dynamics.chain.impact import BOTH, LEFT_ONLY, RIGHT_ONLY, Attempt, attempt
-from rockframe.dynamics.chain.motion import add_constraint, coriolis_normal
-from rockframe.dynamics.chain.rows import CONSTRAINT, PLACES
+from rockframe.dynamics.chain.impact import BOTH, LEFT_ONLY, RIGHT_ONLY, Trial, solve_trial
+from rockframe.dynamics.chain.motion import add_constraint, normal_coriolis
+from rockframe.dynamics.chain.rows import BODY_STRIDE, CONSTRAINT_STRIDE
 from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.on_base import Mode
 from rockframe.dynamics.pads import CORNER
 from rockframe.dynamics.protocol import HELD_PLACE, Ground
 
-NONE: Final = -1.0
+NO_CONSTRAINT: Final = -1.0
 """In place of the number of a constraint."""
-PULLED: Final = CORNER
+IN_TENSION: Final = CORNER
 """Added to the contact of a body whose corner is constrained though its force is one of tension:
 released, it would fall back onto the base immediately."""
-EVERY_LEFT: Final = 0x55555555
+LEFT_CORNERS: Final = 0x55555555
 """The left corners of sixteen bodies, as a set."""
-LEVEL: Final = 1e-13
+REST_TOLERANCE: Final = 1e-13
 """Share of a body's size, or of its speed of fall, below which a corner is at its base."""
 
 
@@ -42,15 +42,15 @@ class RigidCorners(Chain):
     @inlined
     def is_rigid(self, k: int) -> bool:
         """Whether a body stands on a rigid base."""
-        return self.number(k, at.LAW) == ON_RIGID
+        return self.row_value(k, at.LAW) == ON_RIGID
 
     @inlined
-    def band(self) -> int:
+    def half_bandwidth(self) -> int:
         """Return the half-width of the band of the matrix: those farther apart share no body."""
         return 5
 
     @kernel
-    def bearing(self, mode: int) -> int:
+    def bearing_corners(self, mode: int) -> int:
         """Return the set of corners on rigid bases that bear in a mode."""
         found = 0
         for k in range(self.body_count):
@@ -61,22 +61,22 @@ class RigidCorners(Chain):
         return found
 
     @kernel
-    def pulled(self, mode: int) -> int:
+    def tension_corners(self, mode: int) -> int:
         """Return the set of corners that are held in a mode though they do not press."""
-        found, bearing = 0, self.bearing(mode)
+        found, bearing = 0, self.bearing_corners(mode)
         for k in range(self.body_count):
-            if self.is_rigid(k) and self.part_mode(mode, k).contact & PULLED != 0:
+            if self.is_rigid(k) and self.part_mode(mode, k).contact & IN_TENSION != 0:
                 found |= bearing & BOTH << 2 * k
         return found
 
     @inlined
     def bears_alone(self, corners: int, one: int) -> bool:
         """Whether a corner bears without the other one of its body."""
-        even = one & EVERY_LEFT != 0
+        even = one & LEFT_CORNERS != 0
         return corners & (one << 1 if even else one >> 1) == 0
 
     @kernel
-    def with_bearing(self, mode: int, corners: int, pulled: int) -> int:
+    def with_bearing_corners(self, mode: int, corners: int, pulled: int) -> int:
         """Return the mode in which `corners` bear; those in `pulled` are held without pressing."""
         new = mode
         for k in range(self.body_count):
@@ -85,18 +85,18 @@ class RigidCorners(Chain):
                 contact = both_contacts(
                     DOWN if bears & LEFT_ONLY else RAISED, DOWN if bears & RIGHT_ONLY else RAISED
                 )
-                contact += PULLED if pulled >> 2 * k & BOTH != 0 else 0
+                contact += IN_TENSION if pulled >> 2 * k & BOTH != 0 else 0
                 pivot = PIVOT_CENTRE
                 if bears == LEFT_ONLY:
                     pivot = PIVOT_LEFT
                 elif bears == RIGHT_ONLY:
                     pivot = PIVOT_RIGHT
                 new = self.with_part(new, k, Mode(contact, pivot, False))
-                new = self.standing_on(k, bears, new)
+                new = self.with_rigid_slip(k, bears, new)
         return new
 
     @kernel
-    def standing_state(self, k: int, standing: Mode, state: Vector) -> BodyState:
+    def constrained_state(self, k: int, standing: Mode, state: Vector) -> BodyState:
         """Return placement and rates of a body, with those that its contacts prescribe computed."""
         body, part = self.state_of(k, state), self.on_base(k)
         if not self.is_rigid(k) or part.flies(standing.contact):
@@ -116,65 +116,74 @@ class RigidCorners(Chain):
         )  # fmt: skip
 
     @kernel
-    def add_corners(
-        self, k: int, count: int, mode: int, state: Vector, moves: bool, room: Vector, rows: Vector
+    def add_corner_constraints(
+        self,
+        k: int,
+        count: int,
+        mode: int,
+        state: Vector,
+        moves: bool,
+        workspace: Vector,
+        constraints: Vector,
     ) -> int:
         """Add the constraints of corners that bear on a rigid base, :eq:`eq-rigid-corner`."""
-        i, part, standing = k * PLACES, self.on_base(k), self.part_mode(mode, k)
-        room[i + at.LEFT_CORNER] = room[i + at.RIGHT_CORNER] = NONE
+        i, part, standing = k * BODY_STRIDE, self.on_base(k), self.part_mode(mode, k)
+        workspace[i + at.LEFT_CONSTRAINT] = workspace[i + at.RIGHT_CONSTRAINT] = NO_CONSTRAINT
         if not self.is_rigid(k) or part.flies(standing.contact):
             return count
-        body, a = self.standing_state(k, standing, state), i + at.ATTITUDE
-        attitude = Attitude(room[a], room[a + 1], room[a + 2])
+        body, a = self.constrained_state(k, standing, state), i + at.ATTITUDE
+        attitude = Attitude(workspace[a], workspace[a + 1], workspace[a + 2])
         line = part.body.base_line(body, attitude)
         rate = body.angular_velocity if moves else 0.0
         bends = part.body.end_accelerations(attitude, rate, 0.0, 0.0)
         for side in range(2):
             if part.base.is_held(standing.contact, side == 0):
                 lever = line.left_lever if side == 0 else line.right_lever
-                wanted = -coriolis_normal(i, room) - bends[side]
-                add_constraint(self, count, k, 0.0, 1.0, lever, wanted, room, rows)
-                room[i + at.LEFT_CORNER + side] = count
-                sense = self.sense_in(mode, k) if moves else 0.0
-                self.rub(k, count, sense, room[i + at.REACH], False, room, rows)
+                prescribed = -normal_coriolis(i, workspace) - bends[side]
+                add_constraint(self, count, k, 0.0, 1.0, lever, prescribed, workspace, constraints)
+                workspace[i + at.LEFT_CONSTRAINT + side] = count
+                sense = self.sense_or_zero(mode, k) if moves else 0.0
+                self.add_corner_friction(
+                    k, count, sense, workspace[i + at.PIVOT_ARM], False, workspace, constraints
+                )
                 count += 1
         return count
 
     @inlined
-    def slip_sense(self, k: int) -> float:
+    def trial_sense(self, k: int) -> float:
         """Return the sense of slip of a body on its rigid base in the trial at hand: 0, held."""
         return 0.0
 
     @inlined
-    def sense_in(self, mode: int, k: int) -> float:
+    def sense_or_zero(self, mode: int, k: int) -> float:
         """Return the sense of slip of a body on its rigid base in a mode: 0, none slips here."""
         return 0.0
 
     @inlined
-    def rub(
-        self, k: int, which: int, sense: float, reach: float, impulsive: bool, room: Vector,
-        rows: Vector,
+    def add_corner_friction(
+        self, k: int, which: int, sense: float, reach: float, impulsive: bool, workspace: Vector,
+        constraints: Vector,
     ) -> None:  # fmt: skip
         """Add friction to the force of a corner that slips: none slips here."""
 
     @inlined
-    def lost_by_friction(
-        self, k: int, which: int, state: Vector, room: Vector, rows: Vector
+    def friction_loss(
+        self, k: int, which: int, state: Vector, workspace: Vector, constraints: Vector
     ) -> float:
         """Return the energy that friction takes in an impact at a corner that slips: 0."""
         return 0.0
 
     @inlined
-    def standing_on(self, k: int, bears: int, mode: int) -> int:
+    def with_rigid_slip(self, k: int, bears: int, mode: int) -> int:
         """Return the mode in which a body slips on its base, if it does: it does not."""
         return mode
 
     @inlined
-    def forget_slips(self, mode: int, impulsive: bool) -> None:
+    def restore_trial_slips(self, mode: int, impulsive: bool) -> None:
         """Forget which slips were tried: none were."""
 
     @inlined
-    def note_free_slips(self, mode: int, state: Vector) -> None:
+    def write_free_slips(self, mode: int, state: Vector) -> None:
         """Note in which sense bodies that no corner bears would slip: none would."""
 
     @inlined
@@ -184,57 +193,68 @@ class RigidCorners(Chain):
         """Write the guards of friction: there is none here."""
 
     @inlined
-    def let_all_go(self, mode: int, state: Vector, memory: Vector) -> int:
+    def release_all(self, mode: int, state: Vector, memory: Vector) -> int:
         """Let bodies move along deformable bases, of which friction holds them: none does."""
         return mode
 
     @inlined
-    def go_on(self, mode: int, state: Vector, memory: Vector) -> int:
+    def resume_slips(self, mode: int, state: Vector, memory: Vector) -> int:
         """Return the mode in which these slip on, or are held."""
         return mode
 
     @inlined
-    def as_tried(self, mode: int, state: Vector, memory: Vector) -> int:
+    def with_deformable_slips(self, mode: int, state: Vector, memory: Vector) -> int:
         """Return the mode in which these slip as was tried with the corners."""
         return mode
 
     @inlined
-    def hold_as_tried(
-        self, k: int, count: int, standing: Mode, state: Vector, room: Vector, rows: Vector
+    def add_trial_constraint(
+        self,
+        k: int,
+        count: int,
+        standing: Mode,
+        state: Vector,
+        workspace: Vector,
+        constraints: Vector,
     ) -> int:
         """Add the constraint of a body on a deformable base, in a trial of corners."""
-        return self.hold_or_slide(k, count, standing, state, room, rows)
+        return self.add_hold_or_slide(k, count, standing, state, workspace, constraints)
 
     @inlined
     def try_corners(
         self, mode: int, some: int, closed: int, impulsive: bool, noise: float, state: Vector
-    ) -> Attempt:
+    ) -> Trial:
         """Let a set of the closed corners bear, each held against sliding."""
-        return attempt(self, mode, some, closed, False, impulsive, noise, state)
+        return solve_trial(self, mode, some, closed, False, impulsive, noise, state)
 
     @inlined
     def try_all_slips(
         self, mode: int, some: int, closed: int, noise: float, state: Vector
-    ) -> Attempt:
+    ) -> Trial:
         """Try all combinations of slips with a set of closed corners that bear: none slips here."""
-        return Attempt(0, math.inf)
+        return Trial(0, math.inf)
 
     @inlined
-    def try_stops(self, mode: int, some: int, closed: int, noise: float, state: Vector) -> Attempt:
+    def try_stopping_slips(
+        self, mode: int, some: int, closed: int, noise: float, state: Vector
+    ) -> Trial:
         """Try impulses that stop a slip, with a set of corners that bear: none slips here."""
-        return Attempt(0, math.inf)
+        return Trial(0, math.inf)
 
     @inlined
-    def try_standing(self, mode: int, corners: int, state: Vector) -> None:
+    def solve_standing(self, mode: int, corners: int, state: Vector) -> None:
         """Find impulses by which bodies stand on a set of corners, each held against sliding."""
-        attempt(self, mode, corners, corners, False, True, 0.0, state)
+        solve_trial(self, mode, corners, corners, False, True, 0.0, state)
 
     @inlined
-    def stand_still(self, room: Vector, out: Vector) -> None:
+    def complete_solution(self, workspace: Vector, out: Vector) -> None:
         """Set the accelerations of bodies in full contact with a rigid base to exactly zero."""
         for k in range(self.body_count):
-            i = k * PLACES
-            full = room[i + at.LEFT_CORNER] != NONE and room[i + at.RIGHT_CORNER] != NONE
+            i = k * BODY_STRIDE
+            full = (
+                workspace[i + at.LEFT_CONSTRAINT] != NO_CONSTRAINT
+                and workspace[i + at.RIGHT_CONSTRAINT] != NO_CONSTRAINT
+            )
             if self.is_rigid(k) and full:
                 first = BEFORE_HORIZONTAL * k
                 out[first + ROTATION] = out[first + VERTICAL] = 0.0
@@ -243,16 +263,16 @@ class RigidCorners(Chain):
     @kernel
     def corner_force(self, k: int, left: bool) -> float:
         """Return the normal force, or impulse, of a corner on a rigid base in the last solution."""
-        i = k * PLACES + (at.LEFT_CORNER if left else at.RIGHT_CORNER)
-        which = self.places()[i]
-        if which == NONE:
+        i = k * BODY_STRIDE + (at.LEFT_CONSTRAINT if left else at.RIGHT_CONSTRAINT)
+        which = self.workspace()[i]
+        if which == NO_CONSTRAINT:
             return 0.0
-        return float(self.constraints()[int(which) * CONSTRAINT + at.FORCE])
+        return float(self.constraints()[int(which) * CONSTRAINT_STRIDE + at.FORCE])
 
     @kernel
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> Vector:
         """Return accelerations and powers, solved without the bodies at rest on the ground."""
-        moving = self.moving_bodies(mode)
+        moving = self.moving_body_count(mode)
         if moving == self.body_count:
             return self.find_forces(mode, state, ground)
         if moving == 0 and self.variables() == 0:
@@ -260,12 +280,12 @@ class RigidCorners(Chain):
             for i in range(len(out)):
                 out[i] = 0.0
             return out
-        return self.accelerate_first(moving, mode, state, ground)
+        return self.accelerate_bodies(moving, mode, state, ground)
 
     @inlined
-    def moving_bodies(self, mode: int) -> int:
+    def moving_body_count(self, mode: int) -> int:
         """Return how many bodies, from the top, may move: those below rest on the ground."""
-        moving, bearing = self.body_count, self.bearing(mode)
+        moving, bearing = self.body_count, self.bearing_corners(mode)
         for k in range(self.body_count - 1, -1, -1):
             if bearing >> 2 * k & BOTH != BOTH or self.part_mode(mode, k).slides:
                 break
@@ -277,12 +297,14 @@ class RigidCorners(Chain):
         """Return the base's columns in the results: of a rigid one, the forces of its corners."""
         if self.is_rigid(k):
             return self.corner_force(k, True), self.corner_force(k, False), 0.0
-        return self.observed_on(k, standing, body)
+        return self.deformable_base_columns(k, standing, body)
 
     @inlined
-    def sway_at(self, k: int, standing: Mode, held: float, state: Vector) -> tuple[float, float]:
+    def position_from_pin(
+        self, k: int, standing: Mode, held: float, state: Vector
+    ) -> tuple[float, float]:
         """Return place of a body along its base, and its rate, from the place of its held point."""
-        part, body = self.on_base(k), self.standing_state(k, standing, state)
+        part, body = self.on_base(k), self.constrained_state(k, standing, state)
         pin, attitude = part.body.pin(standing.pivot), part.body.attitude(body.rotation)
         reach = part.body.reach(pin, attitude)
         place = held + part.body.about_pin(pin, attitude)
@@ -294,21 +316,21 @@ class RigidCorners(Chain):
         found = 0
         for k in range(self.body_count):
             if self.is_rigid(k):
-                body = self.standing_state(k, self.part_mode(mode, k), state)
+                body = self.constrained_state(k, self.part_mode(mode, k), state)
                 found |= self.level_corners(k, body) << 2 * k
         return found
 
     @inlined
     def closed_corners(self, mode: int, state: Vector) -> int:
         """Return the closed corners: those that bear, and others that touch their base at rest."""
-        return self.bearing(mode) | self.resting_corners(mode, state)
+        return self.bearing_corners(mode) | self.resting_corners(mode, state)
 
     @kernel
     def level_corners(self, k: int, body: BodyState) -> int:
         """Return the set of corners of a body that touch its base and are at rest, bits 1 and 2."""
         law, found = self.on_base(k).body, 0
         line, size = law.base_line_at(body), law.size()
-        level, speed = LEVEL * size, LEVEL * math.sqrt(law.gravity * size)
+        level, speed = REST_TOLERANCE * size, REST_TOLERANCE * math.sqrt(law.gravity * size)
         if abs(line.left) <= level and abs(line.left_speed) <= speed:
             found |= LEFT_ONLY
         if abs(line.right) <= level and abs(line.right_speed) <= speed:
@@ -316,7 +338,7 @@ class RigidCorners(Chain):
         return found
 
     @kernel
-    def land(self, k: int, left: bool, standing: Mode, state: Vector) -> int:
+    def move_onto_base(self, k: int, left: bool, standing: Mode, state: Vector) -> int:
         """Move a corner that lands exactly onto its base; give the set that touches then."""
         part, first = self.on_base(k), BEFORE_HORIZONTAL * k
         line = part.body.base_line_at(self.state_of(k, state))
@@ -329,33 +351,33 @@ class RigidCorners(Chain):
         return (LEFT_ONLY if left else RIGHT_ONLY) << 2 * k
 
     @kernel
-    def write_contacts(self, mode: int, state: Vector, memory: Vector) -> None:
+    def project_onto_contacts(self, mode: int, state: Vector, memory: Vector) -> None:
         """Write to the state the coordinates and rates that contacts with rigid bases prescribe."""
         n = self.coordinates()
         for k in range(self.body_count):
             part, standing = self.on_base(k), self.part_mode(mode, k)
             if self.is_rigid(k) and not part.flies(standing.contact):
-                body = self.standing_state(k, standing, state)
+                body = self.constrained_state(k, standing, state)
                 first = BEFORE_HORIZONTAL * k
                 state[first + ROTATION], state[first + VERTICAL] = body.rotation, body.vertical
                 state[n + first + ROTATION] = body.angular_velocity
                 state[n + first + VERTICAL] = body.vertical_velocity
                 if not standing.slides:
-                    place, rate = self.sway_at(k, standing, memory[HELD_PLACE + k], state)
+                    place, rate = self.position_from_pin(k, standing, memory[HELD_PLACE + k], state)
                     self.set_sway(k, place, rate, state)
 
     @kernel
-    def hold_contacts(self, mode: int, state: Vector, memory: Vector) -> None:
+    def fix_held_points(self, mode: int, state: Vector, memory: Vector) -> None:
         """Fix the held points of a mode where they are now; the velocities agree with it."""
         for k in range(self.body_count):
             part, standing = self.on_base(k), self.part_mode(mode, k)
             if self.is_rigid(k) and not part.is_free(standing):
                 pin, place = part.body.pin(standing.pivot), state[self.horizontal_of(k)]
-                attitude = part.body.attitude(self.standing_state(k, standing, state).rotation)
+                attitude = part.body.attitude(self.constrained_state(k, standing, state).rotation)
                 memory[HELD_PLACE + k] = place - part.body.about_pin(pin, attitude)
-        self.write_contacts(mode, state, memory)
-        self.keep_hold(mode, state, memory)
+        self.project_onto_contacts(mode, state, memory)
+        self.store_held_place(mode, state, memory)
 
     @inlined
-    def keep_hold(self, mode: int, state: Vector, memory: Vector) -> None:
+    def store_held_place(self, mode: int, state: Vector, memory: Vector) -> None:
         """Write the place of the lowest held point to the state: nothing reads it here."""

@@ -17,37 +17,37 @@ from rockframe.dynamics.chain.impact import (
     LEFT_ONLY,
     NOISE,
     RIGHT_ONLY,
-    attempt,
-    bearing_corners,
+    find_bearing_corners,
+    solve_trial,
 )
 from rockframe.dynamics.chain.motion import (
-    load_along,
-    load_bodies,
-    place_bodies,
-    press_at,
-    write_relative,
+    add_base_load,
+    add_tangential_load,
+    set_inertia_loads,
+    write_kinematics,
+    write_relative_accelerations,
 )
-from rockframe.dynamics.chain.rows import CONSTRAINT, PLACES
+from rockframe.dynamics.chain.rows import BODY_STRIDE, CONSTRAINT_STRIDE
 from rockframe.dynamics.switching import end_speed
 
-MOST_SHARES: Final = 60
+MAX_BISECTIONS: Final = 60
 """Most steps of a bisection for the share of a blow: the bits of a float, and some."""
-MOST_BLOWS: Final = 1e3
+MAX_LANDING_SCALE: Final = 1e3
 """Largest share of a blow; if more is needed the blow stays as it was found first."""
 
 
-SLIGHT: Final = 1e-9
+SLIP_TOLERANCE: Final = 1e-9
 """Velocity of slip, over the velocities along the base, that counts as none [1]."""
 
 
-class Shares(NamedTuple):
+class LandingScales(NamedTuple):
     """Factors of a blow: `press` of the whole impulse, `along` of its friction beside that [1]."""
 
     press: float
     along: float
 
 
-class Met(NamedTuple):
+class LandingSpeeds(NamedTuple):
     """Velocities as impulses are found again: rise of an end beyond the old one, and slip."""
 
     rises: float
@@ -60,76 +60,82 @@ class RigidImpulses(CornerGuards):
     __slots__ = ()
 
     @kernel
-    def take_answer(self, state: Vector) -> None:
+    def apply_response(self, state: Vector) -> None:
         """Change the velocities by the last response, and add up the impulses of rigid bases."""
-        self.add_slopes(state)
-        room, rows = self.places(), self.constraints()
+        self.add_velocity_changes(state)
+        workspace, constraints = self.workspace(), self.constraints()
         for j in range(self.body_count):
-            i, last = j * PLACES, -1
+            i, last = j * BODY_STRIDE, -1
             for side in range(2):
-                which = int(room[i + at.LEFT_CORNER + side])
+                which = int(workspace[i + at.LEFT_CONSTRAINT + side])
                 if which >= 0:
-                    room[i + at.LEFT_IMPULSE + side] += rows[which * CONSTRAINT + at.FORCE]
-                    self.keep_impulse(j, which, room, rows)
+                    workspace[i + at.LEFT_IMPULSE + side] += constraints[
+                        which * CONSTRAINT_STRIDE + at.FORCE
+                    ]
+                    self.add_constraint_impulse(j, which, workspace, constraints)
                     last = which
             # the constraint along the base comes behind those of the corners
-            if last >= 0 and self.slip_sense(j) == 0.0:
-                self.keep_impulse(j, last + 1, room, rows)
+            if last >= 0 and self.trial_sense(j) == 0.0:
+                self.add_constraint_impulse(j, last + 1, workspace, constraints)
 
     @kernel
-    def keep_impulse(self, k: int, which: int, room: Vector, rows: Vector) -> None:
+    def add_constraint_impulse(
+        self, k: int, which: int, workspace: Vector, constraints: Vector
+    ) -> None:
         """Add the impulse of a rigid base's constraint to the sums of the bodies it acts on."""
-        first = which * CONSTRAINT
-        force, holds = rows[first + at.FORCE], first + at.HOLDS
+        first = which * CONSTRAINT_STRIDE
+        force, holds = constraints[first + at.FORCE], first + at.FORCE_DIRECTION
         for body in range(k, min(k + 2, self.body_count)):
-            i = body * PLACES + at.IMPULSE_X
+            i = body * BODY_STRIDE + at.IMPULSE_X
             for j in range(3):
-                room[i + j] += force * rows[holds + j]
+                workspace[i + j] += force * constraints[holds + j]
             holds += 3
 
     @kernel
     def scale_impulses(self, share: float) -> None:
         """Multiply the impulses of all bases in this event by a factor."""
-        room = self.places()
+        workspace = self.workspace()
         for k in range(self.body_count):
-            for j in range(at.IMPULSES):
-                room[k * PLACES + at.LEFT_IMPULSE + j] *= share
+            for j in range(at.IMPULSE_COUNT):
+                workspace[k * BODY_STRIDE + at.LEFT_IMPULSE + j] *= share
 
     @inlined
-    def must_meet_anew(self, closed: int, mode: int) -> bool:
+    def needs_new_impulses(self, closed: int, mode: int) -> bool:
         """Whether impulses must be found again: a corner pulled, or a closed one did not act."""
-        return self.some_pull() or closed != self.bearing(mode)
+        return self.has_tension_impulse() or closed != self.bearing_corners(mode)
 
     @kernel
-    def some_pull(self) -> bool:
+    def has_tension_impulse(self) -> bool:
         """Whether the impulse of a corner on a rigid base in this event is one of tension."""
-        room, least, all_of_them = self.places(), 0.0, 0.0
+        workspace, least, all_of_them = self.workspace(), 0.0, 0.0
         for k in range(self.body_count):
             for side in range(2):
-                impulse = room[k * PLACES + at.LEFT_IMPULSE + side]
+                impulse = workspace[k * BODY_STRIDE + at.LEFT_IMPULSE + side]
                 least, all_of_them = min(least, impulse), all_of_them + abs(impulse)
         return least < -NOISE * all_of_them
 
     @kernel
     def change_velocities(self, state: Vector) -> None:
         """Change the velocities by the last solution for impulses, which is in the workspace."""
-        room = self.places()
+        workspace = self.workspace()
         for k in range(self.body_count):
-            i = k * PLACES
-            room[i + at.RISE] = room[i + at.SWAY] = room[i + at.FRAME_RATE] = 0.0
-        write_relative(self, room, self.slopes())
-        self.add_slopes(state)
+            i = k * BODY_STRIDE
+            workspace[i + at.NORMAL_RATE] = workspace[i + at.TANGENTIAL_RATE] = workspace[
+                i + at.FRAME_ROTATION_RATE
+            ] = 0.0
+        write_relative_accelerations(self, workspace, self.slopes())
+        self.add_velocity_changes(state)
 
     @inlined
     def note_blow(self, k: int, press: float, moment: float, along: float) -> None:
         """Add to the impulses of a deformable base on its body as an end lands."""
-        room, i = self.places(), k * PLACES
-        room[i + at.BLOW] += press
-        room[i + at.BLOW_MOMENT] += moment
-        room[i + at.BLOW_ALONG] += along
+        workspace, i = self.workspace(), k * BODY_STRIDE
+        workspace[i + at.LANDING_NORMAL] += press
+        workspace[i + at.LANDING_MOMENT] += moment
+        workspace[i + at.LANDING_TANGENTIAL] += along
 
     @inlined
-    def landed(self, k: int, left: bool, mode: int, new: int) -> int:
+    def landed_ends(self, k: int, left: bool, mode: int, new: int) -> int:
         """Return the set of ends that have landed on a deformable base in an event.
 
         Both ends of a body that flew may have landed together.
@@ -140,36 +146,49 @@ class RigidImpulses(CornerGuards):
         return BOTH if both else LEFT_ONLY if left else RIGHT_ONLY
 
     @kernel
-    def take_back(self, k: int, blow: Shares, mode: int, state: Vector) -> None:
+    def undo_impulses(self, k: int, blow: LandingScales, mode: int, state: Vector) -> None:
         """Undo the impulses of rigid bases, and scale the blow on a body to its shares."""
-        room = self.places()
-        place_bodies(self, mode, state, room)
+        workspace = self.workspace()
+        write_kinematics(self, mode, state, workspace)
         for j in range(self.body_count):
-            i = j * PLACES
-            room[i + at.LOAD_X] = -room[i + at.IMPULSE_X]
-            room[i + at.LOAD_Y] = -room[i + at.IMPULSE_Y]
-            room[i + at.LOAD_MOMENT] = -room[i + at.IMPULSE_MOMENT]
-        i, off = k * PLACES, blow.press - 1.0
-        press_at(self, k, off * room[i + at.BLOW], off * room[i + at.BLOW_MOMENT], room)
-        load_along(self, k, (blow.press * blow.along - 1.0) * room[i + at.BLOW_ALONG], room)
-        attempt(self, mode, 0, 0, False, True, 0.0, state)
+            i = j * BODY_STRIDE
+            workspace[i + at.LOAD_X] = -workspace[i + at.IMPULSE_X]
+            workspace[i + at.LOAD_Y] = -workspace[i + at.IMPULSE_Y]
+            workspace[i + at.LOAD_MOMENT] = -workspace[i + at.IMPULSE_MOMENT]
+        i, off = k * BODY_STRIDE, blow.press - 1.0
+        add_base_load(
+            self,
+            k,
+            off * workspace[i + at.LANDING_NORMAL],
+            off * workspace[i + at.LANDING_MOMENT],
+            workspace,
+        )
+        add_tangential_load(
+            self,
+            k,
+            (blow.press * blow.along - 1.0) * workspace[i + at.LANDING_TANGENTIAL],
+            workspace,
+        )
+        solve_trial(self, mode, 0, 0, False, True, 0.0, state)
         self.change_velocities(state)
 
     @kernel
-    def shares_of_blow(self, k: int, ends: int, mode: int, closed: int, state: Vector) -> Shares:
+    def landing_scales(
+        self, k: int, ends: int, mode: int, closed: int, state: Vector
+    ) -> LandingScales:
         """Return the shares of a blow, and of its friction, as the impulses are found again.
 
         The blow is such that one end has the speed that restitution leaves it, and none a higher
         one; its friction does not reverse the slip.
         """
-        room, i = self.places(), k * PLACES
-        if room[i + at.BLOW] <= 0.0 and room[i + at.BLOW_ALONG] == 0.0:
-            return Shares(1.0, 1.0)
-        rubs = self.driven_slip(k, mode, state) <= 0.0
+        workspace, i = self.workspace(), k * BODY_STRIDE
+        if workspace[i + at.LANDING_NORMAL] <= 0.0 and workspace[i + at.LANDING_TANGENTIAL] == 0.0:
+            return LandingScales(1.0, 1.0)
+        rubs = self.slip_along_friction(k, mode, state) <= 0.0
         low, high, share = 0.0, math.inf, 1.0
-        for _ in range(MOST_SHARES):
-            blow = Shares(share, self.share_along(k, rubs, share, mode, closed, state))
-            rises = self.try_blow(k, ends, blow, mode, closed, state).rises
+        for _ in range(MAX_BISECTIONS):
+            blow = LandingScales(share, self.friction_scale(k, rubs, share, mode, closed, state))
+            rises = self.try_landing(k, ends, blow, mode, closed, state).rises
             if rises > 0.0:
                 high = share
             else:
@@ -177,13 +196,13 @@ class RigidImpulses(CornerGuards):
             if rises == 0.0:
                 break
             share = 0.5 * (low + high) if high < math.inf else 2.0 * share
-            if share > MOST_BLOWS:
+            if share > MAX_LANDING_SCALE:
                 low = 1.0
                 break
-        return Shares(low, self.share_along(k, rubs, low, mode, closed, state))
+        return LandingScales(low, self.friction_scale(k, rubs, low, mode, closed, state))
 
     @kernel
-    def share_along(
+    def friction_scale(
         self, k: int, rubs: bool, press: float, mode: int, closed: int, state: Vector
     ) -> float:
         """Return the share of friction beside a share `press` of the blow: it must oppose the slip.
@@ -191,18 +210,18 @@ class RigidImpulses(CornerGuards):
         It is 1 if friction did not oppose the slip in the first solution (`rubs` is false). The
         slip is linear in the share as long as the same corners bear.
         """
-        if not rubs or self.places()[k * PLACES + at.BLOW_ALONG] == 0.0:
+        if not rubs or self.workspace()[k * BODY_STRIDE + at.LANDING_TANGENTIAL] == 0.0:
             return 1.0
         low, high = 0.0, 1.0
-        at_high = self.try_blow(k, 0, Shares(press, high), mode, closed, state).driven
+        at_high = self.try_landing(k, 0, LandingScales(press, high), mode, closed, state).driven
         if at_high <= 0.0:
             return high
-        at_low = self.try_blow(k, 0, Shares(press, low), mode, closed, state).driven
-        for _ in range(MOST_SHARES):
+        at_low = self.try_landing(k, 0, LandingScales(press, low), mode, closed, state).driven
+        for _ in range(MAX_BISECTIONS):
             if at_low >= 0.0:
                 break
             share = low - (high - low) * at_low / (at_high - at_low)
-            found = self.try_blow(k, 0, Shares(press, share), mode, closed, state).driven
+            found = self.try_landing(k, 0, LandingScales(press, share), mode, closed, state).driven
             if found > 0.0:
                 high, at_high, at_low = share, found, 0.5 * at_low
             else:
@@ -210,17 +229,17 @@ class RigidImpulses(CornerGuards):
         return low
 
     @kernel
-    def try_blow(
-        self, k: int, ends: int, blow: Shares, mode: int, closed: int, state: Vector
-    ) -> Met:
+    def try_landing(
+        self, k: int, ends: int, blow: LandingScales, mode: int, closed: int, state: Vector
+    ) -> LandingSpeeds:
         """Return velocities, with impulses found again for shares of a blow; restores the state."""
         part, n, before = self.on_base(k), self.coordinates(), self.velocities(state)
         left, noise_left = end_speed(part, True, self.state_of(k, state))
         right, noise_right = end_speed(part, False, self.state_of(k, state))
-        self.take_back(k, blow, mode, state)
-        place_bodies(self, mode, state, self.places())
-        load_bodies(self, 0.0, 0.0, self.places())
-        bearing_corners(self, mode, closed, 0, closed, 0, state)
+        self.undo_impulses(k, blow, mode, state)
+        write_kinematics(self, mode, state, self.workspace())
+        set_inertia_loads(self, 0.0, 0.0, self.workspace())
+        find_bearing_corners(self, mode, closed, 0, closed, 0, state)
         self.change_velocities(state)
         left_after, more_left = end_speed(part, True, self.state_of(k, state))
         right_after, more_right = end_speed(part, False, self.state_of(k, state))
@@ -231,19 +250,19 @@ class RigidImpulses(CornerGuards):
             rises, least = right_after - right, noise_right + more_right
         if abs(rises) <= least:
             rises = 0.0
-        found = Met(rises, self.driven_slip(k, mode, state))
+        found = LandingSpeeds(rises, self.slip_along_friction(k, mode, state))
         for i in range(n):
             state[n + i] = before[i]
         return found
 
     @kernel
-    def driven_slip(self, k: int, mode: int, state: Vector) -> float:
+    def slip_along_friction(self, k: int, mode: int, state: Vector) -> float:
         """Return the velocity of slip of a body, positive in the sense of its blow's friction."""
         part, body = self.on_base(k), self.state_of(k, state)
         pin = part.body.pin(self.part_mode(mode, k).pivot)
         reach = part.body.reach(pin, part.body.attitude(body.rotation))
         about, sway = reach.rate * body.angular_velocity, body.horizontal_velocity
-        slip, along = sway - about, self.places()[k * PLACES + at.BLOW_ALONG]
-        if along == 0.0 or abs(slip) <= SLIGHT * (abs(sway) + abs(about)):
+        slip, along = sway - about, self.workspace()[k * BODY_STRIDE + at.LANDING_TANGENTIAL]
+        if along == 0.0 or abs(slip) <= SLIP_TOLERANCE * (abs(sway) + abs(about)):
             return 0.0
         return math.copysign(slip, along * slip)

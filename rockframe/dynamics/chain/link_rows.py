@@ -17,34 +17,34 @@ GROUND: Final = -1
 """In place of the number of a body."""
 
 # columns of a row; points are to the right and up from the centre of mass of their body [m]
-ON: Final = 0  # number of the body of the first point, or GROUND
-ON_X: Final = 1
-ON_Y: Final = 2
-TO: Final = 3  # and of the second
-TO_X: Final = 4
-TO_Y: Final = 5
+FIRST_BODY: Final = 0  # number of the body of the first point, or GROUND
+FIRST_X: Final = 1
+FIRST_Y: Final = 2
+SECOND_BODY: Final = 3  # and of the second
+SECOND_X: Final = 4
+SECOND_Y: Final = 5
 # first point from the second one, as the link is given [m]
-APART_X: Final = 6
-APART_Y: Final = 7
-GIVEN: Final = 8  # distance between them then [m]
+SEPARATION_X: Final = 6
+SEPARATION_Y: Final = 7
+INITIAL_LENGTH: Final = 8  # distance between them then [m]
 NOISE: Final = 9  # rounding noise of the elongation [m]
-STORED: Final = 10  # elastic energy at rest, per reference mass [m^2 s^-2]
+REST_ENERGY: Final = 10  # elastic energy at rest, per reference mass [m^2 s^-2]
 PLACE_VALUE: Final = 11  # factor of its state in the number of the system's mode
-STATES: Final = 12  # number of states, rounded up to a power of two: place values are exact
+STATE_COUNT: Final = 12  # number of states, rounded up to a power of two: place values are exact
 # unit vector of a force of fixed direction; zero for a link that acts along its points
-ALONG_X: Final = 13
-ALONG_Y: Final = 14
-NUMBERS: Final = 15  # first of the numbers of its law
+DIRECTION_X: Final = 13
+DIRECTION_Y: Final = 14
+LAW_NUMBERS: Final = 15  # first of the numbers of its law
 
 # workspace, for each body: its displacement from where it is given, and the loads of its links
-MOVED_X: Final = 0  # displacement of its centre of mass [m]
-MOVED_Y: Final = 1
-OWN_SINE: Final = 2  # of its rotation
-OWN_VERSINE: Final = 3  # 1 - cos of it
-OWN_RATE: Final = 4  # angular velocity [s^-1]
-PULLED_X: Final = 5  # resultant force of its links over the reference mass [m s^-2]
-PULLED_Y: Final = 6
-LIES: Final = 7  # numbers of each body
+DISPLACEMENT_X: Final = 0  # displacement of its centre of mass [m]
+DISPLACEMENT_Y: Final = 1
+BODY_SINE: Final = 2  # of its rotation
+BODY_VERSINE: Final = 3  # 1 - cos of it
+BODY_ROTATION_RATE: Final = 4  # angular velocity [s^-1]
+LINK_FORCE_X: Final = 5  # resultant force of its links over the reference mass [m s^-2]
+LINK_FORCE_Y: Final = 6
+POSE_STRIDE: Final = 7  # numbers of each body
 
 LINK_COLUMNS: Final = 3
 """Columns of each link in the results: force, elongation and state."""
@@ -69,7 +69,7 @@ class ChainLink(NamedTuple):
         return math.hypot(*self.apart) + math.hypot(*self.on_point) + math.hypot(*self.to_point)
 
 
-class LinkedLists(NamedTuple):
+class LinkedChainNumbers(NamedTuple):
     """The numbers of a chain with links."""
 
     body_count: int
@@ -95,31 +95,31 @@ class Linkable:
             """Return the number of coordinates that move in a mode."""
             raise NotImplementedError
 
-        def places(self) -> Vector:
+        def workspace(self) -> Vector:
             """Return the workspace of all bodies: places, velocities, loads and accelerations."""
             raise NotImplementedError
 
-        def behind_bodies(self) -> int:
+        def bodies_end(self) -> int:
             """Return the index behind rows and workspace of the bodies."""
             raise NotImplementedError
 
-        def own_guards(self) -> int:
+        def body_guard_count(self) -> int:
             """Return the number of guards of all bodies."""
             raise NotImplementedError
 
-        def own_columns(self) -> int:
+        def body_column_count(self) -> int:
             """Return the number of columns of all bodies and their bases."""
             raise NotImplementedError
 
-        def lay(self, mode: int, state: Vector, room: Vector) -> None:
+        def write_poses(self, mode: int, state: Vector, workspace: Vector) -> None:
             """Write displacements and rotations of bodies; `place_bodies` must have run before."""
             raise NotImplementedError
 
-        def set_out(self, mode: int, state: Vector, room: Vector) -> None:
+        def write_kinematics_and_poses(self, mode: int, state: Vector, workspace: Vector) -> None:
             """Write places, displacements and velocities of all bodies."""
             raise NotImplementedError
 
-        def forces_from(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> None:
+        def forces_from_slope(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> None:
             """Write the accelerations of all bodies, from a slope."""
             raise NotImplementedError
 
@@ -135,11 +135,11 @@ class Linkable:
             """Carry out the switch that a guard of a body calls for; return the new mode."""
             raise NotImplementedError
 
-        def begin_event(self, memory: Vector) -> None:
+        def reset_event(self, memory: Vector) -> None:
             """Reset the memory of the last event."""
             raise NotImplementedError
 
-        def link_place(self) -> int:
+        def link_event_index(self) -> int:
             """Return the index, in the memory, of the number of the last event's link."""
             raise NotImplementedError
 
@@ -162,71 +162,73 @@ class LinkRows(Linkable):
     law: Any
 
     @inlined
-    def link_width(self) -> int:
+    def link_row_length(self) -> int:
         """Return the length of the row of a link."""
-        return NUMBERS + self.law.number_count()
+        return LAW_NUMBERS + self.law.number_count()
 
     @inlined
-    def behind_links(self) -> int:
+    def links_end(self) -> int:
         """Return the index behind the rows of links."""
-        return self.behind_bodies() + self.link_count * self.link_width()
+        return self.bodies_end() + self.link_count * self.link_row_length()
 
     @inlined
     def row_of_link(self, i: int) -> Vector:
         """Return the row of a link."""
-        return view_of(self.rows, self.behind_bodies() + i * self.link_width(), self.link_width())
+        return view_of(
+            self.rows, self.bodies_end() + i * self.link_row_length(), self.link_row_length()
+        )
 
     @inlined
     def law_of(self, row: Vector) -> Any:
         """Return the law of a link, by its row."""
-        return self.law.with_numbers(view_from(row, NUMBERS))
+        return self.law.with_numbers(view_from(row, LAW_NUMBERS))
 
     @inlined
     def link_state(self, mode: int, row: Vector) -> int:
         """Return the state of a link, by its row."""
-        return mode // int(row[PLACE_VALUE]) % int(row[STATES])
+        return mode // int(row[PLACE_VALUE]) % int(row[STATE_COUNT])
 
     @inlined
-    def of_link(self, i: int, state: Vector) -> Vector:
+    def link_variables(self, i: int, state: Vector) -> Vector:
         """Return the variables of a link in a state."""
         each = self.law.variables()
         return view_of(state, 2 * self.coordinates() + i * each, each)
 
     @inlined
-    def lies(self) -> Vector:
+    def poses(self) -> Vector:
         """Return the room for displacements of bodies, and for the loads of links on them."""
-        return view_of(self.rows, self.behind_links(), LIES * self.body_count)
+        return view_of(self.rows, self.links_end(), POSE_STRIDE * self.body_count)
 
     @inlined
     def slopes(self) -> Vector:
         """Return the room for accelerations, rates of the links' variables, and powers."""
-        first = self.behind_links() + LIES * self.body_count
+        first = self.links_end() + POSE_STRIDE * self.body_count
         return view_of(self.rows, first, self.coordinates() + self.variables() + POWERS)
 
     @inlined
-    def behind_slopes(self) -> int:
+    def slopes_end(self) -> int:
         """Return the index behind the room for slopes."""
-        lies = LIES * self.body_count + self.coordinates()
-        return self.behind_links() + lies + self.variables() + POWERS
+        lies = POSE_STRIDE * self.body_count + self.coordinates()
+        return self.links_end() + lies + self.variables() + POWERS
 
     @inlined
-    def guard_room(self, which: int) -> Vector:
+    def guard_workspace(self, which: int) -> Vector:
         """Return the room for guards (0) or their rates (1)."""
-        return view_of(self.rows, self.behind_slopes() + which * self.guards(), self.guards())
+        return view_of(self.rows, self.slopes_end() + which * self.guards(), self.guards())
 
     @inlined
     def columns(self) -> int:
         """Return the number of columns."""
-        return self.own_columns() + LINK_COLUMNS * self.link_count + 1
+        return self.body_column_count() + LINK_COLUMNS * self.link_count + 1
 
     @inlined
-    def column_room(self) -> Vector:
+    def column_workspace(self) -> Vector:
         """Return the room for columns."""
-        return view_of(self.rows, self.behind_slopes() + 2 * self.guards(), self.columns())
+        return view_of(self.rows, self.slopes_end() + 2 * self.guards(), self.columns())
 
-    def behind_room(self) -> int:
+    def array_length(self) -> int:
         """Return the index behind the whole array, that is its length."""
-        return self.behind_slopes() + 2 * self.guards() + self.columns()
+        return self.slopes_end() + 2 * self.guards() + self.columns()
 
     @kernel
     def variables(self) -> int:
@@ -236,16 +238,16 @@ class LinkRows(Linkable):
     @kernel
     def guards(self) -> int:
         """Return the number of guards, of each body and then of each link in turn."""
-        return self.own_guards() + GUARDS * self.link_count
+        return self.body_guard_count() + GUARDS * self.link_count
 
     @kernel
     def modes(self) -> int:
         """Return the number of modes; some of these numbers do not occur."""
         last = self.row_of_link(self.link_count - 1)
-        return int(last[PLACE_VALUE] * last[STATES])
+        return int(last[PLACE_VALUE] * last[STATE_COUNT])
 
 
-def numbers_of_link(link: ChainLink, law: Any, value: int) -> Vector:
+def link_row(link: ChainLink, law: Any, value: int) -> Vector:
     """Return the row of a link; `value` is the place value of its state in the system's mode.
 
     `law` is the law of the class of all links, with the numbers of this link.
@@ -253,12 +255,12 @@ def numbers_of_link(link: ChainLink, law: Any, value: int) -> Vector:
     apart, reach = math.hypot(*link.apart), math.hypot(*link.on_point) + math.hypot(*link.to_point)
     geometry = (
         link.on, *link.on_point, link.to, *link.to_point, *link.apart, apart,
-        ROUNDING * (apart + reach), 0.0, value, room_of_states(link.numbers.law.states()),
+        ROUNDING * (apart + reach), 0.0, value, padded_state_count(link.numbers.law.states()),
         *link.along,
     )  # fmt: skip
     return np.array([*geometry, *numbers_in(law)], dtype=np.float64)
 
 
-def room_of_states(states: int) -> int:
+def padded_state_count(states: int) -> int:
     """Return the least power of two that counts all states."""
     return 1 << max(states - 1, 0).bit_length()

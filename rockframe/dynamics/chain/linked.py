@@ -10,25 +10,25 @@ import numpy as np
 
 from rockframe.compiled import Vector, inlined, kernel, numbers_in, view_of
 from rockframe.dynamics.chain import rows as at
-from rockframe.dynamics.chain.link_points import LinkPoints, Moved
+from rockframe.dynamics.chain.link_points import DisplacedPoint, LinkPoints
 from rockframe.dynamics.chain.link_rows import (
-    ALONG_X,
-    ALONG_Y,
+    DIRECTION_X,
+    DIRECTION_Y,
+    FIRST_BODY,
     GROUND,
-    LIES,
     LINK_COLUMNS,
-    ON,
+    LINK_FORCE_X,
+    LINK_FORCE_Y,
     PLACE_VALUE,
-    PULLED_X,
-    PULLED_Y,
-    STATES,
-    STORED,
-    TO,
+    POSE_STRIDE,
+    REST_ENERGY,
+    SECOND_BODY,
+    STATE_COUNT,
     ChainLink,
-    numbers_of_link,
-    room_of_states,
+    link_row,
+    padded_state_count,
 )
-from rockframe.dynamics.chain.rows import PLACES
+from rockframe.dynamics.chain.rows import BODY_STRIDE
 from rockframe.dynamics.links import GUARDS
 from rockframe.dynamics.protocol import (
     LAST_EVENT,
@@ -43,20 +43,20 @@ from rockframe.dynamics.several_laws import kinds_of, one_of
 from rockframe.errors import AssemblyError
 
 
-class Linked(LinkPoints):
+class LinkMechanics(LinkPoints):
     """Loads, guards, events, energies and columns of links. A mixin of systems."""
 
     __slots__ = ()
 
     @kernel
-    def pull(self, mode: int, state: Vector, room: Vector) -> float:
+    def apply_link_forces(self, mode: int, state: Vector, workspace: Vector) -> float:
         """Load all bodies by their links, :eq:`eq-link-loads`; return the power these dissipate."""
-        lies, out, lost = self.lies(), self.slopes(), 0.0
-        self.lay(mode, state, room)
+        poses, out, lost = self.poses(), self.slopes(), 0.0
+        self.write_poses(mode, state, workspace)
         for k in range(self.body_count):
-            lies[k * LIES + PULLED_X] = lies[k * LIES + PULLED_Y] = 0.0
+            poses[k * POSE_STRIDE + LINK_FORCE_X] = poses[k * POSE_STRIDE + LINK_FORCE_Y] = 0.0
         for i in range(self.link_count):
-            row, own = self.row_of_link(i), self.of_link(i, state)
+            row, own = self.row_of_link(i), self.link_variables(i, state)
             law, standing = self.law_of(row), self.link_state(mode, row)
             each = law.variables()
             rates = view_of(out, self.coordinates() + i * each, each)
@@ -64,55 +64,66 @@ class Linked(LinkPoints):
                 for j in range(each):
                     rates[j] = 0.0
                 continue
-            on, to = self.points_of(row, room)
-            link = self.drawn(row, on, to)
+            on, to = self.end_points(row, workspace)
+            link = self.link_kinematics(row, on, to)
             force = law.force(standing, link.stretch, own)
             lost += law.power(standing, link.stretch, own)
-            self.load_point(int(row[ON]), on, -force * link.x, -force * link.y, room, lies)
-            self.load_point(int(row[TO]), to, force * link.x, force * link.y, room, lies)
+            self.add_point_force(
+                int(row[FIRST_BODY]), on, -force * link.x, -force * link.y, workspace, poses
+            )
+            self.add_point_force(
+                int(row[SECOND_BODY]), to, force * link.x, force * link.y, workspace, poses
+            )
             law.rates(standing, link.stretch, own, rates)
         return lost
 
     @inlined
-    def load_point(
-        self, k: int, point: Moved, x: float, y: float, room: Vector, lies: Vector
+    def add_point_force(
+        self, k: int, point: DisplacedPoint, x: float, y: float, workspace: Vector, poses: Vector
     ) -> None:
         """Add a force on a point of a body, or of the ground."""
         if k != GROUND:
-            i, j = k * PLACES, k * LIES
-            room[i + at.LOAD_X] += x
-            room[i + at.LOAD_Y] += y
-            room[i + at.LOAD_MOMENT] += x * point.arm_y - y * point.arm_x
-            lies[j + PULLED_X] += x
-            lies[j + PULLED_Y] += y
+            i, j = k * BODY_STRIDE, k * POSE_STRIDE
+            workspace[i + at.LOAD_X] += x
+            workspace[i + at.LOAD_Y] += y
+            workspace[i + at.LOAD_MOMENT] += x * point.arm_y - y * point.arm_x
+            poses[j + LINK_FORCE_X] += x
+            poses[j + LINK_FORCE_Y] += y
 
     @inlined
-    def pulled_x(self, k: int) -> float:
+    def link_force_x(self, k: int) -> float:
         """Return the last resultant of links on a body, to the right, over the reference mass."""
-        return float(self.lies()[k * LIES + PULLED_X])
+        return float(self.poses()[k * POSE_STRIDE + LINK_FORCE_X])
 
     @inlined
-    def pulled_y(self, k: int) -> float:
+    def link_force_y(self, k: int) -> float:
         """Return the last resultant of links on a body, upwards, over the reference mass."""
-        return float(self.lies()[k * LIES + PULLED_Y])
+        return float(self.poses()[k * POSE_STRIDE + LINK_FORCE_Y])
 
     @kernel
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
         """Return the guards of the bodies, then of each link in turn, and their rates."""
         found, idle = self.guards_of_bodies(mode, state, slope, ground), self.all_idle(mode)
-        room, values, changes = self.places(), self.guard_room(0), self.guard_room(1)
+        workspace, values, changes = (
+            self.workspace(),
+            self.guard_workspace(0),
+            self.guard_workspace(1),
+        )
         if idle and self.moving_in(mode) == 0:
-            for i in range(self.own_guards(), len(values)):
+            for i in range(self.body_guard_count(), len(values)):
                 values[i], changes[i] = 1.0, 0.0
             return found
         if idle:
-            self.set_out(mode, state, room)
+            self.write_kinematics_and_poses(mode, state, workspace)
         else:
-            self.forces_from(mode, state, slope, ground)
+            self.forces_from_slope(mode, state, slope, ground)
         for i in range(self.link_count):
-            row, own = self.row_of_link(i), self.of_link(i, state)
+            row, own = self.row_of_link(i), self.link_variables(i, state)
             law, standing = self.law_of(row), self.link_state(mode, row)
-            link, first = self.watched(row, room, idle), self.own_guards() + GUARDS * i
+            link, first = (
+                self.link_stretch(row, workspace, idle),
+                self.body_guard_count() + GUARDS * i,
+            )
             for which in range(GUARDS):
                 value, change = law.guard(which, standing, link, own)
                 values[first + which], changes[first + which] = value, change
@@ -126,25 +137,25 @@ class Linked(LinkPoints):
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
         """Carry out the switch that a guard calls for; return the new mode."""
-        return self.switch_one(mode, guard, state, ground, memory)
+        return self.switch_body_or_link(mode, guard, state, ground, memory)
 
     @kernel
-    def switch_one(
+    def switch_body_or_link(
         self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
         """Carry out the switch of a body or of a link; return the new mode."""
-        place, first = self.link_place(), self.own_guards()
+        place, first = self.link_event_index(), self.body_guard_count()
         if guard < first:
             memory[place] = 0.0
             return self.switch_body(mode, guard, state, ground, memory)
-        self.begin_event(memory)
+        self.reset_event(memory)
         i = (guard - first) // GUARDS
-        row, own, room = self.row_of_link(i), self.of_link(i, state), self.places()
-        self.set_out(mode, state, room)
-        on, to = self.points_of(row, room)
+        row, own, workspace = self.row_of_link(i), self.link_variables(i, state), self.workspace()
+        self.write_kinematics_and_poses(mode, state, workspace)
+        on, to = self.end_points(row, workspace)
         standing, value = self.link_state(mode, row), int(row[PLACE_VALUE])
         found = self.law_of(row).switch(
-            guard - first - GUARDS * i, standing, self.drawn(row, on, to).stretch, own
+            guard - first - GUARDS * i, standing, self.link_kinematics(row, on, to).stretch, own
         )
         memory[LAST_EVENT] = found.event
         memory[LINK_LOSS] += found.lost
@@ -154,21 +165,21 @@ class Linked(LinkPoints):
     @kernel
     def energies(self, mode: int, state: Vector) -> Energies:
         """Return the energies of all bodies, bases and links."""
-        found, room = self.energies_of_bodies(mode, state), self.places()
-        self.lay(mode, state, room)
+        found, workspace = self.energies_of_bodies(mode, state), self.workspace()
+        self.write_poses(mode, state, workspace)
         gravity, elastic, change = found.gravity, found.elastic, found.from_rest
         for i in range(self.link_count):
-            row, own = self.row_of_link(i), self.of_link(i, state)
-            on, to = self.points_of(row, room)
+            row, own = self.row_of_link(i), self.link_variables(i, state)
+            on, to = self.end_points(row, workspace)
             stored = self.law_of(row).energy(
-                self.link_state(mode, row), self.drawn(row, on, to).stretch, own
+                self.link_state(mode, row), self.link_kinematics(row, on, to).stretch, own
             )
             # loads and walls have a fixed direction; a load has one state, a wall two
-            if (row[ALONG_X] != 0.0 or row[ALONG_Y] != 0.0) and row[STATES] <= 1.0:
+            if (row[DIRECTION_X] != 0.0 or row[DIRECTION_Y] != 0.0) and row[STATE_COUNT] <= 1.0:
                 gravity += stored
             else:
                 elastic += stored
-                change += stored - row[STORED]
+                change += stored - row[REST_ENERGY]
         return Energies(found.kinetic, gravity, elastic, change)
 
     @kernel
@@ -176,47 +187,52 @@ class Linked(LinkPoints):
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> Vector:
         """Return columns of the bodies, then those of each link, and the moment of all links."""
-        out, room = self.observe_bodies(mode, state, slope, ground, memory), self.places()
+        out, workspace = self.observe_bodies(mode, state, slope, ground, memory), self.workspace()
         moment = 0.0
         for i in range(self.link_count):
-            row, own = self.row_of_link(i), self.of_link(i, state)
+            row, own = self.row_of_link(i), self.link_variables(i, state)
             law, standing = self.law_of(row), self.link_state(mode, row)
-            on, to = self.points_of(row, room)
-            link = self.drawn(row, on, to)
-            j, force = self.own_columns() + LINK_COLUMNS * i, law.force(standing, link.stretch, own)
+            on, to = self.end_points(row, workspace)
+            link = self.link_kinematics(row, on, to)
+            j, force = (
+                self.body_column_count() + LINK_COLUMNS * i,
+                law.force(standing, link.stretch, own),
+            )
             out[j], out[j + 1] = force, link.stretch.elongation
             out[j + 2] = law.shown(standing)
-            if row[ON] == 0.0:
+            if row[FIRST_BODY] == 0.0:
                 moment -= force * (link.x * on.arm_y - link.y * on.arm_x)
-            if row[TO] == 0.0:
+            if row[SECOND_BODY] == 0.0:
                 moment += force * (link.x * to.arm_y - link.y * to.arm_x)
         out[self.columns() - 1] = moment
         return out
 
-    def keep_energies(self, mode: int, state: Vector) -> None:
+    def store_rest_energies(self, mode: int, state: Vector) -> None:
         """Write the energies of links at rest to their rows: energies are changes from these."""
-        room = self.places()
-        self.set_out(mode, state, room)
+        workspace = self.workspace()
+        self.write_kinematics_and_poses(mode, state, workspace)
         for i in range(self.link_count):
-            row, own = self.row_of_link(i), self.of_link(i, state)
-            stretched = self.drawn(row, *self.points_of(row, room)).stretch
+            row, own = self.row_of_link(i), self.link_variables(i, state)
+            stretched = self.link_kinematics(row, *self.end_points(row, workspace)).stretch
             law = self.law_of(row)
-            row[STORED] = law.energy(self.link_state(mode, row), stretched, own)
+            row[REST_ENERGY] = law.energy(self.link_state(mode, row), stretched, own)
 
     @kernel
     def start_links(self, mode: int, state: Vector) -> int:
         """Return the mode with the states in which links start; sets their variables."""
-        room = self.places()
-        self.set_out(mode, state, room)
+        workspace = self.workspace()
+        self.write_kinematics_and_poses(mode, state, workspace)
         for i in range(self.link_count):
-            row, own = self.row_of_link(i), self.of_link(i, state)
-            on, to = self.points_of(row, room)
-            found = self.law_of(row).starting(self.drawn(row, on, to).stretch, own)
+            row, own = self.row_of_link(i), self.link_variables(i, state)
+            on, to = self.end_points(row, workspace)
+            found = self.law_of(row).starting(self.link_kinematics(row, on, to).stretch, own)
             mode += int(row[PLACE_VALUE]) * (found - self.link_state(mode, row))
         return mode
 
 
-def rows_of_links(links: Sequence[ChainLink], modes: int, bodies: int) -> tuple[Any, list[Vector]]:
+def link_law_and_rows(
+    links: Sequence[ChainLink], modes: int, bodies: int
+) -> tuple[Any, list[Vector]]:
     """Return one law for all links, whose numbers are placeholders, and the row of each link.
 
     `modes` is the number of modes of the bodies without links.
@@ -226,16 +242,16 @@ def rows_of_links(links: Sequence[ChainLink], modes: int, bodies: int) -> tuple[
     own = [one_of(kinds, law) for law in laws]
     rows, value = list[Vector](), modes
     for one, each in zip(links, own, strict=True):
-        rows.append(numbers_of_link(one, each, value))
-        value *= room_of_states(one.numbers.law.states())
+        rows.append(link_row(one, each, value))
+        value *= padded_state_count(one.numbers.law.states())
     if value > MOST_MODES:
         msg = f"{len(links)} links are more than {bodies} bodies can have"
         raise AssemblyError([msg])
     return own[0].with_numbers(numbers_in(own[0]).tolist()), rows
 
 
-def with_room(system: Any, filled: Vector) -> Any:
+def with_workspace(system: Any, filled: Vector) -> Any:
     """Return a system with its workspace, added as zeros behind the filled part of its array."""
     return system._replace(
-        rows=np.concatenate([filled, np.zeros(system.behind_room() - len(filled))])
+        rows=np.concatenate([filled, np.zeros(system.array_length() - len(filled))])
     )

@@ -20,12 +20,12 @@ from rockframe.dynamics.body import BodyState
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.friction import SlippingChain
 from rockframe.dynamics.chain.link_rows import LINK_MOMENT, ChainLink
-from rockframe.dynamics.chain.linked import Linked
-from rockframe.dynamics.chain.linked_chain import ChainLinks, RestOnGround, linked
-from rockframe.dynamics.chain.rigid import KEPT, RigidChain
+from rockframe.dynamics.chain.linked import LinkMechanics
+from rockframe.dynamics.chain.linked_chain import LinkedBodies, LinkedBodiesOnGround, with_links
+from rockframe.dynamics.chain.rigid import SET_MEMORY, RigidChain
 from rockframe.dynamics.chain.rigid_friction import SlippingRigidChain
-from rockframe.dynamics.chain.rows import GUARDS, OBSERVED, lists_of, row_of
-from rockframe.dynamics.chain.slips import SlippingBodies, coefficients
+from rockframe.dynamics.chain.rows import BASE_COLUMNS, GUARDS, body_row, chain_numbers
+from rockframe.dynamics.chain.slips import SlippingBodies, friction_numbers
 from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.links import GUARDS as GUARDS_OF_LINK
 from rockframe.dynamics.links import SteadyForce
@@ -53,23 +53,25 @@ class AtRest(NamedTuple):
     vertical: float
 
 
-def chain_of(links: Sequence[ChainBody], ties: Sequence[ChainLink] = ()) -> Chain:
+def bare_chain(links: Sequence[ChainBody], ties: Sequence[ChainLink] = ()) -> Chain:
     """Return the system of stacked bodies, from the top down, without their ties."""
     kind = RigidChain if any(is_rigid(one.base) for one in links) else Chain
-    rows = [row_of(one.body, one.base, one.mass, one.top, one.beside) for one in links]
+    rows = [body_row(one.body, one.base, one.mass, one.top, one.beside) for one in links]
     for row in rows:
-        row[at.FORCE_SIZE] = max(row[at.FORCE_SIZE], rounding_of_ties(ties) / ROUNDING_OF_FORCES)
-    return kind(*lists_of(rows))
+        row[at.FORCE_SCALE] = max(
+            row[at.FORCE_SCALE], link_force_rounding(ties) / ROUNDING_OF_FORCES
+        )
+    return kind(*chain_numbers(rows))
 
 
-def slipping(bare: Chain, frictions: Sequence[tuple[float, float, float]]) -> Chain:
+def with_friction(bare: Chain, frictions: Sequence[tuple[float, float, float]]) -> Chain:
     """Return the system `bare`, of bases without slip, with friction on the bases."""
     gives = not isinstance(bare, RigidChain) and all(math.isfinite(one[0]) for one in frictions)
     kind = SlippingChain if gives else SlippingRigidChain
-    return kind(bare.body_count, np.concatenate([bare.rows, coefficients(frictions)]))
+    return kind(bare.body_count, np.concatenate([bare.rows, friction_numbers(frictions)]))
 
 
-def chain(
+def chain_model(
     links: Sequence[ChainBody],
     mass: float,
     rest: Sequence[AtRest] | None = None,
@@ -101,17 +103,17 @@ def chain(
         can slip, infinite for one that cannot.
     """
     top, count = links[0].body, len(links)
-    bare = chain_of(links, ties)
-    alone = slipping(bare, frictions) if frictions else bare
-    system = linked(alone, ties) if ties else alone
+    bare = bare_chain(links, ties)
+    alone = with_friction(bare, frictions) if frictions else bare
+    system = with_links(alone, ties) if ties else alone
     fastest, damping_rate = fastest_vibration(links, ties)
     carried = np.cumsum([one.mass for one in links])
-    starts = Starts(links, rest, held)
-    if isinstance(system, ChainLinks):
+    starts = StartConditions(links, rest, held)
+    if isinstance(system, LinkedBodies):
         mode, state, _ = _initial(system, starts, Start())
-        system.keep_energies(mode, state)
-    tied = links_shown(ties)
-    scales = scales_of_links(system, ties) if isinstance(system, ChainLinks) else []
+        system.store_rest_energies(mode, state)
+    tied = visible_links(ties)
+    scales = link_scales(system, ties) if isinstance(system, LinkedBodies) else []
     return ContactModel(
         name="stack",
         system=system,
@@ -120,7 +122,7 @@ def chain(
         scales=np.append(_scales(links), scales),
         guard_tolerance=np.concatenate([
             *(_tolerance(one.base, on / one.mass) for one, on in zip(links, carried, strict=True)),
-            *(tie_tolerance(one) for one in ties),
+            *(link_guard_tolerance(one) for one in ties),
         ]),
         columns=(
             *(column for k in range(count) for column in _columns(links[k].base, k)),
@@ -129,11 +131,11 @@ def chain(
                 for k in range(count if frictions else 0)
                 for name in ("slip", "slip_velocity")
             ),
-            *columns_of_ties(len(ties), tied),
+            *link_columns(len(ties), tied),
         ),
         memory=(
             *MEMORY, *(f"held_place_of_{k}" for k in range(1, count)), "body_of_event",
-            *(KEPT if isinstance(system, RigidChain) else ()),
+            *(SET_MEMORY if isinstance(system, RigidChain) else ()),
             *(
                 f"{name}_of_{k}"
                 for k in range(count if frictions else 0)
@@ -154,7 +156,7 @@ def chain(
         rounding=None if all(is_rigid(one.base) for one in links) else rounding_at(
             sum(radius_of(one.body) for one in links),
             sum(one.base.settlement for one in links),
-            _answers(links), fastest, len(scales),
+            _unit_responses(links), fastest, len(scales),
         ),
         other_limits=np.array(
             [each for k, both in enumerate(limits, 1) for each in (*both, *_weights(count, k))]
@@ -186,24 +188,24 @@ def _tolerance(base: BaseNumbers, carried: float) -> Vector:
 def _columns(base: BaseNumbers, k: int) -> tuple[Column, ...]:
     """Return the columns of body `k`; those of body 0 have the names of any scene."""
     own = (*BODY_COLUMNS, Column("rotation_on_base"), Column("vertical_displacement_on_base"))
-    unused = tuple(Column(f"unused_{i}") for i in range(OBSERVED - len(base.columns)))
+    unused = tuple(Column(f"unused_{i}") for i in range(BASE_COLUMNS - len(base.columns)))
     return tuple(
         Column(column_of(one.name, k), one.per_mass, one.mass_ratio)
         for one in (*own, *base.columns, *unused)
     )
 
 
-def rounding_of_ties(ties: Sequence[ChainLink]) -> float:
+def link_force_rounding(ties: Sequence[ChainLink]) -> float:
     """Return the noise in forces of corners from the rounding of the lengths of stiff ties."""
     return ROUNDING * sum(one.numbers.stiffness * one.reach for one in ties)
 
 
-def links_shown(ties: Sequence[ChainLink]) -> int:
+def visible_links(ties: Sequence[ChainLink]) -> int:
     """Return the number of links in the results: all but loads, which come last."""
     return sum(not isinstance(one.numbers.law, SteadyForce) for one in ties)
 
 
-def scales_of_links(system: Linked, ties: Sequence[ChainLink]) -> list[float]:
+def link_scales(system: LinkMechanics, ties: Sequence[ChainLink]) -> list[float]:
     """Return typical sizes of the variables of links.
 
     Each link has as many variables as the law that has the most.
@@ -212,12 +214,12 @@ def scales_of_links(system: Linked, ties: Sequence[ChainLink]) -> list[float]:
     return [size for one in ties for size in (*one.numbers.variable_scales, *[1.0] * each)[:each]]
 
 
-def tie_tolerance(tie: ChainLink) -> Vector:
+def link_guard_tolerance(tie: ChainLink) -> Vector:
     """Return the rounding noise of a link's guards."""
     return np.full(GUARDS_OF_LINK, ROUNDING * tie.reach)
 
 
-def columns_of_ties(ties: int, shown: int) -> Iterator[Column]:
+def link_columns(ties: int, shown: int) -> Iterator[Column]:
     """Return the columns of links; users do not see those of loads, which come last."""
     for i in range(ties):
         kind = "restrainer" if i < shown else "unused_load"
@@ -244,7 +246,7 @@ def _scales(links: Sequence[ChainBody]) -> Vector:
     return np.concatenate([sizes, sizes * rates])
 
 
-def _answers(links: Sequence[ChainBody]) -> Vector:
+def _unit_responses(links: Sequence[ChainBody]) -> Vector:
     places = []
     for one in links:
         body = per_own_mass(one)
@@ -252,7 +254,7 @@ def _answers(links: Sequence[ChainBody]) -> Vector:
     return np.array([*places, *np.ones(len(links))])
 
 
-class Starts(NamedTuple):
+class StartConditions(NamedTuple):
     """What the initial state is made from."""
 
     links: Sequence[ChainBody]
@@ -260,7 +262,7 @@ class Starts(NamedTuple):
     held: Callable[[float], float] | None
 
 
-def _placed(highest: OnBase, starts: Starts, start: Start) -> list[AtRest]:
+def _initial_placements(highest: OnBase, starts: StartConditions, start: Start) -> list[AtRest]:
     """Return rotations and heights of all bodies: at rest, but of the highest as `start` says."""
     placed = list(starts.rest or [AtRest(0.0, 0.0)] * len(starts.links))
     if start.rotation is None and start.vertical_displacement is None:
@@ -293,13 +295,13 @@ def _write_start(
     """Write place, velocities and held point of body `k` to state and memory."""
     part, count = system.on_base(k), system.bodies()
     n, i, x = DEGREES * count, BEFORE_HORIZONTAL * k, system.horizontal_of(k)
-    offset = system.number(k, at.BESIDE) if k + 1 < count else 0.0
+    offset = system.row_value(k, at.UPRIGHT_OFFSET) if k + 1 < count else 0.0
     state[i + ROTATION], state[i + VERTICAL] = body.rotation, body.vertical
     state[n + i + ROTATION] = body.angular_velocity
     state[n + i + VERTICAL] = body.vertical_velocity
     memory[HELD_PLACE + k] = pin + offset
     free = part.is_free(standing)
-    moves = isinstance(system, ChainLinks) or k + 1 < count
+    moves = isinstance(system, LinkedBodies) or k + 1 < count
     attitude = part.body.attitude(body.rotation)
     if moves or free:
         state[x] = pin + offset + part.body.about_pin(pin, attitude)
@@ -308,12 +310,12 @@ def _write_start(
         state[n + x] = reach.rate * body.angular_velocity
 
 
-def _initial(system: Chain, starts: Starts, start: Start) -> tuple[int, Vector, Vector]:
+def _initial(system: Chain, starts: StartConditions, start: Start) -> tuple[int, Vector, Vector]:
     """Return mode, state and memory at the start: all at rest but body 0, as `start` says."""
     count = len(starts.links)
     state = np.zeros(2 * DEGREES * count + system.variables())
     memory = np.zeros(len(MEMORY) + count)
-    placed, mode = _placed(system.on_base(0), starts, start), 0
+    placed, mode = _initial_placements(system.on_base(0), starts, start), 0
     for k, one in enumerate(placed):
         moving = k == 0
         body = BodyState(
@@ -330,13 +332,13 @@ def _initial(system: Chain, starts: Starts, start: Start) -> tuple[int, Vector, 
         mode = system.with_part(mode, k, standing)
     if isinstance(system, RigidChain):
         memory = np.concatenate([memory, [1.0, 0.0, 0.0]])
-        system.write_contacts(mode, state, memory)
-    if isinstance(system, RestOnGround):
-        system.keep_hold(mode, state, memory)
+        system.project_onto_contacts(mode, state, memory)
+    if isinstance(system, LinkedBodiesOnGround):
+        system.store_held_place(mode, state, memory)
     if isinstance(system, SlippingBodies):
-        places = [system.point_of(k, mode, state, memory) for k in range(count)]
+        places = [system.contact_point(k, mode, state, memory) for k in range(count)]
         memory = np.concatenate([memory, *([-place, 0.0, 0.0] for place in places)])
-    if isinstance(system, ChainLinks):
+    if isinstance(system, LinkedBodies):
         memory = np.append(memory, 0.0)
         mode = system.start_links(mode, state)
     return mode, state, memory

@@ -11,39 +11,44 @@ from typing import Final
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION, VERTICAL
 from rockframe.dynamics.chain import rows as at
-from rockframe.dynamics.chain.rows import CONSTRAINT, MOST_CONSTRAINTS, PLACES, Rows
+from rockframe.dynamics.chain.rows import (
+    BODY_STRIDE,
+    CONSTRAINT_STRIDE,
+    MAX_CONSTRAINTS,
+    ChainArray,
+)
 from rockframe.dynamics.protocol import Ground
 from rockframe.dynamics.trigonometry import sine_cosine
 
 FREE: Final = 0.0  # in the column HELD of the workspace
 HELD: Final = 1.0
-UNKNOWN: Final = -1.0
+NOT_ELIMINATED: Final = -1.0
 """Code of a trial for a body whose constraints have not been eliminated."""
 
 
 @inlined
-def forget_trial(system: Rows, room: Vector) -> None:
+def reset_elimination(system: ChainArray, workspace: Vector) -> None:
     """Discard what was eliminated: the next solution starts from the beginning."""
-    i = (system.body_count - 1) * PLACES
-    room[i + at.TRIED], room[i + at.SOLVED] = UNKNOWN, 0.0
+    i = (system.body_count - 1) * BODY_STRIDE
+    workspace[i + at.TRIAL_CODE], workspace[i + at.FORCES_VALID] = NOT_ELIMINATED, 0.0
 
 
 @kernel
-def place_bodies(system: Rows, mode: int, state: Vector, room: Vector) -> None:
+def write_kinematics(system: ChainArray, mode: int, state: Vector, workspace: Vector) -> None:
     """Write places and rates of all bodies relative to what they stand on, and velocities."""
-    forget_trial(system, room)
+    reset_elimination(system, workspace)
     count, angle, rate, speed_x, speed_y = system.body_count, 0.0, 0.0, 0.0, 0.0
     below = 0.0  # top of the body below above its centre of mass
     sine, cosine = 0.0, 1.0
     for k in range(count - 1, -1, -1):
-        i = k * PLACES
+        i = k * BODY_STRIDE
         part, standing = system.on_base(k), system.part_mode(mode, k)
-        body = system.standing_state(k, standing, state)
+        body = system.constrained_state(k, standing, state)
         attitude = part.body.attitude(body.rotation)
         reach = part.body.reach(part.body.pin(standing.pivot), attitude)
         free = part.is_free(standing)
-        room[i + at.ATTITUDE], room[i + at.ATTITUDE + 1] = attitude.sine, attitude.cosine
-        room[i + at.ATTITUDE + 2] = attitude.rise
+        workspace[i + at.ATTITUDE], workspace[i + at.ATTITUDE + 1] = attitude.sine, attitude.cosine
+        workspace[i + at.ATTITUDE + 2] = attitude.rise
         sway = body.horizontal_velocity if free else reach.rate * body.angular_velocity
         lowest = k == count - 1
         across = 0.0 if lowest else body.horizontal
@@ -51,35 +56,43 @@ def place_bodies(system: Rows, mode: int, state: Vector, room: Vector) -> None:
         along, normal = sway + arm * rate, body.vertical_velocity - across * rate
         speed_x = speed_x + along * cosine + normal * sine
         speed_y = speed_y - along * sine + normal * cosine
-        room[i + at.SINE], room[i + at.COSINE] = sine, cosine
-        room[i + at.ACROSS], room[i + at.ARM] = across, arm
-        room[i + at.SWAY], room[i + at.RISE] = sway, body.vertical_velocity
-        room[i + at.REACH] = reach.rate
-        room[i + at.FRAME_RATE], room[i + at.RATE] = rate, body.angular_velocity
-        room[i + at.HELD] = FREE if free else HELD
-        room[i + at.DRIFT] = reach.bend * body.angular_velocity * body.angular_velocity
-        room[i + at.SPEED_X], room[i + at.SPEED_Y] = speed_x, speed_y
+        workspace[i + at.SINE], workspace[i + at.COSINE] = sine, cosine
+        workspace[i + at.TANGENTIAL], workspace[i + at.NORMAL] = across, arm
+        workspace[i + at.TANGENTIAL_RATE], workspace[i + at.NORMAL_RATE] = (
+            sway,
+            body.vertical_velocity,
+        )
+        workspace[i + at.PIVOT_ARM] = reach.rate
+        workspace[i + at.FRAME_ROTATION_RATE], workspace[i + at.ROTATION_RATE] = (
+            rate,
+            body.angular_velocity,
+        )
+        workspace[i + at.HOLD_STATE] = FREE if free else HELD
+        workspace[i + at.PIVOT_CENTRIPETAL] = (
+            reach.bend * body.angular_velocity * body.angular_velocity
+        )
+        workspace[i + at.SPEED_X], workspace[i + at.SPEED_Y] = speed_x, speed_y
         angle += body.rotation
         if lowest and not part.body.small:
             sine, cosine = attitude.sine, attitude.cosine
         elif k > 0:
             sine, cosine = sine_cosine(angle)
         rate += body.angular_velocity
-        below = system.number(k, at.TOP)
+        below = system.row_value(k, at.TOP)
 
 
 @kernel
-def input_power(system: Rows, state: Vector, ground: Ground, room: Vector) -> float:
+def input_power(system: ChainArray, state: Vector, ground: Ground, workspace: Vector) -> float:
     """Return the power of the ground at the rates of a state, for the places in the workspace."""
     count, supplied, rate, speed_x, speed_y = system.body_count, 0.0, 0.0, 0.0, 0.0
     for k in range(count - 1, -1, -1):
-        i, mass, body = k * PLACES, system.number(k, at.MASS), system.state_of(k, state)
-        sine, cosine = room[i + at.SINE], room[i + at.COSINE]
+        i, mass, body = k * BODY_STRIDE, system.row_value(k, at.MASS), system.state_of(k, state)
+        sine, cosine = workspace[i + at.SINE], workspace[i + at.COSINE]
         sway = body.horizontal_velocity
-        if room[i + at.HELD] != FREE:
-            sway = room[i + at.REACH] * body.angular_velocity
-        along = sway + room[i + at.ARM] * rate
-        normal = body.vertical_velocity - room[i + at.ACROSS] * rate
+        if workspace[i + at.HOLD_STATE] != FREE:
+            sway = workspace[i + at.PIVOT_ARM] * body.angular_velocity
+        along = sway + workspace[i + at.NORMAL] * rate
+        normal = body.vertical_velocity - workspace[i + at.TANGENTIAL] * rate
         speed_x += along * cosine + normal * sine
         speed_y += normal * cosine - along * sine
         supplied -= mass * (ground.x * speed_x + ground.y * speed_y)
@@ -88,198 +101,242 @@ def input_power(system: Rows, state: Vector, ground: Ground, room: Vector) -> fl
 
 
 @inlined
-def load_bodies(system: Rows, x: float, y: float, room: Vector) -> None:
+def set_inertia_loads(system: ChainArray, x: float, y: float, workspace: Vector) -> None:
     """Set the loads of all bodies to the inertia forces of an acceleration of the ground."""
-    forget_trial(system, room)
+    reset_elimination(system, workspace)
     for k in range(system.body_count):
-        i, mass = k * PLACES, system.number(k, at.MASS)
-        room[i + at.LOAD_X], room[i + at.LOAD_Y] = -mass * x, -mass * y
-        room[i + at.LOAD_MOMENT] = room[i + at.DRAG] = 0.0
+        i, mass = k * BODY_STRIDE, system.row_value(k, at.MASS)
+        workspace[i + at.LOAD_X], workspace[i + at.LOAD_Y] = -mass * x, -mass * y
+        workspace[i + at.LOAD_MOMENT] = workspace[i + at.FRICTION_LOAD] = 0.0
 
 
 @inlined
-def press_at(system: Rows, k: int, press: float, moment: float, room: Vector) -> None:
+def add_base_load(
+    system: ChainArray, k: int, press: float, moment: float, workspace: Vector
+) -> None:
     """Add normal force and moment of a base to the loads of its body, and the reaction below."""
-    forget_trial(system, room)
-    i = k * PLACES
-    sine, cosine = room[i + at.SINE], room[i + at.COSINE]
-    room[i + at.LOAD_X] += press * sine
-    room[i + at.LOAD_Y] += press * cosine
-    room[i + at.LOAD_MOMENT] += moment
+    reset_elimination(system, workspace)
+    i = k * BODY_STRIDE
+    sine, cosine = workspace[i + at.SINE], workspace[i + at.COSINE]
+    workspace[i + at.LOAD_X] += press * sine
+    workspace[i + at.LOAD_Y] += press * cosine
+    workspace[i + at.LOAD_MOMENT] += moment
     if k + 1 < system.body_count:
-        j = i + PLACES
-        room[j + at.LOAD_X] -= press * sine
-        room[j + at.LOAD_Y] -= press * cosine
-        room[j + at.LOAD_MOMENT] += room[i + at.ACROSS] * press - moment
+        j = i + BODY_STRIDE
+        workspace[j + at.LOAD_X] -= press * sine
+        workspace[j + at.LOAD_Y] -= press * cosine
+        workspace[j + at.LOAD_MOMENT] += workspace[i + at.TANGENTIAL] * press - moment
 
 
 @inlined
-def load_along(system: Rows, k: int, thrust: float, room: Vector) -> None:
+def add_tangential_load(system: ChainArray, k: int, thrust: float, workspace: Vector) -> None:
     """Add a force along a base at the slipping point of its body, and the reaction below."""
-    forget_trial(system, room)
-    i = k * PLACES
-    x, y = thrust * room[i + at.COSINE], -thrust * room[i + at.SINE]
-    room[i + at.LOAD_X] += x
-    room[i + at.LOAD_Y] += y
-    room[i + at.LOAD_MOMENT] -= thrust * room[i + at.REACH]
+    reset_elimination(system, workspace)
+    i = k * BODY_STRIDE
+    x, y = thrust * workspace[i + at.COSINE], -thrust * workspace[i + at.SINE]
+    workspace[i + at.LOAD_X] += x
+    workspace[i + at.LOAD_Y] += y
+    workspace[i + at.LOAD_MOMENT] -= thrust * workspace[i + at.PIVOT_ARM]
     if k + 1 < system.body_count:
-        j = i + PLACES
-        room[j + at.LOAD_X] -= x
-        room[j + at.LOAD_Y] -= y
-        room[j + at.LOAD_MOMENT] += thrust * (room[i + at.REACH] - room[i + at.ARM])
+        j = i + BODY_STRIDE
+        workspace[j + at.LOAD_X] -= x
+        workspace[j + at.LOAD_Y] -= y
+        workspace[j + at.LOAD_MOMENT] += thrust * (
+            workspace[i + at.PIVOT_ARM] - workspace[i + at.NORMAL]
+        )
 
 
 @inlined
-def coriolis_along(i: int, room: Vector) -> float:
+def tangential_coriolis(i: int, workspace: Vector) -> float:
     """Return the Coriolis and centripetal acceleration, from the body below, along the frame."""
-    rate = room[i + at.FRAME_RATE]
-    return 2.0 * room[i + at.RISE] * rate - room[i + at.ACROSS] * rate * rate
+    rate = workspace[i + at.FRAME_ROTATION_RATE]
+    return 2.0 * workspace[i + at.NORMAL_RATE] * rate - workspace[i + at.TANGENTIAL] * rate * rate
 
 
 @inlined
-def coriolis_normal(i: int, room: Vector) -> float:
+def normal_coriolis(i: int, workspace: Vector) -> float:
     """Return the Coriolis and centripetal acceleration along the inward normal of the frame."""
-    rate = room[i + at.FRAME_RATE]
-    return (2.0 * room[i + at.SWAY] + room[i + at.ARM] * rate) * rate
+    rate = workspace[i + at.FRAME_ROTATION_RATE]
+    return (2.0 * workspace[i + at.TANGENTIAL_RATE] + workspace[i + at.NORMAL] * rate) * rate
 
 
 @kernel
-def write_direction(
-    system: Rows, k: int, along: float, normal: float, rotation: float, first: int, room: Vector,
-    rows: Vector,
+def write_jacobian(
+    system: ChainArray, k: int, along: float, normal: float, rotation: float, first: int,
+    workspace: Vector, constraints: Vector,
 ) -> None:  # fmt: skip
     """Write a combination of a body's relative accelerations by weights in the axes of the ground.
 
     Those of the body, then of the one below: also its components as a generalized force on both.
     """
-    i = k * PLACES
-    sine, cosine = room[i + at.SINE], room[i + at.COSINE]
+    i = k * BODY_STRIDE
+    sine, cosine = workspace[i + at.SINE], workspace[i + at.COSINE]
     x, y = along * cosine + normal * sine, normal * cosine - along * sine
-    rows[first], rows[first + 1], rows[first + 2] = x, y, rotation
+    constraints[first], constraints[first + 1], constraints[first + 2] = x, y, rotation
     if k + 1 < system.body_count:
-        turning = normal * room[i + at.ACROSS] - along * room[i + at.ARM] - rotation
-        rows[first + 3], rows[first + 4], rows[first + 5] = -x, -y, turning
+        turning = (
+            normal * workspace[i + at.TANGENTIAL] - along * workspace[i + at.NORMAL] - rotation
+        )
+        constraints[first + 3], constraints[first + 4], constraints[first + 5] = -x, -y, turning
 
 
 @kernel
-def write_relative(system: Rows, room: Vector, out: Vector) -> None:
+def write_relative_accelerations(system: ChainArray, workspace: Vector, out: Vector) -> None:
     """Write the accelerations of all coordinates by :eq:`eq-chain-kinematics`."""
     for k in range(system.body_count):
-        i, first = k * PLACES, BEFORE_HORIZONTAL * k
-        sine, cosine = room[i + at.SINE], room[i + at.COSINE]
-        x, y, turning, below = room[i + at.X], room[i + at.Y], room[i + at.ROTATION], 0.0
+        i, first = k * BODY_STRIDE, BEFORE_HORIZONTAL * k
+        sine, cosine = workspace[i + at.SINE], workspace[i + at.COSINE]
+        x, y, turning, below = (
+            workspace[i + at.ACCELERATION_X],
+            workspace[i + at.ACCELERATION_Y],
+            workspace[i + at.ANGULAR_ACCELERATION],
+            0.0,
+        )
         if k + 1 < system.body_count:
-            j = i + PLACES
-            x, y, below = x - room[j + at.X], y - room[j + at.Y], room[j + at.ROTATION]
-        along = cosine * x - sine * y - room[i + at.ARM] * below
-        normal = sine * x + cosine * y + room[i + at.ACROSS] * below
+            j = i + BODY_STRIDE
+            x, y, below = (
+                x - workspace[j + at.ACCELERATION_X],
+                y - workspace[j + at.ACCELERATION_Y],
+                workspace[j + at.ANGULAR_ACCELERATION],
+            )
+        along = cosine * x - sine * y - workspace[i + at.NORMAL] * below
+        normal = sine * x + cosine * y + workspace[i + at.TANGENTIAL] * below
         out[first + ROTATION] = turning - below
-        out[first + VERTICAL] = normal + coriolis_normal(i, room)
-        out[system.horizontal_of(k)] = along - coriolis_along(i, room)
+        out[first + VERTICAL] = normal + normal_coriolis(i, workspace)
+        out[system.horizontal_of(k)] = along - tangential_coriolis(i, workspace)
 
 
 @inlined
 def add_constraint(
-    system: Rows, which: int, k: int, along: float, normal: float, rotation: float, wanted: float,
-    room: Vector, rows: Vector,
+    system: ChainArray, which: int, k: int, along: float, normal: float, rotation: float,
+    prescribed: float, workspace: Vector, constraints: Vector,
 ) -> None:  # fmt: skip
     """Add a constraint on a combination of accelerations, with a force in its direction."""
-    first = which * CONSTRAINT
-    rows[first + at.BODY], rows[first + at.VALUE] = k, wanted
-    write_direction(system, k, along, normal, rotation, first + at.KEEPS, room, rows)
+    first = which * CONSTRAINT_STRIDE
+    constraints[first + at.CONSTRAINED_BODY], constraints[first + at.PRESCRIBED] = k, prescribed
+    write_jacobian(system, k, along, normal, rotation, first + at.JACOBIAN, workspace, constraints)
     for i in range(6):
-        rows[first + at.HOLDS + i] = rows[first + at.KEEPS + i]
-    rows[first + at.UNSYMMETRIC] = 0.0
+        constraints[first + at.FORCE_DIRECTION + i] = constraints[first + at.JACOBIAN + i]
+    constraints[first + at.UNSYMMETRIC] = 0.0
 
 
 @inlined
-def of_both(moving: int, k: int, direction: int, room: Vector, rows: Vector) -> float:
+def combined_acceleration(
+    moving: int, k: int, direction: int, workspace: Vector, constraints: Vector
+) -> float:
     """Return a combination of the accelerations of a body and, if it moves, of the one below."""
-    i = k * PLACES
+    i = k * BODY_STRIDE
     found = (
-        rows[direction] * room[i + at.X]
-        + rows[direction + 1] * room[i + at.Y]
-        + rows[direction + 2] * room[i + at.ROTATION]
+        constraints[direction] * workspace[i + at.ACCELERATION_X]
+        + constraints[direction + 1] * workspace[i + at.ACCELERATION_Y]
+        + constraints[direction + 2] * workspace[i + at.ANGULAR_ACCELERATION]
     )
     if k + 1 < moving:
-        j = i + PLACES
+        j = i + BODY_STRIDE
         found += (
-            rows[direction + 3] * room[j + at.X]
-            + rows[direction + 4] * room[j + at.Y]
-            + rows[direction + 5] * room[j + at.ROTATION]
+            constraints[direction + 3] * workspace[j + at.ACCELERATION_X]
+            + constraints[direction + 4] * workspace[j + at.ACCELERATION_Y]
+            + constraints[direction + 5] * workspace[j + at.ANGULAR_ACCELERATION]
         )
     return found
 
 
 @inlined
-def through(system: Rows, k: int, one: int, other: int, rows: Vector) -> float:
+def inverse_mass_product(
+    system: ChainArray, k: int, one: int, other: int, constraints: Vector
+) -> float:
     """Return the product of two directions of one body over its mass and inertia."""
-    per_mass, per_inertia = system.number(k, at.PER_MASS), system.number(k, at.PER_INERTIA)
-    moved = rows[one] * rows[other] + rows[one + 1] * rows[other + 1]
-    return per_mass * moved + per_inertia * rows[one + 2] * rows[other + 2]
+    per_mass, per_inertia = (
+        system.row_value(k, at.INVERSE_MASS),
+        system.row_value(k, at.INVERSE_INERTIA),
+    )
+    moved = constraints[one] * constraints[other] + constraints[one + 1] * constraints[other + 1]
+    return per_mass * moved + per_inertia * constraints[one + 2] * constraints[other + 2]
 
 
 @inlined
-def answer(system: Rows, moving: int, kept: int, force: int, rows: Vector) -> float:
+def matrix_entry(
+    system: ChainArray, moving: int, kept: int, force: int, constraints: Vector
+) -> float:
     """Return response of constraint `kept` to a unit force of `force`: an entry of the matrix."""
-    a, b = kept * CONSTRAINT, force * CONSTRAINT
-    one, other = int(rows[a + at.BODY]), int(rows[b + at.BODY])
-    keeps, holds, found = a + at.KEEPS, b + at.HOLDS, 0.0
+    a, b = kept * CONSTRAINT_STRIDE, force * CONSTRAINT_STRIDE
+    one, other = (
+        int(constraints[a + at.CONSTRAINED_BODY]),
+        int(constraints[b + at.CONSTRAINED_BODY]),
+    )
+    keeps, holds, found = a + at.JACOBIAN, b + at.FORCE_DIRECTION, 0.0
     if one == other:
-        found = through(system, one, keeps, holds, rows)
+        found = inverse_mass_product(system, one, keeps, holds, constraints)
         if one + 1 < moving:
-            found += through(system, one + 1, keeps + 3, holds + 3, rows)
+            found += inverse_mass_product(system, one + 1, keeps + 3, holds + 3, constraints)
     elif one == other + 1:
-        found = through(system, one, keeps, holds + 3, rows)
+        found = inverse_mass_product(system, one, keeps, holds + 3, constraints)
     elif one + 1 == other:
-        found = through(system, other, keeps + 3, holds, rows)
+        found = inverse_mass_product(system, other, keeps + 3, holds, constraints)
     return found
 
 
 @inlined
-def push(system: Rows, moving: int, which: int, room: Vector, rows: Vector) -> None:
+def add_constraint_accelerations(
+    system: ChainArray, moving: int, which: int, workspace: Vector, constraints: Vector
+) -> None:
     """Add the accelerations that a constraint's force causes."""
-    first = which * CONSTRAINT
-    k, force, holds = int(rows[first + at.BODY]), rows[first + at.FORCE], first + at.HOLDS
+    first = which * CONSTRAINT_STRIDE
+    k, force, holds = (
+        int(constraints[first + at.CONSTRAINED_BODY]),
+        constraints[first + at.FORCE],
+        first + at.FORCE_DIRECTION,
+    )
     for body in range(k, min(k + 2, moving)):
-        i, per_mass = body * PLACES, force * system.number(body, at.PER_MASS)
-        room[i + at.X] += rows[holds] * per_mass
-        room[i + at.Y] += rows[holds + 1] * per_mass
-        room[i + at.ROTATION] += rows[holds + 2] * force * system.number(body, at.PER_INERTIA)
+        i, per_mass = body * BODY_STRIDE, force * system.row_value(body, at.INVERSE_MASS)
+        workspace[i + at.ACCELERATION_X] += constraints[holds] * per_mass
+        workspace[i + at.ACCELERATION_Y] += constraints[holds + 1] * per_mass
+        workspace[i + at.ANGULAR_ACCELERATION] += (
+            constraints[holds + 2] * force * system.row_value(body, at.INVERSE_INERTIA)
+        )
         holds += 3
 
 
 @inlined
-def eliminate(system: Rows, moving: int, r: int, band: int, rows: Vector, matrix: Vector) -> None:
+def eliminate(
+    system: ChainArray, moving: int, r: int, band: int, constraints: Vector, matrix: Vector
+) -> None:
     """Eliminate one more constraint behind those that have been eliminated.
 
     The matrix holds the factors below its diagonal, the inverses of the pivots on it.
     """
-    stride, low, first = MOST_CONSTRAINTS * system.body_count, max(0, r - band), r * CONSTRAINT
-    own, left = answer(system, moving, r, r, rows), rows[first + at.LEFT]
-    unsymmetric = rows[first + at.UNSYMMETRIC] != 0.0
-    if r > 0 and rows[first - CONSTRAINT + at.UNSYMMETRIC] != 0.0:
-        unsymmetric, rows[first + at.UNSYMMETRIC] = True, 1.0
+    stride, low, first = (
+        MAX_CONSTRAINTS * system.body_count,
+        max(0, r - band),
+        r * CONSTRAINT_STRIDE,
+    )
+    own, left = (
+        matrix_entry(system, moving, r, r, constraints),
+        constraints[first + at.RIGHT_HAND_SIDE],
+    )
+    unsymmetric = constraints[first + at.UNSYMMETRIC] != 0.0
+    if r > 0 and constraints[first - CONSTRAINT_STRIDE + at.UNSYMMETRIC] != 0.0:
+        unsymmetric, constraints[first + at.UNSYMMETRIC] = True, 1.0
     for c in range(low, r):
-        above = answer(system, moving, c, r, rows)
+        above = matrix_entry(system, moving, c, r, constraints)
         for i in range(low, c):
             above -= matrix[c * stride + i] * matrix[i * stride + r]
         factor = above
         if unsymmetric:
-            factor = answer(system, moving, r, c, rows)
+            factor = matrix_entry(system, moving, r, c, constraints)
             for i in range(low, c):
                 factor -= matrix[r * stride + i] * matrix[i * stride + c]
         factor *= matrix[c * stride + c]
         matrix[c * stride + r], matrix[r * stride + c] = above, factor
         own -= factor * above
-        left -= factor * rows[c * CONSTRAINT + at.LEFT]
-    matrix[r * stride + r], rows[first + at.LEFT] = 1.0 / own, left
+        left -= factor * constraints[c * CONSTRAINT_STRIDE + at.RIGHT_HAND_SIDE]
+    matrix[r * stride + r], constraints[first + at.RIGHT_HAND_SIDE] = 1.0 / own, left
 
 
 @kernel
 def solve_motion(
-    system: Rows, moving: int, start: int, count: int, band: int, room: Vector, rows: Vector,
-    matrix: Vector,
+    system: ChainArray, moving: int, start: int, count: int, band: int, workspace: Vector,
+    constraints: Vector, matrix: Vector,
 ) -> None:  # fmt: skip
     """Write the forces of `count` constraints, sorted by body, and the accelerations of all bodies.
 
@@ -290,24 +347,34 @@ def solve_motion(
     ground, and have no constraints here.
     """
     for k in range(system.body_count):
-        i = k * PLACES
+        i = k * BODY_STRIDE
         if k >= moving:
-            room[i + at.X] = room[i + at.Y] = room[i + at.ROTATION] = 0.0
+            workspace[i + at.ACCELERATION_X] = workspace[i + at.ACCELERATION_Y] = workspace[
+                i + at.ANGULAR_ACCELERATION
+            ] = 0.0
             continue
-        per_mass = system.number(k, at.PER_MASS)
-        room[i + at.X] = room[i + at.LOAD_X] * per_mass
-        room[i + at.Y] = room[i + at.LOAD_Y] * per_mass
-        room[i + at.ROTATION] = room[i + at.LOAD_MOMENT] * system.number(k, at.PER_INERTIA)
+        per_mass = system.row_value(k, at.INVERSE_MASS)
+        workspace[i + at.ACCELERATION_X] = workspace[i + at.LOAD_X] * per_mass
+        workspace[i + at.ACCELERATION_Y] = workspace[i + at.LOAD_Y] * per_mass
+        workspace[i + at.ANGULAR_ACCELERATION] = workspace[i + at.LOAD_MOMENT] * system.row_value(
+            k, at.INVERSE_INERTIA
+        )
     for r in range(start, count):
-        first = r * CONSTRAINT
-        kept = of_both(moving, int(rows[first + at.BODY]), first + at.KEEPS, room, rows)
-        rows[first + at.LEFT] = rows[first + at.VALUE] - kept
-        eliminate(system, moving, r, band, rows, matrix)
-    stride = MOST_CONSTRAINTS * system.body_count
+        first = r * CONSTRAINT_STRIDE
+        kept = combined_acceleration(
+            moving,
+            int(constraints[first + at.CONSTRAINED_BODY]),
+            first + at.JACOBIAN,
+            workspace,
+            constraints,
+        )
+        constraints[first + at.RIGHT_HAND_SIDE] = constraints[first + at.PRESCRIBED] - kept
+        eliminate(system, moving, r, band, constraints, matrix)
+    stride = MAX_CONSTRAINTS * system.body_count
     for r in range(count - 1, -1, -1):
-        force = rows[r * CONSTRAINT + at.LEFT]
+        force = constraints[r * CONSTRAINT_STRIDE + at.RIGHT_HAND_SIDE]
         for c in range(min(count, r + band + 1) - 1, r, -1):  # the force found last comes last
-            force -= matrix[r * stride + c] * rows[c * CONSTRAINT + at.FORCE]
-        rows[r * CONSTRAINT + at.FORCE] = force * matrix[r * stride + r]
+            force -= matrix[r * stride + c] * constraints[c * CONSTRAINT_STRIDE + at.FORCE]
+        constraints[r * CONSTRAINT_STRIDE + at.FORCE] = force * matrix[r * stride + r]
     for r in range(count):
-        push(system, moving, r, room, rows)
+        add_constraint_accelerations(system, moving, r, workspace, constraints)

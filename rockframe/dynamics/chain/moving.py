@@ -9,31 +9,31 @@ from rockframe.dynamics.body import Attitude
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.motion import (
     FREE,
+    add_base_load,
     add_constraint,
-    coriolis_along,
-    coriolis_normal,
-    forget_trial,
     input_power,
-    load_bodies,
-    place_bodies,
-    press_at,
+    normal_coriolis,
+    reset_elimination,
+    set_inertia_loads,
     solve_motion,
-    write_direction,
-    write_relative,
+    tangential_coriolis,
+    write_jacobian,
+    write_kinematics,
+    write_relative_accelerations,
 )
 from rockframe.dynamics.chain.rows import (
-    CONSTRAINT,
+    BODY_STRIDE,
+    CONSTRAINT_STRIDE,
     HALF_OF_BITS,
-    PLACES,
-    SOLVED_FOR,
-    Rows,
+    INPUTS_BEFORE_STATE,
+    ChainArray,
 )
 from rockframe.dynamics.on_base import Mode, VelocityChange
 from rockframe.dynamics.protocol import HELD_PLACE, Energies, Ground, Slope
 from rockframe.dynamics.trigonometry import versine
 
 
-class MovingBodies(Rows):
+class MovingBodies(ChainArray):
     """Equations of motion of stacked bodies. A mixin of systems."""
 
     __slots__ = ()
@@ -46,14 +46,14 @@ class MovingBodies(Rows):
     @kernel
     def moving_in(self, mode: int) -> int:
         """Return how many coordinates move: none at rest, else all but a held lowest one."""
-        if self.moving_bodies(mode) == 0:
+        if self.moving_body_count(mode) == 0:
             return 0
         lowest = self.body_count - 1
         free = self.on_base(lowest).is_free(self.part_mode(mode, lowest))
         return DEGREES * self.body_count - (0 if free else 1)
 
     @inlined
-    def moving_bodies(self, mode: int) -> int:
+    def moving_body_count(self, mode: int) -> int:
         """Return how many bodies, from the top, may move: all, as none rests on a rigid base."""
         return self.body_count
 
@@ -72,13 +72,13 @@ class MovingBodies(Rows):
         return 2 * DEGREES * self.body_count
 
     @kernel
-    def constrain(self, moving: int, mode: int, state: Vector, room: Vector) -> int:
+    def write_constraints(self, moving: int, mode: int, state: Vector, workspace: Vector) -> int:
         """Write the constraints of the first `moving` bodies in a mode; give their number."""
-        count, rows = 0, self.constraints()
+        count, constraints = 0, self.constraints()
         for k in range(moving):
             standing = self.part_mode(mode, k)
-            count = self.add_corners(k, count, mode, state, True, room, rows)
-            count = self.hold_or_slide(k, count, standing, state, room, rows)
+            count = self.add_corner_constraints(k, count, mode, state, True, workspace, constraints)
+            count = self.add_hold_or_slide(k, count, standing, state, workspace, constraints)
         return count
 
     @inlined
@@ -92,128 +92,177 @@ class MovingBodies(Rows):
         return False
 
     @inlined
-    def load_by_friction(self, k: int, mode: int, room: Vector) -> None:
+    def apply_friction_load(self, k: int, mode: int, workspace: Vector) -> None:
         """Load a body that slips on a deformable base by its friction: none slips here."""
 
     @inlined
-    def hold_or_slide(
-        self, k: int, count: int, standing: Mode, state: Vector, room: Vector, rows: Vector
+    def add_hold_or_slide(
+        self,
+        k: int,
+        count: int,
+        standing: Mode,
+        state: Vector,
+        workspace: Vector,
+        constraints: Vector,
     ) -> int:
         """Add the constraint of a body's held point, or of its sliding end; return the count."""
-        i = k * PLACES
-        room[i + at.THRUST] = room[i + at.DRAG]
-        if room[i + at.HELD] != FREE:
-            wanted = coriolis_along(i, room) + room[i + at.DRIFT]
-            add_constraint(self, count, k, 1.0, 0.0, -room[i + at.REACH], wanted, room, rows)
+        i = k * BODY_STRIDE
+        workspace[i + at.TANGENTIAL_FORCE] = workspace[i + at.FRICTION_LOAD]
+        if workspace[i + at.HOLD_STATE] != FREE:
+            prescribed = tangential_coriolis(i, workspace) + workspace[i + at.PIVOT_CENTRIPETAL]
+            add_constraint(
+                self,
+                count,
+                k,
+                1.0,
+                0.0,
+                -workspace[i + at.PIVOT_ARM],
+                prescribed,
+                workspace,
+                constraints,
+            )
             count += 1
         elif standing.slides and not self.is_rigid(k) and not self.is_slippery(k):
-            self.let_slide(k, count, standing, state, room, rows)
+            self.add_sliding_constraint(k, count, standing, state, workspace, constraints)
             count += 1
         return count
 
     @inlined
-    def add_corners(
-        self, k: int, count: int, mode: int, state: Vector, moves: bool, room: Vector, rows: Vector
+    def add_corner_constraints(
+        self,
+        k: int,
+        count: int,
+        mode: int,
+        state: Vector,
+        moves: bool,
+        workspace: Vector,
+        constraints: Vector,
     ) -> int:
         """Add the constraints of corners on a rigid base: there are none here."""
         return count
 
     @inlined
-    def band(self) -> int:
+    def half_bandwidth(self) -> int:
         """Return the half-width of the band of the matrix: those farther apart share no body."""
         return 1
 
     @inlined
-    def stand_still(self, room: Vector, out: Vector) -> None:
+    def complete_solution(self, workspace: Vector, out: Vector) -> None:
         """Set the accelerations of bodies in full contact with a rigid base to zero: none here."""
 
     @kernel
-    def let_slide(
-        self, k: int, which: int, standing: Mode, state: Vector, room: Vector, rows: Vector
+    def add_sliding_constraint(
+        self,
+        k: int,
+        which: int,
+        standing: Mode,
+        state: Vector,
+        workspace: Vector,
+        constraints: Vector,
     ) -> None:
         """Add the constraint that keeps a sliding end at its base, :eq:`eq-sliding-contact`."""
-        i, part, body = k * PLACES, self.on_base(k), self.state_of(k, state)
+        i, part, body = k * BODY_STRIDE, self.on_base(k), self.state_of(k, state)
         a = i + at.ATTITUDE
-        attitude = Attitude(room[a], room[a + 1], room[a + 2])
+        attitude = Attitude(workspace[a], workspace[a + 1], workspace[a + 2])
         line = part.body.base_line(body, attitude)
         left = part.base.is_held(standing.contact, True)
         on_left, on_right = part.body.end_accelerations(attitude, body.angular_velocity, 0.0, 0.0)
         bend, speed = (on_left, line.left_speed) if left else (on_right, line.right_speed)
         lever = line.left_lever if left else line.right_lever
         sinking = bend + part.base.following_rate() * speed
-        wanted = -coriolis_normal(i, room) - sinking
-        add_constraint(self, which, k, 0.0, 1.0, lever, wanted, room, rows)
-        holds = which * CONSTRAINT + at.HOLDS
-        write_direction(self, k, 1.0, 0.0, -room[i + at.REACH], holds, room, rows)
-        rows[which * CONSTRAINT + at.UNSYMMETRIC] = 1.0
+        prescribed = -normal_coriolis(i, workspace) - sinking
+        add_constraint(self, which, k, 0.0, 1.0, lever, prescribed, workspace, constraints)
+        holds = which * CONSTRAINT_STRIDE + at.FORCE_DIRECTION
+        write_jacobian(
+            self, k, 1.0, 0.0, -workspace[i + at.PIVOT_ARM], holds, workspace, constraints
+        )
+        constraints[which * CONSTRAINT_STRIDE + at.UNSYMMETRIC] = 1.0
 
     @kernel
-    def solve(self, moving: int, count: int, room: Vector) -> None:
+    def solve(self, moving: int, count: int, workspace: Vector) -> None:
         """Solve for the forces of constraints, and the accelerations of bodies and coordinates."""
-        rows = self.constraints()
-        forget_trial(self, room)
-        solve_motion(self, moving, 0, count, self.band(), room, rows, self.matrix())
+        constraints = self.constraints()
+        reset_elimination(self, workspace)
+        solve_motion(
+            self,
+            moving,
+            0,
+            count,
+            self.half_bandwidth(),
+            workspace,
+            constraints,
+            self.constraint_matrix(),
+        )
         for which in range(count):  # the last constraint of a body is the one along its base
-            first = which * CONSTRAINT
-            room[int(rows[first + at.BODY]) * PLACES + at.THRUST] = rows[first + at.FORCE]
-        write_relative(self, room, self.slopes())
-        self.stand_still(room, self.slopes())
+            first = which * CONSTRAINT_STRIDE
+            workspace[
+                int(constraints[first + at.CONSTRAINED_BODY]) * BODY_STRIDE + at.TANGENTIAL_FORCE
+            ] = constraints[first + at.FORCE]
+        write_relative_accelerations(self, workspace, self.slopes())
+        self.complete_solution(workspace, self.slopes())
 
     @kernel
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> Vector:
         """Return the accelerations of all coordinates, then the powers dissipated and supplied."""
-        return self.accelerate_first(self.body_count, mode, state, ground)
+        return self.accelerate_bodies(self.body_count, mode, state, ground)
 
     @kernel
     def find_forces(self, mode: int, state: Vector, ground: Ground) -> Vector:
         """Return what `accelerate` gives, leave all forces, and note for which mode and state."""
-        found = self.accelerate_first(self.body_count, mode, state, ground)
-        note = self.solved_room()
+        found = self.accelerate_bodies(self.body_count, mode, state, ground)
+        note = self.solved_inputs()
         note[0], note[2], note[3] = mode >> HALF_OF_BITS, ground.x, ground.y
         note[1] = mode - (mode >> HALF_OF_BITS << HALF_OF_BITS)
         for i in range(2 * self.coordinates()):
-            note[SOLVED_FOR + i] = state[i]
-        self.places()[(self.body_count - 1) * PLACES + at.SOLVED] = 1.0
+            note[INPUTS_BEFORE_STATE + i] = state[i]
+        self.workspace()[(self.body_count - 1) * BODY_STRIDE + at.FORCES_VALID] = 1.0
         return found
 
     @kernel
-    def forces_stand(self, mode: int, state: Vector, ground: Ground) -> bool:
+    def forces_are_valid(self, mode: int, state: Vector, ground: Ground) -> bool:
         """Whether the forces in the workspace are those of this mode, state and ground."""
-        note, solved = self.solved_room(), (self.body_count - 1) * PLACES + at.SOLVED
+        note, solved = self.solved_inputs(), (self.body_count - 1) * BODY_STRIDE + at.FORCES_VALID
         # variables of links are not noted
-        stand = (self.places()[solved] != 0.0) & (self.variables() == 0)
+        stand = (self.workspace()[solved] != 0.0) & (self.variables() == 0)
         high = mode >> HALF_OF_BITS
         stand &= (note[0] == high) & (note[1] == mode - (high << HALF_OF_BITS))
         stand &= (note[2] == ground.x) & (note[3] == ground.y)
         for i in range(2 * self.coordinates()):
-            stand &= note[SOLVED_FOR + i] == state[i]
+            stand &= note[INPUTS_BEFORE_STATE + i] == state[i]
         return bool(stand)
 
     @kernel
-    def accelerate_first(self, moving: int, mode: int, state: Vector, ground: Ground) -> Vector:
+    def accelerate_bodies(self, moving: int, mode: int, state: Vector, ground: Ground) -> Vector:
         """Return accelerations and powers; bodies from number `moving` on rest on the ground."""
-        room, out = self.places(), self.slopes()
-        place_bodies(self, mode, state, room)
-        load_bodies(self, ground.x, self.number(0, at.GRAVITY) + ground.y, room)
+        workspace, out = self.workspace(), self.slopes()
+        write_kinematics(self, mode, state, workspace)
+        set_inertia_loads(self, ground.x, self.row_value(0, at.GRAVITY) + ground.y, workspace)
         dissipated = supplied = 0.0
         for k in range(self.body_count):
-            i, mass = k * PLACES, self.number(k, at.MASS)
+            i, mass = k * BODY_STRIDE, self.row_value(k, at.MASS)
             part, body = self.on_base(k), self.state_of(k, state)
             a = i + at.ATTITUDE
-            line = part.body.base_line(body, Attitude(room[a], room[a + 1], room[a + 2]))
+            line = part.body.base_line(
+                body, Attitude(workspace[a], workspace[a + 1], workspace[a + 2])
+            )
             base = part.base.force(self.contact_with_force(k, mode), line, ())
             dissipated += base.dissipated
-            room[i + at.PRESS] = base.upward
-            press_at(self, k, base.upward, base.moment, room)
-            self.load_by_friction(k, mode, room)
-            supplied -= mass * (ground.x * room[i + at.SPEED_X] + ground.y * room[i + at.SPEED_Y])
-        dissipated += self.pull(mode, state, room)
-        self.solve(moving, self.constrain(moving, mode, state, room), room)
+            workspace[i + at.NORMAL_FORCE] = base.upward
+            add_base_load(self, k, base.upward, base.moment, workspace)
+            self.apply_friction_load(k, mode, workspace)
+            supplied -= mass * (
+                ground.x * workspace[i + at.SPEED_X] + ground.y * workspace[i + at.SPEED_Y]
+            )
+        dissipated += self.apply_link_forces(mode, state, workspace)
+        self.solve(moving, self.write_constraints(moving, mode, state, workspace), workspace)
         for k in range(self.body_count):
-            i = k * PLACES
+            i = k * BODY_STRIDE
             if self.part_mode(mode, k).slides:
-                slip = room[i + at.SWAY] - room[i + at.REACH] * room[i + at.RATE]
-                dissipated -= room[i + at.THRUST] * slip
+                slip = (
+                    workspace[i + at.TANGENTIAL_RATE]
+                    - workspace[i + at.PIVOT_ARM] * workspace[i + at.ROTATION_RATE]
+                )
+                dissipated -= workspace[i + at.TANGENTIAL_FORCE] * slip
         powers = DEGREES * self.body_count + self.variables()
         out[powers], out[powers + 1] = dissipated, supplied
         return out
@@ -222,7 +271,7 @@ class MovingBodies(Rows):
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
         """Return power dissipated, of the slope, and that of the ground at the state's rates."""
         dissipated = slope[DEGREES * self.body_count + self.variables()]
-        return dissipated, input_power(self, state, ground, self.places())
+        return dissipated, input_power(self, state, ground, self.workspace())
 
     @inlined
     def contact_with_force(self, k: int, mode: int) -> int:
@@ -233,52 +282,61 @@ class MovingBodies(Rows):
         return self.on_base(k).contact_with_force(standing)
 
     @inlined
-    def pull(self, mode: int, state: Vector, room: Vector) -> float:
+    def apply_link_forces(self, mode: int, state: Vector, workspace: Vector) -> float:
         """Load bodies by their links; return the power these dissipate: there are none here."""
         return 0.0
 
     @inlined
-    def pulled_x(self, k: int) -> float:
+    def link_force_x(self, k: int) -> float:
         """Return the last resultant of links on a body, to the right: there are none here."""
         return 0.0
 
     @inlined
-    def pulled_y(self, k: int) -> float:
+    def link_force_y(self, k: int) -> float:
         """Return the last resultant of links on a body, upwards: there are none here."""
         return 0.0
 
     @kernel
-    def forces_from(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> None:
+    def forces_from_slope(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> None:
         """Write the bodies' accelerations and the forces at their bases, from a slope.
 
         The slope has no horizontal acceleration of a lowest body that is held: it follows from its
         rotation.
         """
-        room = self.places()
-        place_bodies(self, mode, state, room)
-        self.pull(mode, state, room)
+        workspace = self.workspace()
+        write_kinematics(self, mode, state, workspace)
+        self.apply_link_forces(mode, state, workspace)
         x = y = angular = 0.0
         for k in range(self.body_count - 1, -1, -1):
-            i, first = k * PLACES, BEFORE_HORIZONTAL * k
+            i, first = k * BODY_STRIDE, BEFORE_HORIZONTAL * k
             along = slope[self.horizontal_of(k)]
-            if room[i + at.HELD] != FREE:
-                along = room[i + at.REACH] * slope[first + ROTATION] + room[i + at.DRIFT]
-            along += coriolis_along(i, room) + room[i + at.ARM] * angular
-            normal = slope[first + VERTICAL] - coriolis_normal(i, room)
-            normal -= room[i + at.ACROSS] * angular
-            sine, cosine = room[i + at.SINE], room[i + at.COSINE]
+            if workspace[i + at.HOLD_STATE] != FREE:
+                along = (
+                    workspace[i + at.PIVOT_ARM] * slope[first + ROTATION]
+                    + workspace[i + at.PIVOT_CENTRIPETAL]
+                )
+            along += tangential_coriolis(i, workspace) + workspace[i + at.NORMAL] * angular
+            normal = slope[first + VERTICAL] - normal_coriolis(i, workspace)
+            normal -= workspace[i + at.TANGENTIAL] * angular
+            sine, cosine = workspace[i + at.SINE], workspace[i + at.COSINE]
             x, y = x + along * cosine + normal * sine, y - along * sine + normal * cosine
             angular += slope[first + ROTATION]
-            room[i + at.X], room[i + at.Y], room[i + at.ROTATION] = x, y, angular
+            (
+                workspace[i + at.ACCELERATION_X],
+                workspace[i + at.ACCELERATION_Y],
+                workspace[i + at.ANGULAR_ACCELERATION],
+            ) = x, y, angular
         force_x = force_y = 0.0
         for k in range(self.body_count):
-            i, mass = k * PLACES, self.number(k, at.MASS)
-            force_x += mass * (room[i + at.X] + ground.x) - self.pulled_x(k)
-            force_y += mass * (room[i + at.Y] + self.number(k, at.GRAVITY) + ground.y)
-            force_y -= self.pulled_y(k)
-            sine, cosine = room[i + at.SINE], room[i + at.COSINE]
-            room[i + at.THRUST] = cosine * force_x - sine * force_y
-            room[i + at.PRESS] = sine * force_x + cosine * force_y
+            i, mass = k * BODY_STRIDE, self.row_value(k, at.MASS)
+            force_x += mass * (workspace[i + at.ACCELERATION_X] + ground.x) - self.link_force_x(k)
+            force_y += mass * (
+                workspace[i + at.ACCELERATION_Y] + self.row_value(k, at.GRAVITY) + ground.y
+            )
+            force_y -= self.link_force_y(k)
+            sine, cosine = workspace[i + at.SINE], workspace[i + at.COSINE]
+            workspace[i + at.TANGENTIAL_FORCE] = cosine * force_x - sine * force_y
+            workspace[i + at.NORMAL_FORCE] = sine * force_x + cosine * force_y
 
     @kernel
     def energies(self, mode: int, state: Vector) -> Energies:
@@ -288,30 +346,33 @@ class MovingBodies(Rows):
     @kernel
     def energies_of_bodies(self, mode: int, state: Vector) -> Energies:
         """Return energies of all bodies and bases; leaves the bodies' places in the workspace."""
-        room = self.places()
-        place_bodies(self, mode, state, room)
+        workspace = self.workspace()
+        write_kinematics(self, mode, state, workspace)
         kinetic = gravity = elastic = change = rise = rate = 0.0
         for k in range(self.body_count - 1, -1, -1):
-            i, mass = k * PLACES, self.number(k, at.MASS)
-            body = self.standing_state(k, self.part_mode(mode, k), state)
-            x, y = room[i + at.SPEED_X], room[i + at.SPEED_Y]
+            i, mass = k * BODY_STRIDE, self.row_value(k, at.MASS)
+            body = self.constrained_state(k, self.part_mode(mode, k), state)
+            x, y = workspace[i + at.SPEED_X], workspace[i + at.SPEED_Y]
             rate += body.angular_velocity
-            kinetic += 0.5 * (mass * (x * x + y * y) + self.number(k, at.INERTIA) * rate * rate)
-            rise = self.rise_of(k, rise, body.vertical, room)
-            gravity += mass * self.number(k, at.GRAVITY) * rise
+            kinetic += 0.5 * (mass * (x * x + y * y) + self.row_value(k, at.INERTIA) * rate * rate)
+            rise = self.rise_of(k, rise, body.vertical, workspace)
+            gravity += mass * self.row_value(k, at.GRAVITY) * rise
             stored, more = self.on_base(k).elastic_energy(body, ())
             elastic += stored
             change += more
         return Energies(kinetic, gravity, elastic, change)
 
     @inlined
-    def rise_of(self, k: int, below: float, vertical: float, room: Vector) -> float:
+    def rise_of(self, k: int, below: float, vertical: float, workspace: Vector) -> float:
         """Return rise of a centre of mass, from that of the body below, without cancellation."""
-        i = k * PLACES
-        sine, cosine = room[i + at.SINE], room[i + at.COSINE]
-        fixed = room[i + at.ARM] - vertical if k + 1 < self.body_count else 0.0
+        i = k * BODY_STRIDE
+        sine, cosine = workspace[i + at.SINE], workspace[i + at.COSINE]
+        fixed = workspace[i + at.NORMAL] - vertical if k + 1 < self.body_count else 0.0
         return (
-            below + vertical * cosine - room[i + at.ACROSS] * sine - fixed * versine(sine, cosine)
+            below
+            + vertical * cosine
+            - workspace[i + at.TANGENTIAL] * sine
+            - fixed * versine(sine, cosine)
         )
 
     @kernel
@@ -333,56 +394,73 @@ class MovingBodies(Rows):
 
         The changes of all velocities are in the room for slopes until the next solution.
         """
-        room, out = self.places(), self.slopes()
-        place_bodies(self, mode, state, room)
-        load_bodies(self, 0.0, 0.0, room)
-        press_at(self, k, press, moment, room)
-        self.answer(k, mode, slip, state)
+        workspace, out = self.workspace(), self.slopes()
+        write_kinematics(self, mode, state, workspace)
+        set_inertia_loads(self, 0.0, 0.0, workspace)
+        add_base_load(self, k, press, moment, workspace)
+        self.solve_response(k, mode, slip, state)
         first = BEFORE_HORIZONTAL * k
-        thrust = room[k * PLACES + at.THRUST]
+        thrust = workspace[k * BODY_STRIDE + at.TANGENTIAL_FORCE]
         return VelocityChange(out[first + ROTATION], out[first + VERTICAL], thrust, ())
 
     @kernel
-    def answer(self, k: int, mode: int, slip: float, state: Vector) -> None:
+    def solve_response(self, k: int, mode: int, slip: float, state: Vector) -> None:
         """Solve for changes of velocities by impulses in the loads, or a hold that stops `slip`."""
-        room, rows, count = self.places(), self.constraints(), 0
+        workspace, constraints, count = self.workspace(), self.constraints(), 0
         for j in range(self.body_count):
-            i = j * PLACES
-            room[i + at.RISE] = room[i + at.SWAY] = room[i + at.FRAME_RATE] = 0.0
-            count = self.add_corners(j, count, mode, state, False, room, rows)
-            if room[i + at.HELD] != FREE:
-                wanted = -slip if j == k else 0.0
-                add_constraint(self, count, j, 1.0, 0.0, -room[i + at.REACH], wanted, room, rows)
+            i = j * BODY_STRIDE
+            workspace[i + at.NORMAL_RATE] = workspace[i + at.TANGENTIAL_RATE] = workspace[
+                i + at.FRAME_ROTATION_RATE
+            ] = 0.0
+            count = self.add_corner_constraints(
+                j, count, mode, state, False, workspace, constraints
+            )
+            if workspace[i + at.HOLD_STATE] != FREE:
+                prescribed = -slip if j == k else 0.0
+                add_constraint(
+                    self,
+                    count,
+                    j,
+                    1.0,
+                    0.0,
+                    -workspace[i + at.PIVOT_ARM],
+                    prescribed,
+                    workspace,
+                    constraints,
+                )
                 count += 1
             else:
-                room[i + at.THRUST] = 0.0
-        self.solve(self.body_count, count, room)
+                workspace[i + at.TANGENTIAL_FORCE] = 0.0
+        self.solve(self.body_count, count, workspace)
 
     @kernel
     def respond(self, k: int, mode: int, response: VelocityChange, state: Vector) -> None:
         """Change the velocities by the last response."""
-        self.take_answer(state)
+        self.apply_response(state)
 
     @inlined
-    def take_answer(self, state: Vector) -> None:
+    def apply_response(self, state: Vector) -> None:
         """Change the velocities by the last response to impulses."""
-        self.add_slopes(state)
+        self.add_velocity_changes(state)
 
     @inlined
-    def add_slopes(self, state: Vector) -> None:
+    def add_velocity_changes(self, state: Vector) -> None:
         """Add the room for slopes to the velocities; held points keep their constraint exactly."""
-        out, room, n = self.slopes(), self.places(), self.coordinates()
+        out, workspace, n = self.slopes(), self.workspace(), self.coordinates()
         for i in range(n):
             state[n + i] += out[i]
         for j in range(self.body_count):
-            if room[j * PLACES + at.HELD] != FREE:
-                rate = room[j * PLACES + at.REACH] * state[n + BEFORE_HORIZONTAL * j + ROTATION]
+            if workspace[j * BODY_STRIDE + at.HOLD_STATE] != FREE:
+                rate = (
+                    workspace[j * BODY_STRIDE + at.PIVOT_ARM]
+                    * state[n + BEFORE_HORIZONTAL * j + ROTATION]
+                )
                 state[n + self.horizontal_of(j)] = rate
 
     @kernel
     def velocities(self, state: Vector) -> Vector:
         """Return a copy of all velocities, in a room that the next call overwrites."""
-        out, n = self.velocity_room(), self.coordinates()
+        out, n = self.velocity_workspace(), self.coordinates()
         for i in range(n):
             out[i] = state[n + i]
         return out

@@ -7,9 +7,9 @@ from typing import Final, cast
 
 from rockframe.compiled import Vector, kernel
 from rockframe.dynamics.chain.friction import SlippingChain
-from rockframe.dynamics.chain.model import AtRest, chain
+from rockframe.dynamics.chain.model import AtRest, chain_model
 from rockframe.dynamics.chain.rigid_friction import SlippingRigidChain
-from rockframe.dynamics.chain.rows import OBSERVED
+from rockframe.dynamics.chain.rows import BASE_COLUMNS
 from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.events import REVERSAL, SLIP, STICK
 from rockframe.dynamics.protocol import (
@@ -23,7 +23,7 @@ from rockframe.dynamics.protocol import (
 from rockframe.dynamics.stacked import COLUMNS, CONTACTS, LOWER, name_soil_event
 from rockframe.dynamics.vibrations import ChainBody
 
-OF_CAP: Final = 4
+CAP_COLUMNS: Final = 4
 """Columns of the cap's motion: its forces are in the columns of block and soil."""
 
 
@@ -59,7 +59,7 @@ def block_on_cap(
     frictions: Sequence[tuple[float, float, float]],
 ) -> ContactModel:  # fmt: skip
     """Assemble the model of a block on a cap, arguments as of :func:`chain`."""
-    found = chain((block, cap), mass, rest, frictions=frictions)
+    found = chain_model((block, cap), mass, rest, frictions=frictions)
     kind = BothSlip if isinstance(found.system, SlippingChain) else OneSlips
     slips = Column("cap_slip" if math.isfinite(frictions[LOWER][0]) else "unused_slip")
     own, of_cap = COLUMNS[len(BODY_COLUMNS) :], len(BODY_COLUMNS) + len(COLUMNS[-2:])
@@ -68,8 +68,9 @@ def block_on_cap(
         name="coupled",
         system=kind(*cast("Chain", found.system)),
         columns=(
-            *BODY_COLUMNS, *own[OF_CAP:], *_filled(block.base.columns, OBSERVED, "block"),
-            *_filled(own[:OF_CAP], of_cap, "cap"), *_filled(cap.base.columns, OBSERVED, "soil"),
+            *BODY_COLUMNS, *own[CAP_COLUMNS:], *_padded(block.base.columns, BASE_COLUMNS, "block"),
+            *_padded(own[:CAP_COLUMNS], of_cap, "cap"),
+            *_padded(cap.base.columns, BASE_COLUMNS, "soil"),
             Column("slip"), Column("slip_velocity"), slips, Column("unused_rate"),
         ),
         contacts=CONTACTS,
@@ -77,7 +78,7 @@ def block_on_cap(
     )  # fmt: skip
 
 
-def _filled(columns: Sequence[Column], count: int, whose: str) -> tuple[Column, ...]:
+def _padded(columns: Sequence[Column], count: int, whose: str) -> tuple[Column, ...]:
     """Return columns, filled up to a number by columns that users do not see."""
     unseen = (Column(f"unused_{i}_of_{whose}") for i in range(count - len(columns)))
     return (*columns, *unseen)

@@ -9,19 +9,19 @@ from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION
 from rockframe.dynamics.body import REST_AMPLITUDE
 from rockframe.dynamics.chain import rows as at
-from rockframe.dynamics.chain.corner_guards import OPENING
-from rockframe.dynamics.chain.corners import PULLED
+from rockframe.dynamics.chain.corner_guards import RELEASE_GUARD
+from rockframe.dynamics.chain.corners import IN_TENSION
 from rockframe.dynamics.chain.impact import (
     BOTH,
     LEFT_ONLY,
     NEARLY_ZERO,
     RIGHT_ONLY,
     ROUNDING,
-    bearing_corners,
-    write_corners,
+    find_bearing_corners,
+    write_trial_data,
 )
 from rockframe.dynamics.chain.impulses import RigidImpulses
-from rockframe.dynamics.chain.motion import load_bodies
+from rockframe.dynamics.chain.motion import set_inertia_loads
 from rockframe.dynamics.chain.rows import GUARDS
 from rockframe.dynamics.events import FULL, IMPACT, REST, SEPARATION, SILENT, UPLIFT
 from rockframe.dynamics.on_base import Mode
@@ -36,10 +36,10 @@ from rockframe.dynamics.protocol import (
 from rockframe.dynamics.switching import comes_back, end_speed, lift_by_slip, stay_if_small
 
 # memory, behind the held places and the body of the last event
-ADMISSIBLE: Final = 1  # number of admissible sets, or of slips, in the last event
-TAKEN: Final = 2  # the set of corners that was taken
-OTHER: Final = 3  # the next best set, or -1
-KEPT: Final = ("admissible_sets", "set_taken", "other_set")
+ADMISSIBLE_COUNT: Final = 1  # number of admissible sets, or of slips, in the last event
+CHOSEN_CORNERS: Final = 2  # the set of corners that was taken
+NEXT_BEST_CORNERS: Final = 3  # the next best set, or -1
+SET_MEMORY: Final = ("admissible_sets", "set_taken", "other_set")
 """Names of these three."""
 
 
@@ -49,22 +49,22 @@ class RigidChain(RigidImpulses):
     __slots__ = ()
 
     @inlined
-    def begin_event(self, memory: Vector) -> None:
+    def reset_event(self, memory: Vector) -> None:
         """Reset the memory of the last event: by default one set of corners was admissible."""
         memory[HELD_PLACE + self.body_count] = 0.0
-        memory[HELD_PLACE + self.body_count + ADMISSIBLE] = 1.0
+        memory[HELD_PLACE + self.body_count + ADMISSIBLE_COUNT] = 1.0
 
     @inlined
-    def behind_events(self) -> int:
+    def event_memory_end(self) -> int:
         """Return the index in the memory behind the numbers of the last event."""
-        return HELD_PLACE + self.body_count + 1 + len(KEPT)
+        return HELD_PLACE + self.body_count + 1 + len(SET_MEMORY)
 
     @inlined
     def switch_body(
         self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
         """Carry out the switch that a guard of a body calls for; return the new mode."""
-        self.begin_event(memory)
+        self.reset_event(memory)
         return self.switch_contacts(mode, guard, state, ground, memory)
 
     @kernel
@@ -75,13 +75,19 @@ class RigidChain(RigidImpulses):
         k, count = guard // GUARDS, self.body_count
         contact, which = self.part_mode(mode, k).contact, guard - k * GUARDS
         left = which < CORNER_GUARDS
-        pulls = contact & PULLED != 0 and self.on_base(k).base.is_held(contact, left)
+        pulls = contact & IN_TENSION != 0 and self.on_base(k).base.is_held(contact, left)
         if self.is_rigid(k) and pulls:
-            self.write_contacts(mode, state, memory)
-            opens = which % CORNER_GUARDS == OPENING
-            corners = self.bearing(mode) & ~(BOTH << 2 * k) if opens else self.bearing(mode)
-            new = self.with_bearing(mode, corners, self.pulled(mode) & ~(BOTH << 2 * k))
-            self.keep_hold(new, state, memory)
+            self.project_onto_contacts(mode, state, memory)
+            opens = which % CORNER_GUARDS == RELEASE_GUARD
+            corners = (
+                self.bearing_corners(mode) & ~(BOTH << 2 * k)
+                if opens
+                else self.bearing_corners(mode)
+            )
+            new = self.with_bearing_corners(
+                mode, corners, self.tension_corners(mode) & ~(BOTH << 2 * k)
+            )
+            self.store_held_place(new, state, memory)
             memory[LAST_EVENT] = SEPARATION if opens else SILENT
         elif self.is_rigid(k):
             new = self.switch_corner(k, left, mode, state, ground, memory)
@@ -89,22 +95,22 @@ class RigidChain(RigidImpulses):
             pinned, closed = memory[REPINNING_LOSS], self.closed_corners(mode, state)
             self.scale_impulses(0.0)
             if which in (REENGAGE, CORNER_GUARDS + REENGAGE):
-                new = self.catch_up(mode, guard, state, ground, memory)
+                new = self.reengage_end(mode, guard, state, ground, memory)
             else:
                 new = self.switch_on_base(mode, guard, state, ground, memory)
             # the rule of restraint may change a held point without an impact: contacts stay
-            if memory[LAST_EVENT] != IMPACT or not self.must_meet_anew(closed, new):
+            if memory[LAST_EVENT] != IMPACT or not self.needs_new_impulses(closed, new):
                 return new
-            ends = self.landed(k, left, mode, new)
-            new = self.meet_anew(k, ends, closed, new, state, ground, memory)
+            ends = self.landed_ends(k, left, mode, new)
+            new = self.find_new_impulses(k, ends, closed, new, state, ground, memory)
             stay_if_small(self, self.on_base(k), k, left, new, state, ground, memory)
             # the impulse of the hold is a part of the blow then, and has been scaled with it
             memory[IMPACT_LOSS] += memory[REPINNING_LOSS] - pinned
             memory[REPINNING_LOSS] = pinned
         struck = memory[LAST_EVENT] in (IMPACT, REST)
         for other in range(count):
-            if struck or not self.waits_on(other, new, state, ground):
-                new = self.disturb(other, new, state)
+            if struck or not self.keeps_leaving_contact(other, new, state, ground):
+                new = self.disturbed_mode(other, new, state)
         memory[HELD_PLACE + count] = k + 1.0
         return new
 
@@ -115,29 +121,31 @@ class RigidChain(RigidImpulses):
         """Let a corner lift off from a rigid base, or land on it; return the new mode."""
         part, standing = self.on_base(k), self.part_mode(mode, k)
         bore = part.base.is_held(standing.contact, left)
-        self.write_contacts(mode, state, memory)
-        before, landed = self.bearing(mode), 0
+        self.project_onto_contacts(mode, state, memory)
+        before, landed = self.bearing_corners(mode), 0
         if not bore:  # a corner past its base is moved back onto it, with its body
-            landed = self.land(k, left, standing, state)
+            landed = self.move_onto_base(k, left, standing, state)
         closed = before | landed | self.resting_corners(mode, state)
         if bore:
             leaving = (LEFT_ONLY if left else RIGHT_ONLY) << 2 * k
             new = self.choose_bearing_corners(mode, closed, before, leaving, state, ground, memory)
-            if self.bearing(new) == before & ~leaving and self.bears_alone(before, leaving):
-                new = self.hold_if_jammed(k, left, mode, new, state, ground, memory)
+            if self.bearing_corners(new) == before & ~leaving and self.bears_alone(before, leaving):
+                new = self.hold_jammed_corner(k, left, mode, new, state, ground, memory)
             flies = part.flies(self.part_mode(new, k).contact)
             both = part.shown_contact(standing) == FULL
             memory[LAST_EVENT] = UPLIFT if both and not flies else SEPARATION
-            if self.pulled(new) & leaving != 0:
+            if self.tension_corners(new) & leaving != 0:
                 memory[LAST_EVENT] = SILENT
             return new
         memory[LAST_EVENT] = IMPACT
         new = self.choose_bearing_corners(mode, closed, before, 0, state, ground, memory)
-        new = self.hold_where_small(closed, new, state, ground, memory)
-        return self.rest_where_small(new, state, ground, memory)
+        new = self.hold_small_rebounds(closed, new, state, ground, memory)
+        return self.rest_repeatedly(new, state, ground, memory)
 
     @kernel
-    def catch_up(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
+    def reengage_end(
+        self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
+    ) -> int:
         """Let a pad that rises behind an end touch it again; return the new mode.
 
         After an impact elsewhere has slowed the end down, its pad presses it, but with a falling
@@ -148,14 +156,14 @@ class RigidChain(RigidImpulses):
         part, was = self.on_base(k), self.part_mode(mode, k)
         waits = part.base.waiting(was.contact, left)
         holds = part.flies(was.contact) or waits == was.contact
-        if holds or not self.presses_less(k, left, mode, state, ground):
-            new = self.part_where_pulled(k, left, mode, state, ground, memory)
+        if holds or not self.has_falling_force(k, left, mode, state, ground):
+            new = self.release_tension_corners(k, left, mode, state, ground, memory)
             return self.switch_on_base(new, guard, state, ground, memory)
         before = self.velocities(state)
         lost, place = memory[REPINNING_LOSS], memory[HELD_PLACE + k]
         new = self.switch_on_base(mode, guard, state, ground, memory)
         contact = self.part_mode(new, k).contact
-        if contact != part.base.unpressed(contact, left) or not self.throws_down(new, state):
+        if contact != part.base.unpressed(contact, left) or not self.has_sinking_corner(new, state):
             return new
         self.blend_velocities(before, 0.0, state)
         memory[REPINNING_LOSS], memory[HELD_PLACE + k] = lost, place
@@ -163,7 +171,7 @@ class RigidChain(RigidImpulses):
         return self.with_part(mode, k, Mode(waits, was.pivot, was.slides))
 
     @kernel
-    def part_where_pulled(
+    def release_tension_corners(
         self, k: int, left: bool, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
         """Release corners that would be in tension if an end, reached by its pad, slid on it.
@@ -177,35 +185,35 @@ class RigidChain(RigidImpulses):
         now = part.standing(part.base.held(was.contact, left), body)
         now = Mode(now.contact, now.pivot, True)
         self.find_forces(self.with_part(mode, k, now), state, ground)
-        corners = self.bearing(mode)
+        corners = self.bearing_corners(mode)
         for corner in range(2 * self.body_count):
-            least = NEARLY_ZERO * self.number(corner // 2, at.FORCE_SIZE)
+            least = NEARLY_ZERO * self.row_value(corner // 2, at.FORCE_SCALE)
             if self.corner_force(corner // 2, corner % 2 == 0) < -least:
                 corners &= ~(1 << corner)
-        if corners == self.bearing(mode):
+        if corners == self.bearing_corners(mode):
             return mode
-        parted = self.with_bearing(mode, corners, self.pulled(mode) & corners)
+        parted = self.with_bearing_corners(mode, corners, self.tension_corners(mode) & corners)
         reach = part.body.reach(part.body.pin(now.pivot), part.body.attitude(body.rotation))
         slip = body.horizontal_velocity - reach.rate * body.angular_velocity
         if slip * lift_by_slip(self, part, k, self.with_part(parted, k, now), state) <= 0.0:
             return mode
-        self.write_contacts(mode, state, memory)
-        self.hold_contacts(parted, state, memory)
+        self.project_onto_contacts(mode, state, memory)
+        self.fix_held_points(parted, state, memory)
         return parted
 
     @kernel
-    def hold_where_small(
+    def hold_small_rebounds(
         self, closed: int, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
         """Hold corners that were closed in an impact and whose rebound is negligible."""
         for corner in range(2 * self.body_count):
             if closed >> corner & 1 != 0:
                 left = corner % 2 == 0
-                mode = self.hold_if_small(corner // 2, left, mode, state, ground, memory)
+                mode = self.hold_small_rebound(corner // 2, left, mode, state, ground, memory)
         return mode
 
     @kernel
-    def hold_if_small(
+    def hold_small_rebound(
         self, k: int, left: bool, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
         """Hold a corner of a body in flight if its rebound is negligible; return the mode."""
@@ -215,15 +223,15 @@ class RigidChain(RigidImpulses):
         speed, _ = end_speed(part, left, self.state_of(k, state))
         if not comes_back(self, part, k, left, speed, mode, state, ground):
             return mode
-        closed, pulled = self.bearing(mode) | corner, self.pulled(mode)
-        held = self.let_stand(closed, pulled, mode, state, memory)
+        closed, pulled = self.bearing_corners(mode) | corner, self.tension_corners(mode)
+        held = self.stand_on_corners(closed, pulled, mode, state, memory)
         self.find_forces(held, state, ground)
         if self.corner_force(k, left) < 0.0:
-            held = self.with_bearing(mode, closed, pulled | corner)
+            held = self.with_bearing_corners(mode, closed, pulled | corner)
         return held
 
     @kernel
-    def hold_if_jammed(
+    def hold_jammed_corner(
         self, k: int, left: bool, mode: int, new: int, state: Vector, ground: Ground,
         memory: Vector,
     ) -> int:  # fmt: skip
@@ -235,39 +243,43 @@ class RigidChain(RigidImpulses):
         rises, falls = self.end_accelerations(k, new, state, ground), False
         for side in range(2):
             fall = -rises[side]
-            if left == (side == 0) or self.is_near(k, side == 0, fall, new, state):
-                falls |= fall > ROUNDING * self.number(k, at.GRAVITY)
+            if left == (side == 0) or self.is_closing(k, side == 0, fall, new, state):
+                falls |= fall > ROUNDING * self.row_value(k, at.GRAVITY)
         if not falls:
             return new
-        self.forget_slips(mode, False)  # slipping bodies continue to slip
-        corners, pulled = self.bearing(mode), self.pulled(new)
-        held = self.with_bearing(new, corners, pulled | corners & ~self.bearing(new))
-        self.write_contacts(new, state, memory)
-        self.hold_contacts(held, state, memory)
+        self.restore_trial_slips(mode, False)  # slipping bodies continue to slip
+        corners, pulled = self.bearing_corners(mode), self.tension_corners(new)
+        held = self.with_bearing_corners(
+            new, corners, pulled | corners & ~self.bearing_corners(new)
+        )
+        self.project_onto_contacts(new, state, memory)
+        self.fix_held_points(held, state, memory)
         self.find_forces(held, state, ground)
         if self.corner_force(k, left) < 0.0:
             return held
-        self.write_contacts(held, state, memory)
-        self.hold_contacts(new, state, memory)
+        self.project_onto_contacts(held, state, memory)
+        self.fix_held_points(new, state, memory)
         return new
 
     @kernel
-    def let_stand(self, corners: int, pulled: int, mode: int, state: Vector, memory: Vector) -> int:
+    def stand_on_corners(
+        self, corners: int, pulled: int, mode: int, state: Vector, memory: Vector
+    ) -> int:
         """Let bodies stand on corners, by impulses that may be tension; return the new mode."""
-        self.write_contacts(mode, state, memory)
-        flying = self.with_bearing(mode, 0, 0)
+        self.project_onto_contacts(mode, state, memory)
+        flying = self.with_bearing_corners(mode, 0, 0)
         had = self.energies(flying, state).kinetic  # places the bodies, too
-        load_bodies(self, 0.0, 0.0, self.places())
-        write_corners(self, True, state)
-        self.try_standing(flying, corners, state)
+        set_inertia_loads(self, 0.0, 0.0, self.workspace())
+        write_trial_data(self, True, state)
+        self.solve_standing(flying, corners, state)
         self.change_velocities(state)
-        new = self.with_bearing(mode, corners, pulled)
-        self.hold_contacts(new, state, memory)
+        new = self.with_bearing_corners(mode, corners, pulled)
+        self.fix_held_points(new, state, memory)
         memory[IMPACT_LOSS] += had - self.energies(new, state).kinetic
         return new
 
     @kernel
-    def meet_anew(
+    def find_new_impulses(
         self, k: int, ends: int, closed: int, mode: int, state: Vector, ground: Ground,
         memory: Vector,
     ) -> int:  # fmt: skip
@@ -276,15 +288,15 @@ class RigidChain(RigidImpulses):
         They act at the corners `closed`. The blow at the ends of body `k` that have landed is
         scaled, so that it does not throw them up.
         """
-        free = self.let_all_go(mode, state, memory)
-        self.write_contacts(free, state, memory)
-        had, flying = self.energies(free, state).kinetic, self.with_bearing(free, 0, 0)
-        self.take_back(k, self.shares_of_blow(k, ends, flying, closed, state), flying, state)
+        free = self.release_all(mode, state, memory)
+        self.project_onto_contacts(free, state, memory)
+        had, flying = self.energies(free, state).kinetic, self.with_bearing_corners(free, 0, 0)
+        self.undo_impulses(k, self.landing_scales(k, ends, flying, closed, state), flying, state)
         memory[IMPACT_LOSS] += had - self.energies(flying, state).kinetic
         event = memory[LAST_EVENT]
         new = self.choose_bearing_corners(free, closed, closed, 0, state, ground, memory)
-        new = self.hold_where_small(closed, new, state, ground, memory)
-        new = self.rest_where_small(new, state, ground, memory)
+        new = self.hold_small_rebounds(closed, new, state, ground, memory)
+        new = self.rest_repeatedly(new, state, ground, memory)
         memory[LAST_EVENT] = event
         return new
 
@@ -297,43 +309,47 @@ class RigidChain(RigidImpulses):
 
         After an impact if `leaving` is 0, else under new forces as that corner lifts off.
         """
-        free = self.let_all_go(mode, state, memory) if leaving == 0 else mode
-        flying, kept = self.with_bearing(free, 0, 0), HELD_PLACE + self.body_count
+        free = self.release_all(mode, state, memory) if leaving == 0 else mode
+        flying, kept = self.with_bearing_corners(free, 0, 0), HELD_PLACE + self.body_count
         had = self.energies(flying, state).kinetic  # places the bodies, too
         if leaving == 0:
-            load_bodies(self, 0.0, 0.0, self.places())
+            set_inertia_loads(self, 0.0, 0.0, self.workspace())
         else:
             self.find_forces(flying, state, ground)
-        pulled = 0 if leaving == 0 else self.pulled(mode)
-        found = bearing_corners(self, flying, closed & ~pulled, pulled, before, leaving, state)
+        pulled = 0 if leaving == 0 else self.tension_corners(mode)
+        found = find_bearing_corners(self, flying, closed & ~pulled, pulled, before, leaving, state)
         taken, pulled = found.taken, pulled | found.held
         if found.admissible == 0 and found.held == 0:
-            self.forget_slips(mode, leaving == 0)
+            self.restore_trial_slips(mode, leaving == 0)
             if leaving != 0 and self.bears_alone(before, leaving):
                 taken, pulled = before, pulled | leaving
         if leaving == 0:
             self.change_velocities(state)
-        new = self.with_bearing(free, taken, pulled)
-        self.hold_contacts(new, state, memory)
-        self.note_free_slips(new, state)
-        new = self.go_on(new, state, memory) if leaving == 0 else self.as_tried(new, state, memory)
+        new = self.with_bearing_corners(free, taken, pulled)
+        self.fix_held_points(new, state, memory)
+        self.write_free_slips(new, state)
+        new = (
+            self.resume_slips(new, state, memory)
+            if leaving == 0
+            else self.with_deformable_slips(new, state, memory)
+        )
         memory[IMPACT_LOSS] += had - self.energies(new, state).kinetic
-        memory[kept + ADMISSIBLE] = found.admissible
-        memory[kept + TAKEN], memory[kept + OTHER] = taken, found.other
+        memory[kept + ADMISSIBLE_COUNT] = found.admissible
+        memory[kept + CHOSEN_CORNERS], memory[kept + NEXT_BEST_CORNERS] = taken, found.other
         return new
 
     @inlined
-    def rest_where_small(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
+    def rest_repeatedly(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
         """Let bodies come to rest, repeatedly: one at rest may let another come to rest."""
         new = mode
         for _ in range(self.body_count):
-            new = self.rest_if_small(new, state, ground, memory)
+            new = self.rest_small_rebounds(new, state, ground, memory)
         return new
 
     @kernel
-    def rest_if_small(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
+    def rest_small_rebounds(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
         """Let bodies whose rebound is negligible come to rest, together or one by one."""
-        n, corners, small, count = self.coordinates(), self.bearing(mode), 0, 0
+        n, corners, small, count = self.coordinates(), self.bearing_corners(mode), 0, 0
         slope = self.find_forces(mode, state, ground)
         for k in range(self.body_count):
             first, bears = BEFORE_HORIZONTAL * k, corners >> 2 * k & BOTH
@@ -346,19 +362,21 @@ class RigidChain(RigidImpulses):
                     count += 1
         new = mode
         if count > 1:
-            new = self.rest(small, mode, state, ground, memory)
+            new = self.rest_on_corners(small, mode, state, ground, memory)
         if new == mode:
             for k in range(self.body_count):
                 if small >> 2 * k & BOTH != 0:
-                    new = self.rest(BOTH << 2 * k, new, state, ground, memory)
+                    new = self.rest_on_corners(BOTH << 2 * k, new, state, ground, memory)
         return new
 
     @kernel
-    def rest(self, corners: int, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
+    def rest_on_corners(
+        self, corners: int, mode: int, state: Vector, ground: Ground, memory: Vector
+    ) -> int:
         """Let bodies stand on both corners if these are in compression; else give `mode`."""
         before, lost = self.velocities(state), memory[IMPACT_LOSS]
-        all_of_them = self.bearing(mode) | corners
-        resting = self.let_stand(all_of_them, 0, mode, state, memory)
+        all_of_them = self.bearing_corners(mode) | corners
+        resting = self.stand_on_corners(all_of_them, 0, mode, state, memory)
         self.find_forces(resting, state, ground)
         least = 0.0
         for k in range(self.body_count):
@@ -367,8 +385,8 @@ class RigidChain(RigidImpulses):
         if least >= 0.0:
             memory[LAST_EVENT] = REST
             return resting
-        self.write_contacts(resting, state, memory)
+        self.project_onto_contacts(resting, state, memory)
         self.blend_velocities(before, 0.0, state)
-        self.hold_contacts(mode, state, memory)
+        self.fix_held_points(mode, state, memory)
         memory[IMPACT_LOSS] = lost
         return mode

@@ -10,24 +10,24 @@ from typing import Final
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.body import accelerated
 from rockframe.dynamics.chain import rows as at
-from rockframe.dynamics.chain.corners import PULLED
-from rockframe.dynamics.chain.impact import JAMMED, Found, bearing_corners
-from rockframe.dynamics.chain.motion import load_bodies
-from rockframe.dynamics.chain.rigid import ADMISSIBLE, OTHER, TAKEN
-from rockframe.dynamics.chain.rows import GUARDS, PLACES
+from rockframe.dynamics.chain.corners import IN_TENSION
+from rockframe.dynamics.chain.impact import JAMMED, BearingCorners, find_bearing_corners
+from rockframe.dynamics.chain.motion import set_inertia_loads
+from rockframe.dynamics.chain.rigid import ADMISSIBLE_COUNT, CHOSEN_CORNERS, NEXT_BEST_CORNERS
+from rockframe.dynamics.chain.rows import BODY_STRIDE, GUARDS
 from rockframe.dynamics.chain.slips import OFFSET, ROUNDING, STATIC
-from rockframe.dynamics.chain.tried_slips import TriedSlips
+from rockframe.dynamics.chain.tried_slips import SlipTrials
 from rockframe.dynamics.events import IMPACT, REST, SILENT, STICK
 from rockframe.dynamics.on_base import HOLD, SLIP, Mode
 from rockframe.dynamics.pads import CORNER_GUARDS
 from rockframe.dynamics.protocol import HELD_PLACE, IMPACT_LOSS, LAST_EVENT, Ground
 from rockframe.dynamics.switching import stay_if_small
 
-FRICTION_ALONE: Final = -1
+FRICTION_CHANGED: Final = -1
 """In place of the corner that leaves: only friction has changed."""
 
 
-class SlippingRigidChain(TriedSlips):
+class SlippingRigidChain(SlipTrials):
     """Stacked bodies, some of which slip on their bases: a system."""
 
     __slots__ = ()
@@ -38,13 +38,13 @@ class SlippingRigidChain(TriedSlips):
     ) -> None:
         """Write the guards of the friction that holds a body, and of its slip."""
         standing, i = self.part_mode(mode, k), GUARDS * k + 2 * CORNER_GUARDS
-        size = self.number(k, at.FORCE_SIZE if self.is_rigid(k) else at.GRAVITY)
-        held = self.friction_of(k, STATIC) == math.inf and not standing.slides
+        size = self.row_value(k, at.FORCE_SCALE if self.is_rigid(k) else at.GRAVITY)
+        held = self.friction_coefficient(k, STATIC) == math.inf and not standing.slides
         if self.on_base(k).flies(standing.contact) or held:
             return
-        if not standing.slides and self.is_rigid(k) and standing.contact & PULLED != 0:
+        if not standing.slides and self.is_rigid(k) and standing.contact & IN_TENSION != 0:
             return
-        found = self.guards_of_slip(k, mode, state, self.slopes(), self.pressed(k), size)
+        found = self.slip_guards(k, mode, state, self.slopes(), self.normal_force(k), size)
         values[i + HOLD], values[i + SLIP] = found.hold, found.slip
         changes[i + SLIP] = found.slip_rate
 
@@ -53,43 +53,43 @@ class SlippingRigidChain(TriedSlips):
         self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
         """Carry out the switch that a guard of a body calls for; return the new mode."""
-        k, room = guard // GUARDS, self.places()
+        k, workspace = guard // GUARDS, self.workspace()
         which = guard - k * GUARDS - 2 * CORNER_GUARDS
-        self.begin_event(memory)
-        self.begin_slips(mode, state, memory)
+        self.reset_event(memory)
+        self.store_slips(mode, state, memory)
         if which in (HOLD, SLIP) and (self.is_rigid(k) or self.is_slippery(k)):
-            self.write_contacts(mode, state, memory)
+            self.project_onto_contacts(mode, state, memory)
             if which == HOLD:
                 self.find_forces(mode, state, ground)
-                thrust = room[k * PLACES + at.THRUST]
-                room[k * PLACES + at.STARTS] = -math.copysign(1.0, thrust)
+                thrust = workspace[k * BODY_STRIDE + at.TANGENTIAL_FORCE]
+                workspace[k * BODY_STRIDE + at.STARTING_SENSE] = -math.copysign(1.0, thrust)
             else:
-                self.end_slip(k, mode, state)
-            new = self.rearrange(mode, state, ground, memory)
-            memory[LAST_EVENT] = self.kind_of(k, mode, new)
+                self.stop_slip(k, mode, state)
+            new = self.find_contacts_and_slips(mode, state, ground, memory)
+            memory[LAST_EVENT] = self.slip_event(k, mode, new)
             memory[HELD_PLACE + self.body_count] = k + 1.0
             if memory[LAST_EVENT] == STICK:  # once a body is held bounces may end
-                new = self.rest_where_small(new, state, ground, memory)
-                new = self.hold_as_far(new, state, ground, memory)
+                new = self.rest_repeatedly(new, state, ground, memory)
+                new = self.with_consistent_slips(new, state, ground, memory)
         elif self.is_slippery(k):
             new = self.switch_on_deformable_base(mode, guard, state, ground, memory)
         elif self.is_rigid(k):
             new = self.switch_contacts(mode, guard, state, ground, memory)
             if memory[LAST_EVENT] in (IMPACT, REST):
-                new = self.stop_creep(mode, new, state, ground, memory)
-            new = self.hold_as_far(new, state, ground, memory)
+                new = self.stop_short_slips(mode, new, state, ground, memory)
+            new = self.with_consistent_slips(new, state, ground, memory)
         else:  # a change of the held point may be an impact
-            new = self.let_all_go(mode, state, memory)
+            new = self.release_all(mode, state, memory)
             new = self.switch_contacts(new, guard, state, ground, memory)
-            new = self.go_on(new, state, memory)
-            new = self.hold_as_far(new, state, ground, memory)
+            new = self.resume_slips(new, state, memory)
+            new = self.with_consistent_slips(new, state, ground, memory)
         if memory[LAST_EVENT] not in (IMPACT, REST):
-            new = self.let_wait(new, state, ground)
-        self.end_slips(new, state, memory)
+            new = self.mark_leaving_ends(new, state, ground)
+        self.restore_slips(new, state, memory)
         return new
 
     @kernel
-    def let_wait(self, mode: int, state: Vector, ground: Ground) -> int:
+    def mark_leaving_ends(self, mode: int, state: Vector, ground: Ground) -> int:
         """Mark ends as lifted off while still pressed, if new forces would return them immediately.
 
         As an end lifts off the held point changes, and with it the slips and the corners that bear.
@@ -109,7 +109,7 @@ class SlippingRigidChain(TriedSlips):
         return mode
 
     @kernel
-    def stop_creep(
+    def stop_short_slips(
         self, before: int, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
         """Hold bodies again whose slip on deformable bases after an impact is negligible.
@@ -120,7 +120,7 @@ class SlippingRigidChain(TriedSlips):
         for k in range(self.body_count):
             if self.is_slippery(k) and not self.part_mode(before, k).slides:
                 new = self.stop_short_slip(k, new, state, ground, memory)
-        return new if new == mode else self.rest_where_small(new, state, ground, memory)
+        return new if new == mode else self.rest_repeatedly(new, state, ground, memory)
 
     @kernel
     def stop_short_slip(
@@ -130,8 +130,8 @@ class SlippingRigidChain(TriedSlips):
         was_at = state[self.horizontal_of(k)]
         new = self.end_short_slip(k, mode, state, ground, memory)
         if new != mode:
-            memory[self.kept(k) + OFFSET] += state[self.horizontal_of(k)] - was_at
-            self.write_contacts(new, state, memory)
+            memory[self.slip_memory(k) + OFFSET] += state[self.horizontal_of(k)] - was_at
+            self.project_onto_contacts(new, state, memory)
         return new
 
     @kernel
@@ -143,150 +143,165 @@ class SlippingRigidChain(TriedSlips):
         which, closed = guard - k * GUARDS, self.closed_corners(mode, state)
         self.scale_impulses(0.0)
         memory[HELD_PLACE + self.body_count] = k + 1.0
-        new = self.switch_slippery(k, which, mode, state, ground, memory)
+        new = self.switch_with_friction(k, which, mode, state, ground, memory)
         if which < 2 * CORNER_GUARDS and memory[LAST_EVENT] == SILENT:
             return new
         if memory[LAST_EVENT] == IMPACT:
-            if self.must_meet_anew(closed, new):
+            if self.needs_new_impulses(closed, new):
                 part, left = self.on_base(k), which < CORNER_GUARDS
-                ends = self.landed(k, left, mode, new)
-                new = self.meet_anew(k, ends, closed, new, state, ground, memory)
+                ends = self.landed_ends(k, left, mode, new)
+                new = self.find_new_impulses(k, ends, closed, new, state, ground, memory)
                 stay_if_small(self, part, k, left, new, state, ground, memory)
             for other in range(self.body_count):
                 if not self.is_slippery(other):
-                    new = self.disturb(other, new, state)
-        new = self.go_on(new, state, memory)
-        new = self.hold_as_far(new, state, ground, memory)
+                    new = self.disturbed_mode(other, new, state)
+        new = self.resume_slips(new, state, memory)
+        new = self.with_consistent_slips(new, state, ground, memory)
         if which < 2 * CORNER_GUARDS:
             left = which < CORNER_GUARDS
-            if self.reverses_at_once(k, left, new, state, ground, memory):
+            if self.reverses_immediately(k, left, new, state, ground, memory):
                 new = self.stop_short_slip(k, new, state, ground, memory)
-                new = self.hold_as_far(new, state, ground, memory)
-            new = self.wait(k, left, new, state, ground, memory)
+                new = self.with_consistent_slips(new, state, ground, memory)
+            new = self.with_intermediate_contact(k, left, new, state, ground, memory)
         return new
 
     @kernel
-    def begin_slips(self, mode: int, state: Vector, memory: Vector) -> None:
+    def store_slips(self, mode: int, state: Vector, memory: Vector) -> None:
         """Store the slips of all bodies before an event, and note which of them slip."""
-        self.keep_peaks(mode, state, memory)
-        self.note_slips(mode)
+        self.update_peak_slips(mode, state, memory)
+        self.write_trial_slips(mode)
         for k in range(self.body_count):
-            memory[self.kept(k) + OFFSET] += self.point_of(k, mode, state, memory)
-            self.places()[k * PLACES + at.STARTS] = 0.0
+            memory[self.slip_memory(k) + OFFSET] += self.contact_point(k, mode, state, memory)
+            self.workspace()[k * BODY_STRIDE + at.STARTING_SENSE] = 0.0
 
     @inlined
-    def end_slips(self, mode: int, state: Vector, memory: Vector) -> None:
+    def restore_slips(self, mode: int, state: Vector, memory: Vector) -> None:
         """Continue the slips after an event from their stored values, maybe of new points."""
         for k in range(self.body_count):
-            memory[self.kept(k) + OFFSET] -= self.point_of(k, mode, state, memory)
-        self.keep_peaks(mode, state, memory)
+            memory[self.slip_memory(k) + OFFSET] -= self.contact_point(k, mode, state, memory)
+        self.update_peak_slips(mode, state, memory)
 
     @kernel
-    def hold_as_far(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
+    def with_consistent_slips(
+        self, mode: int, state: Vector, ground: Ground, memory: Vector
+    ) -> int:
         """Return the mode in which friction can hold the held bodies, and opposes other slips."""
         new, event = mode, memory[LAST_EVENT]
         for _ in range(self.body_count):
             self.find_forces(new, state, ground)
             amiss = False
             for k in range(self.body_count):
-                amiss |= self.is_amiss(k, new, state)
-                self.places()[k * PLACES + at.STARTS] = 0.0  # with other corners it may be held
+                amiss |= self.violates_friction(k, new, state)
+                self.workspace()[k * BODY_STRIDE + at.STARTING_SENSE] = (
+                    0.0  # with other corners it may be held
+                )
             if not amiss:
                 break
-            new = self.rearrange(new, state, ground, memory)
+            new = self.find_contacts_and_slips(new, state, ground, memory)
             memory[LAST_EVENT] = event
         return new
 
     @kernel
-    def is_amiss(self, k: int, mode: int, state: Vector) -> bool:
+    def violates_friction(self, k: int, mode: int, state: Vector) -> bool:
         """Whether friction cannot hold a body that is held, or acts along the slip."""
         part, standing = self.on_base(k), self.part_mode(mode, k)
-        friction, room = self.friction_of(k, STATIC), self.places()
+        friction, workspace = self.friction_coefficient(k, STATIC), self.workspace()
         if part.flies(standing.contact) or friction == math.inf:
             return False
         if standing.slides:
             rate, noise = self.slip_rate(k, mode, state)
             return self.sense(mode, k) * rate < -noise
-        if self.is_rigid(k) and standing.contact & PULLED != 0:
+        if self.is_rigid(k) and standing.contact & IN_TENSION != 0:
             return False
-        thrust, least = room[k * PLACES + at.THRUST], ROUNDING * self.number(k, at.FORCE_SIZE)
-        if abs(thrust) <= friction * max(self.pressed(k), 0.0) + least:
+        thrust, least = (
+            workspace[k * BODY_STRIDE + at.TANGENTIAL_FORCE],
+            ROUNDING * self.row_value(k, at.FORCE_SCALE),
+        )
+        if abs(thrust) <= friction * max(self.normal_force(k), 0.0) + least:
             return False
-        room[k * PLACES + at.STARTS] = -math.copysign(1.0, thrust)
+        workspace[k * BODY_STRIDE + at.STARTING_SENSE] = -math.copysign(1.0, thrust)
         return True
 
     @kernel
-    def let_slip_if_amiss(self, mode: int, state: Vector, ground: Ground) -> int:
+    def with_overcome_friction(self, mode: int, state: Vector, ground: Ground) -> int:
         """Return the mode in which bodies slip that friction cannot hold."""
-        room = self.places()
+        workspace = self.workspace()
         for _ in range(self.body_count):
             self.find_forces(mode, state, ground)
             for k in range(self.body_count):
-                if not self.part_mode(mode, k).slides and self.is_amiss(k, mode, state):
+                if not self.part_mode(mode, k).slides and self.violates_friction(k, mode, state):
                     if k == self.body_count - 1:
-                        self.free_lowest(mode, state)
-                    mode = self.slipping(mode, k, float(room[k * PLACES + at.STARTS]))
+                        self.write_lowest_position(mode, state)
+                    mode = self.with_slip_sense(
+                        mode, k, float(workspace[k * BODY_STRIDE + at.STARTING_SENSE])
+                    )
         return mode
 
     @kernel
-    def rearrange(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
+    def find_contacts_and_slips(
+        self, mode: int, state: Vector, ground: Ground, memory: Vector
+    ) -> int:
         """Return the mode whose corners and slips agree with the forces, found by trial of sets."""
-        kept, before = HELD_PLACE + self.body_count, self.bearing(mode)
-        self.write_contacts(mode, state, memory)  # of bodies that were held and may slip
-        self.note_slips(mode)
-        flying, pulled = self.with_bearing(mode, 0, 0), self.pulled(mode)
+        kept, before = HELD_PLACE + self.body_count, self.bearing_corners(mode)
+        self.project_onto_contacts(mode, state, memory)  # of bodies that were held and may slip
+        self.write_trial_slips(mode)
+        flying, pulled = self.with_bearing_corners(mode, 0, 0), self.tension_corners(mode)
         closed, count, free = before | self.resting_corners(mode, state), 0, mode
-        found = Found(before, 0, -1, 0)
+        found = BearingCorners(before, 0, -1, 0)
         for _ in range(self.body_count):
             self.find_forces(flying, state, ground)
-            found = bearing_corners(
-                self, flying, closed & ~pulled, pulled, before, FRICTION_ALONE, state
+            found = find_bearing_corners(
+                self, flying, closed & ~pulled, pulled, before, FRICTION_CHANGED, state
             )
             if found.admissible > 0 or found.held != 0:
                 break
-            free = self.let_all_go(free, state, memory)
-            flying = self.with_bearing(free, 0, 0)
-            jammed = self.jam(flying, closed, before, state, memory)
+            free = self.release_all(free, state, memory)
+            flying = self.with_bearing_corners(free, 0, 0)
+            jammed = self.stop_jammed_slips(flying, closed, before, state, memory)
             if jammed.admissible == 0:
                 break
             before, pulled, count = jammed.taken, 0, max(count, jammed.admissible)
-            closed = before | self.resting_corners(self.with_bearing(flying, before, 0), state)
+            closed = before | self.resting_corners(
+                self.with_bearing_corners(flying, before, 0), state
+            )
         ways = found.admissible
         if found.admissible == 0 and found.held == 0:
-            self.note_slips(mode)
+            self.write_trial_slips(mode)
             self.find_forces(mode, state, ground)
             for k in range(self.body_count):
-                self.is_amiss(k, mode, state)
-                starts = self.places()[k * PLACES + at.STARTS]
+                self.violates_friction(k, mode, state)
+                starts = self.workspace()[k * BODY_STRIDE + at.STARTING_SENSE]
                 if starts != 0.0:
-                    self.places()[k * PLACES + at.SLIPS] = starts
+                    self.workspace()[k * BODY_STRIDE + at.SLIP_SENSE] = starts
         elif found.held == 0:
-            noise = ROUNDING * self.number(0, at.GRAVITY)
-            ways += self.other_ways(flying, found.taken, closed & ~pulled, noise, state)
-        new = self.with_bearing(free, found.taken, pulled | found.held)
-        self.hold_contacts(new, state, memory)
-        new = self.as_tried(new, state, memory)
+            noise = ROUNDING * self.row_value(0, at.GRAVITY)
+            ways += self.count_other_solutions(flying, found.taken, closed & ~pulled, noise, state)
+        new = self.with_bearing_corners(free, found.taken, pulled | found.held)
+        self.fix_held_points(new, state, memory)
+        new = self.with_deformable_slips(new, state, memory)
         # where several sets of impulses are admissible, motion is not unique either
-        memory[kept + ADMISSIBLE] = max(ways, count if found.admissible > 0 else 0)
-        memory[kept + TAKEN], memory[kept + OTHER] = found.taken, found.other
+        memory[kept + ADMISSIBLE_COUNT] = max(ways, count if found.admissible > 0 else 0)
+        memory[kept + CHOSEN_CORNERS], memory[kept + NEXT_BEST_CORNERS] = found.taken, found.other
         return new
 
     @kernel
-    def jam(self, flying: int, closed: int, before: int, state: Vector, memory: Vector) -> Found:
+    def stop_jammed_slips(
+        self, flying: int, closed: int, before: int, state: Vector, memory: Vector
+    ) -> BearingCorners:
         """Stop slips by impulses, as no finite forces solve the equations, :eq:`eq-stack-jam`.
 
         Gives the corners that bear then. Where no set is admissible nothing is changed.
         """
         had = self.energies(flying, state).kinetic  # places the bodies, too
-        load_bodies(self, 0.0, 0.0, self.places())
-        found = bearing_corners(self, flying, closed, 0, before, JAMMED, state)
+        set_inertia_loads(self, 0.0, 0.0, self.workspace())
+        found = find_bearing_corners(self, flying, closed, 0, before, JAMMED, state)
         if found.admissible == 0:
             return found
         self.change_velocities(state)
-        stopped = self.with_bearing(flying, found.taken, 0)
-        self.hold_contacts(stopped, state, memory)
+        stopped = self.with_bearing_corners(flying, found.taken, 0)
+        self.fix_held_points(stopped, state, memory)
         memory[IMPACT_LOSS] += had - self.energies(stopped, state).kinetic
-        self.write_contacts(stopped, state, memory)
+        self.project_onto_contacts(stopped, state, memory)
         for k in range(self.body_count):
-            self.places()[k * PLACES + at.STARTS] = 0.0
+            self.workspace()[k * BODY_STRIDE + at.STARTING_SENSE] = 0.0
         return found

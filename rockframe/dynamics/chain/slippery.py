@@ -12,8 +12,13 @@ from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION, VERTICAL
 from rockframe.dynamics.body import REST_AMPLITUDE, accelerated
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.impact import LEFT_ONLY, RIGHT_ONLY
-from rockframe.dynamics.chain.motion import load_along, load_bodies, place_bodies, press_at
-from rockframe.dynamics.chain.rows import PLACES
+from rockframe.dynamics.chain.motion import (
+    add_base_load,
+    add_tangential_load,
+    set_inertia_loads,
+    write_kinematics,
+)
+from rockframe.dynamics.chain.rows import BODY_STRIDE
 from rockframe.dynamics.chain.slips import IMPULSIVE, SlippingBodies
 from rockframe.dynamics.coulomb import ImpulseResponse, coulomb_impulse
 from rockframe.dynamics.events import IMPACT, PIVOT_CHANGE, REENGAGEMENT, SEPARATION, SILENT
@@ -30,7 +35,7 @@ class SlipperyBases(SlippingBodies):
     __slots__ = ()
 
     @kernel
-    def switch_slippery(
+    def switch_with_friction(
         self, k: int, which: int, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
         """Carry out the switch of an end's contact, or of the held point of a body.
@@ -43,7 +48,7 @@ class SlipperyBases(SlippingBodies):
         part, was = self.on_base(k), self.part_mode(mode, k)
         pivot = next_pivot(self, part, k, mode, state, ground)
         memory[LAST_EVENT] = SILENT if was.pivot == 0 else PIVOT_CHANGE
-        new = self.let_go(k, mode, state, memory)
+        new = self.release(k, mode, state, memory)
         self.stand_upright(k, state)
         return self.with_part(new, k, Mode(was.contact, pivot, True))
 
@@ -61,7 +66,7 @@ class SlipperyBases(SlippingBodies):
             self.change(k, part.base.level(left, line, ()), 0.0, state)
         if found.event == SILENT:
             return self.with_part(mode, k, Mode(found.contact, was.pivot, was.slides))
-        new = self.let_go(k, mode, state, memory)
+        new = self.release(k, mode, state, memory)
         now = part.standing(found.contact, self.state_of(k, state))
         new = self.with_part(new, k, Mode(now.contact, now.pivot, not part.flies(now.contact)))
         if found.event == IMPACT and part.base.rebound(left) < 1.0:
@@ -77,10 +82,10 @@ class SlipperyBases(SlippingBodies):
 
         Other deformable bases press with forces. The friction of these has no impulse.
         """
-        mode = self.let_all_go(mode, state, memory)
+        mode = self.release_all(mode, state, memory)
         for j in range(self.body_count):
             if j != k and self.is_slippery(j):
-                mode = self.disturb(j, mode, state)
+                mode = self.disturbed_mode(j, mode, state)
         before = self.energies_of_bodies(mode, state).kinetic
         alone = LEFT_ONLY if left else RIGHT_ONLY
         if both:
@@ -102,16 +107,16 @@ class SlipperyBases(SlippingBodies):
         slip, noise = self.slip_rate(k, mode, state)
         if abs(slip) <= noise:
             slip = 0.0
-        rises, slides = self.answers(k, 1.0, lever, 0.0, mode, state)
-        normal_by_normal, along_by_normal = rises + lever * self.turned(k), slides
-        rises, slides = self.answers(k, 0.0, 0.0, 1.0, mode, state)
+        rises, slides = self.impulse_response(k, 1.0, lever, 0.0, mode, state)
+        normal_by_normal, along_by_normal = rises + lever * self.rotation_change(k), slides
+        rises, slides = self.impulse_response(k, 0.0, 0.0, 1.0, mode, state)
         along, normal = coulomb_impulse(
             ImpulseResponse(
-                normal_by_normal, rises + lever * self.turned(k), along_by_normal, slides
+                normal_by_normal, rises + lever * self.rotation_change(k), along_by_normal, slides
             ),
-            slip, (1.0 - part.base.rebound(left)) * speed, self.friction_of(k, IMPULSIVE),
+            slip, (1.0 - part.base.rebound(left)) * speed, self.friction_coefficient(k, IMPULSIVE),
         )  # fmt: skip
-        self.give_blow(k, normal, normal * lever, along, slip, mode, state)
+        self.apply_base_impulses(k, normal, normal * lever, along, slip, mode, state)
 
     @kernel
     def strike_ends(self, k: int, mode: int, state: Vector) -> int:
@@ -126,12 +131,18 @@ class SlipperyBases(SlippingBodies):
         if abs(slip) <= noise:
             slip = 0.0
         one, other = line.left_lever, line.right_lever
-        rises, slides_left = self.answers(k, 1.0, one, 0.0, mode, state)
-        left_left, mixed = rises + one * self.turned(k), rises + other * self.turned(k)
-        rises, slides_right = self.answers(k, 1.0, other, 0.0, mode, state)
-        right_right = rises + other * self.turned(k)
-        rises, slides = self.answers(k, 0.0, 0.0, 1.0, mode, state)
-        left_along, right_along = rises + one * self.turned(k), rises + other * self.turned(k)
+        rises, slides_left = self.impulse_response(k, 1.0, one, 0.0, mode, state)
+        left_left, mixed = (
+            rises + one * self.rotation_change(k),
+            rises + other * self.rotation_change(k),
+        )
+        rises, slides_right = self.impulse_response(k, 1.0, other, 0.0, mode, state)
+        right_right = rises + other * self.rotation_change(k)
+        rises, slides = self.impulse_response(k, 0.0, 0.0, 1.0, mode, state)
+        left_along, right_along = (
+            rises + one * self.rotation_change(k),
+            rises + other * self.rotation_change(k),
+        )
         gain_left = -(1.0 - base.rebound(True)) * min(line.left_speed, 0.0)
         gain_right = -(1.0 - base.rebound(False)) * min(line.right_speed, 0.0)
         determinant = left_left * right_right - mixed * mixed
@@ -148,54 +159,56 @@ class SlipperyBases(SlippingBodies):
         slides += slides_with * less - slides_left * left_less - slides_right * right_less
         along, _ = coulomb_impulse(
             ImpulseResponse(1.0, less, slides_with, slides), slip, -press,
-            self.friction_of(k, IMPULSIVE),
+            self.friction_coefficient(k, IMPULSIVE),
         )  # fmt: skip
         left, right = left - left_less * along, right - right_less * along
         if left < 0.0:
             return RIGHT_ONLY
         if right < 0.0:
             return LEFT_ONLY
-        self.give_blow(k, left + right, left * one + right * other, along, slip, mode, state)
+        self.apply_base_impulses(
+            k, left + right, left * one + right * other, along, slip, mode, state
+        )
         return 0
 
     @kernel
-    def give_blow(
+    def apply_base_impulses(
         self, k: int, press: float, moment: float, along: float, slip: float, mode: int,
         state: Vector,
     ) -> None:  # fmt: skip
         """Change the velocities by the impulses of a base; a slip that they end becomes zero."""
-        self.answers(k, press, moment, along, mode, state)
-        self.take_answer(state)
+        self.impulse_response(k, press, moment, along, mode, state)
+        self.apply_response(state)
         self.note_blow(k, press, moment, along)
         after, noise = self.slip_rate(k, mode, state)
         if abs(after) <= noise + 2.0 * NOISE * abs(slip):
-            self.end_slip(k, mode, state)
+            self.stop_slip(k, mode, state)
 
     @inlined
-    def turned(self, k: int) -> float:
+    def rotation_change(self, k: int) -> float:
         """Return the change of a body's angular velocity in the last response."""
         return float(self.slopes()[BEFORE_HORIZONTAL * k + ROTATION])
 
     @kernel
-    def answers(
+    def impulse_response(
         self, k: int, press: float, moment: float, along: float, mode: int, state: Vector
     ) -> tuple[float, float]:
         """Return the changes of its body's rate of rise and of slip by impulses of a base.
 
         The changes of all velocities are in the room for slopes until the next solution.
         """
-        room, out = self.places(), self.slopes()
-        place_bodies(self, mode, state, room)
-        load_bodies(self, 0.0, 0.0, room)
-        press_at(self, k, press, moment, room)
-        load_along(self, k, along, room)
-        self.answer(k, mode, 0.0, state)
+        workspace, out = self.workspace(), self.slopes()
+        write_kinematics(self, mode, state, workspace)
+        set_inertia_loads(self, 0.0, 0.0, workspace)
+        add_base_load(self, k, press, moment, workspace)
+        add_tangential_load(self, k, along, workspace)
+        self.solve_response(k, mode, 0.0, state)
         turned = out[BEFORE_HORIZONTAL * k + ROTATION]
-        slides = out[self.horizontal_of(k)] - room[k * PLACES + at.REACH] * turned
+        slides = out[self.horizontal_of(k)] - workspace[k * BODY_STRIDE + at.PIVOT_ARM] * turned
         return out[BEFORE_HORIZONTAL * k + VERTICAL], slides
 
     @kernel
-    def reverses_at_once(
+    def reverses_immediately(
         self, k: int, left: bool, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> bool:
         """Whether an end that has lifted off returns immediately, or one that has landed leaves."""
@@ -220,24 +233,24 @@ class SlipperyBases(SlippingBodies):
             return mode
         rate, noise = self.slip_rate(k, mode, state)
         # an impact may have reversed the slip since
-        slips = self.slipping(mode, k, rate) if abs(rate) > noise else mode
+        slips = self.with_slip_sense(mode, k, rate) if abs(rate) > noise else mode
         slope = self.find_forces(slips, state, ground)
-        found = self.guards_of_slip(k, slips, state, slope, 0.0, 1.0)
+        found = self.slip_guards(k, slips, state, slope, 0.0, 1.0)
         slows = -found.slip_rate * math.sqrt(body.gravity * body.size())
         if rate * rate >= 2.0 * slows * REST_AMPLITUDE * body.size():
             return mode
         had = self.energies_of_bodies(slips, state).kinetic
         state[self.horizontal_of(k)] += 0.5 * rate * abs(rate) / slows  # the way until it stops
         # an impulse of its base stops it, without friction of slips elsewhere
-        _, slides = self.answers(k, 0.0, 0.0, 1.0, slips, state)
-        self.answers(k, 0.0, 0.0, -rate / slides, slips, state)
-        self.add_slopes(state)
+        _, slides = self.impulse_response(k, 0.0, 0.0, 1.0, slips, state)
+        self.impulse_response(k, 0.0, 0.0, -rate / slides, slips, state)
+        self.add_velocity_changes(state)
         new = self.with_slip(k, 0.0, slips, state, memory)
         memory[IMPACT_LOSS] += had - self.energies_of_bodies(new, state).kinetic
         return new
 
     @kernel
-    def wait(
+    def with_intermediate_contact(
         self, k: int, left: bool, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
         """Return mode after an end has lifted off, or is pressed again, and the held point moved.

@@ -6,7 +6,7 @@ from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION, VERTICAL
 from rockframe.dynamics.body import BodyState, accelerated
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.moving import MovingBodies
-from rockframe.dynamics.chain.rows import COLUMNS, GUARDS, OBSERVED, PLACES
+from rockframe.dynamics.chain.rows import BASE_COLUMNS, BODY_STRIDE, COLUMNS, GUARDS
 from rockframe.dynamics.events import IMPACT
 from rockframe.dynamics.on_base import HOLD, IDLE, SLIP, Mode, SlidingGuards
 from rockframe.dynamics.pads import CORNER_GUARDS, LEAVING, corner_contact
@@ -27,7 +27,7 @@ class Chain(MovingBodies):
     @kernel
     def modes(self) -> int:
         """Return the number of modes; some of these numbers do not occur."""
-        return self.modes_of_bodies()
+        return self.body_mode_count()
 
     @kernel
     def contact_state_of(self, mode: int, k: int) -> int:
@@ -55,7 +55,7 @@ class Chain(MovingBodies):
     @kernel
     def guards_of_bodies(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
         """Write the guards of each body in turn, and their rates."""
-        values, changes = self.guard_room(0), self.guard_room(1)
+        values, changes = self.guard_workspace(0), self.guard_workspace(1)
         slides = self.some_end_slides(mode)
         for k in range(self.body_count):
             found = self.guards_on_base(k, slides, mode, state, slope, ground)
@@ -72,14 +72,14 @@ class Chain(MovingBodies):
         first, sliding = BEFORE_HORIZONTAL * k, IDLE
         vertical, angular = slope[first + VERTICAL], slope[first + ROTATION]
         if self.is_slippery(k):  # these guards have been written before
-            values, changes = self.guard_room(0), self.guard_room(1)
+            values, changes = self.guard_workspace(0), self.guard_workspace(1)
             i = GUARDS * k + 2 * CORNER_GUARDS
             sliding = SlidingGuards(values[i + HOLD], values[i + SLIP], changes[i + SLIP])
             standing = Mode(standing.contact, standing.pivot, False)
         elif slides and standing.slides:
             rise = lift_by_slip(self, part, k, mode, state)
-            self.forces_from(mode, state, slope, ground)
-            push = self.places()[k * PLACES + at.THRUST]
+            self.forces_from_slope(mode, state, slope, ground)
+            push = self.workspace()[k * BODY_STRIDE + at.TANGENTIAL_FORCE]
             horizontal = slope[self.horizontal_of(k)]
             sliding = part.sliding_guards(standing, body, angular, horizontal, push, rise)
         return part.guards_with(standing, body, (), vertical, angular, sliding)
@@ -97,19 +97,19 @@ class Chain(MovingBodies):
         return self.switch_on_base(mode, guard, state, ground, memory)
 
     @inlined
-    def begin_event(self, memory: Vector) -> None:
+    def reset_event(self, memory: Vector) -> None:
         """Reset the memory of the last event: the number of its body."""
         memory[HELD_PLACE + self.body_count] = 0.0
 
     @inlined
-    def behind_events(self) -> int:
+    def event_memory_end(self) -> int:
         """Return the index in the memory behind the numbers of the last event."""
         return HELD_PLACE + self.body_count + 1
 
     @inlined
-    def link_place(self) -> int:
+    def link_event_index(self) -> int:
         """Return the index in the memory of the last event's link, in a chain with links."""
-        return self.behind_events()
+        return self.event_memory_end()
 
     @inlined
     def switch_on_base(
@@ -119,8 +119,10 @@ class Chain(MovingBodies):
         k = guard // GUARDS
         new = switch_part(self, self.on_base(k), k, guard - k * GUARDS, mode, state, ground, memory)
         for above in range(k):
-            if memory[LAST_EVENT] == IMPACT or not self.waits_on(above, new, state, ground):
-                new = self.disturb(above, new, state)
+            if memory[LAST_EVENT] == IMPACT or not self.keeps_leaving_contact(
+                above, new, state, ground
+            ):
+                new = self.disturbed_mode(above, new, state)
         for below in range(k + 1, self.body_count):
             if not self.is_rigid(below) and not self.is_slippery(below):
                 new = checked_sliding(self, self.on_base(below), below, new, state)
@@ -128,7 +130,7 @@ class Chain(MovingBodies):
         return new
 
     @kernel
-    def waits_on(self, k: int, mode: int, state: Vector, ground: Ground) -> bool:
+    def keeps_leaving_contact(self, k: int, mode: int, state: Vector, ground: Ground) -> bool:
         """Whether an end that lifted off while pressed keeps this contact after an event elsewhere.
 
         It does as long as the force of its pad decreases, unless the event is an impact.
@@ -136,18 +138,20 @@ class Chain(MovingBodies):
         contact = self.part_mode(mode, k).contact
         for side in range(2):
             if not self.is_rigid(k) and corner_contact(contact, side == 0) == LEAVING:
-                return self.presses_less(k, side == 0, mode, state, ground)
+                return self.has_falling_force(k, side == 0, mode, state, ground)
         return False
 
     @kernel
-    def presses_less(self, k: int, left: bool, mode: int, state: Vector, ground: Ground) -> bool:
+    def has_falling_force(
+        self, k: int, left: bool, mode: int, state: Vector, ground: Ground
+    ) -> bool:
         """Whether the force of a deformable base on an end does not rise."""
         part, rises = self.on_base(k), self.end_accelerations(k, mode, state, ground)
         line = part.body.base_line_at(self.state_of(k, state))
         return not part.base.will_press(left, accelerated(line, rises[0], rises[1]), ())
 
     @kernel
-    def disturb(self, k: int, mode: int, state: Vector) -> int:
+    def disturbed_mode(self, k: int, mode: int, state: Vector) -> int:
         """Return the mode after an event of another body has changed the speeds of this one."""
         if self.is_rigid(k):
             return mode
@@ -169,36 +173,49 @@ class Chain(MovingBodies):
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> Vector:
         """Write motion and forces of each body in turn, from the top down, and of its base."""
-        out = self.column_room()
+        out = self.column_workspace()
         self.find_corner_forces(mode, state, ground)
-        self.forces_from(mode, state, slope, ground)
-        room = self.places()
-        shear = room[(self.body_count - 1) * PLACES + at.THRUST]
+        self.forces_from_slope(mode, state, slope, ground)
+        workspace = self.workspace()
+        shear = workspace[(self.body_count - 1) * BODY_STRIDE + at.TANGENTIAL_FORCE]
         rotation = rate = rise = x = 0.0
         for k in range(self.body_count - 1, -1, -1):
-            i, j, standing = k * PLACES, COLUMNS * k, self.part_mode(mode, k)
-            body = self.standing_state(k, standing, state)
+            i, j, standing = k * BODY_STRIDE, COLUMNS * k, self.part_mode(mode, k)
+            body = self.constrained_state(k, standing, state)
             rotation += body.rotation
             rate += body.angular_velocity
-            rise = self.rise_of(k, rise, body.vertical, room)
-            sine, cosine = room[i + at.SINE], room[i + at.COSINE]
+            rise = self.rise_of(k, rise, body.vertical, workspace)
+            sine, cosine = workspace[i + at.SINE], workspace[i + at.COSINE]
             if k + 1 < self.body_count:
-                x += room[i + at.ARM] * sine + room[i + at.ACROSS] * cosine
-                x -= self.number(k, at.BESIDE)
+                x += workspace[i + at.NORMAL] * sine + workspace[i + at.TANGENTIAL] * cosine
+                x -= self.row_value(k, at.UPRIGHT_OFFSET)
             else:
                 x = self.place(k, mode, state, memory)
-            out[j], out[j + 1], out[j + 2], out[j + 3] = rotation, rate, rise, room[i + at.SPEED_Y]
-            out[j + 4], out[j + 5], out[j + 6] = x, shear, room[i + at.SPEED_X]
-            out[j + 7] = room[i + at.ROTATION]
-            out[j + 8], out[j + 9] = room[i + at.X], room[i + at.Y]
-            out[j + 10], out[j + 11] = room[i + at.THRUST], room[i + at.PRESS]
+            out[j], out[j + 1], out[j + 2], out[j + 3] = (
+                rotation,
+                rate,
+                rise,
+                workspace[i + at.SPEED_Y],
+            )
+            out[j + 4], out[j + 5], out[j + 6] = x, shear, workspace[i + at.SPEED_X]
+            out[j + 7] = workspace[i + at.ANGULAR_ACCELERATION]
+            out[j + 8], out[j + 9] = (
+                workspace[i + at.ACCELERATION_X],
+                workspace[i + at.ACCELERATION_Y],
+            )
+            out[j + 10], out[j + 11] = (
+                workspace[i + at.TANGENTIAL_FORCE],
+                workspace[i + at.NORMAL_FORCE],
+            )
             out[j + 12], out[j + 13] = body.rotation, body.vertical
-            put(self.observed_base(k, standing, body), j + COLUMNS - OBSERVED, out)
-            self.observe_slip(k, mode, state, memory, out)
+            put(self.observed_base(k, standing, body), j + COLUMNS - BASE_COLUMNS, out)
+            self.write_slip_columns(k, mode, state, memory, out)
         return out
 
     @inlined
-    def observe_slip(self, k: int, mode: int, state: Vector, memory: Vector, out: Vector) -> None:
+    def write_slip_columns(
+        self, k: int, mode: int, state: Vector, memory: Vector, out: Vector
+    ) -> None:
         """Write slip and rate of slip of a body on its base: none slips here."""
 
     @inlined
@@ -208,10 +225,10 @@ class Chain(MovingBodies):
     @inlined
     def observed_base(self, k: int, standing: Mode, body: BodyState) -> Variables:
         """Return the base's columns in the results."""
-        return self.observed_on(k, standing, body)
+        return self.deformable_base_columns(k, standing, body)
 
     @kernel
-    def observed_on(self, k: int, standing: Mode, body: BodyState) -> Variables:
+    def deformable_base_columns(self, k: int, standing: Mode, body: BodyState) -> Variables:
         """Return the columns of a deformable base in the results."""
         part = self.on_base(k)
         if self.is_slippery(k):

@@ -14,223 +14,246 @@ from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION, VERTICAL
 from rockframe.dynamics.body import PIVOT_LEFT, PIVOT_RIGHT
 from rockframe.dynamics.chain import rows as at
-from rockframe.dynamics.chain.corners import NONE
+from rockframe.dynamics.chain.corners import NO_CONSTRAINT
 from rockframe.dynamics.chain.impact import (
     BOTH,
     LEFT_ONLY,
     NOISE,
-    Attempt,
-    attempt,
-    size_of,
+    Trial,
+    bit_count,
+    solve_trial,
 )
 from rockframe.dynamics.chain.motion import (
     FREE,
     add_constraint,
-    coriolis_along,
-    of_both,
-    write_direction,
+    combined_acceleration,
+    tangential_coriolis,
+    write_jacobian,
 )
 from rockframe.dynamics.chain.rigid import RigidChain
-from rockframe.dynamics.chain.rows import CONSTRAINT, MOST_CONSTRAINTS, PLACES
+from rockframe.dynamics.chain.rows import BODY_STRIDE, CONSTRAINT_STRIDE, MAX_CONSTRAINTS
 from rockframe.dynamics.chain.slippery import SlipperyBases
-from rockframe.dynamics.chain.slips import IMPULSIVE, KINETIC, ROUNDING, STATIC, TRIES
+from rockframe.dynamics.chain.slips import IMPULSIVE, KINETIC, MAX_SLIP_CHANGES, ROUNDING, STATIC
 from rockframe.dynamics.on_base import Mode
 from rockframe.dynamics.sliding import NOISE as NOISE_OF_SLIP
 
-NOWHERE: Final = -1
+NO_PIVOT: Final = -1
 """In place of a pivot, where a body neither slips nor is held by friction."""
-SLICK: Final = 0.5
+FRICTIONLESS: Final = 0.5
 """In place of a sense of 1, of a slip on which friction does not act."""
-MOST_WAYS: Final = 81
+MAX_COMBINATIONS: Final = 81
 """Most combinations of slips tried for a set of corners; each base is held or slips to a side."""
 
 
-class TriedSlips(SlipperyBases, RigidChain):
+class SlipTrials(SlipperyBases, RigidChain):
     """Trials of corners on rigid bases with bodies that may slip. A mixin of systems."""
 
     __slots__ = ()
 
     @inlined
-    def slip_sense(self, k: int) -> float:
+    def trial_sense(self, k: int) -> float:
         """Return the sense of slip of a body on its base in the present trial: 0, held."""
-        return float(self.places()[k * PLACES + at.SLIPS])
+        return float(self.workspace()[k * BODY_STRIDE + at.SLIP_SENSE])
 
     @inlined
-    def sense_in(self, mode: int, k: int) -> float:
+    def sense_or_zero(self, mode: int, k: int) -> float:
         """Return the sense of slip of a body on its base in a mode; 0 if it does not slip."""
         if (self.is_rigid(k) or self.is_slippery(k)) and self.part_mode(mode, k).slides:
             return self.sense(mode, k)
         return 0.0
 
     @kernel
-    def note_slips(self, mode: int) -> None:
+    def write_trial_slips(self, mode: int) -> None:
         """Write the senses of slips of a mode as those of the present trial."""
-        room = self.places()
+        workspace = self.workspace()
         for k in range(self.body_count):
-            room[k * PLACES + at.SLIPS] = self.sense_in(mode, k)
+            workspace[k * BODY_STRIDE + at.SLIP_SENSE] = self.sense_or_zero(mode, k)
 
     @inlined
-    def forget_slips(self, mode: int, impulsive: bool) -> None:
+    def restore_trial_slips(self, mode: int, impulsive: bool) -> None:
         """Restore the slips of a mode for the next trial; none in an impact, where all are held."""
-        self.note_slips(mode)
+        self.write_trial_slips(mode)
         if impulsive:
             for k in range(self.body_count):
-                self.places()[k * PLACES + at.SLIPS] = 0.0
+                self.workspace()[k * BODY_STRIDE + at.SLIP_SENSE] = 0.0
 
     @kernel
-    def standing_on(self, k: int, bears: int, mode: int) -> int:
+    def with_rigid_slip(self, k: int, bears: int, mode: int) -> int:
         """Return the mode with the slip, on a rigid base, that the last trial gave a body."""
-        sense = self.slip_sense(k)
+        sense = self.trial_sense(k)
         if bears != 0 and sense != 0.0:
-            return self.slipping(mode, k, sense)
-        value = self.modes_of_bodies() * 2**k
+            return self.with_slip_sense(mode, k, sense)
+        value = self.body_mode_count() * 2**k
         return mode - mode // value % 2 * value
 
     @kernel
-    def as_tried(self, mode: int, state: Vector, memory: Vector) -> int:
+    def with_deformable_slips(self, mode: int, state: Vector, memory: Vector) -> int:
         """Return the mode with the slips on deformable bases of the last trial."""
         for k in range(self.body_count):
             if self.is_slippery(k) and not self.on_base(k).flies(self.part_mode(mode, k).contact):
-                mode = self.with_slip(k, self.slip_sense(k), mode, state, memory)
+                mode = self.with_slip(k, self.trial_sense(k), mode, state, memory)
         return mode
 
     @kernel
-    def hold_as_tried(
-        self, k: int, count: int, standing: Mode, state: Vector, room: Vector, rows: Vector
+    def add_trial_constraint(
+        self,
+        k: int,
+        count: int,
+        standing: Mode,
+        state: Vector,
+        workspace: Vector,
+        constraints: Vector,
     ) -> int:
         """Hold a body on a deformable base, or load it by friction, in the present trial."""
         if not self.is_slippery(k) or self.on_base(k).flies(standing.contact):
-            return self.hold_or_slide(k, count, standing, state, room, rows)
-        i, sense = k * PLACES, self.slip_sense(k)
-        self.drag(k, sense, room)
+            return self.add_hold_or_slide(k, count, standing, state, workspace, constraints)
+        i, sense = k * BODY_STRIDE, self.trial_sense(k)
+        self.set_friction_load(k, sense, workspace)
         if sense == 0.0:
-            wanted = coriolis_along(i, room) + room[i + at.DRIFT]
-            add_constraint(self, count, k, 1.0, 0.0, -room[i + at.REACH], wanted, room, rows)
-            room[i + at.HOLDS_ALONG] = count
+            prescribed = tangential_coriolis(i, workspace) + workspace[i + at.PIVOT_CENTRIPETAL]
+            add_constraint(
+                self,
+                count,
+                k,
+                1.0,
+                0.0,
+                -workspace[i + at.PIVOT_ARM],
+                prescribed,
+                workspace,
+                constraints,
+            )
+            workspace[i + at.TANGENTIAL_CONSTRAINT] = count
             count += 1
         return count
 
     @inlined
-    def pin_on(self, bears: int) -> int:
+    def bearing_pivot(self, bears: int) -> int:
         """Return the pivot at corners that bear; where both do they have one velocity."""
         return PIVOT_LEFT if bears == LEFT_ONLY else PIVOT_RIGHT
 
     @inlined
-    def pressed(self, k: int) -> float:
+    def normal_force(self, k: int) -> float:
         """Return the normal force of a body's base on it, or its impulse."""
         if self.is_rigid(k):
             return self.corner_force(k, True) + self.corner_force(k, False)
-        return float(self.places()[k * PLACES + at.PRESS])
+        return float(self.workspace()[k * BODY_STRIDE + at.NORMAL_FORCE])
 
     @kernel
-    def note_free_slips(self, mode: int, state: Vector) -> None:
+    def write_free_slips(self, mode: int, state: Vector) -> None:
         """Write the senses in which bodies in flight over rigid bases would slip on landing."""
-        bearing, room = self.bearing(mode), self.places()
+        bearing, workspace = self.bearing_corners(mode), self.workspace()
         for k in range(self.body_count):
             if self.is_rigid(k) and bearing >> 2 * k & BOTH == 0:
-                rate, noise = self.slip_on(k, self.pin_on(BOTH), state)
-                slips = abs(rate) > noise and self.friction_of(k, IMPULSIVE) < math.inf
-                room[k * PLACES + at.SLIPS] = math.copysign(1.0, rate) if slips else 0.0
+                rate, noise = self.pivot_slip_rate(k, self.bearing_pivot(BOTH), state)
+                slips = abs(rate) > noise and self.friction_coefficient(k, IMPULSIVE) < math.inf
+                workspace[k * BODY_STRIDE + at.SLIP_SENSE] = (
+                    math.copysign(1.0, rate) if slips else 0.0
+                )
 
     @kernel
-    def rub(
-        self, k: int, which: int, sense: float, reach: float, impulsive: bool, room: Vector,
-        rows: Vector,
+    def add_corner_friction(
+        self, k: int, which: int, sense: float, reach: float, impulsive: bool, workspace: Vector,
+        constraints: Vector,
     ) -> None:  # fmt: skip
         """Add friction to the force of a corner that slips, :eq:`eq-stack-slip`."""
-        holds, i, ratio = which * CONSTRAINT + at.HOLDS, k * PLACES, 0.0
+        holds, i, ratio = which * CONSTRAINT_STRIDE + at.FORCE_DIRECTION, k * BODY_STRIDE, 0.0
         if abs(sense) == 1.0:
-            ratio = -sense * self.friction_of(k, IMPULSIVE if impulsive else KINETIC)
-            x, y = ratio * room[i + at.COSINE], -ratio * room[i + at.SINE]
-            rows[holds] += x
-            rows[holds + 1] += y
-            rows[holds + 2] -= ratio * reach
-            rows[which * CONSTRAINT + at.UNSYMMETRIC] = 1.0
+            ratio = -sense * self.friction_coefficient(k, IMPULSIVE if impulsive else KINETIC)
+            x, y = ratio * workspace[i + at.COSINE], -ratio * workspace[i + at.SINE]
+            constraints[holds] += x
+            constraints[holds + 1] += y
+            constraints[holds + 2] -= ratio * reach
+            constraints[which * CONSTRAINT_STRIDE + at.UNSYMMETRIC] = 1.0
             if k + 1 < self.body_count:
-                rows[holds + 3] -= x
-                rows[holds + 4] -= y
-                rows[holds + 5] += ratio * (reach - room[i + at.ARM])
-        room[i + at.RUBS] = ratio
+                constraints[holds + 3] -= x
+                constraints[holds + 4] -= y
+                constraints[holds + 5] += ratio * (reach - workspace[i + at.NORMAL])
+        workspace[i + at.FRICTION_RATIO] = ratio
 
     @kernel
-    def stand_still(self, room: Vector, out: Vector) -> None:
+    def complete_solution(self, workspace: Vector, out: Vector) -> None:
         """Write the friction of slipping bodies; set accelerations to zero in full contact."""
         for k in range(self.body_count):
-            i = k * PLACES
-            left, right = room[i + at.LEFT_CORNER], room[i + at.RIGHT_CORNER]
-            if not self.is_rigid(k) or (left == NONE and right == NONE):
+            i = k * BODY_STRIDE
+            left, right = workspace[i + at.LEFT_CONSTRAINT], workspace[i + at.RIGHT_CONSTRAINT]
+            if not self.is_rigid(k) or (left == NO_CONSTRAINT and right == NO_CONSTRAINT):
                 continue
-            if room[i + at.HELD] == FREE:
+            if workspace[i + at.HOLD_STATE] == FREE:
                 press = self.corner_force(k, True) + self.corner_force(k, False)
-                room[i + at.THRUST] = room[i + at.RUBS] * press
-            if left != NONE and right != NONE:
+                workspace[i + at.TANGENTIAL_FORCE] = workspace[i + at.FRICTION_RATIO] * press
+            if left != NO_CONSTRAINT and right != NO_CONSTRAINT:
                 first = BEFORE_HORIZONTAL * k
                 out[first + ROTATION] = out[first + VERTICAL] = 0.0
-                if room[i + at.HELD] != FREE:
+                if workspace[i + at.HOLD_STATE] != FREE:
                     out[self.horizontal_of(k)] = 0.0
 
     @kernel
-    def lost_by_friction(
-        self, k: int, which: int, state: Vector, room: Vector, rows: Vector
+    def friction_loss(
+        self, k: int, which: int, state: Vector, workspace: Vector, constraints: Vector
     ) -> float:
         """Return the energy that friction takes in an impact at a corner that slips."""
-        first, ratio = which * CONSTRAINT, room[k * PLACES + at.RUBS]
+        first, ratio = which * CONSTRAINT_STRIDE, workspace[k * BODY_STRIDE + at.FRICTION_RATIO]
         if ratio == 0.0:
             return 0.0
         # both corners have the same slip where both bear
-        left = room[k * PLACES + at.LEFT_CORNER] != NONE
-        slip, _ = self.slip_on(k, PIVOT_LEFT if left else PIVOT_RIGHT, state)
-        leaned = of_both(self.body_count, k, first + at.HOLDS, room, rows) - rows[first + at.VALUE]
-        return float(-rows[first + at.FORCE] * (ratio * slip + 0.5 * leaned))
+        left = workspace[k * BODY_STRIDE + at.LEFT_CONSTRAINT] != NO_CONSTRAINT
+        slip, _ = self.pivot_slip_rate(k, PIVOT_LEFT if left else PIVOT_RIGHT, state)
+        leaned = (
+            combined_acceleration(
+                self.body_count, k, first + at.FORCE_DIRECTION, workspace, constraints
+            )
+            - constraints[first + at.PRESCRIBED]
+        )
+        return float(-constraints[first + at.FORCE] * (ratio * slip + 0.5 * leaned))
 
     @kernel
-    def must_meet_anew(self, closed: int, mode: int) -> bool:
+    def needs_new_impulses(self, closed: int, mode: int) -> bool:
         """Whether impulses must be found again: a base with friction acted, or a corner pulled.
 
         Or a closed corner did not act, as it did not bear before.
         """
-        room = self.places()
+        workspace = self.workspace()
         for k in range(self.body_count):
-            i = k * PLACES
-            acts = room[i + at.LEFT_IMPULSE] != 0.0 or room[i + at.RIGHT_IMPULSE] != 0.0
-            if acts and self.friction_of(k, IMPULSIVE) < math.inf:
+            i = k * BODY_STRIDE
+            acts = workspace[i + at.LEFT_IMPULSE] != 0.0 or workspace[i + at.RIGHT_IMPULSE] != 0.0
+            if acts and self.friction_coefficient(k, IMPULSIVE) < math.inf:
                 return True
-        return self.some_pull() or closed != self.bearing(mode)
+        return self.has_tension_impulse() or closed != self.bearing_corners(mode)
 
     @kernel
     def try_corners(
         self, mode: int, some: int, closed: int, impulsive: bool, noise: float, state: Vector
-    ) -> Attempt:
+    ) -> Trial:
         """Let a set of the closed corners bear, and find which of their bodies slip, base by base.
 
         In an impact the velocities after it decide. Under new forces, slipping bodies continue to
         slip, and held ones start to slip if friction cannot hold them.
         """
-        self.note_first_slips(mode, some, impulsive, state)
-        found = Attempt(0, math.inf)
-        most = TRIES * self.body_count
+        self.write_first_slips(mode, some, impulsive, state)
+        found = Trial(0, math.inf)
+        most = MAX_SLIP_CHANGES * self.body_count
         # where static friction leads to no solution, kinetic friction decides what is held
         for tries in range(2 * most):
             holding = IMPULSIVE if impulsive else STATIC if tries < most else KINETIC
-            found = attempt(self, mode, some, closed, False, impulsive, noise, state)
-            k = self.otherwise(mode, some, closed, impulsive, holding, noise, state)
+            found = solve_trial(self, mode, some, closed, False, impulsive, noise, state)
+            k = self.correct_one_slip(mode, some, closed, impulsive, holding, noise, state)
             if k < 0:
                 return found
-        return Attempt(max(found.fault, 0), math.inf)
+        return Trial(max(found.fault, 0), math.inf)
 
     @kernel
-    def note_first_slips(self, mode: int, some: int, impulsive: bool, state: Vector) -> int:
+    def write_first_slips(self, mode: int, some: int, impulsive: bool, state: Vector) -> int:
         """Write the first slips of a trial; return the set of bodies whose slip is open."""
-        room, loose = self.places(), 0
+        workspace, loose = self.workspace(), 0
         for k in range(self.body_count):
-            i, pivot = k * PLACES, self.tried_at(k, mode, some, impulsive)
-            room[i + at.SLIPS] = 0.0
-            slips = pivot != NOWHERE and self.friction_of(k, STATIC) < math.inf
+            i, pivot = k * BODY_STRIDE, self.trial_pivot(k, mode, some, impulsive)
+            workspace[i + at.SLIP_SENSE] = 0.0
+            slips = pivot != NO_PIVOT and self.friction_coefficient(k, STATIC) < math.inf
             if slips and not impulsive:
-                room[i + at.SLIPS] = room[i + at.STARTS]
-                rate, least = self.slip_before(k, pivot, mode, state)
+                workspace[i + at.SLIP_SENSE] = workspace[i + at.STARTING_SENSE]
+                rate, least = self.slip_before_trial(k, pivot, mode, state)
                 if abs(rate) > least:
-                    room[i + at.SLIPS] = math.copysign(1.0, rate)
+                    workspace[i + at.SLIP_SENSE] = math.copysign(1.0, rate)
                 else:
                     loose |= 1 << k
         return loose
@@ -238,146 +261,156 @@ class TriedSlips(SlipperyBases, RigidChain):
     @kernel
     def try_all_slips(
         self, mode: int, some: int, closed: int, noise: float, state: Vector
-    ) -> Attempt:
+    ) -> Trial:
         """Let a set of the closed corners bear with the first consistent combination of slips.
 
         The search base by base may fail where the slip of one body, say of an end on pads, makes
         another base push harder the more it is held back.
         """
-        loose = self.note_first_slips(mode, some, False, state)
-        for way in range(min(3 ** size_of(loose), MOST_WAYS)):
-            self.note_way(way, loose)
-            found = attempt(self, mode, some, closed, False, False, noise, state)
-            k = self.otherwise(mode, some, closed, False, STATIC, noise, state)
+        loose = self.write_first_slips(mode, some, False, state)
+        for way in range(min(3 ** bit_count(loose), MAX_COMBINATIONS)):
+            self.write_combination(way, loose)
+            found = solve_trial(self, mode, some, closed, False, False, noise, state)
+            k = self.correct_one_slip(mode, some, closed, False, STATIC, noise, state)
             if found.fault < 0 and k < 0:
                 return found
-        return Attempt(0, math.inf)
+        return Trial(0, math.inf)
 
     @inlined
-    def note_way(self, way: int, bodies: int) -> None:
+    def write_combination(self, way: int, bodies: int) -> None:
         """Write the slips of a set of bodies: digits, in base 3, of the number `way`."""
         for k in range(self.body_count):
             if bodies >> k & 1 != 0:
-                self.places()[k * PLACES + at.SLIPS] = float((way + 1) % 3 - 1)
+                self.workspace()[k * BODY_STRIDE + at.SLIP_SENSE] = float((way + 1) % 3 - 1)
                 way //= 3
 
     @kernel
-    def noted_way(self) -> int:
+    def trial_combination(self) -> int:
         """Return the number, in base 3, of the slips of all bodies in the present trial."""
         way = 0
         for k in range(self.body_count - 1, -1, -1):
-            way = 3 * way + int(self.places()[k * PLACES + at.SLIPS]) % 3
+            way = 3 * way + int(self.workspace()[k * BODY_STRIDE + at.SLIP_SENSE]) % 3
         return way
 
     @kernel
-    def other_ways(self, mode: int, some: int, closed: int, noise: float, state: Vector) -> int:
+    def count_other_solutions(
+        self, mode: int, some: int, closed: int, noise: float, state: Vector
+    ) -> int:
         """Count the consistent combinations of slips on a set of corners other than the last one.
 
         A body that friction can hold, with the slips of the others unchanged, does not count as
         slipping: where only one body may slip there is one combination.
         """
-        room, found, taken = self.places(), 0, self.noted_way()
-        loose = self.note_first_slips(mode, some, False, state)
-        for way in range(min(3 ** size_of(loose), MOST_WAYS) if size_of(loose) > 1 else 0):
-            self.note_way(way, loose)
-            counts = self.noted_way() != taken and self.is_motion(mode, some, closed, noise, state)
+        workspace, found, taken = self.workspace(), 0, self.trial_combination()
+        loose = self.write_first_slips(mode, some, False, state)
+        for way in range(
+            min(3 ** bit_count(loose), MAX_COMBINATIONS) if bit_count(loose) > 1 else 0
+        ):
+            self.write_combination(way, loose)
+            counts = self.trial_combination() != taken and self.is_admissible(
+                mode, some, closed, noise, state
+            )
             for k in range(self.body_count):
-                slips = room[k * PLACES + at.SLIPS]
+                slips = workspace[k * BODY_STRIDE + at.SLIP_SENSE]
                 if counts and loose >> k & 1 != 0 and slips != 0.0:
-                    room[k * PLACES + at.SLIPS] = 0.0
-                    held = attempt(self, mode, some, closed, False, False, noise, state)
-                    friction = self.friction_of(k, STATIC)
-                    counts = held.fault >= 0 or self.cannot_hold(k, friction, False)
-                    room[k * PLACES + at.SLIPS] = slips
+                    workspace[k * BODY_STRIDE + at.SLIP_SENSE] = 0.0
+                    held = solve_trial(self, mode, some, closed, False, False, noise, state)
+                    friction = self.friction_coefficient(k, STATIC)
+                    counts = held.fault >= 0 or self.exceeds_friction(k, friction, False)
+                    workspace[k * BODY_STRIDE + at.SLIP_SENSE] = slips
             found += 1 if counts else 0
-        self.note_way(taken, 2**self.body_count - 1)
-        attempt(self, mode, some, closed, False, False, noise, state)
+        self.write_combination(taken, 2**self.body_count - 1)
+        solve_trial(self, mode, some, closed, False, False, noise, state)
         return found
 
     @kernel
-    def is_motion(self, mode: int, some: int, closed: int, noise: float, state: Vector) -> bool:
+    def is_admissible(self, mode: int, some: int, closed: int, noise: float, state: Vector) -> bool:
         """Whether a set of corners that bear, with the slips as written, is admissible."""
-        way = self.noted_way()
-        found = attempt(self, mode, some, closed, False, False, noise, state)
-        k = self.otherwise(mode, some, closed, False, STATIC, noise, state)
-        self.note_way(way, 2**self.body_count - 1)
+        way = self.trial_combination()
+        found = solve_trial(self, mode, some, closed, False, False, noise, state)
+        k = self.correct_one_slip(mode, some, closed, False, STATIC, noise, state)
+        self.write_combination(way, 2**self.body_count - 1)
         return found.fault < 0 and k < 0
 
     @kernel
-    def try_standing(self, mode: int, corners: int, state: Vector) -> None:
+    def solve_standing(self, mode: int, corners: int, state: Vector) -> None:
         """Find the impulses by which bodies stand on corners: slipping ones slip, others are held.
 
         A body whose slip would be reversed, as no friction can do, is held, too. Friction does not
         act at a base in tension, where it would drive the slip.
         """
-        room, turned = self.places(), True
-        self.note_slips_before(mode, corners, state)
+        workspace, turned = self.workspace(), True
+        self.write_slips_before_impact(mode, corners, state)
         while turned:
             turned = False
-            attempt(self, mode, corners, corners, False, True, 0.0, state)
+            solve_trial(self, mode, corners, corners, False, True, 0.0, state)
             for k in range(self.body_count):
-                sense = room[k * PLACES + at.SLIPS]
+                sense = workspace[k * BODY_STRIDE + at.SLIP_SENSE]
                 if sense != 0.0:
-                    pivot = self.tried_at(k, mode, corners, True)
-                    rate, least = self.slip_on(k, pivot, state)
-                    after = self.slips_on(k, pivot, True, state) + rate
+                    pivot = self.trial_pivot(k, mode, corners, True)
+                    rate, least = self.pivot_slip_rate(k, pivot, state)
+                    after = self.slip_acceleration(k, pivot, True, state) + rate
                     if sense * after < -abs(sense) * (least + NOISE_OF_SLIP * abs(after)):
-                        room[k * PLACES + at.SLIPS] = 0.0
+                        workspace[k * BODY_STRIDE + at.SLIP_SENSE] = 0.0
                         turned = True
-                    elif abs(sense) == 1.0 and self.pressed(k) < 0.0:
-                        room[k * PLACES + at.SLIPS] = SLICK * sense
+                    elif abs(sense) == 1.0 and self.normal_force(k) < 0.0:
+                        workspace[k * BODY_STRIDE + at.SLIP_SENSE] = FRICTIONLESS * sense
                         turned = True
 
     @kernel
-    def try_stops(self, mode: int, some: int, closed: int, noise: float, state: Vector) -> Attempt:
+    def try_stopping_slips(
+        self, mode: int, some: int, closed: int, noise: float, state: Vector
+    ) -> Trial:
         """Let a set of closed corners bear by impulses that stop a slip, each slip in turn."""
-        room = self.places()
+        workspace = self.workspace()
         for stopped in range(self.body_count):
-            self.note_slips_before(mode, some, state)
-            if room[stopped * PLACES + at.SLIPS] == 0.0:
+            self.write_slips_before_impact(mode, some, state)
+            if workspace[stopped * BODY_STRIDE + at.SLIP_SENSE] == 0.0:
                 continue
-            room[stopped * PLACES + at.SLIPS] = 0.0
-            for _ in range(TRIES * self.body_count):
-                found = attempt(self, mode, some, closed, False, True, noise, state)
-                k = self.otherwise(mode, some, closed, True, IMPULSIVE, noise, state)
+            workspace[stopped * BODY_STRIDE + at.SLIP_SENSE] = 0.0
+            for _ in range(MAX_SLIP_CHANGES * self.body_count):
+                found = solve_trial(self, mode, some, closed, False, True, noise, state)
+                k = self.correct_one_slip(mode, some, closed, True, IMPULSIVE, noise, state)
                 if k < 0:
-                    if found.fault < 0 and room[stopped * PLACES + at.SLIPS] == 0.0:
+                    if found.fault < 0 and workspace[stopped * BODY_STRIDE + at.SLIP_SENSE] == 0.0:
                         return found
                     break
-        return Attempt(0, math.inf)
+        return Trial(0, math.inf)
 
     @kernel
-    def note_slips_before(self, mode: int, some: int, state: Vector) -> None:
+    def write_slips_before_impact(self, mode: int, some: int, state: Vector) -> None:
         """Write the senses of the slips before an impact, of bodies that may slip in it."""
         for k in range(self.body_count):
-            pivot, i = self.tried_at(k, mode, some, True), k * PLACES
-            self.places()[i + at.SLIPS] = 0.0
-            if pivot != NOWHERE and self.friction_of(k, IMPULSIVE) < math.inf:
-                rate, least = self.slip_on(k, pivot, state)
+            pivot, i = self.trial_pivot(k, mode, some, True), k * BODY_STRIDE
+            self.workspace()[i + at.SLIP_SENSE] = 0.0
+            if pivot != NO_PIVOT and self.friction_coefficient(k, IMPULSIVE) < math.inf:
+                rate, least = self.pivot_slip_rate(k, pivot, state)
                 if abs(rate) > least:
-                    self.places()[i + at.SLIPS] = math.copysign(1.0, rate)
+                    self.workspace()[i + at.SLIP_SENSE] = math.copysign(1.0, rate)
 
     @inlined
-    def tried_at(self, k: int, mode: int, some: int, impulsive: bool) -> int:
+    def trial_pivot(self, k: int, mode: int, some: int, impulsive: bool) -> int:
         """Return the pivot at which a body is held or slips in a trial of corners, or `NOWHERE`.
 
         On a deformable base friction has no part in impacts.
         """
         bears, standing = some >> 2 * k & BOTH, self.part_mode(mode, k)
         if self.is_rigid(k):
-            return NOWHERE if bears == 0 else self.pin_on(bears)
+            return NO_PIVOT if bears == 0 else self.bearing_pivot(bears)
         idle = impulsive or self.on_base(k).flies(standing.contact)
-        return NOWHERE if idle or not self.is_slippery(k) else standing.pivot
+        return NO_PIVOT if idle or not self.is_slippery(k) else standing.pivot
 
     @inlined
-    def slip_before(self, k: int, pivot: int, mode: int, state: Vector) -> tuple[float, float]:
+    def slip_before_trial(
+        self, k: int, pivot: int, mode: int, state: Vector
+    ) -> tuple[float, float]:
         """Return the velocity of slip before a trial of corners, and its rounding noise."""
         if not self.is_rigid(k) and not self.part_mode(mode, k).slides:
             return 0.0, 0.0  # held: the state need not have its velocity
-        return self.slip_on(k, pivot, state)
+        return self.pivot_slip_rate(k, pivot, state)
 
     @kernel
-    def otherwise(
+    def correct_one_slip(
         self, mode: int, some: int, closed: int, impulsive: bool, holding: int, noise: float,
         state: Vector,
     ) -> int:  # fmt: skip
@@ -386,57 +419,59 @@ class TriedSlips(SlipperyBases, RigidChain):
         A held body slips if friction, of the coefficient `holding`, cannot hold it; a slipping one
         is held if it does not slip. Accelerations up to `noise` count as zero.
         """
-        room = self.places()
+        workspace = self.workspace()
         for k in range(self.body_count):
-            i, pivot = k * PLACES, self.tried_at(k, mode, some, impulsive)
-            friction = self.friction_of(k, holding)
+            i, pivot = k * BODY_STRIDE, self.trial_pivot(k, mode, some, impulsive)
+            friction = self.friction_coefficient(k, holding)
             pulled = self.is_rigid(k) and some & closed & BOTH << 2 * k == 0
-            if pivot == NOWHERE or friction == math.inf or pulled:
+            if pivot == NO_PIVOT or friction == math.inf or pulled:
                 continue
-            sense = room[i + at.SLIPS]
+            sense = workspace[i + at.SLIP_SENSE]
             if sense == 0.0:
-                if self.cannot_hold(k, friction, impulsive):
-                    room[i + at.SLIPS] = -math.copysign(1.0, self.thrust_of(k))
+                if self.exceeds_friction(k, friction, impulsive):
+                    workspace[i + at.SLIP_SENSE] = -math.copysign(1.0, self.holding_force(k))
                     return k
             else:
-                rate, least = self.slip_before(k, pivot, mode, state)
+                rate, least = self.slip_before_trial(k, pivot, mode, state)
                 if impulsive or abs(rate) <= least:
-                    after = self.slips_on(k, pivot, impulsive, state)
+                    after = self.slip_acceleration(k, pivot, impulsive, state)
                     if impulsive:
                         after, least = after + rate, least + NOISE_OF_SLIP * abs(after)
                     else:  # as it starts to slip, friction is what holds it
                         least = noise
                     if sense * after < -least:
-                        room[i + at.SLIPS] = 0.0
+                        workspace[i + at.SLIP_SENSE] = 0.0
                         return k
         return -1
 
     @inlined
-    def thrust_of(self, k: int) -> float:
+    def holding_force(self, k: int) -> float:
         """Return the force along its base that holds a body in the present trial."""
-        which = int(self.places()[k * PLACES + at.HOLDS_ALONG])
-        return float(self.constraints()[which * CONSTRAINT + at.FORCE])
+        which = int(self.workspace()[k * BODY_STRIDE + at.TANGENTIAL_CONSTRAINT])
+        return float(self.constraints()[which * CONSTRAINT_STRIDE + at.FORCE])
 
     @kernel
-    def cannot_hold(self, k: int, friction: float, impulsive: bool) -> bool:
+    def exceeds_friction(self, k: int, friction: float, impulsive: bool) -> bool:
         """Whether the force that holds a body in the present trial exceeds its friction."""
-        press = self.pressed(k)
+        press = self.normal_force(k)
         least = NOISE * abs(press)
         if not impulsive:  # a body that has just started to slip is not held at the bound
-            least = ROUNDING * self.number(k, at.FORCE_SIZE)
-            least = least if self.places()[k * PLACES + at.STARTS] == 0.0 else -least
-        return abs(self.thrust_of(k)) > friction * max(press, 0.0) + least
+            least = ROUNDING * self.row_value(k, at.FORCE_SCALE)
+            least = (
+                least if self.workspace()[k * BODY_STRIDE + at.STARTING_SENSE] == 0.0 else -least
+            )
+        return abs(self.holding_force(k)) > friction * max(press, 0.0) + least
 
     @kernel
-    def slips_on(self, k: int, pivot: int, impulsive: bool, state: Vector) -> float:
+    def slip_acceleration(self, k: int, pivot: int, impulsive: bool, state: Vector) -> float:
         """Return the acceleration of the slip of a point, or its change in an impact."""
-        i, part, body = k * PLACES, self.on_base(k), self.state_of(k, state)
-        room, rows, rate = self.places(), self.constraints(), body.angular_velocity
+        i, part, body = k * BODY_STRIDE, self.on_base(k), self.state_of(k, state)
+        workspace, constraints, rate = self.workspace(), self.constraints(), body.angular_velocity
         reach = part.body.reach(part.body.pin(pivot), part.body.attitude(body.rotation))
-        spare = MOST_CONSTRAINTS * self.body_count - 1  # a slipping body has no hold: free
-        keeps = spare * CONSTRAINT + at.KEEPS
-        write_direction(self, k, 1.0, 0.0, -reach.rate, keeps, room, rows)
-        found = of_both(self.body_count, k, keeps, room, rows)
+        spare = MAX_CONSTRAINTS * self.body_count - 1  # a slipping body has no hold: free
+        keeps = spare * CONSTRAINT_STRIDE + at.JACOBIAN
+        write_jacobian(self, k, 1.0, 0.0, -reach.rate, keeps, workspace, constraints)
+        found = combined_acceleration(self.body_count, k, keeps, workspace, constraints)
         if impulsive:
             return found
-        return found - coriolis_along(i, room) - reach.bend * rate * rate
+        return found - tangential_coriolis(i, workspace) - reach.bend * rate * rate

@@ -10,7 +10,7 @@ from rockframe.dynamics.alone import rigid_body
 from rockframe.dynamics.base_numbers import bed_numbers, pads_numbers
 from rockframe.dynamics.body import BY_CONTACT, CENTRE, LEADING_CORNER
 from rockframe.dynamics.chain.link_rows import GROUND, ChainLink
-from rockframe.dynamics.chain.model import chain
+from rockframe.dynamics.chain.model import chain_model
 from rockframe.dynamics.links import LinkNumbers
 from rockframe.dynamics.links import Tie as LawOfTie
 from rockframe.dynamics.protocol import ContactModel, Start, column_of
@@ -81,7 +81,7 @@ def model_of(scene: Scene) -> ContactModel:
         to_point = (0.0, 0.0) if tie.to is None else tie.to_point
         numbers = LinkNumbers(law, firm, viscous, (1e-3,))
         ties.append(ChainLink(tie.on, tie.on_point, to, to_point, apart(scene, tie), numbers))
-    return chain(links, measure, ties=ties)
+    return chain_model(links, measure, ties=ties)
 
 
 def run_chain(scene: Scene, motion: Motion | None, accuracy: str, step: float) -> Trajectory:
