@@ -115,7 +115,7 @@ class TiedSlideRock(TiedNumbers, LinkMechanics, SlideSwitches):  # pyright: igno
         return mode < MODES and self.begins_idle != 0.0
 
     @kernel
-    def write_poses(self, mode: int, state: Vector, workspace: Vector) -> None:
+    def write_poses(self, mode: int, state: Vector, work: Vector) -> None:
         """Write displacement, rotation and velocity of the block."""
         poses, side = self.poses(), self.side(self.bears_in(mode))
         sine, cosine = sine_cosine(state[ROTATION])
@@ -125,26 +125,23 @@ class TiedSlideRock(TiedNumbers, LinkMechanics, SlideSwitches):  # pyright: igno
         poses[DISPLACEMENT_Y] = state[RISE] + away * sine - self.height * lacks
         poses[BODY_SINE], poses[BODY_VERSINE] = sine, lacks
         poses[BODY_ROTATION_RATE] = state[SIZE + ROTATION]
-        workspace[at.SPEED_X], workspace[at.SPEED_Y] = self.speeds(mode, state)
+        work[at.SPEED_X], work[at.SPEED_Y] = self.speeds(mode, state)
 
     @inlined
-    def write_kinematics_and_poses(self, mode: int, state: Vector, workspace: Vector) -> None:
+    def write_kinematics_and_poses(self, mode: int, state: Vector, work: Vector) -> None:
         """Write displacement, rotation and velocity of the block, as :meth:`lay`."""
-        self.write_poses(mode, state, workspace)
+        self.write_poses(mode, state, work)
 
     @inlined
     def pulled(self, mode: int, state: Vector, ground: Ground) -> tuple[Loads, float]:
         """Return loads on the block, :eq:`eq-slide-tied`, and the power that links dissipate."""
         if self.all_idle(mode):
             return Loads(ground.x, self.gravity + ground.y, 0.0), 0.0
-        workspace = self.workspace()
-        workspace[at.LOAD_X] = workspace[at.LOAD_Y] = workspace[at.LOAD_MOMENT] = 0.0
-        lost = self.apply_link_forces(mode, state, workspace)
-        across, weight = (
-            ground.x - workspace[at.LOAD_X],
-            self.gravity + ground.y - workspace[at.LOAD_Y],
-        )
-        return Loads(across, weight, workspace[at.LOAD_MOMENT]), lost
+        work = self.workspace()
+        work[at.LOAD_X] = work[at.LOAD_Y] = work[at.LOAD_MOMENT] = 0.0
+        lost = self.apply_link_forces(mode, state, work)
+        across, weight = ground.x - work[at.LOAD_X], self.gravity + ground.y - work[at.LOAD_Y]
+        return Loads(across, weight, work[at.LOAD_MOMENT]), lost
 
     @kernel
     def loads(self, mode: int, state: Vector, ground: Ground) -> Loads:
@@ -185,14 +182,11 @@ class TiedSlideRock(TiedNumbers, LinkMechanics, SlideSwitches):  # pyright: igno
     @kernel
     def forces_from_slope(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> None:
         """Write the acceleration of the block, from a slope."""
-        workspace = self.workspace()
-        self.write_poses(mode, state, workspace)
+        work = self.workspace()
+        self.write_poses(mode, state, work)
         sway, rise = self.centre_acceleration(mode, state, slope)
-        (
-            workspace[at.ACCELERATION_X],
-            workspace[at.ACCELERATION_Y],
-            workspace[at.ANGULAR_ACCELERATION],
-        ) = sway, rise, slope[ROTATION]
+        work[at.ACCELERATION_X], work[at.ACCELERATION_Y] = sway, rise
+        work[at.ANGULAR_ACCELERATION] = slope[ROTATION]
 
     @inlined
     def switch_body(
@@ -211,9 +205,8 @@ class TiedSlideRock(TiedNumbers, LinkMechanics, SlideSwitches):  # pyright: igno
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> Vector:
         """Write motion, reactions and slip of the block, and its displacement for links."""
-        self.write_kinematics_and_poses(
-            mode, state, self.workspace()
-        )  # links without force are observed, too
+        # links without force are observed, too
+        self.write_kinematics_and_poses(mode, state, self.workspace())
         out = self.column_workspace()
         put(self.columns_under(mode, state, slope, self.loads(mode, state, ground)), 0, out)
         return out

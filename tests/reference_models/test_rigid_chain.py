@@ -82,9 +82,9 @@ def landing(pair: Pair, place, speed, touching):
     new = system.choose_bearing_corners(flying, closed, 0, 0, state, STILL, memory)
     after = system.energies(new, state).kinetic
     assert memory[IMPACT_LOSS] == pytest.approx(had - after, abs=1e-12 * had)
-    workspace = system.workspace()
+    work = system.workspace()
     six = [
-        workspace[k * BODY_STRIDE + i] if i >= 0 else sum(state[6 + 2 * j] for j in range(k, 2))
+        work[k * BODY_STRIDE + i] if i >= 0 else sum(state[6 + 2 * j] for j in range(k, 2))
         for k in (1, 0)
         for i in (at.SPEED_X, at.SPEED_Y, -1)
     ]
@@ -185,12 +185,12 @@ def test_random_impacts_of_two_blocks():
 def changes():
     """What changes where bodies lie or what loads them."""
     return {
-        "places": lambda system, state, workspace: write_kinematics(system, 0, state, workspace),
-        "loads": lambda system, state, workspace: set_inertia_loads(system, 0.1, 0.2, workspace),
-        "press": lambda system, state, workspace: add_base_load(system, 0, 1.0, 0.1, workspace),
-        "friction": lambda system, state, workspace: add_tangential_load(system, 0, 1.0, workspace),
-        "levers": lambda system, state, workspace: write_trial_data(system, True, state),
-        "forces": lambda system, state, workspace: system.solve(system.body_count, 0, workspace),
+        "places": lambda system, state, work: write_kinematics(system, 0, state, work),
+        "loads": lambda system, state, work: set_inertia_loads(system, 0.1, 0.2, work),
+        "press": lambda system, state, work: add_base_load(system, 0, 1.0, 0.1, work),
+        "friction": lambda system, state, work: add_tangential_load(system, 0, 1.0, work),
+        "levers": lambda system, state, work: write_trial_data(system, True, state),
+        "forces": lambda system, state, work: system.solve(system.body_count, 0, work),
     }
 
 
@@ -199,17 +199,17 @@ def test_what_was_eliminated_is_forgotten_as_places_or_loads_change(change):
     stone, block = rf.RigidGround(friction=0.3), rf.Block(width="1 m", height="1 m", mass="1 t")
     stack = rf.Stack(block, block, interfaces=[stone])
     system = rf.System(stack, stone).assembly.model.system
-    state, workspace = np.zeros(2 * system.coordinates()), system.workspace()
+    state, work = np.zeros(2 * system.coordinates()), system.workspace()
     last = (system.body_count - 1) * BODY_STRIDE + at.TRIAL_CODE
-    write_kinematics(system, 0, state, workspace)
-    set_inertia_loads(system, 0.0, 9.8, workspace)
+    write_kinematics(system, 0, state, work)
+    set_inertia_loads(system, 0.0, 9.8, work)
     write_trial_data(system, False, state)
     solve_trial(system, 0, 0b1111, 0b1111, False, False, 1e-12, state)
-    assert workspace[last] != NOT_ELIMINATED
-    changes()[change](system, state, workspace)
-    assert workspace[last] == NOT_ELIMINATED
-    workspace[(system.body_count - 1) * BODY_STRIDE + at.FORCES_VALID] = 1.0
-    changes()[change](system, state, workspace)
+    assert work[last] != NOT_ELIMINATED
+    changes()[change](system, state, work)
+    assert work[last] == NOT_ELIMINATED
+    work[(system.body_count - 1) * BODY_STRIDE + at.FORCES_VALID] = 1.0
+    changes()[change](system, state, work)
     assert not system.forces_are_valid(0, state, STILL)
 
 

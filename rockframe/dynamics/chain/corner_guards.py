@@ -44,9 +44,9 @@ class CornerGuards(RigidCorners):
                 self.write_inactive_guards(k, values, changes)
                 self.write_slip_guards(k, mode, state, values, changes)
         for k in range(self.body_count):
-            standing = self.part_mode(mode, k)
-            if self.is_rigid(k) and standing.contact & IN_TENSION != 0:
-                left = self.on_base(k).base.is_held(standing.contact, True)
+            body_mode = self.part_mode(mode, k)
+            if self.is_rigid(k) and body_mode.contact & IN_TENSION != 0:
+                left = self.on_base(k).base.is_held(body_mode.contact, True)
                 i = GUARDS * k + (0 if left else CORNER_GUARDS)
                 values[i] = -values[i]
                 # it stays held if, released, it would fall, or others would pull or close
@@ -103,25 +103,25 @@ class CornerGuards(RigidCorners):
     @kernel
     def is_closing(self, k: int, left: bool, fall: float, mode: int, state: Vector) -> bool:
         """Whether a corner that does not bear is practically at its base and falls onto it."""
-        part, standing = self.on_base(k), self.part_mode(mode, k)
-        line = part.body.base_line_at(self.constrained_state(k, standing, state))
+        part, body_mode = self.on_base(k), self.part_mode(mode, k)
+        line = part.body.base_line_at(self.constrained_state(k, body_mode, state))
         level, speed = line.left, line.left_speed
         if not left:
             level, speed = line.right, line.right_speed
         near = level < part.body.least_rise() and part.body.returns_at_once(speed, fall)
-        return near and not part.base.is_held(standing.contact, left)
+        return near and not part.base.is_held(body_mode.contact, left)
 
     @kernel
     def has_sinking_corner(self, mode: int, state: Vector) -> bool:
         """Whether a corner that is at its rigid base, but does not bear, moves down."""
         for k in range(self.body_count):
-            part, standing = self.on_base(k), self.part_mode(mode, k)
-            line = part.body.base_line_at(self.constrained_state(k, standing, state))
+            part, body_mode = self.on_base(k), self.part_mode(mode, k)
+            line = part.body.base_line_at(self.constrained_state(k, body_mode, state))
             for side in range(2):
                 gap, speed = line.left, line.left_speed
                 if side == 1:
                     gap, speed = line.right, line.right_speed
-                bears = not self.is_rigid(k) or part.base.is_held(standing.contact, side == 0)
+                bears = not self.is_rigid(k) or part.base.is_held(body_mode.contact, side == 0)
                 if not bears and gap < part.body.least_rise() and speed < 0.0:
                     return True
         return False
@@ -130,9 +130,9 @@ class CornerGuards(RigidCorners):
     def write_lowest_position(self, mode: int, state: Vector) -> None:
         """Write place and rate of the lowest body; while held, its state has the held point's."""
         k, x = self.body_count - 1, self.horizontal_of(self.body_count - 1)
-        standing = self.part_mode(mode, k)
-        if not self.on_base(k).is_free(standing):
-            place, rate = self.position_from_pin(k, standing, state[x], state)
+        body_mode = self.part_mode(mode, k)
+        if not self.on_base(k).is_free(body_mode):
+            place, rate = self.position_from_pin(k, body_mode, state[x], state)
             self.set_sway(k, place, rate, state)
 
     @inlined
@@ -142,16 +142,16 @@ class CornerGuards(RigidCorners):
 
     @kernel
     def write_corner_guards(
-        self, k: int, standing: Mode, state: Vector, values: Vector, changes: Vector
+        self, k: int, body_mode: Mode, state: Vector, values: Vector, changes: Vector
     ) -> None:
         """Write the guards of both corners: the force of one that bears, the gap of another."""
-        part, body = self.on_base(k), self.constrained_state(k, standing, state)
+        part, body = self.on_base(k), self.constrained_state(k, body_mode, state)
         line, force_size = part.body.base_line_at(body), self.row_value(k, at.FORCE_SCALE)
-        flies, resting = part.flies(standing.contact), self.level_corners(k, body)
+        flies, resting = part.flies(body_mode.contact), self.level_corners(k, body)
         self.write_inactive_guards(k, values, changes)
         for side in range(2):
             i = GUARDS * k + CORNER_GUARDS * side
-            if part.base.is_held(standing.contact, side == 0):
+            if part.base.is_held(body_mode.contact, side == 0):
                 values[i] = self.corner_force(k, side == 0) / force_size
                 continue
             if flies:

@@ -76,7 +76,7 @@ class RigidCorners(Chain):
         return corners & (one << 1 if even else one >> 1) == 0
 
     @kernel
-    def with_bearing_corners(self, mode: int, corners: int, pulled: int) -> int:
+    def with_bearing_corners(self, mode: int, corners: int, in_tension: int) -> int:
         """Return the mode in which `corners` bear; those in `pulled` are held without pressing."""
         new = mode
         for k in range(self.body_count):
@@ -85,7 +85,7 @@ class RigidCorners(Chain):
                 contact = both_contacts(
                     DOWN if bears & LEFT_ONLY else RAISED, DOWN if bears & RIGHT_ONLY else RAISED
                 )
-                contact += IN_TENSION if pulled >> 2 * k & BOTH != 0 else 0
+                contact += IN_TENSION if in_tension >> 2 * k & BOTH != 0 else 0
                 pivot = PIVOT_CENTRE
                 if bears == LEFT_ONLY:
                     pivot = PIVOT_LEFT
@@ -96,13 +96,13 @@ class RigidCorners(Chain):
         return new
 
     @kernel
-    def constrained_state(self, k: int, standing: Mode, state: Vector) -> BodyState:
+    def constrained_state(self, k: int, body_mode: Mode, state: Vector) -> BodyState:
         """Return placement and rates of a body, with those that its contacts prescribe computed."""
         body, part = self.state_of(k, state), self.on_base(k)
-        if not self.is_rigid(k) or part.flies(standing.contact):
+        if not self.is_rigid(k) or part.flies(body_mode.contact):
             return body
-        left = part.base.is_held(standing.contact, True)
-        if left and part.base.is_held(standing.contact, False):
+        left = part.base.is_held(body_mode.contact, True)
+        if left and part.base.is_held(body_mode.contact, False):
             return BodyState(0.0, 0.0, body.horizontal, 0.0, 0.0, body.horizontal_velocity)
         lowered = BodyState(
             body.rotation, 0.0, body.horizontal, body.angular_velocity, 0.0,
@@ -117,35 +117,26 @@ class RigidCorners(Chain):
 
     @kernel
     def add_corner_constraints(
-        self,
-        k: int,
-        count: int,
-        mode: int,
-        state: Vector,
-        moves: bool,
-        workspace: Vector,
-        constraints: Vector,
+        self, k: int, count: int, mode: int, state: Vector, moves: bool, work: Vector, rows: Vector
     ) -> int:
         """Add the constraints of corners that bear on a rigid base, :eq:`eq-rigid-corner`."""
-        i, part, standing = k * BODY_STRIDE, self.on_base(k), self.part_mode(mode, k)
-        workspace[i + at.LEFT_CONSTRAINT] = workspace[i + at.RIGHT_CONSTRAINT] = NO_CONSTRAINT
-        if not self.is_rigid(k) or part.flies(standing.contact):
+        i, part, body_mode = k * BODY_STRIDE, self.on_base(k), self.part_mode(mode, k)
+        work[i + at.LEFT_CONSTRAINT] = work[i + at.RIGHT_CONSTRAINT] = NO_CONSTRAINT
+        if not self.is_rigid(k) or part.flies(body_mode.contact):
             return count
-        body, a = self.constrained_state(k, standing, state), i + at.ATTITUDE
-        attitude = Attitude(workspace[a], workspace[a + 1], workspace[a + 2])
+        body, a = self.constrained_state(k, body_mode, state), i + at.ATTITUDE
+        attitude = Attitude(work[a], work[a + 1], work[a + 2])
         line = part.body.base_line(body, attitude)
         rate = body.angular_velocity if moves else 0.0
         bends = part.body.end_accelerations(attitude, rate, 0.0, 0.0)
         for side in range(2):
-            if part.base.is_held(standing.contact, side == 0):
+            if part.base.is_held(body_mode.contact, side == 0):
                 lever = line.left_lever if side == 0 else line.right_lever
-                prescribed = -normal_coriolis(i, workspace) - bends[side]
-                add_constraint(self, count, k, 0.0, 1.0, lever, prescribed, workspace, constraints)
-                workspace[i + at.LEFT_CONSTRAINT + side] = count
+                prescribed = -normal_coriolis(i, work) - bends[side]
+                add_constraint(self, count, k, 0.0, 1.0, lever, prescribed, work, rows)
+                work[i + at.LEFT_CONSTRAINT + side] = count
                 sense = self.sense_or_zero(mode, k) if moves else 0.0
-                self.add_corner_friction(
-                    k, count, sense, workspace[i + at.PIVOT_ARM], False, workspace, constraints
-                )
+                self.add_corner_friction(k, count, sense, work[i + at.PIVOT_ARM], False, work, rows)
                 count += 1
         return count
 
@@ -161,15 +152,13 @@ class RigidCorners(Chain):
 
     @inlined
     def add_corner_friction(
-        self, k: int, which: int, sense: float, reach: float, impulsive: bool, workspace: Vector,
-        constraints: Vector,
+        self, k: int, which: int, sense: float, reach: float, impulsive: bool, work: Vector,
+        rows: Vector,
     ) -> None:  # fmt: skip
         """Add friction to the force of a corner that slips: none slips here."""
 
     @inlined
-    def friction_loss(
-        self, k: int, which: int, state: Vector, workspace: Vector, constraints: Vector
-    ) -> float:
+    def friction_loss(self, k: int, which: int, state: Vector, work: Vector, rows: Vector) -> float:
         """Return the energy that friction takes in an impact at a corner that slips: 0."""
         return 0.0
 
@@ -209,34 +198,28 @@ class RigidCorners(Chain):
 
     @inlined
     def add_trial_constraint(
-        self,
-        k: int,
-        count: int,
-        standing: Mode,
-        state: Vector,
-        workspace: Vector,
-        constraints: Vector,
+        self, k: int, count: int, body_mode: Mode, state: Vector, work: Vector, rows: Vector
     ) -> int:
         """Add the constraint of a body on a deformable base, in a trial of corners."""
-        return self.add_hold_or_slide(k, count, standing, state, workspace, constraints)
+        return self.add_hold_or_slide(k, count, body_mode, state, work, rows)
 
     @inlined
     def try_corners(
-        self, mode: int, some: int, closed: int, impulsive: bool, noise: float, state: Vector
+        self, mode: int, subset: int, closed: int, impulsive: bool, noise: float, state: Vector
     ) -> Trial:
         """Let a set of the closed corners bear, each held against sliding."""
-        return solve_trial(self, mode, some, closed, False, impulsive, noise, state)
+        return solve_trial(self, mode, subset, closed, False, impulsive, noise, state)
 
     @inlined
     def try_all_slips(
-        self, mode: int, some: int, closed: int, noise: float, state: Vector
+        self, mode: int, subset: int, closed: int, noise: float, state: Vector
     ) -> Trial:
         """Try all combinations of slips with a set of closed corners that bear: none slips here."""
         return Trial(0, math.inf)
 
     @inlined
     def try_stopping_slips(
-        self, mode: int, some: int, closed: int, noise: float, state: Vector
+        self, mode: int, subset: int, closed: int, noise: float, state: Vector
     ) -> Trial:
         """Try impulses that stop a slip, with a set of corners that bear: none slips here."""
         return Trial(0, math.inf)
@@ -247,15 +230,12 @@ class RigidCorners(Chain):
         solve_trial(self, mode, corners, corners, False, True, 0.0, state)
 
     @inlined
-    def complete_solution(self, workspace: Vector, out: Vector) -> None:
+    def complete_solution(self, work: Vector, out: Vector) -> None:
         """Set the accelerations of bodies in full contact with a rigid base to exactly zero."""
         for k in range(self.body_count):
             i = k * BODY_STRIDE
-            full = (
-                workspace[i + at.LEFT_CONSTRAINT] != NO_CONSTRAINT
-                and workspace[i + at.RIGHT_CONSTRAINT] != NO_CONSTRAINT
-            )
-            if self.is_rigid(k) and full:
+            left, right = work[i + at.LEFT_CONSTRAINT], work[i + at.RIGHT_CONSTRAINT]
+            if self.is_rigid(k) and left != NO_CONSTRAINT and right != NO_CONSTRAINT:
                 first = BEFORE_HORIZONTAL * k
                 out[first + ROTATION] = out[first + VERTICAL] = 0.0
                 out[self.horizontal_of(k)] = 0.0
@@ -293,19 +273,19 @@ class RigidCorners(Chain):
         return moving
 
     @inlined
-    def observed_base(self, k: int, standing: Mode, body: BodyState) -> Variables:
+    def base_columns(self, k: int, body_mode: Mode, body: BodyState) -> Variables:
         """Return the base's columns in the results: of a rigid one, the forces of its corners."""
         if self.is_rigid(k):
             return self.corner_force(k, True), self.corner_force(k, False), 0.0
-        return self.deformable_base_columns(k, standing, body)
+        return self.deformable_base_columns(k, body_mode, body)
 
     @inlined
     def position_from_pin(
-        self, k: int, standing: Mode, held: float, state: Vector
+        self, k: int, body_mode: Mode, held: float, state: Vector
     ) -> tuple[float, float]:
         """Return place of a body along its base, and its rate, from the place of its held point."""
-        part, body = self.on_base(k), self.constrained_state(k, standing, state)
-        pin, attitude = part.body.pin(standing.pivot), part.body.attitude(body.rotation)
+        part, body = self.on_base(k), self.constrained_state(k, body_mode, state)
+        pin, attitude = part.body.pin(body_mode.pivot), part.body.attitude(body.rotation)
         reach = part.body.reach(pin, attitude)
         place = held + part.body.about_pin(pin, attitude)
         return place, reach.rate * body.angular_velocity
@@ -338,11 +318,11 @@ class RigidCorners(Chain):
         return found
 
     @kernel
-    def move_onto_base(self, k: int, left: bool, standing: Mode, state: Vector) -> int:
+    def move_onto_base(self, k: int, left: bool, body_mode: Mode, state: Vector) -> int:
         """Move a corner that lands exactly onto its base; give the set that touches then."""
         part, first = self.on_base(k), BEFORE_HORIZONTAL * k
         line = part.body.base_line_at(self.state_of(k, state))
-        both = not part.flies(standing.contact)
+        both = not part.flies(body_mode.contact)
         both |= abs(line.left - line.right) <= SIMULTANEOUS * part.body.angle * part.body.size()
         if both:
             state[first + ROTATION] = state[first + VERTICAL] = 0.0
@@ -355,25 +335,27 @@ class RigidCorners(Chain):
         """Write to the state the coordinates and rates that contacts with rigid bases prescribe."""
         n = self.coordinates()
         for k in range(self.body_count):
-            part, standing = self.on_base(k), self.part_mode(mode, k)
-            if self.is_rigid(k) and not part.flies(standing.contact):
-                body = self.constrained_state(k, standing, state)
+            part, body_mode = self.on_base(k), self.part_mode(mode, k)
+            if self.is_rigid(k) and not part.flies(body_mode.contact):
+                body = self.constrained_state(k, body_mode, state)
                 first = BEFORE_HORIZONTAL * k
                 state[first + ROTATION], state[first + VERTICAL] = body.rotation, body.vertical
                 state[n + first + ROTATION] = body.angular_velocity
                 state[n + first + VERTICAL] = body.vertical_velocity
-                if not standing.slides:
-                    place, rate = self.position_from_pin(k, standing, memory[HELD_PLACE + k], state)
+                if not body_mode.slides:
+                    place, rate = self.position_from_pin(
+                        k, body_mode, memory[HELD_PLACE + k], state
+                    )
                     self.set_sway(k, place, rate, state)
 
     @kernel
     def fix_held_points(self, mode: int, state: Vector, memory: Vector) -> None:
         """Fix the held points of a mode where they are now; the velocities agree with it."""
         for k in range(self.body_count):
-            part, standing = self.on_base(k), self.part_mode(mode, k)
-            if self.is_rigid(k) and not part.is_free(standing):
-                pin, place = part.body.pin(standing.pivot), state[self.horizontal_of(k)]
-                attitude = part.body.attitude(self.constrained_state(k, standing, state).rotation)
+            part, body_mode = self.on_base(k), self.part_mode(mode, k)
+            if self.is_rigid(k) and not part.is_free(body_mode):
+                pin, place = part.body.pin(body_mode.pivot), state[self.horizontal_of(k)]
+                attitude = part.body.attitude(self.constrained_state(k, body_mode, state).rotation)
                 memory[HELD_PLACE + k] = place - part.body.about_pin(pin, attitude)
         self.project_onto_contacts(mode, state, memory)
         self.store_held_place(mode, state, memory)

@@ -32,15 +32,15 @@ class SlippingChain(SlipperyBases):
         self, k: int, slides: bool, mode: int, state: Vector, slope: Slope, ground: Ground
     ) -> Guards:
         """Return the guards of a body: of contacts, of the friction that holds it, of its slip."""
-        part, standing, body = self.on_base(k), self.part_mode(mode, k), self.state_of(k, state)
+        part, body_mode, body = self.on_base(k), self.part_mode(mode, k), self.state_of(k, state)
         first, press, sliding = BEFORE_HORIZONTAL * k, k * BODY_STRIDE + at.NORMAL_FORCE, IDLE
         if k == 0:
             self.forces_from_slope(mode, state, slope, ground)
-        if not part.flies(standing.contact):
+        if not part.flies(body_mode.contact):
             sliding = self.slip_guards(
                 k, mode, state, slope, self.workspace()[press], part.body.gravity
             )
-        bears = Mode(standing.contact, standing.pivot, False)
+        bears = Mode(body_mode.contact, body_mode.pivot, False)
         return part.guards_with(
             bears, body, (), slope[first + VERTICAL], slope[first + ROTATION], sliding
         )
@@ -82,7 +82,7 @@ class SlippingChain(SlipperyBases):
 
     @kernel
     def find_consistent_slips(
-        self, lets_go: int, mode: int, state: Vector, ground: Ground, memory: Vector
+        self, released: int, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
         """Return the mode in which friction can hold all held bodies, and opposes other slips.
 
@@ -92,8 +92,8 @@ class SlippingChain(SlipperyBases):
         for tries in range(2 * most):
             slope = self.find_forces(mode, state, ground)
             self.forces_from_slope(mode, state, slope, ground)
-            holding = STATIC if tries < most else KINETIC
-            found, push = self.overloaded_hold(lets_go, holding, mode)
+            coefficient = STATIC if tries < most else KINETIC
+            found, push = self.overloaded_hold(released, coefficient, mode)
             if found >= 0:
                 if tries > 0:  # a body let go at the limit of its friction has another force now
                     near = 0.0
@@ -104,7 +104,7 @@ class SlippingChain(SlipperyBases):
                 if found < 0:
                     break
                 mode = self.with_slip(found, 0.0, mode, state, memory)
-            lets_go = -1
+            released = -1
         return mode
 
     @kernel
@@ -115,17 +115,15 @@ class SlippingChain(SlipperyBases):
         return self.find_consistent_slips(-1, mode, state, ground, memory)
 
     @kernel
-    def overloaded_hold(self, lets_go: int, holding: int, mode: int) -> tuple[int, float]:
+    def overloaded_hold(self, released: int, coefficient: int, mode: int) -> tuple[int, float]:
         """Return a body that friction `holding` cannot hold, or -1, and the force that would."""
-        workspace = self.workspace()
+        work = self.workspace()
         for j in range(self.body_count):
             if not self.on_base(j).is_free(self.part_mode(mode, j)):
-                i, friction = j * BODY_STRIDE, self.friction_coefficient(j, holding)
-                thrust, most = (
-                    workspace[i + at.TANGENTIAL_FORCE],
-                    friction * max(workspace[i + at.NORMAL_FORCE], 0.0),
-                )
-                if j == lets_go or abs(thrust) > most + self.friction_noise(j, friction):
+                i, friction = j * BODY_STRIDE, self.friction_coefficient(j, coefficient)
+                thrust = work[i + at.TANGENTIAL_FORCE]
+                most = friction * max(work[i + at.NORMAL_FORCE], 0.0)
+                if j == released or abs(thrust) > most + self.friction_noise(j, friction):
                     return j, float(thrust)
         return -1, 0.0
 
@@ -136,8 +134,8 @@ class SlippingChain(SlipperyBases):
         Accelerations up to `near` times gravity do not count.
         """
         for j in range(self.body_count):
-            part, standing = self.on_base(j), self.part_mode(mode, j)
-            if standing.slides and not part.flies(standing.contact):
+            part, body_mode = self.on_base(j), self.part_mode(mode, j)
+            if body_mode.slides and not part.flies(body_mode.contact):
                 rate, noise = self.slip_rate(j, mode, state)
                 least = near * math.sqrt(part.body.gravity / part.body.size())
                 found = self.slip_guards(j, mode, state, slope, 0.0, 1.0)

@@ -32,9 +32,9 @@ EXHAUSTIVE_COUNT: Final = 10
 MAX_DIFFERENCES: Final = 3
 """With more, candidates of the first round differ from the solution of :eq:`eq-sticking` in at
 most this many corners."""
-SECOND_EXHAUSTIVE_COUNT: Final = 16
+EXHAUSTIVE_COUNT_2: Final = 16
 """With this many closed corners or fewer, the second round takes every other subset."""
-SECOND_MAX_DIFFERENCES: Final = 5
+MAX_DIFFERENCES_2: Final = 5
 """With more, candidates of the second round differ in at most this many corners."""
 NOISE: Final = 1e-11
 """Rounding noise of impulses, or of speeds, over the sum of all of them [1]."""
@@ -53,7 +53,7 @@ MAX_PIVOTS: Final = 1000
 class Trial(NamedTuple):
     """Outcome for a candidate set: the first corner at fault, or -1; energy lost in the impact."""
 
-    fault: int
+    violation: int
     loss: float
 
 
@@ -63,9 +63,9 @@ class BearingCorners(NamedTuple):
     `held` is the corner that must be held though it does not press, where none is admissible, or 0.
     """
 
-    taken: int
+    chosen: int
     admissible: int
-    other: int
+    next_best: int
     held: int
 
 
@@ -84,7 +84,7 @@ class NearbySubsets(NamedTuple):
 
     closed: int
     reference: int
-    most: int
+    max_differences: int
 
 
 @kernel
@@ -93,64 +93,58 @@ def next_subset(start: int, near: NearbySubsets) -> int:
 
     `start` is the number of all closed corners, or that of a set less one.
     """
-    some = start & near.closed if start >= 0 else -1
-    while some >= 0:
-        rest = some ^ near.reference
-        for _ in range(bit_count(rest) - near.most - 1):
+    subset = start & near.closed if start >= 0 else -1
+    while subset >= 0:
+        rest = subset ^ near.reference
+        for _ in range(bit_count(rest) - near.max_differences - 1):
             rest &= rest - 1
         corner = rest & -rest  # the highest corner in which the sets must not differ
-        if bit_count(rest) <= near.most:
+        if bit_count(rest) <= near.max_differences:
             break
-        above = some & ~(2 * corner - 1)
-        if some & corner != 0:
-            some = above | near.reference & (corner - 1)
+        above = subset & ~(2 * corner - 1)
+        if subset & corner != 0:
+            subset = above | near.reference & (corner - 1)
             break
-        some = (above - 1) & near.closed if above > 0 else -1
-    return some
+        subset = (above - 1) & near.closed if above > 0 else -1
+    return subset
 
 
 @inlined
-def trial_code(bears: int, holds: int, sense: float, impulsive: bool) -> float:
+def trial_code(bears: int, held: int, sense: float, impulsive: bool) -> float:
     """Return the code of a body's constraints in a trial, by which equal trials are recognized."""
-    return bears + 4.0 * holds + 16.0 * (sense + 1.0) + (64.0 if impulsive else 0.0)
+    return bears + 4.0 * held + 16.0 * (sense + 1.0) + (64.0 if impulsive else 0.0)
 
 
 @inlined
 def add_rigid_base_constraints(
-    system: Any, k: int, count: int, bears: int, holds: int, sense: float, impulsive: bool,
-    workspace: Vector, constraints: Vector,
+    system: Any, k: int, count: int, bears: int, held: int, sense: float, impulsive: bool,
+    work: Vector, rows: Vector,
 ) -> int:  # fmt: skip
     """Add the constraints of a body on a rigid base; return the number of all so far."""
     i = k * BODY_STRIDE
-    workspace[i + at.LEFT_CONSTRAINT] = workspace[i + at.RIGHT_CONSTRAINT] = -1.0
-    if holds == 0:
+    work[i + at.LEFT_CONSTRAINT] = work[i + at.RIGHT_CONSTRAINT] = -1.0
+    if held == 0:
         return count
     # where both corners are closed all points of the base move with one velocity
-    pivot = 0 if holds == LEFT_ONLY else 1
-    reach, stays = (
-        workspace[i + at.CORNER_ARMS + pivot],
-        workspace[i + at.TANGENTIAL_PRESCRIBED + pivot],
-    )
+    pivot = 0 if held == LEFT_ONLY else 1
+    reach, stays = work[i + at.CORNER_ARMS + pivot], work[i + at.TANGENTIAL_PRESCRIBED + pivot]
     for side in range(2):
         if bears >> side & 1 != 0:
-            lever, rests = (
-                workspace[i + at.CORNER_LEVERS + side],
-                workspace[i + at.NORMAL_PRESCRIBED + side],
-            )
-            add_constraint(system, count, k, 0.0, 1.0, lever, rests, workspace, constraints)
-            workspace[i + at.LEFT_CONSTRAINT + side] = count
-            system.add_corner_friction(k, count, sense, reach, impulsive, workspace, constraints)
+            lever, rests = work[i + at.CORNER_LEVERS + side], work[i + at.NORMAL_PRESCRIBED + side]
+            add_constraint(system, count, k, 0.0, 1.0, lever, rests, work, rows)
+            work[i + at.LEFT_CONSTRAINT + side] = count
+            system.add_corner_friction(k, count, sense, reach, impulsive, work, rows)
             count += 1
     if sense == 0.0:
-        workspace[i + at.TANGENTIAL_CONSTRAINT] = count
-        add_constraint(system, count, k, 1.0, 0.0, -reach, stays, workspace, constraints)
+        work[i + at.TANGENTIAL_CONSTRAINT] = count
+        add_constraint(system, count, k, 1.0, 0.0, -reach, stays, work, rows)
         count += 1
     return count
 
 
 @kernel
 def solve_trial(
-    system: Any, mode: int, some: int, closed: int, sticks: bool, impulsive: bool, noise: float,
+    system: Any, mode: int, subset: int, closed: int, sticks: bool, impulsive: bool, noise: float,
     state: Vector,
 ) -> Trial:  # fmt: skip
     """Solve with the set `some` of the closed corners constrained, and check the solution.
@@ -159,115 +153,89 @@ def solve_trial(
     `sticks` every body with a closed corner is held along its base, else only those that bear.
     Speeds or accelerations up to `noise` are rounding.
     """
-    workspace, constraints = system.workspace(), system.constraints()
+    work, rows = system.workspace(), system.constraints()
     count, start, same = 0, 0, True
     # from the bottom up: successive candidates differ in the highest bodies
     for k in range(system.body_count - 1, -1, -1):
-        i, standing = k * BODY_STRIDE, system.part_mode(mode, k)
-        bears, touches = some >> 2 * k & BOTH, closed >> 2 * k & BOTH
-        holds = touches | bears if sticks else bears
+        i, body_mode = k * BODY_STRIDE, system.part_mode(mode, k)
+        bears, touches = subset >> 2 * k & BOTH, closed >> 2 * k & BOTH
+        held = touches | bears if sticks else bears
         sense = 0.0 if sticks else system.trial_sense(k)
-        tried = trial_code(bears, holds, sense, impulsive) if system.is_rigid(k) else NOT_ELIMINATED
-        if same and tried == workspace[i + at.TRIAL_CODE] and tried != NOT_ELIMINATED:
-            count = start = int(workspace[i + at.CONSTRAINT_COUNT])
+        tried = trial_code(bears, held, sense, impulsive) if system.is_rigid(k) else NOT_ELIMINATED
+        if same and tried == work[i + at.TRIAL_CODE] and tried != NOT_ELIMINATED:
+            count = start = int(work[i + at.CONSTRAINT_COUNT])
             continue
-        same, workspace[i + at.TRIAL_CODE] = False, tried
+        same, work[i + at.TRIAL_CODE] = False, tried
         if not system.is_rigid(k):
             if not impulsive:
-                count = system.add_trial_constraint(
-                    k, count, standing, state, workspace, constraints
-                )
-            elif workspace[i + at.HOLD_STATE] != FREE:
-                add_constraint(
-                    system,
-                    count,
-                    k,
-                    1.0,
-                    0.0,
-                    -workspace[i + at.PIVOT_ARM],
-                    0.0,
-                    workspace,
-                    constraints,
-                )
+                count = system.add_trial_constraint(k, count, body_mode, state, work, rows)
+            elif work[i + at.HOLD_STATE] != FREE:
+                add_constraint(system, count, k, 1.0, 0.0, -work[i + at.PIVOT_ARM], 0.0, work, rows)
                 count += 1
         else:
             count = add_rigid_base_constraints(
-                system, k, count, bears, holds, sense, impulsive, workspace, constraints
+                system, k, count, bears, held, sense, impulsive, work, rows
             )
-        workspace[i + at.CONSTRAINT_COUNT] = count
-    solve_motion(
-        system,
-        system.body_count,
-        start,
-        count,
-        system.half_bandwidth(),
-        workspace,
-        constraints,
-        system.constraint_matrix(),
-    )
+        work[i + at.CONSTRAINT_COUNT] = count
+    band, matrix = system.half_bandwidth(), system.constraint_matrix()
+    solve_motion(system, system.body_count, start, count, band, work, rows, matrix)
     loss = pressing = 0.0
     for which in range(count):
         first = which * CONSTRAINT_STRIDE
-        force, k = constraints[first + at.FORCE], int(constraints[first + at.CONSTRAINED_BODY])
-        loss += 0.5 * force * constraints[first + at.PRESCRIBED]
+        force, k = rows[first + at.FORCE], int(rows[first + at.CONSTRAINED_BODY])
+        loss += 0.5 * force * rows[first + at.PRESCRIBED]
         if system.is_rigid(k):
-            loss += system.friction_loss(k, which, state, workspace, constraints)
+            loss += system.friction_loss(k, which, state, work, rows)
         pressing += abs(force)
-    fault = first_violation(system, some, closed, impulsive, NOISE * pressing, noise)
-    return Trial(fault, loss)
+    violation = first_violation(system, subset, closed, impulsive, NOISE * pressing, noise)
+    return Trial(violation, loss)
 
 
 @kernel
 def write_trial_data(system: Any, impulsive: bool, state: Vector) -> None:
     """Write what all trials have in common: levers, and the values prescribed at rest."""
-    workspace = system.workspace()
-    reset_elimination(system, workspace)
+    work = system.workspace()
+    reset_elimination(system, work)
     for k in range(system.body_count):
         if system.is_rigid(k):
             i, part, body = k * BODY_STRIDE, system.on_base(k), system.state_of(k, state)
             attitude, rate = part.body.attitude(body.rotation), body.angular_velocity
             line = part.body.base_line(body, attitude)
             bends = part.body.end_accelerations(attitude, rate, 0.0, 0.0)
-            workspace[i + at.CORNER_LEVERS], workspace[i + at.CORNER_LEVERS + 1] = (
-                line.left_lever,
-                line.right_lever,
-            )
-            workspace[i + at.NORMAL_PRESCRIBED], workspace[i + at.NORMAL_PRESCRIBED + 1] = (
-                -line.left_speed,
-                -line.right_speed,
-            )
+            work[i + at.CORNER_LEVERS] = line.left_lever
+            work[i + at.CORNER_LEVERS + 1] = line.right_lever
+            work[i + at.NORMAL_PRESCRIBED] = -line.left_speed
+            work[i + at.NORMAL_PRESCRIBED + 1] = -line.right_speed
             for side in range(2):
                 pin = part.body.pin(PIVOT_LEFT if side == 0 else PIVOT_RIGHT)
                 reach = part.body.reach(pin, attitude)
-                workspace[i + at.CORNER_ARMS + side] = reach.rate
-                workspace[i + at.TANGENTIAL_PRESCRIBED + side] = (
+                work[i + at.CORNER_ARMS + side] = reach.rate
+                work[i + at.TANGENTIAL_PRESCRIBED + side] = (
                     reach.rate * rate - body.horizontal_velocity
                 )
                 if not impulsive:
-                    along = tangential_coriolis(i, workspace) + reach.bend * rate * rate
-                    workspace[i + at.TANGENTIAL_PRESCRIBED + side] = along
-                    workspace[i + at.NORMAL_PRESCRIBED + side] = (
-                        -normal_coriolis(i, workspace) - bends[side]
-                    )
+                    along = tangential_coriolis(i, work) + reach.bend * rate * rate
+                    work[i + at.TANGENTIAL_PRESCRIBED + side] = along
+                    work[i + at.NORMAL_PRESCRIBED + side] = -normal_coriolis(i, work) - bends[side]
 
 
 @kernel
 def first_violation(
-    system: Any, some: int, closed: int, impulsive: bool, least: float, noise: float
+    system: Any, subset: int, closed: int, impulsive: bool, least: float, noise: float
 ) -> int:
     """Return the first corner that is at fault by :eq:`eq-admissible`; -1 if none is."""
-    workspace, constraints, above = system.workspace(), system.constraints(), 0.0
+    work, rows, above = system.workspace(), system.constraints(), 0.0
     for corner in range(2 * system.body_count):
         k, side = corner // 2, corner % 2
         if side == 0:  # the mass that the body's base carries
             above += system.row_value(k, at.MASS)
         if closed >> corner & 1 == 0:
             continue
-        if some >> corner & 1 != 0:
-            which = int(workspace[k * BODY_STRIDE + at.LEFT_CONSTRAINT + side])
+        if subset >> corner & 1 != 0:
+            which = int(work[k * BODY_STRIDE + at.LEFT_CONSTRAINT + side])
             # where no corner closes all impulses are rounding
             none = noise * above if impulsive else 0.0
-            if constraints[which * CONSTRAINT_STRIDE + at.FORCE] < -least - none:
+            if rows[which * CONSTRAINT_STRIDE + at.FORCE] < -least - none:
                 return corner
             continue
         # as a corner parts under new forces, both its force and its acceleration are zero
@@ -280,39 +248,33 @@ def first_violation(
 @kernel
 def free_corner_rise(system: Any, k: int, side: int) -> float:
     """Return upward velocity, or acceleration, of a free corner by the last solution."""
-    workspace, constraints, i = system.workspace(), system.constraints(), k * BODY_STRIDE + side
-    keeps = (
-        MAX_CONSTRAINTS * system.body_count - 1
-    ) * CONSTRAINT_STRIDE + at.JACOBIAN  # a row without use
-    write_jacobian(
-        system, k, 0.0, 1.0, workspace[i + at.CORNER_LEVERS], keeps, workspace, constraints
-    )
-    return float(
-        combined_acceleration(system.body_count, k, keeps, workspace, constraints)
-        - workspace[i + at.NORMAL_PRESCRIBED]
-    )
+    work, rows, i = system.workspace(), system.constraints(), k * BODY_STRIDE + side
+    unused = MAX_CONSTRAINTS * system.body_count - 1  # a row that no constraint needs
+    jacobian = unused * CONSTRAINT_STRIDE + at.JACOBIAN
+    write_jacobian(system, k, 0.0, 1.0, work[i + at.CORNER_LEVERS], jacobian, work, rows)
+    found = combined_acceleration(system.body_count, k, jacobian, work, rows)
+    return float(found - work[i + at.NORMAL_PRESCRIBED])
 
 
 @kernel
 def trial_noise(system: Any, closed: int, impulsive: bool, state: Vector) -> float:
     """Return the rounding noise of the speeds of corners, or of their accelerations."""
-    workspace, scale = system.workspace(), 0.0
+    work, scale = system.workspace(), 0.0
     if not impulsive:
         return NEARLY_ZERO * system.row_value(0, at.GRAVITY)
     for corner in range(2 * system.body_count):
         if closed >> corner & 1 != 0:
             k = corner // 2
             i, body = k * BODY_STRIDE + corner % 2, system.state_of(k, state)
-            scale += abs(workspace[i + at.NORMAL_PRESCRIBED]) + abs(
-                workspace[i + at.CORNER_LEVERS] * body.angular_velocity
-            )
+            speed = work[i + at.CORNER_LEVERS] * body.angular_velocity
+            scale += abs(work[i + at.NORMAL_PRESCRIBED]) + abs(speed)
             scale += abs(body.horizontal_velocity)
     return NOISE * scale
 
 
 @kernel
 def find_bearing_corners(
-    system: Any, mode: int, closed: int, pulled: int, before: int, leaving: int, state: Vector
+    system: Any, mode: int, closed: int, in_tension: int, before: int, leaving: int, state: Vector
 ) -> BearingCorners:
     """Find the closed corners that bear, beside those in `pulled`, which are held in any case.
 
@@ -325,18 +287,15 @@ def find_bearing_corners(
     """
     impulsive, count = leaving in (0, JAMMED), bit_count(closed)
     write_trial_data(system, impulsive, state)
-    noise, near = (
-        trial_noise(system, closed, impulsive, state),
-        NearbySubsets(closed, closed, count),
-    )
+    noise = trial_noise(system, closed, impulsive, state)
+    near = NearbySubsets(closed, closed, count)
     far = near
     if count > EXHAUSTIVE_COUNT:
         reference = find_sticking_corners(system, mode, closed, impulsive, noise, state)
         near = NearbySubsets(closed, reference, MAX_DIFFERENCES)
-        far = NearbySubsets(
-            closed, reference, count if count <= SECOND_EXHAUSTIVE_COUNT else SECOND_MAX_DIFFERENCES
-        )
-    taken, other, admissible, held = -1, -1, 0, 0
+        differences = count if count <= EXHAUSTIVE_COUNT_2 else MAX_DIFFERENCES_2
+        far = NearbySubsets(closed, reference, differences)
+    chosen, other, admissible, held = -1, -1, 0, 0
     must_press = ~before | max(leaving, 0)  # the leaving corner, too, if it is to bear on
     lowest = second = math.inf
     # first sets that are admissible within rounding; in each round first the near ones
@@ -344,51 +303,53 @@ def find_bearing_corners(
         if trial % 2 == 1 and count <= EXHAUSTIVE_COUNT:
             continue  # there are no sets farther off
         tried = near if trial % 2 == 0 else far
-        some = next_subset(closed, tried)
-        way = JAMMED if leaving == JAMMED else trial
+        subset = next_subset(closed, tried)
+        search = JAMMED if leaving == JAMMED else trial
         least = noise if impulsive or trial > 1 else ROUNDING * system.row_value(0, at.GRAVITY)
-        while some >= 0:
-            bears = some | pulled
+        while subset >= 0:
+            bears = subset | in_tension
             if leaving <= 0 or bears != before:
-                found = solve_subset(system, way, mode, bears, closed, impulsive, least, state)
-                if found.fault < 0 and (
+                found = solve_subset(system, search, mode, bears, closed, impulsive, least, state)
+                if found.violation < 0 and (
                     impulsive or all_in_compression(system, bears & must_press)
                 ):
                     loss = found.loss if impulsive else float(bit_count(bears ^ before))
                     admissible += 1
                     if loss < lowest:
-                        other, second, taken, lowest = taken, lowest, bears, loss
+                        other, second, chosen, lowest = chosen, lowest, bears, loss
                     elif loss < second:
                         other, second = bears, loss
-            some = next_subset(some - 1, tried)
+            subset = next_subset(subset - 1, tried)
         if admissible > 0:  # its solution stays in the workspace
-            solve_subset(system, way, mode, taken, closed, impulsive, least, state)
-            return BearingCorners(taken, admissible, other, 0)
+            solve_subset(system, search, mode, chosen, closed, impulsive, least, state)
+            return BearingCorners(chosen, admissible, other, 0)
     if impulsive:
-        taken = find_sticking_corners(system, mode, closed, impulsive, noise, state)
+        chosen = find_sticking_corners(system, mode, closed, impulsive, noise, state)
     else:
-        taken, held = find_held_corner(system, mode, near, pulled, before, leaving, noise, state)
+        chosen, held = find_held_corner(
+            system, mode, near, in_tension, before, leaving, noise, state
+        )
         if held == 0:
-            taken = before if leaving < 0 else before & ~leaving
-    return BearingCorners(taken, admissible, other, held)
+            chosen = before if leaving < 0 else before & ~leaving
+    return BearingCorners(chosen, admissible, other, held)
 
 
 @kernel
 def solve_subset(
-    system: Any, way: int, mode: int, some: int, closed: int, impulsive: bool, noise: float,
+    system: Any, search: int, mode: int, subset: int, closed: int, impulsive: bool, noise: float,
     state: Vector,
 ) -> Trial:  # fmt: skip
     """Let a set of the closed corners bear, and find the slips in the given way."""
-    if way == JAMMED:
-        return system.try_stopping_slips(mode, some, closed, noise, state)
-    if way == ALL_SLIPS_ROUND:
-        return system.try_all_slips(mode, some, closed, noise, state)
-    return system.try_corners(mode, some, closed, impulsive, noise, state)
+    if search == JAMMED:
+        return system.try_stopping_slips(mode, subset, closed, noise, state)
+    if search == ALL_SLIPS_ROUND:
+        return system.try_all_slips(mode, subset, closed, noise, state)
+    return system.try_corners(mode, subset, closed, impulsive, noise, state)
 
 
 @kernel
 def find_held_corner(
-    system: Any, mode: int, near: NearbySubsets, pulled: int, before: int, leaving: int,
+    system: Any, mode: int, near: NearbySubsets, in_tension: int, before: int, leaving: int,
     noise: float, state: Vector,
 ) -> tuple[int, int]:  # fmt: skip
     """Return a set of corners, one of which is held though it does not press, and that corner.
@@ -398,25 +359,25 @@ def find_held_corner(
     one nearest to `before` is taken, preferably with `leaving` as the held corner. The corner is 0
     if there is none.
     """
-    taken, held, least, closed = before, 0, math.inf, near.closed
-    some, follower = before & closed, closed  # `before` comes first and excludes most others
-    while some >= 0:
+    chosen, held, least, closed = before, 0, math.inf, near.closed
+    subset, follower = before & closed, closed  # `before` comes first and excludes most others
+    while subset >= 0:
         for corner in range(2 * system.body_count):
-            one, bears = 1 << corner, some | pulled
+            one, bears = 1 << corner, subset | in_tension
             distance = 2 * bit_count(bears ^ before) + (0 if one == leaving else 1)
-            if some & one == 0 or not system.bears_alone(some, one) or distance >= least:
+            if subset & one == 0 or not system.bears_alone(subset, one) or distance >= least:
                 continue
             found = system.try_corners(mode, bears, closed & ~one, False, noise, state)
             pulls = system.corner_force(corner // 2, corner % 2 == 0) < 0.0
-            if found.fault < 0 and pulls and all_in_compression(system, bears & ~before & ~one):
+            if found.violation < 0 and pulls and all_in_compression(system, bears & ~before & ~one):
                 free = system.try_corners(mode, bears & ~one, closed, False, noise, state)
-                if free.fault >= 0:
-                    taken, held, least = bears, one, distance
-        some = next_subset(follower, near)
-        follower = some - 1
+                if free.violation >= 0:
+                    chosen, held, least = bears, one, distance
+        subset = next_subset(follower, near)
+        follower = subset - 1
     if held != 0:
-        system.try_corners(mode, taken, closed & ~held, False, noise, state)
-    return taken, held
+        system.try_corners(mode, chosen, closed & ~held, False, noise, state)
+    return chosen, held
 
 
 @kernel
@@ -436,10 +397,10 @@ def find_sticking_corners(
     system: Any, mode: int, closed: int, impulsive: bool, noise: float, state: Vector
 ) -> int:
     """Return the set of corners that bear by :eq:`eq-sticking`, found by least-index pivoting."""
-    some = closed
+    subset = closed
     for _ in range(MAX_PIVOTS):
-        found = solve_trial(system, mode, some, closed, True, impulsive, noise, state)
-        if found.fault < 0:
+        found = solve_trial(system, mode, subset, closed, True, impulsive, noise, state)
+        if found.violation < 0:
             break
-        some ^= 1 << found.fault
-    return some
+        subset ^= 1 << found.violation
+    return subset

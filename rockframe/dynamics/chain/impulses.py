@@ -50,8 +50,8 @@ class LandingScales(NamedTuple):
 class LandingSpeeds(NamedTuple):
     """Velocities as impulses are found again: rise of an end beyond the old one, and slip."""
 
-    rises: float
-    driven: float  # velocity of slip, positive in the sense of the friction
+    excess: float
+    slip: float  # velocity of slip, positive in the sense of the friction
 
 
 class RigidImpulses(CornerGuards):
@@ -63,41 +63,37 @@ class RigidImpulses(CornerGuards):
     def apply_response(self, state: Vector) -> None:
         """Change the velocities by the last response, and add up the impulses of rigid bases."""
         self.add_velocity_changes(state)
-        workspace, constraints = self.workspace(), self.constraints()
+        work, rows = self.workspace(), self.constraints()
         for j in range(self.body_count):
             i, last = j * BODY_STRIDE, -1
             for side in range(2):
-                which = int(workspace[i + at.LEFT_CONSTRAINT + side])
+                which = int(work[i + at.LEFT_CONSTRAINT + side])
                 if which >= 0:
-                    workspace[i + at.LEFT_IMPULSE + side] += constraints[
-                        which * CONSTRAINT_STRIDE + at.FORCE
-                    ]
-                    self.add_constraint_impulse(j, which, workspace, constraints)
+                    work[i + at.LEFT_IMPULSE + side] += rows[which * CONSTRAINT_STRIDE + at.FORCE]
+                    self.add_constraint_impulse(j, which, work, rows)
                     last = which
             # the constraint along the base comes behind those of the corners
             if last >= 0 and self.trial_sense(j) == 0.0:
-                self.add_constraint_impulse(j, last + 1, workspace, constraints)
+                self.add_constraint_impulse(j, last + 1, work, rows)
 
     @kernel
-    def add_constraint_impulse(
-        self, k: int, which: int, workspace: Vector, constraints: Vector
-    ) -> None:
+    def add_constraint_impulse(self, k: int, which: int, work: Vector, rows: Vector) -> None:
         """Add the impulse of a rigid base's constraint to the sums of the bodies it acts on."""
         first = which * CONSTRAINT_STRIDE
-        force, holds = constraints[first + at.FORCE], first + at.FORCE_DIRECTION
+        force, direction = rows[first + at.FORCE], first + at.FORCE_DIRECTION
         for body in range(k, min(k + 2, self.body_count)):
             i = body * BODY_STRIDE + at.IMPULSE_X
             for j in range(3):
-                workspace[i + j] += force * constraints[holds + j]
-            holds += 3
+                work[i + j] += force * rows[direction + j]
+            direction += 3
 
     @kernel
     def scale_impulses(self, share: float) -> None:
         """Multiply the impulses of all bases in this event by a factor."""
-        workspace = self.workspace()
+        work = self.workspace()
         for k in range(self.body_count):
             for j in range(at.IMPULSE_COUNT):
-                workspace[k * BODY_STRIDE + at.LEFT_IMPULSE + j] *= share
+                work[k * BODY_STRIDE + at.LEFT_IMPULSE + j] *= share
 
     @inlined
     def needs_new_impulses(self, closed: int, mode: int) -> bool:
@@ -107,32 +103,31 @@ class RigidImpulses(CornerGuards):
     @kernel
     def has_tension_impulse(self) -> bool:
         """Whether the impulse of a corner on a rigid base in this event is one of tension."""
-        workspace, least, all_of_them = self.workspace(), 0.0, 0.0
+        work, least, all_of_them = self.workspace(), 0.0, 0.0
         for k in range(self.body_count):
             for side in range(2):
-                impulse = workspace[k * BODY_STRIDE + at.LEFT_IMPULSE + side]
+                impulse = work[k * BODY_STRIDE + at.LEFT_IMPULSE + side]
                 least, all_of_them = min(least, impulse), all_of_them + abs(impulse)
         return least < -NOISE * all_of_them
 
     @kernel
     def change_velocities(self, state: Vector) -> None:
         """Change the velocities by the last solution for impulses, which is in the workspace."""
-        workspace = self.workspace()
+        work = self.workspace()
         for k in range(self.body_count):
             i = k * BODY_STRIDE
-            workspace[i + at.NORMAL_RATE] = workspace[i + at.TANGENTIAL_RATE] = workspace[
-                i + at.FRAME_ROTATION_RATE
-            ] = 0.0
-        write_relative_accelerations(self, workspace, self.slopes())
+            work[i + at.NORMAL_RATE] = work[i + at.TANGENTIAL_RATE] = 0.0
+            work[i + at.FRAME_ROTATION_RATE] = 0.0
+        write_relative_accelerations(self, work, self.slopes())
         self.add_velocity_changes(state)
 
     @inlined
     def note_blow(self, k: int, press: float, moment: float, along: float) -> None:
         """Add to the impulses of a deformable base on its body as an end lands."""
-        workspace, i = self.workspace(), k * BODY_STRIDE
-        workspace[i + at.LANDING_NORMAL] += press
-        workspace[i + at.LANDING_MOMENT] += moment
-        workspace[i + at.LANDING_TANGENTIAL] += along
+        work, i = self.workspace(), k * BODY_STRIDE
+        work[i + at.LANDING_NORMAL] += press
+        work[i + at.LANDING_MOMENT] += moment
+        work[i + at.LANDING_TANGENTIAL] += along
 
     @inlined
     def landed_ends(self, k: int, left: bool, mode: int, new: int) -> int:
@@ -146,29 +141,20 @@ class RigidImpulses(CornerGuards):
         return BOTH if both else LEFT_ONLY if left else RIGHT_ONLY
 
     @kernel
-    def undo_impulses(self, k: int, blow: LandingScales, mode: int, state: Vector) -> None:
+    def undo_impulses(self, k: int, scales: LandingScales, mode: int, state: Vector) -> None:
         """Undo the impulses of rigid bases, and scale the blow on a body to its shares."""
-        workspace = self.workspace()
-        write_kinematics(self, mode, state, workspace)
+        work = self.workspace()
+        write_kinematics(self, mode, state, work)
         for j in range(self.body_count):
             i = j * BODY_STRIDE
-            workspace[i + at.LOAD_X] = -workspace[i + at.IMPULSE_X]
-            workspace[i + at.LOAD_Y] = -workspace[i + at.IMPULSE_Y]
-            workspace[i + at.LOAD_MOMENT] = -workspace[i + at.IMPULSE_MOMENT]
-        i, off = k * BODY_STRIDE, blow.press - 1.0
-        add_base_load(
-            self,
-            k,
-            off * workspace[i + at.LANDING_NORMAL],
-            off * workspace[i + at.LANDING_MOMENT],
-            workspace,
-        )
-        add_tangential_load(
-            self,
-            k,
-            (blow.press * blow.along - 1.0) * workspace[i + at.LANDING_TANGENTIAL],
-            workspace,
-        )
+            work[i + at.LOAD_X] = -work[i + at.IMPULSE_X]
+            work[i + at.LOAD_Y] = -work[i + at.IMPULSE_Y]
+            work[i + at.LOAD_MOMENT] = -work[i + at.IMPULSE_MOMENT]
+        i, off = k * BODY_STRIDE, scales.press - 1.0
+        normal, moment = off * work[i + at.LANDING_NORMAL], off * work[i + at.LANDING_MOMENT]
+        add_base_load(self, k, normal, moment, work)
+        off = scales.press * scales.along - 1.0
+        add_tangential_load(self, k, off * work[i + at.LANDING_TANGENTIAL], work)
         solve_trial(self, mode, 0, 0, False, True, 0.0, state)
         self.change_velocities(state)
 
@@ -181,47 +167,49 @@ class RigidImpulses(CornerGuards):
         The blow is such that one end has the speed that restitution leaves it, and none a higher
         one; its friction does not reverse the slip.
         """
-        workspace, i = self.workspace(), k * BODY_STRIDE
-        if workspace[i + at.LANDING_NORMAL] <= 0.0 and workspace[i + at.LANDING_TANGENTIAL] == 0.0:
+        work, i = self.workspace(), k * BODY_STRIDE
+        if work[i + at.LANDING_NORMAL] <= 0.0 and work[i + at.LANDING_TANGENTIAL] == 0.0:
             return LandingScales(1.0, 1.0)
-        rubs = self.slip_along_friction(k, mode, state) <= 0.0
+        opposed = self.slip_along_friction(k, mode, state) <= 0.0
         low, high, share = 0.0, math.inf, 1.0
         for _ in range(MAX_BISECTIONS):
-            blow = LandingScales(share, self.friction_scale(k, rubs, share, mode, closed, state))
-            rises = self.try_landing(k, ends, blow, mode, closed, state).rises
-            if rises > 0.0:
+            scales = LandingScales(
+                share, self.friction_scale(k, opposed, share, mode, closed, state)
+            )
+            excess = self.try_landing(k, ends, scales, mode, closed, state).excess
+            if excess > 0.0:
                 high = share
             else:
                 low = share
-            if rises == 0.0:
+            if excess == 0.0:
                 break
             share = 0.5 * (low + high) if high < math.inf else 2.0 * share
             if share > MAX_LANDING_SCALE:
                 low = 1.0
                 break
-        return LandingScales(low, self.friction_scale(k, rubs, low, mode, closed, state))
+        return LandingScales(low, self.friction_scale(k, opposed, low, mode, closed, state))
 
     @kernel
     def friction_scale(
-        self, k: int, rubs: bool, press: float, mode: int, closed: int, state: Vector
+        self, k: int, opposed: bool, press: float, mode: int, closed: int, state: Vector
     ) -> float:
         """Return the share of friction beside a share `press` of the blow: it must oppose the slip.
 
         It is 1 if friction did not oppose the slip in the first solution (`rubs` is false). The
         slip is linear in the share as long as the same corners bear.
         """
-        if not rubs or self.workspace()[k * BODY_STRIDE + at.LANDING_TANGENTIAL] == 0.0:
+        if not opposed or self.workspace()[k * BODY_STRIDE + at.LANDING_TANGENTIAL] == 0.0:
             return 1.0
         low, high = 0.0, 1.0
-        at_high = self.try_landing(k, 0, LandingScales(press, high), mode, closed, state).driven
+        at_high = self.try_landing(k, 0, LandingScales(press, high), mode, closed, state).slip
         if at_high <= 0.0:
             return high
-        at_low = self.try_landing(k, 0, LandingScales(press, low), mode, closed, state).driven
+        at_low = self.try_landing(k, 0, LandingScales(press, low), mode, closed, state).slip
         for _ in range(MAX_BISECTIONS):
             if at_low >= 0.0:
                 break
             share = low - (high - low) * at_low / (at_high - at_low)
-            found = self.try_landing(k, 0, LandingScales(press, share), mode, closed, state).driven
+            found = self.try_landing(k, 0, LandingScales(press, share), mode, closed, state).slip
             if found > 0.0:
                 high, at_high, at_low = share, found, 0.5 * at_low
             else:
@@ -230,13 +218,13 @@ class RigidImpulses(CornerGuards):
 
     @kernel
     def try_landing(
-        self, k: int, ends: int, blow: LandingScales, mode: int, closed: int, state: Vector
+        self, k: int, ends: int, scales: LandingScales, mode: int, closed: int, state: Vector
     ) -> LandingSpeeds:
         """Return velocities, with impulses found again for shares of a blow; restores the state."""
         part, n, before = self.on_base(k), self.coordinates(), self.velocities(state)
         left, noise_left = end_speed(part, True, self.state_of(k, state))
         right, noise_right = end_speed(part, False, self.state_of(k, state))
-        self.undo_impulses(k, blow, mode, state)
+        self.undo_impulses(k, scales, mode, state)
         write_kinematics(self, mode, state, self.workspace())
         set_inertia_loads(self, 0.0, 0.0, self.workspace())
         find_bearing_corners(self, mode, closed, 0, closed, 0, state)

@@ -61,22 +61,18 @@ class LinkPoints(LinkRows):
     __slots__ = ()
 
     @inlined
-    def displaced_point(self, k: int, x: float, y: float, workspace: Vector) -> DisplacedPoint:
+    def displaced_point(self, k: int, x: float, y: float, work: Vector) -> DisplacedPoint:
         """Return displacement and velocity of a point of a body, or of the ground."""
         if k == GROUND:
             return DisplacedPoint(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         poses, i, j = self.poses(), k * BODY_STRIDE, k * POSE_STRIDE
-        sine, lacks, rate = (
-            poses[j + BODY_SINE],
-            poses[j + BODY_VERSINE],
-            poses[j + BODY_ROTATION_RATE],
-        )
-        turned_x, turned_y = y * sine - x * lacks, -x * sine - y * lacks
-        arm_x, arm_y = x + turned_x, y + turned_y
+        sine, versine = poses[j + BODY_SINE], poses[j + BODY_VERSINE]
+        rate = poses[j + BODY_ROTATION_RATE]
+        rotated_x, rotated_y = y * sine - x * versine, -x * sine - y * versine
+        arm_x, arm_y = x + rotated_x, y + rotated_y
         return DisplacedPoint(
-            poses[j + DISPLACEMENT_X] + turned_x, poses[j + DISPLACEMENT_Y] + turned_y, arm_x,
-            arm_y, workspace[i + at.SPEED_X] + rate * arm_y,
-            workspace[i + at.SPEED_Y] - rate * arm_x,
+            poses[j + DISPLACEMENT_X] + rotated_x, poses[j + DISPLACEMENT_Y] + rotated_y, arm_x,
+            arm_y, work[i + at.SPEED_X] + rate * arm_y, work[i + at.SPEED_Y] - rate * arm_x,
         )  # fmt: skip
 
     @inlined
@@ -88,37 +84,40 @@ class LinkPoints(LinkRows):
         return poses[k * POSE_STRIDE + BODY_SINE], 1.0 - poses[k * POSE_STRIDE + BODY_VERSINE]
 
     @inlined
-    def end_points(self, row: Vector, workspace: Vector) -> tuple[DisplacedPoint, DisplacedPoint]:
+    def end_points(self, row: Vector, work: Vector) -> tuple[DisplacedPoint, DisplacedPoint]:
         """Return displacements and velocities of both points of a link."""
-        on = self.displaced_point(int(row[FIRST_BODY]), row[FIRST_X], row[FIRST_Y], workspace)
-        return on, self.displaced_point(
-            int(row[SECOND_BODY]), row[SECOND_X], row[SECOND_Y], workspace
-        )
+        one = self.displaced_point(int(row[FIRST_BODY]), row[FIRST_X], row[FIRST_Y], work)
+        return one, self.displaced_point(int(row[SECOND_BODY]), row[SECOND_X], row[SECOND_Y], work)
 
     @inlined
     def link_kinematics(
-        self, row: Vector, on: DisplacedPoint, to: DisplacedPoint
+        self, row: Vector, one: DisplacedPoint, other: DisplacedPoint
     ) -> LinkKinematics:
         """Return elongation, rate and direction of a link, :eq:`eq-link`, but no acceleration.
 
         Where its points meet it acts along their relative velocity, in its upward sense.
         """
-        apart_x, apart_y, first_length = row[SEPARATION_X], row[SEPARATION_Y], row[INITIAL_LENGTH]
-        moved_x, moved_y = on.x - to.x, on.y - to.y
-        x, y = apart_x + moved_x, apart_y + moved_y
-        speed_x, speed_y = on.speed_x - to.speed_x, on.speed_y - to.speed_y
-        along_x, along_y = row[DIRECTION_X], row[DIRECTION_Y]
-        if along_x != 0.0 or along_y != 0.0:
-            elongation = along_x * moved_x + along_y * moved_y
-            rate = along_x * speed_x + along_y * speed_y
+        separation_x, separation_y = row[SEPARATION_X], row[SEPARATION_Y]
+        initial_length = row[INITIAL_LENGTH]
+        shift_x, shift_y = one.x - other.x, one.y - other.y
+        x, y = separation_x + shift_x, separation_y + shift_y
+        speed_x, speed_y = one.speed_x - other.speed_x, one.speed_y - other.speed_y
+        direction_x, direction_y = row[DIRECTION_X], row[DIRECTION_Y]
+        if direction_x != 0.0 or direction_y != 0.0:
+            elongation = direction_x * shift_x + direction_y * shift_y
+            rate = direction_x * speed_x + direction_y * speed_y
             return LinkKinematics(
-                Stretch(elongation, rate, 0.0, first_length, row[NOISE]), along_x, along_y
+                Stretch(elongation, rate, 0.0, initial_length, row[NOISE]), direction_x, direction_y
             )
         square = x * x + y * y
         length, elongation = math.sqrt(square), 0.0
-        if length + first_length > 0.0:
-            elongation = (2.0 * apart_x * moved_x + moved_x * moved_x) / (length + first_length)
-            elongation += (2.0 * apart_y * moved_y + moved_y * moved_y) / (length + first_length)
+        if length + initial_length > 0.0:
+            elongation = (2.0 * separation_x * shift_x + shift_x * shift_x) / (
+                length + initial_length
+            )
+            elongation += (2.0 * separation_y * shift_y + shift_y * shift_y) / (
+                length + initial_length
+            )
         if length <= COINCIDENCE * row[NOISE]:
             up_x, up_y = self.up_direction(int(row[SECOND_BODY]))
             away = 1.0 if speed_x * up_x + speed_y * up_y >= 0.0 else -1.0
@@ -126,41 +125,41 @@ class LinkPoints(LinkRows):
             square = x * x + y * y
             length = math.sqrt(square)
             if square < TINY:
-                still = Stretch(elongation, 0.0, 0.0, first_length, row[NOISE])
+                still = Stretch(elongation, 0.0, 0.0, initial_length, row[NOISE])
                 return LinkKinematics(still, up_x, up_y)
         x, y = x / length, y / length
         rate = x * speed_x + y * speed_y
-        return LinkKinematics(Stretch(elongation, rate, 0.0, first_length, row[NOISE]), x, y)
+        return LinkKinematics(Stretch(elongation, rate, 0.0, initial_length, row[NOISE]), x, y)
 
     @inlined
     def point_acceleration(
-        self, k: int, point: DisplacedPoint, workspace: Vector
+        self, k: int, point: DisplacedPoint, work: Vector
     ) -> tuple[float, float]:
         """Return the acceleration of a point of a body, or of the ground."""
         if k == GROUND:
             return 0.0, 0.0
         i, rate = k * BODY_STRIDE, self.poses()[k * POSE_STRIDE + BODY_ROTATION_RATE]
-        turning, square = workspace[i + at.ANGULAR_ACCELERATION], rate * rate
+        angular, square = work[i + at.ANGULAR_ACCELERATION], rate * rate
         return (
-            workspace[i + at.ACCELERATION_X] + turning * point.arm_y - square * point.arm_x,
-            workspace[i + at.ACCELERATION_Y] - turning * point.arm_x - square * point.arm_y,
+            work[i + at.ACCELERATION_X] + angular * point.arm_y - square * point.arm_x,
+            work[i + at.ACCELERATION_Y] - angular * point.arm_x - square * point.arm_y,
         )
 
     @inlined
-    def link_stretch(self, row: Vector, workspace: Vector, idle: bool) -> Stretch:
+    def link_stretch(self, row: Vector, work: Vector, idle: bool) -> Stretch:
         """Return elongation of a link, rate and acceleration, from the accelerations of its bodies.
 
         The acceleration of an idle link is left 0.
         """
-        on, to = self.end_points(row, workspace)
-        found, x, y = self.link_kinematics(row, on, to)
+        one, other = self.end_points(row, work)
+        found, x, y = self.link_kinematics(row, one, other)
         if idle:
             return found
-        on_x, on_y = self.point_acceleration(int(row[FIRST_BODY]), on, workspace)
-        to_x, to_y = self.point_acceleration(int(row[SECOND_BODY]), to, workspace)
-        speed_x, speed_y = on.speed_x - to.speed_x, on.speed_y - to.speed_y
+        on_x, on_y = self.point_acceleration(int(row[FIRST_BODY]), one, work)
+        to_x, to_y = self.point_acceleration(int(row[SECOND_BODY]), other, work)
+        speed_x, speed_y = one.speed_x - other.speed_x, one.speed_y - other.speed_y
         across = speed_x * y - speed_y * x
         length = found.given + found.elongation
-        bend = across * across / length if length > 0.0 else 0.0
-        acceleration = x * (on_x - to_x) + y * (on_y - to_y) + bend
+        centripetal = across * across / length if length > 0.0 else 0.0
+        acceleration = x * (on_x - to_x) + y * (on_y - to_y) + centripetal
         return Stretch(found.elongation, found.rate, acceleration, found.given, found.noise)

@@ -111,11 +111,11 @@ class Linkable:
             """Return the number of columns of all bodies and their bases."""
             raise NotImplementedError
 
-        def write_poses(self, mode: int, state: Vector, workspace: Vector) -> None:
+        def write_poses(self, mode: int, state: Vector, work: Vector) -> None:
             """Write displacements and rotations of bodies; `place_bodies` must have run before."""
             raise NotImplementedError
 
-        def write_kinematics_and_poses(self, mode: int, state: Vector, workspace: Vector) -> None:
+        def write_kinematics_and_poses(self, mode: int, state: Vector, work: Vector) -> None:
             """Write places, displacements and velocities of all bodies."""
             raise NotImplementedError
 

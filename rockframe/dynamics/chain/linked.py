@@ -49,44 +49,44 @@ class LinkMechanics(LinkPoints):
     __slots__ = ()
 
     @kernel
-    def apply_link_forces(self, mode: int, state: Vector, workspace: Vector) -> float:
+    def apply_link_forces(self, mode: int, state: Vector, work: Vector) -> float:
         """Load all bodies by their links, :eq:`eq-link-loads`; return the power these dissipate."""
         poses, out, lost = self.poses(), self.slopes(), 0.0
-        self.write_poses(mode, state, workspace)
+        self.write_poses(mode, state, work)
         for k in range(self.body_count):
             poses[k * POSE_STRIDE + LINK_FORCE_X] = poses[k * POSE_STRIDE + LINK_FORCE_Y] = 0.0
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.link_variables(i, state)
-            law, standing = self.law_of(row), self.link_state(mode, row)
+            law, link_state = self.law_of(row), self.link_state(mode, row)
             each = law.variables()
             rates = view_of(out, self.coordinates() + i * each, each)
-            if law.idles(standing):
+            if law.idles(link_state):
                 for j in range(each):
                     rates[j] = 0.0
                 continue
-            on, to = self.end_points(row, workspace)
-            link = self.link_kinematics(row, on, to)
-            force = law.force(standing, link.stretch, own)
-            lost += law.power(standing, link.stretch, own)
+            one, other = self.end_points(row, work)
+            link = self.link_kinematics(row, one, other)
+            force = law.force(link_state, link.stretch, own)
+            lost += law.power(link_state, link.stretch, own)
             self.add_point_force(
-                int(row[FIRST_BODY]), on, -force * link.x, -force * link.y, workspace, poses
+                int(row[FIRST_BODY]), one, -force * link.x, -force * link.y, work, poses
             )
             self.add_point_force(
-                int(row[SECOND_BODY]), to, force * link.x, force * link.y, workspace, poses
+                int(row[SECOND_BODY]), other, force * link.x, force * link.y, work, poses
             )
-            law.rates(standing, link.stretch, own, rates)
+            law.rates(link_state, link.stretch, own, rates)
         return lost
 
     @inlined
     def add_point_force(
-        self, k: int, point: DisplacedPoint, x: float, y: float, workspace: Vector, poses: Vector
+        self, k: int, point: DisplacedPoint, x: float, y: float, work: Vector, poses: Vector
     ) -> None:
         """Add a force on a point of a body, or of the ground."""
         if k != GROUND:
             i, j = k * BODY_STRIDE, k * POSE_STRIDE
-            workspace[i + at.LOAD_X] += x
-            workspace[i + at.LOAD_Y] += y
-            workspace[i + at.LOAD_MOMENT] += x * point.arm_y - y * point.arm_x
+            work[i + at.LOAD_X] += x
+            work[i + at.LOAD_Y] += y
+            work[i + at.LOAD_MOMENT] += x * point.arm_y - y * point.arm_x
             poses[j + LINK_FORCE_X] += x
             poses[j + LINK_FORCE_Y] += y
 
@@ -104,28 +104,21 @@ class LinkMechanics(LinkPoints):
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
         """Return the guards of the bodies, then of each link in turn, and their rates."""
         found, idle = self.guards_of_bodies(mode, state, slope, ground), self.all_idle(mode)
-        workspace, values, changes = (
-            self.workspace(),
-            self.guard_workspace(0),
-            self.guard_workspace(1),
-        )
+        work, values, changes = self.workspace(), self.guard_workspace(0), self.guard_workspace(1)
         if idle and self.moving_in(mode) == 0:
             for i in range(self.body_guard_count(), len(values)):
                 values[i], changes[i] = 1.0, 0.0
             return found
         if idle:
-            self.write_kinematics_and_poses(mode, state, workspace)
+            self.write_kinematics_and_poses(mode, state, work)
         else:
             self.forces_from_slope(mode, state, slope, ground)
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.link_variables(i, state)
-            law, standing = self.law_of(row), self.link_state(mode, row)
-            link, first = (
-                self.link_stretch(row, workspace, idle),
-                self.body_guard_count() + GUARDS * i,
-            )
+            law, link_state = self.law_of(row), self.link_state(mode, row)
+            link, first = self.link_stretch(row, work, idle), self.body_guard_count() + GUARDS * i
             for which in range(GUARDS):
-                value, change = law.guard(which, standing, link, own)
+                value, change = law.guard(which, link_state, link, own)
                 values[first + which], changes[first + which] = value, change
         return found
 
@@ -150,29 +143,32 @@ class LinkMechanics(LinkPoints):
             return self.switch_body(mode, guard, state, ground, memory)
         self.reset_event(memory)
         i = (guard - first) // GUARDS
-        row, own, workspace = self.row_of_link(i), self.link_variables(i, state), self.workspace()
-        self.write_kinematics_and_poses(mode, state, workspace)
-        on, to = self.end_points(row, workspace)
-        standing, value = self.link_state(mode, row), int(row[PLACE_VALUE])
+        row, own, work = self.row_of_link(i), self.link_variables(i, state), self.workspace()
+        self.write_kinematics_and_poses(mode, state, work)
+        one, other = self.end_points(row, work)
+        link_state, value = self.link_state(mode, row), int(row[PLACE_VALUE])
         found = self.law_of(row).switch(
-            guard - first - GUARDS * i, standing, self.link_kinematics(row, on, to).stretch, own
+            guard - first - GUARDS * i,
+            link_state,
+            self.link_kinematics(row, one, other).stretch,
+            own,
         )
         memory[LAST_EVENT] = found.event
         memory[LINK_LOSS] += found.lost
         memory[place] = i + 1.0
-        return mode + value * (found.state - standing)
+        return mode + value * (found.state - link_state)
 
     @kernel
     def energies(self, mode: int, state: Vector) -> Energies:
         """Return the energies of all bodies, bases and links."""
-        found, workspace = self.energies_of_bodies(mode, state), self.workspace()
-        self.write_poses(mode, state, workspace)
+        found, work = self.energies_of_bodies(mode, state), self.workspace()
+        self.write_poses(mode, state, work)
         gravity, elastic, change = found.gravity, found.elastic, found.from_rest
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.link_variables(i, state)
-            on, to = self.end_points(row, workspace)
+            one, other = self.end_points(row, work)
             stored = self.law_of(row).energy(
-                self.link_state(mode, row), self.link_kinematics(row, on, to).stretch, own
+                self.link_state(mode, row), self.link_kinematics(row, one, other).stretch, own
             )
             # loads and walls have a fixed direction; a load has one state, a wall two
             if (row[DIRECTION_X] != 0.0 or row[DIRECTION_Y] != 0.0) and row[STATE_COUNT] <= 1.0:
@@ -187,45 +183,43 @@ class LinkMechanics(LinkPoints):
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> Vector:
         """Return columns of the bodies, then those of each link, and the moment of all links."""
-        out, workspace = self.observe_bodies(mode, state, slope, ground, memory), self.workspace()
+        out, work = self.observe_bodies(mode, state, slope, ground, memory), self.workspace()
         moment = 0.0
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.link_variables(i, state)
-            law, standing = self.law_of(row), self.link_state(mode, row)
-            on, to = self.end_points(row, workspace)
-            link = self.link_kinematics(row, on, to)
-            j, force = (
-                self.body_column_count() + LINK_COLUMNS * i,
-                law.force(standing, link.stretch, own),
-            )
+            law, link_state = self.law_of(row), self.link_state(mode, row)
+            one, other = self.end_points(row, work)
+            link = self.link_kinematics(row, one, other)
+            j = self.body_column_count() + LINK_COLUMNS * i
+            force = law.force(link_state, link.stretch, own)
             out[j], out[j + 1] = force, link.stretch.elongation
-            out[j + 2] = law.shown(standing)
+            out[j + 2] = law.shown(link_state)
             if row[FIRST_BODY] == 0.0:
-                moment -= force * (link.x * on.arm_y - link.y * on.arm_x)
+                moment -= force * (link.x * one.arm_y - link.y * one.arm_x)
             if row[SECOND_BODY] == 0.0:
-                moment += force * (link.x * to.arm_y - link.y * to.arm_x)
+                moment += force * (link.x * other.arm_y - link.y * other.arm_x)
         out[self.columns() - 1] = moment
         return out
 
     def store_rest_energies(self, mode: int, state: Vector) -> None:
         """Write the energies of links at rest to their rows: energies are changes from these."""
-        workspace = self.workspace()
-        self.write_kinematics_and_poses(mode, state, workspace)
+        work = self.workspace()
+        self.write_kinematics_and_poses(mode, state, work)
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.link_variables(i, state)
-            stretched = self.link_kinematics(row, *self.end_points(row, workspace)).stretch
+            stretched = self.link_kinematics(row, *self.end_points(row, work)).stretch
             law = self.law_of(row)
             row[REST_ENERGY] = law.energy(self.link_state(mode, row), stretched, own)
 
     @kernel
     def start_links(self, mode: int, state: Vector) -> int:
         """Return the mode with the states in which links start; sets their variables."""
-        workspace = self.workspace()
-        self.write_kinematics_and_poses(mode, state, workspace)
+        work = self.workspace()
+        self.write_kinematics_and_poses(mode, state, work)
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.link_variables(i, state)
-            on, to = self.end_points(row, workspace)
-            found = self.law_of(row).starting(self.link_kinematics(row, on, to).stretch, own)
+            one, other = self.end_points(row, work)
+            found = self.law_of(row).starting(self.link_kinematics(row, one, other).stretch, own)
             mode += int(row[PLACE_VALUE]) * (found - self.link_state(mode, row))
         return mode
 

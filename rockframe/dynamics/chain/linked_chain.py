@@ -69,41 +69,35 @@ class LinkedBodies(LinkMechanics, Chain):
         return body.horizontal
 
     @kernel
-    def write_poses(self, mode: int, state: Vector, workspace: Vector) -> None:
+    def write_poses(self, mode: int, state: Vector, work: Vector) -> None:
         """Write displacements and rotations of bodies; `place_bodies` must have run before."""
         poses, x, y, rate, angle = self.poses(), 0.0, 0.0, 0.0, 0.0
         for k in range(self.body_count - 1, -1, -1):
             i, j = k * BODY_STRIDE, k * POSE_STRIDE
             body = self.constrained_state(k, self.part_mode(mode, k), state)
-            sine, cosine = workspace[i + at.SINE], workspace[i + at.COSINE]
-            y = self.rise_of(k, y, body.vertical, workspace)
+            sine, cosine = work[i + at.SINE], work[i + at.COSINE]
+            y = self.rise_of(k, y, body.vertical, work)
             if k + 1 < self.body_count:
-                across = workspace[i + at.TANGENTIAL]
-                x += workspace[i + at.NORMAL] * sine + across - self.row_value(k, at.UPRIGHT_OFFSET)
+                across = work[i + at.TANGENTIAL]
+                x += work[i + at.NORMAL] * sine + across - self.row_value(k, at.UPRIGHT_OFFSET)
                 x -= across * versine(sine, cosine)
             else:
                 x = self.lowest_position(mode, body, state)
             rate += body.angular_velocity
             angle += body.rotation
             if k > 0:  # the frame of the body above, which rotates with this one
-                sine, cosine = (
-                    workspace[i - BODY_STRIDE + at.SINE],
-                    workspace[i - BODY_STRIDE + at.COSINE],
-                )
+                sine, cosine = work[i - BODY_STRIDE + at.SINE], work[i - BODY_STRIDE + at.COSINE]
             else:
                 sine, cosine = sine_cosine(angle)
-            poses[j + DISPLACEMENT_X], poses[j + DISPLACEMENT_Y], poses[j + BODY_ROTATION_RATE] = (
-                x,
-                y,
-                rate,
-            )
+            poses[j + DISPLACEMENT_X], poses[j + DISPLACEMENT_Y] = x, y
+            poses[j + BODY_ROTATION_RATE] = rate
             poses[j + BODY_SINE], poses[j + BODY_VERSINE] = sine, versine(sine, cosine)
 
     @inlined
-    def write_kinematics_and_poses(self, mode: int, state: Vector, workspace: Vector) -> None:
+    def write_kinematics_and_poses(self, mode: int, state: Vector, work: Vector) -> None:
         """Write places, displacements and velocities of all bodies."""
-        write_kinematics(self, mode, state, workspace)
-        self.write_poses(mode, state, workspace)
+        write_kinematics(self, mode, state, work)
+        self.write_poses(mode, state, work)
 
 
 class LinkedChain(LinkedChainNumbers, LinkedBodies):  # pyright: ignore[reportGeneralTypeIssues]

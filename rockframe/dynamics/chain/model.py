@@ -53,10 +53,10 @@ class AtRest(NamedTuple):
     vertical: float
 
 
-def bare_chain(links: Sequence[ChainBody], ties: Sequence[ChainLink] = ()) -> Chain:
+def bare_chain(bodies: Sequence[ChainBody], ties: Sequence[ChainLink] = ()) -> Chain:
     """Return the system of stacked bodies, from the top down, without their ties."""
-    kind = RigidChain if any(is_rigid(one.base) for one in links) else Chain
-    rows = [body_row(one.body, one.base, one.mass, one.top, one.beside) for one in links]
+    kind = RigidChain if any(is_rigid(one.base) for one in bodies) else Chain
+    rows = [body_row(one.body, one.base, one.mass, one.top, one.beside) for one in bodies]
     for row in rows:
         row[at.FORCE_SCALE] = max(
             row[at.FORCE_SCALE], link_force_rounding(ties) / ROUNDING_OF_FORCES
@@ -66,25 +66,27 @@ def bare_chain(links: Sequence[ChainBody], ties: Sequence[ChainLink] = ()) -> Ch
 
 def with_friction(bare: Chain, frictions: Sequence[tuple[float, float, float]]) -> Chain:
     """Return the system `bare`, of bases without slip, with friction on the bases."""
-    gives = not isinstance(bare, RigidChain) and all(math.isfinite(one[0]) for one in frictions)
-    kind = SlippingChain if gives else SlippingRigidChain
+    deformable = not isinstance(bare, RigidChain) and all(
+        math.isfinite(one[0]) for one in frictions
+    )
+    kind = SlippingChain if deformable else SlippingRigidChain
     return kind(bare.body_count, np.concatenate([bare.rows, friction_numbers(frictions)]))
 
 
 def chain_model(
-    links: Sequence[ChainBody],
+    bodies: Sequence[ChainBody],
     mass: float,
     rest: Sequence[AtRest] | None = None,
     limits: Sequence[tuple[float, float]] = (),
     ties: Sequence[ChainLink] = (),
-    held: Callable[[float], float] | None = None,
+    start_height: Callable[[float], float] | None = None,
     frictions: Sequence[tuple[float, float, float]] = (),
 ) -> ContactModel:
     """Assemble the model of stacked bodies.
 
     Parameters
     ----------
-    links : sequence of ChainBody
+    bodies : sequence of ChainBody
         From the top down.
     mass : float
         The reference mass, over which all masses and forces are given [kg].
@@ -95,20 +97,20 @@ def chain_model(
         all above it; unless given, the rotations of these bodies are not checked [rad].
     ties : sequence of ChainLink
         Links between points of bodies, or to the ground.
-    held : callable, optional
+    start_height : callable, optional
         From a rotation of the highest body to the height at which it starts there; unless
         given, that at which its base carries its weight.
     frictions : sequence of tuple of float
         Coefficients of friction of each base: static, kinetic and in impacts; empty where no base
         can slip, infinite for one that cannot.
     """
-    top, count = links[0].body, len(links)
-    bare = bare_chain(links, ties)
+    top, count = bodies[0].body, len(bodies)
+    bare = bare_chain(bodies, ties)
     alone = with_friction(bare, frictions) if frictions else bare
     system = with_links(alone, ties) if ties else alone
-    fastest, damping_rate = fastest_vibration(links, ties)
-    carried = np.cumsum([one.mass for one in links])
-    starts = StartConditions(links, rest, held)
+    fastest, damping_rate = fastest_vibration(bodies, ties)
+    carried = np.cumsum([one.mass for one in bodies])
+    starts = StartConditions(bodies, rest, start_height)
     if isinstance(system, LinkedBodies):
         mode, state, _ = _initial(system, starts, Start())
         system.store_rest_energies(mode, state)
@@ -119,13 +121,13 @@ def chain_model(
         system=system,
         rotation_limits=(math.atan2(top.left, top.height), math.atan2(top.right, top.height)),
         rotation_weights=_weights(count, 0),
-        scales=np.append(_scales(links), scales),
+        scales=np.append(_scales(bodies), scales),
         guard_tolerance=np.concatenate([
-            *(_tolerance(one.base, on / one.mass) for one, on in zip(links, carried, strict=True)),
+            *(_tolerance(one.base, on / one.mass) for one, on in zip(bodies, carried, strict=True)),
             *(link_guard_tolerance(one) for one in ties),
         ]),
         columns=(
-            *(column for k in range(count) for column in _columns(links[k].base, k)),
+            *(column for k in range(count) for column in _columns(bodies[k].base, k)),
             *(
                 Column(column_of(name, k))
                 for k in range(count if frictions else 0)
@@ -150,13 +152,13 @@ def chain_model(
         fastest_frequency=fastest,
         damping_rate=damping_rate,
         energy_scale=sum(
-            one.mass * one.body.gravity * radius_of(one.body) * one.body.angle for one in links
+            one.mass * one.body.gravity * radius_of(one.body) * one.body.angle for one in bodies
         ),
         initial=lambda start: _initial(system, starts, start),
-        rounding=None if all(is_rigid(one.base) for one in links) else rounding_at(
-            sum(radius_of(one.body) for one in links),
-            sum(one.base.settlement for one in links),
-            _unit_responses(links), fastest, len(scales),
+        rounding=None if all(is_rigid(one.base) for one in bodies) else rounding_at(
+            sum(radius_of(one.body) for one in bodies),
+            sum(one.base.settlement for one in bodies),
+            _unit_responses(bodies), fastest, len(scales),
         ),
         other_limits=np.array(
             [each for k, both in enumerate(limits, 1) for each in (*both, *_weights(count, k))]
@@ -230,9 +232,9 @@ def link_columns(ties: int, shown: int) -> Iterator[Column]:
         yield Column(LINK_MOMENT, per_mass=True)
 
 
-def _scales(links: Sequence[ChainBody]) -> Vector:
+def _scales(bodies: Sequence[ChainBody]) -> Vector:
     places, sways, place_rates, sway_rates, carried = [], [], [], [], 0.0
-    for one in links:
+    for one in bodies:
         carried += one.mass
         sway, rate = radius_of(one.body) * one.body.angle, rocking_rate(per_own_mass(one))
         rise, vertical = one.base.settlement, math.sqrt(one.base.vertical_stiffness / carried)
@@ -246,39 +248,39 @@ def _scales(links: Sequence[ChainBody]) -> Vector:
     return np.concatenate([sizes, sizes * rates])
 
 
-def _unit_responses(links: Sequence[ChainBody]) -> Vector:
+def _unit_responses(bodies: Sequence[ChainBody]) -> Vector:
     places = []
-    for one in links:
+    for one in bodies:
         body = per_own_mass(one)
         places += [0.5 * (body.left + body.right) / (body.inertia + body.height**2), 1.0]
-    return np.array([*places, *np.ones(len(links))])
+    return np.array([*places, *np.ones(len(bodies))])
 
 
 class StartConditions(NamedTuple):
     """What the initial state is made from."""
 
-    links: Sequence[ChainBody]
+    bodies: Sequence[ChainBody]
     rest: Sequence[AtRest] | None
-    held: Callable[[float], float] | None
+    start_height: Callable[[float], float] | None
 
 
 def _initial_placements(highest: OnBase, starts: StartConditions, start: Start) -> list[AtRest]:
     """Return rotations and heights of all bodies: at rest, but of the highest as `start` says."""
-    placed = list(starts.rest or [AtRest(0.0, 0.0)] * len(starts.links))
+    placements = list(starts.rest or [AtRest(0.0, 0.0)] * len(starts.bodies))
     if start.rotation is None and start.vertical_displacement is None:
-        return placed
-    below = sum(one.rotation for one in placed[1:])
-    rotation = placed[0].rotation if start.rotation is None else start.rotation - below
+        return placements
+    below = sum(one.rotation for one in placements[1:])
+    rotation = placements[0].rotation if start.rotation is None else start.rotation - below
     height = start.vertical_displacement
-    if height is None and is_rigid(starts.links[0].base):
+    if height is None and is_rigid(starts.bodies[0].base):
         height = 0.0  # the contact prescribes it
-    elif height is None and starts.held is not None:
-        height = starts.held(rotation)
+    elif height is None and starts.start_height is not None:
+        height = starts.start_height(rotation)
     elif height is None:
         attitude = highest.body.attitude(rotation)
         lift = highest.body.left * attitude.sine, -highest.body.right * attitude.sine
         height = highest.base.resting_height(*lift, ()) - attitude.rise
-    return [AtRest(rotation, height), *placed[1:]]
+    return [AtRest(rotation, height), *placements[1:]]
 
 
 def _starting_contact(part: OnBase, base: BaseNumbers, body: BodyState) -> int:
@@ -289,7 +291,7 @@ def _starting_contact(part: OnBase, base: BaseNumbers, body: BodyState) -> int:
 
 
 def _write_start(
-    system: Chain, k: int, standing: Mode, pin: float, body: BodyState, state: Vector,
+    system: Chain, k: int, body_mode: Mode, pin: float, body: BodyState, state: Vector,
     memory: Vector,
 ) -> None:  # fmt: skip
     """Write place, velocities and held point of body `k` to state and memory."""
@@ -300,7 +302,7 @@ def _write_start(
     state[n + i + ROTATION] = body.angular_velocity
     state[n + i + VERTICAL] = body.vertical_velocity
     memory[HELD_PLACE + k] = pin + offset
-    free = part.is_free(standing)
+    free = part.is_free(body_mode)
     moves = isinstance(system, LinkedBodies) or k + 1 < count
     attitude = part.body.attitude(body.rotation)
     if moves or free:
@@ -312,24 +314,28 @@ def _write_start(
 
 def _initial(system: Chain, starts: StartConditions, start: Start) -> tuple[int, Vector, Vector]:
     """Return mode, state and memory at the start: all at rest but body 0, as `start` says."""
-    count = len(starts.links)
+    count = len(starts.bodies)
     state = np.zeros(2 * DEGREES * count + system.variables())
     memory = np.zeros(len(MEMORY) + count)
-    placed, mode = _initial_placements(system.on_base(0), starts, start), 0
-    for k, one in enumerate(placed):
+    placements, mode = _initial_placements(system.on_base(0), starts, start), 0
+    for k, one in enumerate(placements):
         moving = k == 0
         body = BodyState(
             one.rotation, one.vertical, 0.0, start.angular_velocity if moving else 0.0,
             start.vertical_velocity if moving else 0.0, 0.0,
         )  # fmt: skip
         # a body at rest upright has no side yet: it takes that of the body above
-        leaning = body
+        leaning_body = body
         if body.rotation == 0.0 and k > 0:
-            leaning = body._replace(rotation=placed[k - 1].rotation)
+            leaning_body = body._replace(rotation=placements[k - 1].rotation)
         part = system.on_base(k)
-        standing = part.standing(_starting_contact(part, starts.links[k].base, body), leaning)
-        _write_start(system, k, standing, part.starting_pin(standing, leaning), body, state, memory)
-        mode = system.with_part(mode, k, standing)
+        body_mode = part.standing(
+            _starting_contact(part, starts.bodies[k].base, body), leaning_body
+        )
+        _write_start(
+            system, k, body_mode, part.starting_pin(body_mode, leaning_body), body, state, memory
+        )
+        mode = system.with_part(mode, k, body_mode)
     if isinstance(system, RigidChain):
         memory = np.concatenate([memory, [1.0, 0.0, 0.0]])
         system.project_onto_contacts(mode, state, memory)

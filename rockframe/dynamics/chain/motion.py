@@ -27,28 +27,28 @@ NOT_ELIMINATED: Final = -1.0
 
 
 @inlined
-def reset_elimination(system: ChainArray, workspace: Vector) -> None:
+def reset_elimination(system: ChainArray, work: Vector) -> None:
     """Discard what was eliminated: the next solution starts from the beginning."""
     i = (system.body_count - 1) * BODY_STRIDE
-    workspace[i + at.TRIAL_CODE], workspace[i + at.FORCES_VALID] = NOT_ELIMINATED, 0.0
+    work[i + at.TRIAL_CODE], work[i + at.FORCES_VALID] = NOT_ELIMINATED, 0.0
 
 
 @kernel
-def write_kinematics(system: ChainArray, mode: int, state: Vector, workspace: Vector) -> None:
+def write_kinematics(system: ChainArray, mode: int, state: Vector, work: Vector) -> None:
     """Write places and rates of all bodies relative to what they stand on, and velocities."""
-    reset_elimination(system, workspace)
+    reset_elimination(system, work)
     count, angle, rate, speed_x, speed_y = system.body_count, 0.0, 0.0, 0.0, 0.0
     below = 0.0  # top of the body below above its centre of mass
     sine, cosine = 0.0, 1.0
     for k in range(count - 1, -1, -1):
         i = k * BODY_STRIDE
-        part, standing = system.on_base(k), system.part_mode(mode, k)
-        body = system.constrained_state(k, standing, state)
+        part, body_mode = system.on_base(k), system.part_mode(mode, k)
+        body = system.constrained_state(k, body_mode, state)
         attitude = part.body.attitude(body.rotation)
-        reach = part.body.reach(part.body.pin(standing.pivot), attitude)
-        free = part.is_free(standing)
-        workspace[i + at.ATTITUDE], workspace[i + at.ATTITUDE + 1] = attitude.sine, attitude.cosine
-        workspace[i + at.ATTITUDE + 2] = attitude.rise
+        reach = part.body.reach(part.body.pin(body_mode.pivot), attitude)
+        free = part.is_free(body_mode)
+        work[i + at.ATTITUDE], work[i + at.ATTITUDE + 1] = attitude.sine, attitude.cosine
+        work[i + at.ATTITUDE + 2] = attitude.rise
         sway = body.horizontal_velocity if free else reach.rate * body.angular_velocity
         lowest = k == count - 1
         across = 0.0 if lowest else body.horizontal
@@ -56,22 +56,14 @@ def write_kinematics(system: ChainArray, mode: int, state: Vector, workspace: Ve
         along, normal = sway + arm * rate, body.vertical_velocity - across * rate
         speed_x = speed_x + along * cosine + normal * sine
         speed_y = speed_y - along * sine + normal * cosine
-        workspace[i + at.SINE], workspace[i + at.COSINE] = sine, cosine
-        workspace[i + at.TANGENTIAL], workspace[i + at.NORMAL] = across, arm
-        workspace[i + at.TANGENTIAL_RATE], workspace[i + at.NORMAL_RATE] = (
-            sway,
-            body.vertical_velocity,
-        )
-        workspace[i + at.PIVOT_ARM] = reach.rate
-        workspace[i + at.FRAME_ROTATION_RATE], workspace[i + at.ROTATION_RATE] = (
-            rate,
-            body.angular_velocity,
-        )
-        workspace[i + at.HOLD_STATE] = FREE if free else HELD
-        workspace[i + at.PIVOT_CENTRIPETAL] = (
-            reach.bend * body.angular_velocity * body.angular_velocity
-        )
-        workspace[i + at.SPEED_X], workspace[i + at.SPEED_Y] = speed_x, speed_y
+        work[i + at.SINE], work[i + at.COSINE] = sine, cosine
+        work[i + at.TANGENTIAL], work[i + at.NORMAL] = across, arm
+        work[i + at.TANGENTIAL_RATE], work[i + at.NORMAL_RATE] = sway, body.vertical_velocity
+        work[i + at.PIVOT_ARM] = reach.rate
+        work[i + at.FRAME_ROTATION_RATE], work[i + at.ROTATION_RATE] = rate, body.angular_velocity
+        work[i + at.HOLD_STATE] = FREE if free else HELD
+        work[i + at.PIVOT_CENTRIPETAL] = reach.bend * body.angular_velocity * body.angular_velocity
+        work[i + at.SPEED_X], work[i + at.SPEED_Y] = speed_x, speed_y
         angle += body.rotation
         if lowest and not part.body.small:
             sine, cosine = attitude.sine, attitude.cosine
@@ -82,17 +74,17 @@ def write_kinematics(system: ChainArray, mode: int, state: Vector, workspace: Ve
 
 
 @kernel
-def input_power(system: ChainArray, state: Vector, ground: Ground, workspace: Vector) -> float:
+def input_power(system: ChainArray, state: Vector, ground: Ground, work: Vector) -> float:
     """Return the power of the ground at the rates of a state, for the places in the workspace."""
     count, supplied, rate, speed_x, speed_y = system.body_count, 0.0, 0.0, 0.0, 0.0
     for k in range(count - 1, -1, -1):
         i, mass, body = k * BODY_STRIDE, system.row_value(k, at.MASS), system.state_of(k, state)
-        sine, cosine = workspace[i + at.SINE], workspace[i + at.COSINE]
+        sine, cosine = work[i + at.SINE], work[i + at.COSINE]
         sway = body.horizontal_velocity
-        if workspace[i + at.HOLD_STATE] != FREE:
-            sway = workspace[i + at.PIVOT_ARM] * body.angular_velocity
-        along = sway + workspace[i + at.NORMAL] * rate
-        normal = body.vertical_velocity - workspace[i + at.TANGENTIAL] * rate
+        if work[i + at.HOLD_STATE] != FREE:
+            sway = work[i + at.PIVOT_ARM] * body.angular_velocity
+        along = sway + work[i + at.NORMAL] * rate
+        normal = body.vertical_velocity - work[i + at.TANGENTIAL] * rate
         speed_x += along * cosine + normal * sine
         speed_y += normal * cosine - along * sine
         supplied -= mass * (ground.x * speed_x + ground.y * speed_y)
@@ -101,242 +93,208 @@ def input_power(system: ChainArray, state: Vector, ground: Ground, workspace: Ve
 
 
 @inlined
-def set_inertia_loads(system: ChainArray, x: float, y: float, workspace: Vector) -> None:
+def set_inertia_loads(system: ChainArray, x: float, y: float, work: Vector) -> None:
     """Set the loads of all bodies to the inertia forces of an acceleration of the ground."""
-    reset_elimination(system, workspace)
+    reset_elimination(system, work)
     for k in range(system.body_count):
         i, mass = k * BODY_STRIDE, system.row_value(k, at.MASS)
-        workspace[i + at.LOAD_X], workspace[i + at.LOAD_Y] = -mass * x, -mass * y
-        workspace[i + at.LOAD_MOMENT] = workspace[i + at.FRICTION_LOAD] = 0.0
+        work[i + at.LOAD_X], work[i + at.LOAD_Y] = -mass * x, -mass * y
+        work[i + at.LOAD_MOMENT] = work[i + at.FRICTION_LOAD] = 0.0
 
 
 @inlined
-def add_base_load(
-    system: ChainArray, k: int, press: float, moment: float, workspace: Vector
-) -> None:
+def add_base_load(system: ChainArray, k: int, press: float, moment: float, work: Vector) -> None:
     """Add normal force and moment of a base to the loads of its body, and the reaction below."""
-    reset_elimination(system, workspace)
+    reset_elimination(system, work)
     i = k * BODY_STRIDE
-    sine, cosine = workspace[i + at.SINE], workspace[i + at.COSINE]
-    workspace[i + at.LOAD_X] += press * sine
-    workspace[i + at.LOAD_Y] += press * cosine
-    workspace[i + at.LOAD_MOMENT] += moment
+    sine, cosine = work[i + at.SINE], work[i + at.COSINE]
+    work[i + at.LOAD_X] += press * sine
+    work[i + at.LOAD_Y] += press * cosine
+    work[i + at.LOAD_MOMENT] += moment
     if k + 1 < system.body_count:
         j = i + BODY_STRIDE
-        workspace[j + at.LOAD_X] -= press * sine
-        workspace[j + at.LOAD_Y] -= press * cosine
-        workspace[j + at.LOAD_MOMENT] += workspace[i + at.TANGENTIAL] * press - moment
+        work[j + at.LOAD_X] -= press * sine
+        work[j + at.LOAD_Y] -= press * cosine
+        work[j + at.LOAD_MOMENT] += work[i + at.TANGENTIAL] * press - moment
 
 
 @inlined
-def add_tangential_load(system: ChainArray, k: int, thrust: float, workspace: Vector) -> None:
+def add_tangential_load(system: ChainArray, k: int, thrust: float, work: Vector) -> None:
     """Add a force along a base at the slipping point of its body, and the reaction below."""
-    reset_elimination(system, workspace)
+    reset_elimination(system, work)
     i = k * BODY_STRIDE
-    x, y = thrust * workspace[i + at.COSINE], -thrust * workspace[i + at.SINE]
-    workspace[i + at.LOAD_X] += x
-    workspace[i + at.LOAD_Y] += y
-    workspace[i + at.LOAD_MOMENT] -= thrust * workspace[i + at.PIVOT_ARM]
+    x, y = thrust * work[i + at.COSINE], -thrust * work[i + at.SINE]
+    work[i + at.LOAD_X] += x
+    work[i + at.LOAD_Y] += y
+    work[i + at.LOAD_MOMENT] -= thrust * work[i + at.PIVOT_ARM]
     if k + 1 < system.body_count:
         j = i + BODY_STRIDE
-        workspace[j + at.LOAD_X] -= x
-        workspace[j + at.LOAD_Y] -= y
-        workspace[j + at.LOAD_MOMENT] += thrust * (
-            workspace[i + at.PIVOT_ARM] - workspace[i + at.NORMAL]
-        )
+        work[j + at.LOAD_X] -= x
+        work[j + at.LOAD_Y] -= y
+        work[j + at.LOAD_MOMENT] += thrust * (work[i + at.PIVOT_ARM] - work[i + at.NORMAL])
 
 
 @inlined
-def tangential_coriolis(i: int, workspace: Vector) -> float:
+def tangential_coriolis(i: int, work: Vector) -> float:
     """Return the Coriolis and centripetal acceleration, from the body below, along the frame."""
-    rate = workspace[i + at.FRAME_ROTATION_RATE]
-    return 2.0 * workspace[i + at.NORMAL_RATE] * rate - workspace[i + at.TANGENTIAL] * rate * rate
+    rate = work[i + at.FRAME_ROTATION_RATE]
+    return 2.0 * work[i + at.NORMAL_RATE] * rate - work[i + at.TANGENTIAL] * rate * rate
 
 
 @inlined
-def normal_coriolis(i: int, workspace: Vector) -> float:
+def normal_coriolis(i: int, work: Vector) -> float:
     """Return the Coriolis and centripetal acceleration along the inward normal of the frame."""
-    rate = workspace[i + at.FRAME_ROTATION_RATE]
-    return (2.0 * workspace[i + at.TANGENTIAL_RATE] + workspace[i + at.NORMAL] * rate) * rate
+    rate = work[i + at.FRAME_ROTATION_RATE]
+    return (2.0 * work[i + at.TANGENTIAL_RATE] + work[i + at.NORMAL] * rate) * rate
 
 
 @kernel
 def write_jacobian(
     system: ChainArray, k: int, along: float, normal: float, rotation: float, first: int,
-    workspace: Vector, constraints: Vector,
+    work: Vector, rows: Vector,
 ) -> None:  # fmt: skip
     """Write a combination of a body's relative accelerations by weights in the axes of the ground.
 
     Those of the body, then of the one below: also its components as a generalized force on both.
     """
     i = k * BODY_STRIDE
-    sine, cosine = workspace[i + at.SINE], workspace[i + at.COSINE]
+    sine, cosine = work[i + at.SINE], work[i + at.COSINE]
     x, y = along * cosine + normal * sine, normal * cosine - along * sine
-    constraints[first], constraints[first + 1], constraints[first + 2] = x, y, rotation
+    rows[first], rows[first + 1], rows[first + 2] = x, y, rotation
     if k + 1 < system.body_count:
-        turning = (
-            normal * workspace[i + at.TANGENTIAL] - along * workspace[i + at.NORMAL] - rotation
-        )
-        constraints[first + 3], constraints[first + 4], constraints[first + 5] = -x, -y, turning
+        angular = normal * work[i + at.TANGENTIAL] - along * work[i + at.NORMAL] - rotation
+        rows[first + 3], rows[first + 4], rows[first + 5] = -x, -y, angular
 
 
 @kernel
-def write_relative_accelerations(system: ChainArray, workspace: Vector, out: Vector) -> None:
+def write_relative_accelerations(system: ChainArray, work: Vector, out: Vector) -> None:
     """Write the accelerations of all coordinates by :eq:`eq-chain-kinematics`."""
     for k in range(system.body_count):
         i, first = k * BODY_STRIDE, BEFORE_HORIZONTAL * k
-        sine, cosine = workspace[i + at.SINE], workspace[i + at.COSINE]
-        x, y, turning, below = (
-            workspace[i + at.ACCELERATION_X],
-            workspace[i + at.ACCELERATION_Y],
-            workspace[i + at.ANGULAR_ACCELERATION],
-            0.0,
-        )
+        sine, cosine = work[i + at.SINE], work[i + at.COSINE]
+        x, y = work[i + at.ACCELERATION_X], work[i + at.ACCELERATION_Y]
+        angular, below = work[i + at.ANGULAR_ACCELERATION], 0.0
         if k + 1 < system.body_count:
             j = i + BODY_STRIDE
-            x, y, below = (
-                x - workspace[j + at.ACCELERATION_X],
-                y - workspace[j + at.ACCELERATION_Y],
-                workspace[j + at.ANGULAR_ACCELERATION],
-            )
-        along = cosine * x - sine * y - workspace[i + at.NORMAL] * below
-        normal = sine * x + cosine * y + workspace[i + at.TANGENTIAL] * below
-        out[first + ROTATION] = turning - below
-        out[first + VERTICAL] = normal + normal_coriolis(i, workspace)
-        out[system.horizontal_of(k)] = along - tangential_coriolis(i, workspace)
+            x, y = x - work[j + at.ACCELERATION_X], y - work[j + at.ACCELERATION_Y]
+            below = work[j + at.ANGULAR_ACCELERATION]
+        along = cosine * x - sine * y - work[i + at.NORMAL] * below
+        normal = sine * x + cosine * y + work[i + at.TANGENTIAL] * below
+        out[first + ROTATION] = angular - below
+        out[first + VERTICAL] = normal + normal_coriolis(i, work)
+        out[system.horizontal_of(k)] = along - tangential_coriolis(i, work)
 
 
 @inlined
 def add_constraint(
     system: ChainArray, which: int, k: int, along: float, normal: float, rotation: float,
-    prescribed: float, workspace: Vector, constraints: Vector,
+    prescribed: float, work: Vector, rows: Vector,
 ) -> None:  # fmt: skip
     """Add a constraint on a combination of accelerations, with a force in its direction."""
     first = which * CONSTRAINT_STRIDE
-    constraints[first + at.CONSTRAINED_BODY], constraints[first + at.PRESCRIBED] = k, prescribed
-    write_jacobian(system, k, along, normal, rotation, first + at.JACOBIAN, workspace, constraints)
+    rows[first + at.CONSTRAINED_BODY], rows[first + at.PRESCRIBED] = k, prescribed
+    write_jacobian(system, k, along, normal, rotation, first + at.JACOBIAN, work, rows)
     for i in range(6):
-        constraints[first + at.FORCE_DIRECTION + i] = constraints[first + at.JACOBIAN + i]
-    constraints[first + at.UNSYMMETRIC] = 0.0
+        rows[first + at.FORCE_DIRECTION + i] = rows[first + at.JACOBIAN + i]
+    rows[first + at.UNSYMMETRIC] = 0.0
 
 
 @inlined
-def combined_acceleration(
-    moving: int, k: int, direction: int, workspace: Vector, constraints: Vector
-) -> float:
+def combined_acceleration(moving: int, k: int, direction: int, work: Vector, rows: Vector) -> float:
     """Return a combination of the accelerations of a body and, if it moves, of the one below."""
     i = k * BODY_STRIDE
     found = (
-        constraints[direction] * workspace[i + at.ACCELERATION_X]
-        + constraints[direction + 1] * workspace[i + at.ACCELERATION_Y]
-        + constraints[direction + 2] * workspace[i + at.ANGULAR_ACCELERATION]
+        rows[direction] * work[i + at.ACCELERATION_X]
+        + rows[direction + 1] * work[i + at.ACCELERATION_Y]
+        + rows[direction + 2] * work[i + at.ANGULAR_ACCELERATION]
     )
     if k + 1 < moving:
         j = i + BODY_STRIDE
         found += (
-            constraints[direction + 3] * workspace[j + at.ACCELERATION_X]
-            + constraints[direction + 4] * workspace[j + at.ACCELERATION_Y]
-            + constraints[direction + 5] * workspace[j + at.ANGULAR_ACCELERATION]
+            rows[direction + 3] * work[j + at.ACCELERATION_X]
+            + rows[direction + 4] * work[j + at.ACCELERATION_Y]
+            + rows[direction + 5] * work[j + at.ANGULAR_ACCELERATION]
         )
     return found
 
 
 @inlined
-def inverse_mass_product(
-    system: ChainArray, k: int, one: int, other: int, constraints: Vector
-) -> float:
+def inverse_mass_product(system: ChainArray, k: int, one: int, other: int, rows: Vector) -> float:
     """Return the product of two directions of one body over its mass and inertia."""
-    per_mass, per_inertia = (
-        system.row_value(k, at.INVERSE_MASS),
-        system.row_value(k, at.INVERSE_INERTIA),
-    )
-    moved = constraints[one] * constraints[other] + constraints[one + 1] * constraints[other + 1]
-    return per_mass * moved + per_inertia * constraints[one + 2] * constraints[other + 2]
+    per_mass = system.row_value(k, at.INVERSE_MASS)
+    per_inertia = system.row_value(k, at.INVERSE_INERTIA)
+    moved = rows[one] * rows[other] + rows[one + 1] * rows[other + 1]
+    return per_mass * moved + per_inertia * rows[one + 2] * rows[other + 2]
 
 
 @inlined
-def matrix_entry(
-    system: ChainArray, moving: int, kept: int, force: int, constraints: Vector
-) -> float:
+def matrix_entry(system: ChainArray, moving: int, kept: int, force: int, rows: Vector) -> float:
     """Return response of constraint `kept` to a unit force of `force`: an entry of the matrix."""
     a, b = kept * CONSTRAINT_STRIDE, force * CONSTRAINT_STRIDE
-    one, other = (
-        int(constraints[a + at.CONSTRAINED_BODY]),
-        int(constraints[b + at.CONSTRAINED_BODY]),
-    )
-    keeps, holds, found = a + at.JACOBIAN, b + at.FORCE_DIRECTION, 0.0
+    one, other = int(rows[a + at.CONSTRAINED_BODY]), int(rows[b + at.CONSTRAINED_BODY])
+    jacobian, direction, found = a + at.JACOBIAN, b + at.FORCE_DIRECTION, 0.0
     if one == other:
-        found = inverse_mass_product(system, one, keeps, holds, constraints)
+        found = inverse_mass_product(system, one, jacobian, direction, rows)
         if one + 1 < moving:
-            found += inverse_mass_product(system, one + 1, keeps + 3, holds + 3, constraints)
+            found += inverse_mass_product(system, one + 1, jacobian + 3, direction + 3, rows)
     elif one == other + 1:
-        found = inverse_mass_product(system, one, keeps, holds + 3, constraints)
+        found = inverse_mass_product(system, one, jacobian, direction + 3, rows)
     elif one + 1 == other:
-        found = inverse_mass_product(system, other, keeps + 3, holds, constraints)
+        found = inverse_mass_product(system, other, jacobian + 3, direction, rows)
     return found
 
 
 @inlined
 def add_constraint_accelerations(
-    system: ChainArray, moving: int, which: int, workspace: Vector, constraints: Vector
+    system: ChainArray, moving: int, which: int, work: Vector, rows: Vector
 ) -> None:
     """Add the accelerations that a constraint's force causes."""
     first = which * CONSTRAINT_STRIDE
-    k, force, holds = (
-        int(constraints[first + at.CONSTRAINED_BODY]),
-        constraints[first + at.FORCE],
-        first + at.FORCE_DIRECTION,
-    )
+    k, force = int(rows[first + at.CONSTRAINED_BODY]), rows[first + at.FORCE]
+    direction = first + at.FORCE_DIRECTION
     for body in range(k, min(k + 2, moving)):
         i, per_mass = body * BODY_STRIDE, force * system.row_value(body, at.INVERSE_MASS)
-        workspace[i + at.ACCELERATION_X] += constraints[holds] * per_mass
-        workspace[i + at.ACCELERATION_Y] += constraints[holds + 1] * per_mass
-        workspace[i + at.ANGULAR_ACCELERATION] += (
-            constraints[holds + 2] * force * system.row_value(body, at.INVERSE_INERTIA)
-        )
-        holds += 3
+        per_inertia = system.row_value(body, at.INVERSE_INERTIA)
+        work[i + at.ACCELERATION_X] += rows[direction] * per_mass
+        work[i + at.ACCELERATION_Y] += rows[direction + 1] * per_mass
+        work[i + at.ANGULAR_ACCELERATION] += rows[direction + 2] * force * per_inertia
+        direction += 3
 
 
 @inlined
 def eliminate(
-    system: ChainArray, moving: int, r: int, band: int, constraints: Vector, matrix: Vector
+    system: ChainArray, moving: int, r: int, band: int, rows: Vector, matrix: Vector
 ) -> None:
     """Eliminate one more constraint behind those that have been eliminated.
 
     The matrix holds the factors below its diagonal, the inverses of the pivots on it.
     """
-    stride, low, first = (
-        MAX_CONSTRAINTS * system.body_count,
-        max(0, r - band),
-        r * CONSTRAINT_STRIDE,
-    )
-    own, left = (
-        matrix_entry(system, moving, r, r, constraints),
-        constraints[first + at.RIGHT_HAND_SIDE],
-    )
-    unsymmetric = constraints[first + at.UNSYMMETRIC] != 0.0
-    if r > 0 and constraints[first - CONSTRAINT_STRIDE + at.UNSYMMETRIC] != 0.0:
-        unsymmetric, constraints[first + at.UNSYMMETRIC] = True, 1.0
+    stride, low = MAX_CONSTRAINTS * system.body_count, max(0, r - band)
+    first = r * CONSTRAINT_STRIDE
+    own, left = matrix_entry(system, moving, r, r, rows), rows[first + at.RIGHT_HAND_SIDE]
+    unsymmetric = rows[first + at.UNSYMMETRIC] != 0.0
+    if r > 0 and rows[first - CONSTRAINT_STRIDE + at.UNSYMMETRIC] != 0.0:
+        unsymmetric, rows[first + at.UNSYMMETRIC] = True, 1.0
     for c in range(low, r):
-        above = matrix_entry(system, moving, c, r, constraints)
+        above = matrix_entry(system, moving, c, r, rows)
         for i in range(low, c):
             above -= matrix[c * stride + i] * matrix[i * stride + r]
         factor = above
         if unsymmetric:
-            factor = matrix_entry(system, moving, r, c, constraints)
+            factor = matrix_entry(system, moving, r, c, rows)
             for i in range(low, c):
                 factor -= matrix[r * stride + i] * matrix[i * stride + c]
         factor *= matrix[c * stride + c]
         matrix[c * stride + r], matrix[r * stride + c] = above, factor
         own -= factor * above
-        left -= factor * constraints[c * CONSTRAINT_STRIDE + at.RIGHT_HAND_SIDE]
-    matrix[r * stride + r], constraints[first + at.RIGHT_HAND_SIDE] = 1.0 / own, left
+        left -= factor * rows[c * CONSTRAINT_STRIDE + at.RIGHT_HAND_SIDE]
+    matrix[r * stride + r], rows[first + at.RIGHT_HAND_SIDE] = 1.0 / own, left
 
 
 @kernel
 def solve_motion(
-    system: ChainArray, moving: int, start: int, count: int, band: int, workspace: Vector,
-    constraints: Vector, matrix: Vector,
+    system: ChainArray, moving: int, start: int, count: int, band: int, work: Vector, rows: Vector,
+    matrix: Vector,
 ) -> None:  # fmt: skip
     """Write the forces of `count` constraints, sorted by body, and the accelerations of all bodies.
 
@@ -349,32 +307,25 @@ def solve_motion(
     for k in range(system.body_count):
         i = k * BODY_STRIDE
         if k >= moving:
-            workspace[i + at.ACCELERATION_X] = workspace[i + at.ACCELERATION_Y] = workspace[
-                i + at.ANGULAR_ACCELERATION
-            ] = 0.0
+            work[i + at.ACCELERATION_X] = work[i + at.ACCELERATION_Y] = 0.0
+            work[i + at.ANGULAR_ACCELERATION] = 0.0
             continue
         per_mass = system.row_value(k, at.INVERSE_MASS)
-        workspace[i + at.ACCELERATION_X] = workspace[i + at.LOAD_X] * per_mass
-        workspace[i + at.ACCELERATION_Y] = workspace[i + at.LOAD_Y] * per_mass
-        workspace[i + at.ANGULAR_ACCELERATION] = workspace[i + at.LOAD_MOMENT] * system.row_value(
-            k, at.INVERSE_INERTIA
-        )
+        per_inertia = system.row_value(k, at.INVERSE_INERTIA)
+        work[i + at.ACCELERATION_X] = work[i + at.LOAD_X] * per_mass
+        work[i + at.ACCELERATION_Y] = work[i + at.LOAD_Y] * per_mass
+        work[i + at.ANGULAR_ACCELERATION] = work[i + at.LOAD_MOMENT] * per_inertia
     for r in range(start, count):
         first = r * CONSTRAINT_STRIDE
-        kept = combined_acceleration(
-            moving,
-            int(constraints[first + at.CONSTRAINED_BODY]),
-            first + at.JACOBIAN,
-            workspace,
-            constraints,
-        )
-        constraints[first + at.RIGHT_HAND_SIDE] = constraints[first + at.PRESCRIBED] - kept
-        eliminate(system, moving, r, band, constraints, matrix)
+        body = int(rows[first + at.CONSTRAINED_BODY])
+        free = combined_acceleration(moving, body, first + at.JACOBIAN, work, rows)
+        rows[first + at.RIGHT_HAND_SIDE] = rows[first + at.PRESCRIBED] - free
+        eliminate(system, moving, r, band, rows, matrix)
     stride = MAX_CONSTRAINTS * system.body_count
     for r in range(count - 1, -1, -1):
-        force = constraints[r * CONSTRAINT_STRIDE + at.RIGHT_HAND_SIDE]
+        force = rows[r * CONSTRAINT_STRIDE + at.RIGHT_HAND_SIDE]
         for c in range(min(count, r + band + 1) - 1, r, -1):  # the force found last comes last
-            force -= matrix[r * stride + c] * constraints[c * CONSTRAINT_STRIDE + at.FORCE]
-        constraints[r * CONSTRAINT_STRIDE + at.FORCE] = force * matrix[r * stride + r]
+            force -= matrix[r * stride + c] * rows[c * CONSTRAINT_STRIDE + at.FORCE]
+        rows[r * CONSTRAINT_STRIDE + at.FORCE] = force * matrix[r * stride + r]
     for r in range(count):
-        add_constraint_accelerations(system, moving, r, workspace, constraints)
+        add_constraint_accelerations(system, moving, r, work, rows)

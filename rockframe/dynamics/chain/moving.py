@@ -72,13 +72,13 @@ class MovingBodies(ChainArray):
         return 2 * DEGREES * self.body_count
 
     @kernel
-    def write_constraints(self, moving: int, mode: int, state: Vector, workspace: Vector) -> int:
+    def write_constraints(self, moving: int, mode: int, state: Vector, work: Vector) -> int:
         """Write the constraints of the first `moving` bodies in a mode; give their number."""
-        count, constraints = 0, self.constraints()
+        count, rows = 0, self.constraints()
         for k in range(moving):
-            standing = self.part_mode(mode, k)
-            count = self.add_corner_constraints(k, count, mode, state, True, workspace, constraints)
-            count = self.add_hold_or_slide(k, count, standing, state, workspace, constraints)
+            body_mode = self.part_mode(mode, k)
+            count = self.add_corner_constraints(k, count, mode, state, True, work, rows)
+            count = self.add_hold_or_slide(k, count, body_mode, state, work, rows)
         return count
 
     @inlined
@@ -92,51 +92,29 @@ class MovingBodies(ChainArray):
         return False
 
     @inlined
-    def apply_friction_load(self, k: int, mode: int, workspace: Vector) -> None:
+    def apply_friction_load(self, k: int, mode: int, work: Vector) -> None:
         """Load a body that slips on a deformable base by its friction: none slips here."""
 
     @inlined
     def add_hold_or_slide(
-        self,
-        k: int,
-        count: int,
-        standing: Mode,
-        state: Vector,
-        workspace: Vector,
-        constraints: Vector,
+        self, k: int, count: int, body_mode: Mode, state: Vector, work: Vector, rows: Vector
     ) -> int:
         """Add the constraint of a body's held point, or of its sliding end; return the count."""
         i = k * BODY_STRIDE
-        workspace[i + at.TANGENTIAL_FORCE] = workspace[i + at.FRICTION_LOAD]
-        if workspace[i + at.HOLD_STATE] != FREE:
-            prescribed = tangential_coriolis(i, workspace) + workspace[i + at.PIVOT_CENTRIPETAL]
-            add_constraint(
-                self,
-                count,
-                k,
-                1.0,
-                0.0,
-                -workspace[i + at.PIVOT_ARM],
-                prescribed,
-                workspace,
-                constraints,
-            )
+        work[i + at.TANGENTIAL_FORCE] = work[i + at.FRICTION_LOAD]
+        if work[i + at.HOLD_STATE] != FREE:
+            prescribed = tangential_coriolis(i, work) + work[i + at.PIVOT_CENTRIPETAL]
+            arm = work[i + at.PIVOT_ARM]
+            add_constraint(self, count, k, 1.0, 0.0, -arm, prescribed, work, rows)
             count += 1
-        elif standing.slides and not self.is_rigid(k) and not self.is_slippery(k):
-            self.add_sliding_constraint(k, count, standing, state, workspace, constraints)
+        elif body_mode.slides and not self.is_rigid(k) and not self.is_slippery(k):
+            self.add_sliding_constraint(k, count, body_mode, state, work, rows)
             count += 1
         return count
 
     @inlined
     def add_corner_constraints(
-        self,
-        k: int,
-        count: int,
-        mode: int,
-        state: Vector,
-        moves: bool,
-        workspace: Vector,
-        constraints: Vector,
+        self, k: int, count: int, mode: int, state: Vector, moves: bool, work: Vector, rows: Vector
     ) -> int:
         """Add the constraints of corners on a rigid base: there are none here."""
         return count
@@ -147,59 +125,42 @@ class MovingBodies(ChainArray):
         return 1
 
     @inlined
-    def complete_solution(self, workspace: Vector, out: Vector) -> None:
+    def complete_solution(self, work: Vector, out: Vector) -> None:
         """Set the accelerations of bodies in full contact with a rigid base to zero: none here."""
 
     @kernel
     def add_sliding_constraint(
-        self,
-        k: int,
-        which: int,
-        standing: Mode,
-        state: Vector,
-        workspace: Vector,
-        constraints: Vector,
+        self, k: int, which: int, body_mode: Mode, state: Vector, work: Vector, rows: Vector
     ) -> None:
         """Add the constraint that keeps a sliding end at its base, :eq:`eq-sliding-contact`."""
         i, part, body = k * BODY_STRIDE, self.on_base(k), self.state_of(k, state)
         a = i + at.ATTITUDE
-        attitude = Attitude(workspace[a], workspace[a + 1], workspace[a + 2])
+        attitude = Attitude(work[a], work[a + 1], work[a + 2])
         line = part.body.base_line(body, attitude)
-        left = part.base.is_held(standing.contact, True)
+        left = part.base.is_held(body_mode.contact, True)
         on_left, on_right = part.body.end_accelerations(attitude, body.angular_velocity, 0.0, 0.0)
         bend, speed = (on_left, line.left_speed) if left else (on_right, line.right_speed)
         lever = line.left_lever if left else line.right_lever
         sinking = bend + part.base.following_rate() * speed
-        prescribed = -normal_coriolis(i, workspace) - sinking
-        add_constraint(self, which, k, 0.0, 1.0, lever, prescribed, workspace, constraints)
-        holds = which * CONSTRAINT_STRIDE + at.FORCE_DIRECTION
-        write_jacobian(
-            self, k, 1.0, 0.0, -workspace[i + at.PIVOT_ARM], holds, workspace, constraints
-        )
-        constraints[which * CONSTRAINT_STRIDE + at.UNSYMMETRIC] = 1.0
+        prescribed = -normal_coriolis(i, work) - sinking
+        add_constraint(self, which, k, 0.0, 1.0, lever, prescribed, work, rows)
+        direction = which * CONSTRAINT_STRIDE + at.FORCE_DIRECTION
+        write_jacobian(self, k, 1.0, 0.0, -work[i + at.PIVOT_ARM], direction, work, rows)
+        rows[which * CONSTRAINT_STRIDE + at.UNSYMMETRIC] = 1.0
 
     @kernel
-    def solve(self, moving: int, count: int, workspace: Vector) -> None:
+    def solve(self, moving: int, count: int, work: Vector) -> None:
         """Solve for the forces of constraints, and the accelerations of bodies and coordinates."""
-        constraints = self.constraints()
-        reset_elimination(self, workspace)
-        solve_motion(
-            self,
-            moving,
-            0,
-            count,
-            self.half_bandwidth(),
-            workspace,
-            constraints,
-            self.constraint_matrix(),
-        )
+        rows = self.constraints()
+        reset_elimination(self, work)
+        band, matrix = self.half_bandwidth(), self.constraint_matrix()
+        solve_motion(self, moving, 0, count, band, work, rows, matrix)
         for which in range(count):  # the last constraint of a body is the one along its base
             first = which * CONSTRAINT_STRIDE
-            workspace[
-                int(constraints[first + at.CONSTRAINED_BODY]) * BODY_STRIDE + at.TANGENTIAL_FORCE
-            ] = constraints[first + at.FORCE]
-        write_relative_accelerations(self, workspace, self.slopes())
-        self.complete_solution(workspace, self.slopes())
+            i = int(rows[first + at.CONSTRAINED_BODY]) * BODY_STRIDE
+            work[i + at.TANGENTIAL_FORCE] = rows[first + at.FORCE]
+        write_relative_accelerations(self, work, self.slopes())
+        self.complete_solution(work, self.slopes())
 
     @kernel
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> Vector:
@@ -223,46 +184,40 @@ class MovingBodies(ChainArray):
         """Whether the forces in the workspace are those of this mode, state and ground."""
         note, solved = self.solved_inputs(), (self.body_count - 1) * BODY_STRIDE + at.FORCES_VALID
         # variables of links are not noted
-        stand = (self.workspace()[solved] != 0.0) & (self.variables() == 0)
+        valid = (self.workspace()[solved] != 0.0) & (self.variables() == 0)
         high = mode >> HALF_OF_BITS
-        stand &= (note[0] == high) & (note[1] == mode - (high << HALF_OF_BITS))
-        stand &= (note[2] == ground.x) & (note[3] == ground.y)
+        valid &= (note[0] == high) & (note[1] == mode - (high << HALF_OF_BITS))
+        valid &= (note[2] == ground.x) & (note[3] == ground.y)
         for i in range(2 * self.coordinates()):
-            stand &= note[INPUTS_BEFORE_STATE + i] == state[i]
-        return bool(stand)
+            valid &= note[INPUTS_BEFORE_STATE + i] == state[i]
+        return bool(valid)
 
     @kernel
     def accelerate_bodies(self, moving: int, mode: int, state: Vector, ground: Ground) -> Vector:
         """Return accelerations and powers; bodies from number `moving` on rest on the ground."""
-        workspace, out = self.workspace(), self.slopes()
-        write_kinematics(self, mode, state, workspace)
-        set_inertia_loads(self, ground.x, self.row_value(0, at.GRAVITY) + ground.y, workspace)
+        work, out = self.workspace(), self.slopes()
+        write_kinematics(self, mode, state, work)
+        set_inertia_loads(self, ground.x, self.row_value(0, at.GRAVITY) + ground.y, work)
         dissipated = supplied = 0.0
         for k in range(self.body_count):
             i, mass = k * BODY_STRIDE, self.row_value(k, at.MASS)
             part, body = self.on_base(k), self.state_of(k, state)
             a = i + at.ATTITUDE
-            line = part.body.base_line(
-                body, Attitude(workspace[a], workspace[a + 1], workspace[a + 2])
-            )
+            line = part.body.base_line(body, Attitude(work[a], work[a + 1], work[a + 2]))
             base = part.base.force(self.contact_with_force(k, mode), line, ())
             dissipated += base.dissipated
-            workspace[i + at.NORMAL_FORCE] = base.upward
-            add_base_load(self, k, base.upward, base.moment, workspace)
-            self.apply_friction_load(k, mode, workspace)
-            supplied -= mass * (
-                ground.x * workspace[i + at.SPEED_X] + ground.y * workspace[i + at.SPEED_Y]
-            )
-        dissipated += self.apply_link_forces(mode, state, workspace)
-        self.solve(moving, self.write_constraints(moving, mode, state, workspace), workspace)
+            work[i + at.NORMAL_FORCE] = base.upward
+            add_base_load(self, k, base.upward, base.moment, work)
+            self.apply_friction_load(k, mode, work)
+            supplied -= mass * (ground.x * work[i + at.SPEED_X] + ground.y * work[i + at.SPEED_Y])
+        dissipated += self.apply_link_forces(mode, state, work)
+        self.solve(moving, self.write_constraints(moving, mode, state, work), work)
         for k in range(self.body_count):
             i = k * BODY_STRIDE
             if self.part_mode(mode, k).slides:
-                slip = (
-                    workspace[i + at.TANGENTIAL_RATE]
-                    - workspace[i + at.PIVOT_ARM] * workspace[i + at.ROTATION_RATE]
-                )
-                dissipated -= workspace[i + at.TANGENTIAL_FORCE] * slip
+                about = work[i + at.PIVOT_ARM] * work[i + at.ROTATION_RATE]
+                slip = work[i + at.TANGENTIAL_RATE] - about
+                dissipated -= work[i + at.TANGENTIAL_FORCE] * slip
         powers = DEGREES * self.body_count + self.variables()
         out[powers], out[powers + 1] = dissipated, supplied
         return out
@@ -276,13 +231,13 @@ class MovingBodies(ChainArray):
     @inlined
     def contact_with_force(self, k: int, mode: int) -> int:
         """Return the contact by which the force of a body's base is computed."""
-        standing = self.part_mode(mode, k)
+        body_mode = self.part_mode(mode, k)
         if self.is_slippery(k):  # its base presses whether the body slips or not
-            return standing.contact
-        return self.on_base(k).contact_with_force(standing)
+            return body_mode.contact
+        return self.on_base(k).contact_with_force(body_mode)
 
     @inlined
-    def apply_link_forces(self, mode: int, state: Vector, workspace: Vector) -> float:
+    def apply_link_forces(self, mode: int, state: Vector, work: Vector) -> float:
         """Load bodies by their links; return the power these dissipate: there are none here."""
         return 0.0
 
@@ -303,40 +258,34 @@ class MovingBodies(ChainArray):
         The slope has no horizontal acceleration of a lowest body that is held: it follows from its
         rotation.
         """
-        workspace = self.workspace()
-        write_kinematics(self, mode, state, workspace)
-        self.apply_link_forces(mode, state, workspace)
+        work = self.workspace()
+        write_kinematics(self, mode, state, work)
+        self.apply_link_forces(mode, state, work)
         x = y = angular = 0.0
         for k in range(self.body_count - 1, -1, -1):
             i, first = k * BODY_STRIDE, BEFORE_HORIZONTAL * k
             along = slope[self.horizontal_of(k)]
-            if workspace[i + at.HOLD_STATE] != FREE:
-                along = (
-                    workspace[i + at.PIVOT_ARM] * slope[first + ROTATION]
-                    + workspace[i + at.PIVOT_CENTRIPETAL]
-                )
-            along += tangential_coriolis(i, workspace) + workspace[i + at.NORMAL] * angular
-            normal = slope[first + VERTICAL] - normal_coriolis(i, workspace)
-            normal -= workspace[i + at.TANGENTIAL] * angular
-            sine, cosine = workspace[i + at.SINE], workspace[i + at.COSINE]
+            if work[i + at.HOLD_STATE] != FREE:
+                along = work[i + at.PIVOT_ARM] * slope[first + ROTATION]
+                along += work[i + at.PIVOT_CENTRIPETAL]
+            along += tangential_coriolis(i, work) + work[i + at.NORMAL] * angular
+            normal = slope[first + VERTICAL] - normal_coriolis(i, work)
+            normal -= work[i + at.TANGENTIAL] * angular
+            sine, cosine = work[i + at.SINE], work[i + at.COSINE]
             x, y = x + along * cosine + normal * sine, y - along * sine + normal * cosine
             angular += slope[first + ROTATION]
-            (
-                workspace[i + at.ACCELERATION_X],
-                workspace[i + at.ACCELERATION_Y],
-                workspace[i + at.ANGULAR_ACCELERATION],
-            ) = x, y, angular
+            work[i + at.ACCELERATION_X], work[i + at.ACCELERATION_Y] = x, y
+            work[i + at.ANGULAR_ACCELERATION] = angular
         force_x = force_y = 0.0
         for k in range(self.body_count):
             i, mass = k * BODY_STRIDE, self.row_value(k, at.MASS)
-            force_x += mass * (workspace[i + at.ACCELERATION_X] + ground.x) - self.link_force_x(k)
-            force_y += mass * (
-                workspace[i + at.ACCELERATION_Y] + self.row_value(k, at.GRAVITY) + ground.y
-            )
+            force_x += mass * (work[i + at.ACCELERATION_X] + ground.x) - self.link_force_x(k)
+            vertical = work[i + at.ACCELERATION_Y] + self.row_value(k, at.GRAVITY) + ground.y
+            force_y += mass * vertical
             force_y -= self.link_force_y(k)
-            sine, cosine = workspace[i + at.SINE], workspace[i + at.COSINE]
-            workspace[i + at.TANGENTIAL_FORCE] = cosine * force_x - sine * force_y
-            workspace[i + at.NORMAL_FORCE] = sine * force_x + cosine * force_y
+            sine, cosine = work[i + at.SINE], work[i + at.COSINE]
+            work[i + at.TANGENTIAL_FORCE] = cosine * force_x - sine * force_y
+            work[i + at.NORMAL_FORCE] = sine * force_x + cosine * force_y
 
     @kernel
     def energies(self, mode: int, state: Vector) -> Energies:
@@ -346,16 +295,16 @@ class MovingBodies(ChainArray):
     @kernel
     def energies_of_bodies(self, mode: int, state: Vector) -> Energies:
         """Return energies of all bodies and bases; leaves the bodies' places in the workspace."""
-        workspace = self.workspace()
-        write_kinematics(self, mode, state, workspace)
+        work = self.workspace()
+        write_kinematics(self, mode, state, work)
         kinetic = gravity = elastic = change = rise = rate = 0.0
         for k in range(self.body_count - 1, -1, -1):
             i, mass = k * BODY_STRIDE, self.row_value(k, at.MASS)
             body = self.constrained_state(k, self.part_mode(mode, k), state)
-            x, y = workspace[i + at.SPEED_X], workspace[i + at.SPEED_Y]
+            x, y = work[i + at.SPEED_X], work[i + at.SPEED_Y]
             rate += body.angular_velocity
             kinetic += 0.5 * (mass * (x * x + y * y) + self.row_value(k, at.INERTIA) * rate * rate)
-            rise = self.rise_of(k, rise, body.vertical, workspace)
+            rise = self.rise_of(k, rise, body.vertical, work)
             gravity += mass * self.row_value(k, at.GRAVITY) * rise
             stored, more = self.on_base(k).elastic_energy(body, ())
             elastic += stored
@@ -363,15 +312,15 @@ class MovingBodies(ChainArray):
         return Energies(kinetic, gravity, elastic, change)
 
     @inlined
-    def rise_of(self, k: int, below: float, vertical: float, workspace: Vector) -> float:
+    def rise_of(self, k: int, below: float, vertical: float, work: Vector) -> float:
         """Return rise of a centre of mass, from that of the body below, without cancellation."""
         i = k * BODY_STRIDE
-        sine, cosine = workspace[i + at.SINE], workspace[i + at.COSINE]
-        fixed = workspace[i + at.NORMAL] - vertical if k + 1 < self.body_count else 0.0
+        sine, cosine = work[i + at.SINE], work[i + at.COSINE]
+        fixed = work[i + at.NORMAL] - vertical if k + 1 < self.body_count else 0.0
         return (
             below
             + vertical * cosine
-            - workspace[i + at.TANGENTIAL] * sine
+            - work[i + at.TANGENTIAL] * sine
             - fixed * versine(sine, cosine)
         )
 
@@ -394,44 +343,32 @@ class MovingBodies(ChainArray):
 
         The changes of all velocities are in the room for slopes until the next solution.
         """
-        workspace, out = self.workspace(), self.slopes()
-        write_kinematics(self, mode, state, workspace)
-        set_inertia_loads(self, 0.0, 0.0, workspace)
-        add_base_load(self, k, press, moment, workspace)
+        work, out = self.workspace(), self.slopes()
+        write_kinematics(self, mode, state, work)
+        set_inertia_loads(self, 0.0, 0.0, work)
+        add_base_load(self, k, press, moment, work)
         self.solve_response(k, mode, slip, state)
         first = BEFORE_HORIZONTAL * k
-        thrust = workspace[k * BODY_STRIDE + at.TANGENTIAL_FORCE]
+        thrust = work[k * BODY_STRIDE + at.TANGENTIAL_FORCE]
         return VelocityChange(out[first + ROTATION], out[first + VERTICAL], thrust, ())
 
     @kernel
     def solve_response(self, k: int, mode: int, slip: float, state: Vector) -> None:
         """Solve for changes of velocities by impulses in the loads, or a hold that stops `slip`."""
-        workspace, constraints, count = self.workspace(), self.constraints(), 0
+        work, rows, count = self.workspace(), self.constraints(), 0
         for j in range(self.body_count):
             i = j * BODY_STRIDE
-            workspace[i + at.NORMAL_RATE] = workspace[i + at.TANGENTIAL_RATE] = workspace[
-                i + at.FRAME_ROTATION_RATE
-            ] = 0.0
-            count = self.add_corner_constraints(
-                j, count, mode, state, False, workspace, constraints
-            )
-            if workspace[i + at.HOLD_STATE] != FREE:
+            work[i + at.NORMAL_RATE] = work[i + at.TANGENTIAL_RATE] = 0.0
+            work[i + at.FRAME_ROTATION_RATE] = 0.0
+            count = self.add_corner_constraints(j, count, mode, state, False, work, rows)
+            if work[i + at.HOLD_STATE] != FREE:
                 prescribed = -slip if j == k else 0.0
-                add_constraint(
-                    self,
-                    count,
-                    j,
-                    1.0,
-                    0.0,
-                    -workspace[i + at.PIVOT_ARM],
-                    prescribed,
-                    workspace,
-                    constraints,
-                )
+                arm = work[i + at.PIVOT_ARM]
+                add_constraint(self, count, j, 1.0, 0.0, -arm, prescribed, work, rows)
                 count += 1
             else:
-                workspace[i + at.TANGENTIAL_FORCE] = 0.0
-        self.solve(self.body_count, count, workspace)
+                work[i + at.TANGENTIAL_FORCE] = 0.0
+        self.solve(self.body_count, count, work)
 
     @kernel
     def respond(self, k: int, mode: int, response: VelocityChange, state: Vector) -> None:
@@ -446,16 +383,14 @@ class MovingBodies(ChainArray):
     @inlined
     def add_velocity_changes(self, state: Vector) -> None:
         """Add the room for slopes to the velocities; held points keep their constraint exactly."""
-        out, workspace, n = self.slopes(), self.workspace(), self.coordinates()
+        out, work, n = self.slopes(), self.workspace(), self.coordinates()
         for i in range(n):
             state[n + i] += out[i]
         for j in range(self.body_count):
-            if workspace[j * BODY_STRIDE + at.HOLD_STATE] != FREE:
-                rate = (
-                    workspace[j * BODY_STRIDE + at.PIVOT_ARM]
-                    * state[n + BEFORE_HORIZONTAL * j + ROTATION]
-                )
-                state[n + self.horizontal_of(j)] = rate
+            if work[j * BODY_STRIDE + at.HOLD_STATE] != FREE:
+                arm = work[j * BODY_STRIDE + at.PIVOT_ARM]
+                rate = state[n + BEFORE_HORIZONTAL * j + ROTATION]
+                state[n + self.horizontal_of(j)] = arm * rate
 
     @kernel
     def velocities(self, state: Vector) -> Vector:

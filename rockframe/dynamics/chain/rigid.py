@@ -79,14 +79,9 @@ class RigidChain(RigidImpulses):
         if self.is_rigid(k) and pulls:
             self.project_onto_contacts(mode, state, memory)
             opens = which % CORNER_GUARDS == RELEASE_GUARD
-            corners = (
-                self.bearing_corners(mode) & ~(BOTH << 2 * k)
-                if opens
-                else self.bearing_corners(mode)
-            )
-            new = self.with_bearing_corners(
-                mode, corners, self.tension_corners(mode) & ~(BOTH << 2 * k)
-            )
+            corners, others = self.bearing_corners(mode), ~(BOTH << 2 * k)
+            corners = corners & others if opens else corners
+            new = self.with_bearing_corners(mode, corners, self.tension_corners(mode) & others)
             self.store_held_place(new, state, memory)
             memory[LAST_EVENT] = SEPARATION if opens else SILENT
         elif self.is_rigid(k):
@@ -119,20 +114,20 @@ class RigidChain(RigidImpulses):
         self, k: int, left: bool, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
         """Let a corner lift off from a rigid base, or land on it; return the new mode."""
-        part, standing = self.on_base(k), self.part_mode(mode, k)
-        bore = part.base.is_held(standing.contact, left)
+        part, body_mode = self.on_base(k), self.part_mode(mode, k)
+        was_bearing = part.base.is_held(body_mode.contact, left)
         self.project_onto_contacts(mode, state, memory)
         before, landed = self.bearing_corners(mode), 0
-        if not bore:  # a corner past its base is moved back onto it, with its body
-            landed = self.move_onto_base(k, left, standing, state)
+        if not was_bearing:  # a corner past its base is moved back onto it, with its body
+            landed = self.move_onto_base(k, left, body_mode, state)
         closed = before | landed | self.resting_corners(mode, state)
-        if bore:
+        if was_bearing:
             leaving = (LEFT_ONLY if left else RIGHT_ONLY) << 2 * k
             new = self.choose_bearing_corners(mode, closed, before, leaving, state, ground, memory)
             if self.bearing_corners(new) == before & ~leaving and self.bears_alone(before, leaving):
                 new = self.hold_jammed_corner(k, left, mode, new, state, ground, memory)
             flies = part.flies(self.part_mode(new, k).contact)
-            both = part.shown_contact(standing) == FULL
+            both = part.shown_contact(body_mode) == FULL
             memory[LAST_EVENT] = UPLIFT if both and not flies else SEPARATION
             if self.tension_corners(new) & leaving != 0:
                 memory[LAST_EVENT] = SILENT
@@ -223,11 +218,11 @@ class RigidChain(RigidImpulses):
         speed, _ = end_speed(part, left, self.state_of(k, state))
         if not comes_back(self, part, k, left, speed, mode, state, ground):
             return mode
-        closed, pulled = self.bearing_corners(mode) | corner, self.tension_corners(mode)
-        held = self.stand_on_corners(closed, pulled, mode, state, memory)
+        closed, in_tension = self.bearing_corners(mode) | corner, self.tension_corners(mode)
+        held = self.stand_on_corners(closed, in_tension, mode, state, memory)
         self.find_forces(held, state, ground)
         if self.corner_force(k, left) < 0.0:
-            held = self.with_bearing_corners(mode, closed, pulled | corner)
+            held = self.with_bearing_corners(mode, closed, in_tension | corner)
         return held
 
     @kernel
@@ -248,10 +243,9 @@ class RigidChain(RigidImpulses):
         if not falls:
             return new
         self.restore_trial_slips(mode, False)  # slipping bodies continue to slip
-        corners, pulled = self.bearing_corners(mode), self.tension_corners(new)
-        held = self.with_bearing_corners(
-            new, corners, pulled | corners & ~self.bearing_corners(new)
-        )
+        corners, in_tension = self.bearing_corners(mode), self.tension_corners(new)
+        in_tension |= corners & ~self.bearing_corners(new)
+        held = self.with_bearing_corners(new, corners, in_tension)
         self.project_onto_contacts(new, state, memory)
         self.fix_held_points(held, state, memory)
         self.find_forces(held, state, ground)
@@ -263,19 +257,19 @@ class RigidChain(RigidImpulses):
 
     @kernel
     def stand_on_corners(
-        self, corners: int, pulled: int, mode: int, state: Vector, memory: Vector
+        self, corners: int, in_tension: int, mode: int, state: Vector, memory: Vector
     ) -> int:
         """Let bodies stand on corners, by impulses that may be tension; return the new mode."""
         self.project_onto_contacts(mode, state, memory)
         flying = self.with_bearing_corners(mode, 0, 0)
-        had = self.energies(flying, state).kinetic  # places the bodies, too
+        kinetic = self.energies(flying, state).kinetic  # places the bodies, too
         set_inertia_loads(self, 0.0, 0.0, self.workspace())
         write_trial_data(self, True, state)
         self.solve_standing(flying, corners, state)
         self.change_velocities(state)
-        new = self.with_bearing_corners(mode, corners, pulled)
+        new = self.with_bearing_corners(mode, corners, in_tension)
         self.fix_held_points(new, state, memory)
-        memory[IMPACT_LOSS] += had - self.energies(new, state).kinetic
+        memory[IMPACT_LOSS] += kinetic - self.energies(new, state).kinetic
         return new
 
     @kernel
@@ -290,9 +284,9 @@ class RigidChain(RigidImpulses):
         """
         free = self.release_all(mode, state, memory)
         self.project_onto_contacts(free, state, memory)
-        had, flying = self.energies(free, state).kinetic, self.with_bearing_corners(free, 0, 0)
+        kinetic, flying = self.energies(free, state).kinetic, self.with_bearing_corners(free, 0, 0)
         self.undo_impulses(k, self.landing_scales(k, ends, flying, closed, state), flying, state)
-        memory[IMPACT_LOSS] += had - self.energies(flying, state).kinetic
+        memory[IMPACT_LOSS] += kinetic - self.energies(flying, state).kinetic
         event = memory[LAST_EVENT]
         new = self.choose_bearing_corners(free, closed, closed, 0, state, ground, memory)
         new = self.hold_small_rebounds(closed, new, state, ground, memory)
@@ -310,32 +304,33 @@ class RigidChain(RigidImpulses):
         After an impact if `leaving` is 0, else under new forces as that corner lifts off.
         """
         free = self.release_all(mode, state, memory) if leaving == 0 else mode
-        flying, kept = self.with_bearing_corners(free, 0, 0), HELD_PLACE + self.body_count
-        had = self.energies(flying, state).kinetic  # places the bodies, too
+        flying, sets = self.with_bearing_corners(free, 0, 0), HELD_PLACE + self.body_count
+        kinetic = self.energies(flying, state).kinetic  # places the bodies, too
         if leaving == 0:
             set_inertia_loads(self, 0.0, 0.0, self.workspace())
         else:
             self.find_forces(flying, state, ground)
-        pulled = 0 if leaving == 0 else self.tension_corners(mode)
-        found = find_bearing_corners(self, flying, closed & ~pulled, pulled, before, leaving, state)
-        taken, pulled = found.taken, pulled | found.held
+        in_tension = 0 if leaving == 0 else self.tension_corners(mode)
+        found = find_bearing_corners(
+            self, flying, closed & ~in_tension, in_tension, before, leaving, state
+        )
+        chosen, in_tension = found.chosen, in_tension | found.held
         if found.admissible == 0 and found.held == 0:
             self.restore_trial_slips(mode, leaving == 0)
             if leaving != 0 and self.bears_alone(before, leaving):
-                taken, pulled = before, pulled | leaving
+                chosen, in_tension = before, in_tension | leaving
         if leaving == 0:
             self.change_velocities(state)
-        new = self.with_bearing_corners(free, taken, pulled)
+        new = self.with_bearing_corners(free, chosen, in_tension)
         self.fix_held_points(new, state, memory)
         self.write_free_slips(new, state)
-        new = (
-            self.resume_slips(new, state, memory)
-            if leaving == 0
-            else self.with_deformable_slips(new, state, memory)
-        )
-        memory[IMPACT_LOSS] += had - self.energies(new, state).kinetic
-        memory[kept + ADMISSIBLE_COUNT] = found.admissible
-        memory[kept + CHOSEN_CORNERS], memory[kept + NEXT_BEST_CORNERS] = taken, found.other
+        if leaving == 0:
+            new = self.resume_slips(new, state, memory)
+        else:
+            new = self.with_deformable_slips(new, state, memory)
+        memory[IMPACT_LOSS] += kinetic - self.energies(new, state).kinetic
+        memory[sets + ADMISSIBLE_COUNT] = found.admissible
+        memory[sets + CHOSEN_CORNERS], memory[sets + NEXT_BEST_CORNERS] = chosen, found.next_best
         return new
 
     @inlined

@@ -37,12 +37,12 @@ class SlippingRigidChain(SlipTrials):
         self, k: int, mode: int, state: Vector, values: Vector, changes: Vector
     ) -> None:
         """Write the guards of the friction that holds a body, and of its slip."""
-        standing, i = self.part_mode(mode, k), GUARDS * k + 2 * CORNER_GUARDS
+        body_mode, i = self.part_mode(mode, k), GUARDS * k + 2 * CORNER_GUARDS
         size = self.row_value(k, at.FORCE_SCALE if self.is_rigid(k) else at.GRAVITY)
-        held = self.friction_coefficient(k, STATIC) == math.inf and not standing.slides
-        if self.on_base(k).flies(standing.contact) or held:
+        held = self.friction_coefficient(k, STATIC) == math.inf and not body_mode.slides
+        if self.on_base(k).flies(body_mode.contact) or held:
             return
-        if not standing.slides and self.is_rigid(k) and standing.contact & IN_TENSION != 0:
+        if not body_mode.slides and self.is_rigid(k) and body_mode.contact & IN_TENSION != 0:
             return
         found = self.slip_guards(k, mode, state, self.slopes(), self.normal_force(k), size)
         values[i + HOLD], values[i + SLIP] = found.hold, found.slip
@@ -53,7 +53,7 @@ class SlippingRigidChain(SlipTrials):
         self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
         """Carry out the switch that a guard of a body calls for; return the new mode."""
-        k, workspace = guard // GUARDS, self.workspace()
+        k, work = guard // GUARDS, self.workspace()
         which = guard - k * GUARDS - 2 * CORNER_GUARDS
         self.reset_event(memory)
         self.store_slips(mode, state, memory)
@@ -61,8 +61,8 @@ class SlippingRigidChain(SlipTrials):
             self.project_onto_contacts(mode, state, memory)
             if which == HOLD:
                 self.find_forces(mode, state, ground)
-                thrust = workspace[k * BODY_STRIDE + at.TANGENTIAL_FORCE]
-                workspace[k * BODY_STRIDE + at.STARTING_SENSE] = -math.copysign(1.0, thrust)
+                thrust = work[k * BODY_STRIDE + at.TANGENTIAL_FORCE]
+                work[k * BODY_STRIDE + at.STARTING_SENSE] = -math.copysign(1.0, thrust)
             else:
                 self.stop_slip(k, mode, state)
             new = self.find_contacts_and_slips(mode, state, ground, memory)
@@ -192,9 +192,8 @@ class SlippingRigidChain(SlipTrials):
             amiss = False
             for k in range(self.body_count):
                 amiss |= self.violates_friction(k, new, state)
-                self.workspace()[k * BODY_STRIDE + at.STARTING_SENSE] = (
-                    0.0  # with other corners it may be held
-                )
+                # with other corners it may be held
+                self.workspace()[k * BODY_STRIDE + at.STARTING_SENSE] = 0.0
             if not amiss:
                 break
             new = self.find_contacts_and_slips(new, state, ground, memory)
@@ -204,37 +203,34 @@ class SlippingRigidChain(SlipTrials):
     @kernel
     def violates_friction(self, k: int, mode: int, state: Vector) -> bool:
         """Whether friction cannot hold a body that is held, or acts along the slip."""
-        part, standing = self.on_base(k), self.part_mode(mode, k)
-        friction, workspace = self.friction_coefficient(k, STATIC), self.workspace()
-        if part.flies(standing.contact) or friction == math.inf:
+        part, body_mode = self.on_base(k), self.part_mode(mode, k)
+        friction, work = self.friction_coefficient(k, STATIC), self.workspace()
+        if part.flies(body_mode.contact) or friction == math.inf:
             return False
-        if standing.slides:
+        if body_mode.slides:
             rate, noise = self.slip_rate(k, mode, state)
             return self.sense(mode, k) * rate < -noise
-        if self.is_rigid(k) and standing.contact & IN_TENSION != 0:
+        if self.is_rigid(k) and body_mode.contact & IN_TENSION != 0:
             return False
-        thrust, least = (
-            workspace[k * BODY_STRIDE + at.TANGENTIAL_FORCE],
-            ROUNDING * self.row_value(k, at.FORCE_SCALE),
-        )
+        thrust = work[k * BODY_STRIDE + at.TANGENTIAL_FORCE]
+        least = ROUNDING * self.row_value(k, at.FORCE_SCALE)
         if abs(thrust) <= friction * max(self.normal_force(k), 0.0) + least:
             return False
-        workspace[k * BODY_STRIDE + at.STARTING_SENSE] = -math.copysign(1.0, thrust)
+        work[k * BODY_STRIDE + at.STARTING_SENSE] = -math.copysign(1.0, thrust)
         return True
 
     @kernel
     def with_overcome_friction(self, mode: int, state: Vector, ground: Ground) -> int:
         """Return the mode in which bodies slip that friction cannot hold."""
-        workspace = self.workspace()
+        work = self.workspace()
         for _ in range(self.body_count):
             self.find_forces(mode, state, ground)
             for k in range(self.body_count):
                 if not self.part_mode(mode, k).slides and self.violates_friction(k, mode, state):
                     if k == self.body_count - 1:
                         self.write_lowest_position(mode, state)
-                    mode = self.with_slip_sense(
-                        mode, k, float(workspace[k * BODY_STRIDE + at.STARTING_SENSE])
-                    )
+                    sense = float(work[k * BODY_STRIDE + at.STARTING_SENSE])
+                    mode = self.with_slip_sense(mode, k, sense)
         return mode
 
     @kernel
@@ -242,16 +238,16 @@ class SlippingRigidChain(SlipTrials):
         self, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
         """Return the mode whose corners and slips agree with the forces, found by trial of sets."""
-        kept, before = HELD_PLACE + self.body_count, self.bearing_corners(mode)
+        sets, before = HELD_PLACE + self.body_count, self.bearing_corners(mode)
         self.project_onto_contacts(mode, state, memory)  # of bodies that were held and may slip
         self.write_trial_slips(mode)
-        flying, pulled = self.with_bearing_corners(mode, 0, 0), self.tension_corners(mode)
+        flying, in_tension = self.with_bearing_corners(mode, 0, 0), self.tension_corners(mode)
         closed, count, free = before | self.resting_corners(mode, state), 0, mode
         found = BearingCorners(before, 0, -1, 0)
         for _ in range(self.body_count):
             self.find_forces(flying, state, ground)
             found = find_bearing_corners(
-                self, flying, closed & ~pulled, pulled, before, FRICTION_CHANGED, state
+                self, flying, closed & ~in_tension, in_tension, before, FRICTION_CHANGED, state
             )
             if found.admissible > 0 or found.held != 0:
                 break
@@ -260,10 +256,9 @@ class SlippingRigidChain(SlipTrials):
             jammed = self.stop_jammed_slips(flying, closed, before, state, memory)
             if jammed.admissible == 0:
                 break
-            before, pulled, count = jammed.taken, 0, max(count, jammed.admissible)
-            closed = before | self.resting_corners(
-                self.with_bearing_corners(flying, before, 0), state
-            )
+            before, in_tension, count = jammed.chosen, 0, max(count, jammed.admissible)
+            stopped = self.with_bearing_corners(flying, before, 0)
+            closed = before | self.resting_corners(stopped, state)
         ways = found.admissible
         if found.admissible == 0 and found.held == 0:
             self.write_trial_slips(mode)
@@ -275,13 +270,16 @@ class SlippingRigidChain(SlipTrials):
                     self.workspace()[k * BODY_STRIDE + at.SLIP_SENSE] = starts
         elif found.held == 0:
             noise = ROUNDING * self.row_value(0, at.GRAVITY)
-            ways += self.count_other_solutions(flying, found.taken, closed & ~pulled, noise, state)
-        new = self.with_bearing_corners(free, found.taken, pulled | found.held)
+            ways += self.count_other_solutions(
+                flying, found.chosen, closed & ~in_tension, noise, state
+            )
+        new = self.with_bearing_corners(free, found.chosen, in_tension | found.held)
         self.fix_held_points(new, state, memory)
         new = self.with_deformable_slips(new, state, memory)
         # where several sets of impulses are admissible, motion is not unique either
-        memory[kept + ADMISSIBLE_COUNT] = max(ways, count if found.admissible > 0 else 0)
-        memory[kept + CHOSEN_CORNERS], memory[kept + NEXT_BEST_CORNERS] = found.taken, found.other
+        memory[sets + ADMISSIBLE_COUNT] = max(ways, count if found.admissible > 0 else 0)
+        memory[sets + CHOSEN_CORNERS] = found.chosen
+        memory[sets + NEXT_BEST_CORNERS] = found.next_best
         return new
 
     @kernel
@@ -292,15 +290,15 @@ class SlippingRigidChain(SlipTrials):
 
         Gives the corners that bear then. Where no set is admissible nothing is changed.
         """
-        had = self.energies(flying, state).kinetic  # places the bodies, too
+        kinetic = self.energies(flying, state).kinetic  # places the bodies, too
         set_inertia_loads(self, 0.0, 0.0, self.workspace())
         found = find_bearing_corners(self, flying, closed, 0, before, JAMMED, state)
         if found.admissible == 0:
             return found
         self.change_velocities(state)
-        stopped = self.with_bearing_corners(flying, found.taken, 0)
+        stopped = self.with_bearing_corners(flying, found.chosen, 0)
         self.fix_held_points(stopped, state, memory)
-        memory[IMPACT_LOSS] += had - self.energies(stopped, state).kinetic
+        memory[IMPACT_LOSS] += kinetic - self.energies(stopped, state).kinetic
         self.project_onto_contacts(stopped, state, memory)
         for k in range(self.body_count):
             self.workspace()[k * BODY_STRIDE + at.STARTING_SENSE] = 0.0

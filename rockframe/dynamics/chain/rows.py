@@ -27,9 +27,7 @@ GRAVITY: Final = 4  # g [m s^-2]
 # then
 MASS: Final = 8  # over the reference mass [1]
 TOP: Final = 9  # height of the top, on which the next body stands, above the centre of mass [m]
-UPRIGHT_OFFSET: Final = (
-    10  # centre of mass to the right of that of the body below, both upright [m]
-)
+UPRIGHT_OFFSET: Final = 10  # centre of mass to the right of the one below, both upright [m]
 INVERSE_MASS: Final = 11  # 1/MASS
 INVERSE_INERTIA: Final = 12  # 1/INERTIA
 PLACE_VALUE: Final = 13  # factor of the body's mode in the number of the chain's mode
@@ -221,8 +219,8 @@ class ChainArray(InState, CalledBySteps, ChainNumbers):
     @inlined
     def constraint_matrix(self) -> Vector:
         """Return the room for the matrix of the constraints: what each does to each other one."""
-        workspace = 2 * DEGREES + 2 * GUARDS + COLUMNS
-        first = self.constraints_end() + self.body_count * workspace + POWERS
+        work = 2 * DEGREES + 2 * GUARDS + COLUMNS
+        first = self.constraints_end() + self.body_count * work + POWERS
         return view_of(self.rows, first, (MAX_CONSTRAINTS * self.body_count) ** 2)
 
     @inlined
@@ -248,7 +246,7 @@ class ChainArray(InState, CalledBySteps, ChainNumbers):
         return OnBase(body, base)
 
     @inlined
-    def constrained_state(self, k: int, standing: Mode, state: Vector) -> BodyState:
+    def constrained_state(self, k: int, body_mode: Mode, state: Vector) -> BodyState:
         """Return placement and rates of a body, without motion that its contacts exclude."""
         return self.state_of(k, state)
 
@@ -261,16 +259,14 @@ class ChainArray(InState, CalledBySteps, ChainNumbers):
     @inlined
     def part_mode(self, mode: int, k: int) -> Mode:
         """Return the mode of a body; as divisions are slow, the one unpacked last is remembered."""
-        workspace, i, high = self.workspace(), k * BODY_STRIDE, mode >> HALF_OF_BITS
+        work, i, high = self.workspace(), k * BODY_STRIDE, mode >> HALF_OF_BITS
         low = mode - (high << HALF_OF_BITS)
-        if workspace[i + HIGH_BITS] != high or workspace[i + LOW_BITS] != low:
+        if work[i + HIGH_BITS] != high or work[i + LOW_BITS] != low:
             found = self.unpack_mode(mode, k)
-            workspace[i + CONTACT], workspace[i + PIVOT] = found.contact, found.pivot
-            workspace[i + SLIDES] = 1.0 if found.slides else 0.0
-            workspace[i + HIGH_BITS], workspace[i + LOW_BITS] = high, low
-        return Mode(
-            int(workspace[i + CONTACT]), int(workspace[i + PIVOT]), workspace[i + SLIDES] != 0.0
-        )
+            work[i + CONTACT], work[i + PIVOT] = found.contact, found.pivot
+            work[i + SLIDES] = 1.0 if found.slides else 0.0
+            work[i + HIGH_BITS], work[i + LOW_BITS] = high, low
+        return Mode(int(work[i + CONTACT]), int(work[i + PIVOT]), work[i + SLIDES] != 0.0)
 
     @kernel
     def unpack_mode(self, mode: int, k: int) -> Mode:
@@ -279,9 +275,9 @@ class ChainArray(InState, CalledBySteps, ChainNumbers):
         if self.row_value(k, LAW) == ON_RIGID:
             ends, rest = number % END_STATES, number // END_STATES
             return Mode(ends + CORNER * (rest % 2), ends % PIVOT_COUNT, rest >= 2)
-        both, standing = divmod(number, 2 * PIVOT_COUNT)
+        both, body_mode = divmod(number, 2 * PIVOT_COUNT)
         contact = both % PAD_CORNER_STATES + CORNER * (both // PAD_CORNER_STATES)
-        return Mode(contact, standing % PIVOT_COUNT, standing >= PIVOT_COUNT)
+        return Mode(contact, body_mode % PIVOT_COUNT, body_mode >= PIVOT_COUNT)
 
     @kernel
     def with_part(self, mode: int, k: int, part: Mode) -> int:
@@ -296,7 +292,7 @@ class ChainArray(InState, CalledBySteps, ChainNumbers):
         return mode + value * (number - mode // value % modes)
 
 
-def body_row(body: Body, base: BaseNumbers, mass: float, top: float, beside: float) -> Vector:
+def body_row(body: Body, base: BaseNumbers, mass: float, top: float, offset: float) -> Vector:
     """Return a body's row, from its lengths [m] and its mass over the reference mass [1]."""
     if isinstance(base.law, ElasticPads) and isinstance(base.law.law, Viscoelastic):
         law = ON_PADS
@@ -311,7 +307,7 @@ def body_row(body: Body, base: BaseNumbers, mass: float, top: float, beside: flo
     row = np.zeros(ROW_STRIDE)
     # a corner that bears on a rigid base does not slide on it, whatever the rule
     row[: len(body)] = body._replace(restraint=BY_CONTACT) if law == ON_RIGID else body
-    row[[MASS, TOP, UPRIGHT_OFFSET, LAW, FORCE_SCALE]] = mass, top, beside, law, mass * body.gravity
+    row[[MASS, TOP, UPRIGHT_OFFSET, LAW, FORCE_SCALE]] = mass, top, offset, law, mass * body.gravity
     row[MODE_COUNT] = (PAD_MODES, BED_MODES, RIGID_MODES)[law]
     row[[INVERSE_MASS, INVERSE_INERTIA]] = 1.0 / mass, 1.0 / body.inertia
     numbers = numbers_in(base.law)

@@ -132,17 +132,13 @@ class SlipperyBases(SlippingBodies):
             slip = 0.0
         one, other = line.left_lever, line.right_lever
         rises, slides_left = self.impulse_response(k, 1.0, one, 0.0, mode, state)
-        left_left, mixed = (
-            rises + one * self.rotation_change(k),
-            rises + other * self.rotation_change(k),
-        )
+        left_left = rises + one * self.rotation_change(k)
+        mixed = rises + other * self.rotation_change(k)
         rises, slides_right = self.impulse_response(k, 1.0, other, 0.0, mode, state)
         right_right = rises + other * self.rotation_change(k)
         rises, slides = self.impulse_response(k, 0.0, 0.0, 1.0, mode, state)
-        left_along, right_along = (
-            rises + one * self.rotation_change(k),
-            rises + other * self.rotation_change(k),
-        )
+        left_along = rises + one * self.rotation_change(k)
+        right_along = rises + other * self.rotation_change(k)
         gain_left = -(1.0 - base.rebound(True)) * min(line.left_speed, 0.0)
         gain_right = -(1.0 - base.rebound(False)) * min(line.right_speed, 0.0)
         determinant = left_left * right_right - mixed * mixed
@@ -197,14 +193,14 @@ class SlipperyBases(SlippingBodies):
 
         The changes of all velocities are in the room for slopes until the next solution.
         """
-        workspace, out = self.workspace(), self.slopes()
-        write_kinematics(self, mode, state, workspace)
-        set_inertia_loads(self, 0.0, 0.0, workspace)
-        add_base_load(self, k, press, moment, workspace)
-        add_tangential_load(self, k, along, workspace)
+        work, out = self.workspace(), self.slopes()
+        write_kinematics(self, mode, state, work)
+        set_inertia_loads(self, 0.0, 0.0, work)
+        add_base_load(self, k, press, moment, work)
+        add_tangential_load(self, k, along, work)
         self.solve_response(k, mode, 0.0, state)
-        turned = out[BEFORE_HORIZONTAL * k + ROTATION]
-        slides = out[self.horizontal_of(k)] - workspace[k * BODY_STRIDE + at.PIVOT_ARM] * turned
+        rotation = out[BEFORE_HORIZONTAL * k + ROTATION]
+        slides = out[self.horizontal_of(k)] - work[k * BODY_STRIDE + at.PIVOT_ARM] * rotation
         return out[BEFORE_HORIZONTAL * k + VERTICAL], slides
 
     @kernel
@@ -239,14 +235,14 @@ class SlipperyBases(SlippingBodies):
         slows = -found.slip_rate * math.sqrt(body.gravity * body.size())
         if rate * rate >= 2.0 * slows * REST_AMPLITUDE * body.size():
             return mode
-        had = self.energies_of_bodies(slips, state).kinetic
+        kinetic = self.energies_of_bodies(slips, state).kinetic
         state[self.horizontal_of(k)] += 0.5 * rate * abs(rate) / slows  # the way until it stops
         # an impulse of its base stops it, without friction of slips elsewhere
         _, slides = self.impulse_response(k, 0.0, 0.0, 1.0, slips, state)
         self.impulse_response(k, 0.0, 0.0, -rate / slides, slips, state)
         self.add_velocity_changes(state)
         new = self.with_slip(k, 0.0, slips, state, memory)
-        memory[IMPACT_LOSS] += had - self.energies_of_bodies(new, state).kinetic
+        memory[IMPACT_LOSS] += kinetic - self.energies_of_bodies(new, state).kinetic
         return new
 
     @kernel

@@ -127,9 +127,8 @@ class SlippingBodies(Chain):
     @kernel
     def slip_of(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
         """Return the slip of a body on its base [m]."""
-        return float(memory[self.slip_memory(k) + OFFSET]) + self.contact_point(
-            k, mode, state, memory
-        )
+        offset = float(memory[self.slip_memory(k) + OFFSET])
+        return offset + self.contact_point(k, mode, state, memory)
 
     @inlined
     def slip_event(self, k: int, old: int, new: int) -> int:
@@ -147,47 +146,42 @@ class SlippingBodies(Chain):
         return not self.is_rigid(k) and self.friction_coefficient(k, STATIC) < math.inf
 
     @inlined
-    def apply_friction_load(self, k: int, mode: int, workspace: Vector) -> None:
+    def apply_friction_load(self, k: int, mode: int, work: Vector) -> None:
         """Load a body that slips on a deformable base by its friction."""
         if self.is_slippery(k) and self.part_mode(mode, k).slides:
-            self.set_friction_load(k, self.sense(mode, k), workspace)
+            self.set_friction_load(k, self.sense(mode, k), work)
 
     @kernel
-    def set_friction_load(self, k: int, sense: float, workspace: Vector) -> None:
+    def set_friction_load(self, k: int, sense: float, work: Vector) -> None:
         """Replace the friction among a body's loads by that of a slip in a sense.
 
         The normal force of springs and dashpots is known, so is friction, :eq:`eq-mixed-slips`.
         """
         i = k * BODY_STRIDE
-        drag = (
-            -sense
-            * self.friction_coefficient(k, KINETIC)
-            * max(workspace[i + at.NORMAL_FORCE], 0.0)
-        )
-        add_tangential_load(self, k, drag - workspace[i + at.FRICTION_LOAD], workspace)
-        workspace[i + at.FRICTION_LOAD] = drag
+        drag = -sense * self.friction_coefficient(k, KINETIC) * max(work[i + at.NORMAL_FORCE], 0.0)
+        add_tangential_load(self, k, drag - work[i + at.FRICTION_LOAD], work)
+        work[i + at.FRICTION_LOAD] = drag
 
     @kernel
     def slip_guards(
         self, k: int, mode: int, state: Vector, slope: Slope, press: float, size: float
     ) -> SlidingGuards:
         """Return the guards of a body's friction, over the force `size`, and of its slip."""
-        standing, body = self.part_mode(mode, k), self.state_of(k, state)
-        if not standing.slides:
+        body_mode, body = self.part_mode(mode, k), self.state_of(k, state)
+        if not body_mode.slides:
             hold = self.friction_coefficient(k, STATIC) * max(press, 0.0)
             hold -= abs(self.workspace()[k * BODY_STRIDE + at.TANGENTIAL_FORCE])
             return SlidingGuards(hold / size, 1.0, 0.0)
         law, sense, rate = self.on_base(k).body, self.sense(mode, k), body.angular_velocity
-        reach = law.reach(law.pin(standing.pivot), law.attitude(body.rotation))
+        reach = law.reach(law.pin(body_mode.pivot), law.attitude(body.rotation))
         scale = 1.0 / math.sqrt(law.gravity * law.size())
         change = slope[self.horizontal_of(k)] - reach.bend * rate * rate
         change -= reach.rate * slope[BEFORE_HORIZONTAL * k + ROTATION]
         sway, rotating = body.horizontal_velocity, reach.rate * rate
         # rounding must not stop a slip that starts or is very slow
         slip = scale * (sense * (sway - rotating) + NOISE * (abs(sway) + abs(rotating)))
-        least = self.friction_noise(k, self.friction_coefficient(k, KINETIC)) / self.row_value(
-            k, at.MASS
-        )
+        noise = self.friction_noise(k, self.friction_coefficient(k, KINETIC))
+        least = noise / self.row_value(k, at.MASS)
         return SlidingGuards(1.0, slip, scale * (sense * change + least))
 
     @inlined
@@ -219,13 +213,13 @@ class SlippingBodies(Chain):
     @kernel
     def with_slip(self, k: int, sense: float, mode: int, state: Vector, memory: Vector) -> int:
         """Return the mode in which a body slips in a sense, or, with 0, is held."""
-        standing = self.part_mode(mode, k)
+        body_mode = self.part_mode(mode, k)
         if sense != 0.0:
             return self.with_slip_sense(self.release(k, mode, state, memory), k, sense)
-        if standing.slides:
+        if body_mode.slides:
             self.stop_slip(k, mode, state)
             point = self.contact_point(k, mode, state, memory)
-            mode = self.with_part(mode, k, Mode(standing.contact, standing.pivot, False))
+            mode = self.with_part(mode, k, Mode(body_mode.contact, body_mode.pivot, False))
             memory[HELD_PLACE + k] = point
         return mode
 
@@ -277,5 +271,5 @@ class SlippingBodies(Chain):
 
 def friction_numbers(frictions: Sequence[tuple[float, float, float]]) -> Vector:
     """Return the coefficients of friction of all bases, then the room for columns."""
-    workspace = (COLUMNS + SLIP_COLUMNS) * len(frictions)
-    return np.concatenate([np.ravel(frictions), np.zeros(workspace)])
+    work = (COLUMNS + SLIP_COLUMNS) * len(frictions)
+    return np.concatenate([np.ravel(frictions), np.zeros(work)])

@@ -68,21 +68,21 @@ class Chain(MovingBodies):
         self, k: int, slides: bool, mode: int, state: Vector, slope: Slope, ground: Ground
     ) -> Guards:
         """Return the guards of a body on a deformable base, and their rates."""
-        part, standing, body = self.on_base(k), self.part_mode(mode, k), self.state_of(k, state)
+        part, body_mode, body = self.on_base(k), self.part_mode(mode, k), self.state_of(k, state)
         first, sliding = BEFORE_HORIZONTAL * k, IDLE
         vertical, angular = slope[first + VERTICAL], slope[first + ROTATION]
         if self.is_slippery(k):  # these guards have been written before
             values, changes = self.guard_workspace(0), self.guard_workspace(1)
             i = GUARDS * k + 2 * CORNER_GUARDS
             sliding = SlidingGuards(values[i + HOLD], values[i + SLIP], changes[i + SLIP])
-            standing = Mode(standing.contact, standing.pivot, False)
-        elif slides and standing.slides:
+            body_mode = Mode(body_mode.contact, body_mode.pivot, False)
+        elif slides and body_mode.slides:
             rise = lift_by_slip(self, part, k, mode, state)
             self.forces_from_slope(mode, state, slope, ground)
             push = self.workspace()[k * BODY_STRIDE + at.TANGENTIAL_FORCE]
             horizontal = slope[self.horizontal_of(k)]
-            sliding = part.sliding_guards(standing, body, angular, horizontal, push, rise)
-        return part.guards_with(standing, body, (), vertical, angular, sliding)
+            sliding = part.sliding_guards(body_mode, body, angular, horizontal, push, rise)
+        return part.guards_with(body_mode, body, (), vertical, angular, sliding)
 
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
@@ -176,39 +176,28 @@ class Chain(MovingBodies):
         out = self.column_workspace()
         self.find_corner_forces(mode, state, ground)
         self.forces_from_slope(mode, state, slope, ground)
-        workspace = self.workspace()
-        shear = workspace[(self.body_count - 1) * BODY_STRIDE + at.TANGENTIAL_FORCE]
+        work = self.workspace()
+        shear = work[(self.body_count - 1) * BODY_STRIDE + at.TANGENTIAL_FORCE]
         rotation = rate = rise = x = 0.0
         for k in range(self.body_count - 1, -1, -1):
-            i, j, standing = k * BODY_STRIDE, COLUMNS * k, self.part_mode(mode, k)
-            body = self.constrained_state(k, standing, state)
+            i, j, body_mode = k * BODY_STRIDE, COLUMNS * k, self.part_mode(mode, k)
+            body = self.constrained_state(k, body_mode, state)
             rotation += body.rotation
             rate += body.angular_velocity
-            rise = self.rise_of(k, rise, body.vertical, workspace)
-            sine, cosine = workspace[i + at.SINE], workspace[i + at.COSINE]
+            rise = self.rise_of(k, rise, body.vertical, work)
+            sine, cosine = work[i + at.SINE], work[i + at.COSINE]
             if k + 1 < self.body_count:
-                x += workspace[i + at.NORMAL] * sine + workspace[i + at.TANGENTIAL] * cosine
+                x += work[i + at.NORMAL] * sine + work[i + at.TANGENTIAL] * cosine
                 x -= self.row_value(k, at.UPRIGHT_OFFSET)
             else:
                 x = self.place(k, mode, state, memory)
-            out[j], out[j + 1], out[j + 2], out[j + 3] = (
-                rotation,
-                rate,
-                rise,
-                workspace[i + at.SPEED_Y],
-            )
-            out[j + 4], out[j + 5], out[j + 6] = x, shear, workspace[i + at.SPEED_X]
-            out[j + 7] = workspace[i + at.ANGULAR_ACCELERATION]
-            out[j + 8], out[j + 9] = (
-                workspace[i + at.ACCELERATION_X],
-                workspace[i + at.ACCELERATION_Y],
-            )
-            out[j + 10], out[j + 11] = (
-                workspace[i + at.TANGENTIAL_FORCE],
-                workspace[i + at.NORMAL_FORCE],
-            )
+            out[j], out[j + 1], out[j + 2], out[j + 3] = rotation, rate, rise, work[i + at.SPEED_Y]
+            out[j + 4], out[j + 5], out[j + 6] = x, shear, work[i + at.SPEED_X]
+            out[j + 7] = work[i + at.ANGULAR_ACCELERATION]
+            out[j + 8], out[j + 9] = work[i + at.ACCELERATION_X], work[i + at.ACCELERATION_Y]
+            out[j + 10], out[j + 11] = work[i + at.TANGENTIAL_FORCE], work[i + at.NORMAL_FORCE]
             out[j + 12], out[j + 13] = body.rotation, body.vertical
-            put(self.observed_base(k, standing, body), j + COLUMNS - BASE_COLUMNS, out)
+            put(self.base_columns(k, body_mode, body), j + COLUMNS - BASE_COLUMNS, out)
             self.write_slip_columns(k, mode, state, memory, out)
         return out
 
@@ -223,14 +212,14 @@ class Chain(MovingBodies):
         """Find the forces of corners on rigid bases: there are none here."""
 
     @inlined
-    def observed_base(self, k: int, standing: Mode, body: BodyState) -> Variables:
+    def base_columns(self, k: int, body_mode: Mode, body: BodyState) -> Variables:
         """Return the base's columns in the results."""
-        return self.deformable_base_columns(k, standing, body)
+        return self.deformable_base_columns(k, body_mode, body)
 
     @kernel
-    def deformable_base_columns(self, k: int, standing: Mode, body: BodyState) -> Variables:
+    def deformable_base_columns(self, k: int, body_mode: Mode, body: BodyState) -> Variables:
         """Return the columns of a deformable base in the results."""
         part = self.on_base(k)
         if self.is_slippery(k):
-            return part.base.observed(standing.contact, part.body.base_line_at(body), ())
-        return part.observed_base(standing, body, part.body.attitude(body.rotation), ())
+            return part.base.observed(body_mode.contact, part.body.base_line_at(body), ())
+        return part.observed_base(body_mode, body, part.body.attitude(body.rotation), ())

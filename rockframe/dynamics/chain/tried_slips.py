@@ -65,9 +65,9 @@ class SlipTrials(SlipperyBases, RigidChain):
     @kernel
     def write_trial_slips(self, mode: int) -> None:
         """Write the senses of slips of a mode as those of the present trial."""
-        workspace = self.workspace()
+        work = self.workspace()
         for k in range(self.body_count):
-            workspace[k * BODY_STRIDE + at.SLIP_SENSE] = self.sense_or_zero(mode, k)
+            work[k * BODY_STRIDE + at.SLIP_SENSE] = self.sense_or_zero(mode, k)
 
     @inlined
     def restore_trial_slips(self, mode: int, impulsive: bool) -> None:
@@ -96,33 +96,18 @@ class SlipTrials(SlipperyBases, RigidChain):
 
     @kernel
     def add_trial_constraint(
-        self,
-        k: int,
-        count: int,
-        standing: Mode,
-        state: Vector,
-        workspace: Vector,
-        constraints: Vector,
+        self, k: int, count: int, body_mode: Mode, state: Vector, work: Vector, rows: Vector
     ) -> int:
         """Hold a body on a deformable base, or load it by friction, in the present trial."""
-        if not self.is_slippery(k) or self.on_base(k).flies(standing.contact):
-            return self.add_hold_or_slide(k, count, standing, state, workspace, constraints)
+        if not self.is_slippery(k) or self.on_base(k).flies(body_mode.contact):
+            return self.add_hold_or_slide(k, count, body_mode, state, work, rows)
         i, sense = k * BODY_STRIDE, self.trial_sense(k)
-        self.set_friction_load(k, sense, workspace)
+        self.set_friction_load(k, sense, work)
         if sense == 0.0:
-            prescribed = tangential_coriolis(i, workspace) + workspace[i + at.PIVOT_CENTRIPETAL]
-            add_constraint(
-                self,
-                count,
-                k,
-                1.0,
-                0.0,
-                -workspace[i + at.PIVOT_ARM],
-                prescribed,
-                workspace,
-                constraints,
-            )
-            workspace[i + at.TANGENTIAL_CONSTRAINT] = count
+            prescribed = tangential_coriolis(i, work) + work[i + at.PIVOT_CENTRIPETAL]
+            arm = work[i + at.PIVOT_ARM]
+            add_constraint(self, count, k, 1.0, 0.0, -arm, prescribed, work, rows)
+            work[i + at.TANGENTIAL_CONSTRAINT] = count
             count += 1
         return count
 
@@ -141,70 +126,63 @@ class SlipTrials(SlipperyBases, RigidChain):
     @kernel
     def write_free_slips(self, mode: int, state: Vector) -> None:
         """Write the senses in which bodies in flight over rigid bases would slip on landing."""
-        bearing, workspace = self.bearing_corners(mode), self.workspace()
+        bearing, work = self.bearing_corners(mode), self.workspace()
         for k in range(self.body_count):
             if self.is_rigid(k) and bearing >> 2 * k & BOTH == 0:
                 rate, noise = self.pivot_slip_rate(k, self.bearing_pivot(BOTH), state)
                 slips = abs(rate) > noise and self.friction_coefficient(k, IMPULSIVE) < math.inf
-                workspace[k * BODY_STRIDE + at.SLIP_SENSE] = (
-                    math.copysign(1.0, rate) if slips else 0.0
-                )
+                work[k * BODY_STRIDE + at.SLIP_SENSE] = math.copysign(1.0, rate) if slips else 0.0
 
     @kernel
     def add_corner_friction(
-        self, k: int, which: int, sense: float, reach: float, impulsive: bool, workspace: Vector,
-        constraints: Vector,
+        self, k: int, which: int, sense: float, reach: float, impulsive: bool, work: Vector,
+        rows: Vector,
     ) -> None:  # fmt: skip
         """Add friction to the force of a corner that slips, :eq:`eq-stack-slip`."""
-        holds, i, ratio = which * CONSTRAINT_STRIDE + at.FORCE_DIRECTION, k * BODY_STRIDE, 0.0
+        direction, i, ratio = which * CONSTRAINT_STRIDE + at.FORCE_DIRECTION, k * BODY_STRIDE, 0.0
         if abs(sense) == 1.0:
             ratio = -sense * self.friction_coefficient(k, IMPULSIVE if impulsive else KINETIC)
-            x, y = ratio * workspace[i + at.COSINE], -ratio * workspace[i + at.SINE]
-            constraints[holds] += x
-            constraints[holds + 1] += y
-            constraints[holds + 2] -= ratio * reach
-            constraints[which * CONSTRAINT_STRIDE + at.UNSYMMETRIC] = 1.0
+            x, y = ratio * work[i + at.COSINE], -ratio * work[i + at.SINE]
+            rows[direction] += x
+            rows[direction + 1] += y
+            rows[direction + 2] -= ratio * reach
+            rows[which * CONSTRAINT_STRIDE + at.UNSYMMETRIC] = 1.0
             if k + 1 < self.body_count:
-                constraints[holds + 3] -= x
-                constraints[holds + 4] -= y
-                constraints[holds + 5] += ratio * (reach - workspace[i + at.NORMAL])
-        workspace[i + at.FRICTION_RATIO] = ratio
+                rows[direction + 3] -= x
+                rows[direction + 4] -= y
+                rows[direction + 5] += ratio * (reach - work[i + at.NORMAL])
+        work[i + at.FRICTION_RATIO] = ratio
 
     @kernel
-    def complete_solution(self, workspace: Vector, out: Vector) -> None:
+    def complete_solution(self, work: Vector, out: Vector) -> None:
         """Write the friction of slipping bodies; set accelerations to zero in full contact."""
         for k in range(self.body_count):
             i = k * BODY_STRIDE
-            left, right = workspace[i + at.LEFT_CONSTRAINT], workspace[i + at.RIGHT_CONSTRAINT]
+            left, right = work[i + at.LEFT_CONSTRAINT], work[i + at.RIGHT_CONSTRAINT]
             if not self.is_rigid(k) or (left == NO_CONSTRAINT and right == NO_CONSTRAINT):
                 continue
-            if workspace[i + at.HOLD_STATE] == FREE:
+            if work[i + at.HOLD_STATE] == FREE:
                 press = self.corner_force(k, True) + self.corner_force(k, False)
-                workspace[i + at.TANGENTIAL_FORCE] = workspace[i + at.FRICTION_RATIO] * press
+                work[i + at.TANGENTIAL_FORCE] = work[i + at.FRICTION_RATIO] * press
             if left != NO_CONSTRAINT and right != NO_CONSTRAINT:
                 first = BEFORE_HORIZONTAL * k
                 out[first + ROTATION] = out[first + VERTICAL] = 0.0
-                if workspace[i + at.HOLD_STATE] != FREE:
+                if work[i + at.HOLD_STATE] != FREE:
                     out[self.horizontal_of(k)] = 0.0
 
     @kernel
-    def friction_loss(
-        self, k: int, which: int, state: Vector, workspace: Vector, constraints: Vector
-    ) -> float:
+    def friction_loss(self, k: int, which: int, state: Vector, work: Vector, rows: Vector) -> float:
         """Return the energy that friction takes in an impact at a corner that slips."""
-        first, ratio = which * CONSTRAINT_STRIDE, workspace[k * BODY_STRIDE + at.FRICTION_RATIO]
+        first, ratio = which * CONSTRAINT_STRIDE, work[k * BODY_STRIDE + at.FRICTION_RATIO]
         if ratio == 0.0:
             return 0.0
         # both corners have the same slip where both bear
-        left = workspace[k * BODY_STRIDE + at.LEFT_CONSTRAINT] != NO_CONSTRAINT
+        left = work[k * BODY_STRIDE + at.LEFT_CONSTRAINT] != NO_CONSTRAINT
         slip, _ = self.pivot_slip_rate(k, PIVOT_LEFT if left else PIVOT_RIGHT, state)
-        leaned = (
-            combined_acceleration(
-                self.body_count, k, first + at.FORCE_DIRECTION, workspace, constraints
-            )
-            - constraints[first + at.PRESCRIBED]
-        )
-        return float(-constraints[first + at.FORCE] * (ratio * slip + 0.5 * leaned))
+        direction = first + at.FORCE_DIRECTION
+        excess = combined_acceleration(self.body_count, k, direction, work, rows)
+        excess -= rows[first + at.PRESCRIBED]
+        return float(-rows[first + at.FORCE] * (ratio * slip + 0.5 * excess))
 
     @kernel
     def needs_new_impulses(self, closed: int, mode: int) -> bool:
@@ -212,125 +190,126 @@ class SlipTrials(SlipperyBases, RigidChain):
 
         Or a closed corner did not act, as it did not bear before.
         """
-        workspace = self.workspace()
+        work = self.workspace()
         for k in range(self.body_count):
             i = k * BODY_STRIDE
-            acts = workspace[i + at.LEFT_IMPULSE] != 0.0 or workspace[i + at.RIGHT_IMPULSE] != 0.0
+            acts = work[i + at.LEFT_IMPULSE] != 0.0 or work[i + at.RIGHT_IMPULSE] != 0.0
             if acts and self.friction_coefficient(k, IMPULSIVE) < math.inf:
                 return True
         return self.has_tension_impulse() or closed != self.bearing_corners(mode)
 
     @kernel
     def try_corners(
-        self, mode: int, some: int, closed: int, impulsive: bool, noise: float, state: Vector
+        self, mode: int, subset: int, closed: int, impulsive: bool, noise: float, state: Vector
     ) -> Trial:
         """Let a set of the closed corners bear, and find which of their bodies slip, base by base.
 
         In an impact the velocities after it decide. Under new forces, slipping bodies continue to
         slip, and held ones start to slip if friction cannot hold them.
         """
-        self.write_first_slips(mode, some, impulsive, state)
+        self.write_first_slips(mode, subset, impulsive, state)
         found = Trial(0, math.inf)
         most = MAX_SLIP_CHANGES * self.body_count
         # where static friction leads to no solution, kinetic friction decides what is held
         for tries in range(2 * most):
-            holding = IMPULSIVE if impulsive else STATIC if tries < most else KINETIC
-            found = solve_trial(self, mode, some, closed, False, impulsive, noise, state)
-            k = self.correct_one_slip(mode, some, closed, impulsive, holding, noise, state)
+            coefficient = IMPULSIVE if impulsive else STATIC if tries < most else KINETIC
+            found = solve_trial(self, mode, subset, closed, False, impulsive, noise, state)
+            k = self.correct_one_slip(mode, subset, closed, impulsive, coefficient, noise, state)
             if k < 0:
                 return found
-        return Trial(max(found.fault, 0), math.inf)
+        return Trial(max(found.violation, 0), math.inf)
 
     @kernel
-    def write_first_slips(self, mode: int, some: int, impulsive: bool, state: Vector) -> int:
+    def write_first_slips(self, mode: int, subset: int, impulsive: bool, state: Vector) -> int:
         """Write the first slips of a trial; return the set of bodies whose slip is open."""
-        workspace, loose = self.workspace(), 0
+        work, undecided = self.workspace(), 0
         for k in range(self.body_count):
-            i, pivot = k * BODY_STRIDE, self.trial_pivot(k, mode, some, impulsive)
-            workspace[i + at.SLIP_SENSE] = 0.0
+            i, pivot = k * BODY_STRIDE, self.trial_pivot(k, mode, subset, impulsive)
+            work[i + at.SLIP_SENSE] = 0.0
             slips = pivot != NO_PIVOT and self.friction_coefficient(k, STATIC) < math.inf
             if slips and not impulsive:
-                workspace[i + at.SLIP_SENSE] = workspace[i + at.STARTING_SENSE]
+                work[i + at.SLIP_SENSE] = work[i + at.STARTING_SENSE]
                 rate, least = self.slip_before_trial(k, pivot, mode, state)
                 if abs(rate) > least:
-                    workspace[i + at.SLIP_SENSE] = math.copysign(1.0, rate)
+                    work[i + at.SLIP_SENSE] = math.copysign(1.0, rate)
                 else:
-                    loose |= 1 << k
-        return loose
+                    undecided |= 1 << k
+        return undecided
 
     @kernel
     def try_all_slips(
-        self, mode: int, some: int, closed: int, noise: float, state: Vector
+        self, mode: int, subset: int, closed: int, noise: float, state: Vector
     ) -> Trial:
         """Let a set of the closed corners bear with the first consistent combination of slips.
 
         The search base by base may fail where the slip of one body, say of an end on pads, makes
         another base push harder the more it is held back.
         """
-        loose = self.write_first_slips(mode, some, False, state)
-        for way in range(min(3 ** bit_count(loose), MAX_COMBINATIONS)):
-            self.write_combination(way, loose)
-            found = solve_trial(self, mode, some, closed, False, False, noise, state)
-            k = self.correct_one_slip(mode, some, closed, False, STATIC, noise, state)
-            if found.fault < 0 and k < 0:
+        undecided = self.write_first_slips(mode, subset, False, state)
+        for combination in range(min(3 ** bit_count(undecided), MAX_COMBINATIONS)):
+            self.write_combination(combination, undecided)
+            found = solve_trial(self, mode, subset, closed, False, False, noise, state)
+            k = self.correct_one_slip(mode, subset, closed, False, STATIC, noise, state)
+            if found.violation < 0 and k < 0:
                 return found
         return Trial(0, math.inf)
 
     @inlined
-    def write_combination(self, way: int, bodies: int) -> None:
+    def write_combination(self, combination: int, bodies: int) -> None:
         """Write the slips of a set of bodies: digits, in base 3, of the number `way`."""
         for k in range(self.body_count):
             if bodies >> k & 1 != 0:
-                self.workspace()[k * BODY_STRIDE + at.SLIP_SENSE] = float((way + 1) % 3 - 1)
-                way //= 3
+                self.workspace()[k * BODY_STRIDE + at.SLIP_SENSE] = float((combination + 1) % 3 - 1)
+                combination //= 3
 
     @kernel
     def trial_combination(self) -> int:
         """Return the number, in base 3, of the slips of all bodies in the present trial."""
-        way = 0
+        combination = 0
         for k in range(self.body_count - 1, -1, -1):
-            way = 3 * way + int(self.workspace()[k * BODY_STRIDE + at.SLIP_SENSE]) % 3
-        return way
+            sense = int(self.workspace()[k * BODY_STRIDE + at.SLIP_SENSE])
+            combination = 3 * combination + sense % 3
+        return combination
 
     @kernel
     def count_other_solutions(
-        self, mode: int, some: int, closed: int, noise: float, state: Vector
+        self, mode: int, subset: int, closed: int, noise: float, state: Vector
     ) -> int:
         """Count the consistent combinations of slips on a set of corners other than the last one.
 
         A body that friction can hold, with the slips of the others unchanged, does not count as
         slipping: where only one body may slip there is one combination.
         """
-        workspace, found, taken = self.workspace(), 0, self.trial_combination()
-        loose = self.write_first_slips(mode, some, False, state)
-        for way in range(
-            min(3 ** bit_count(loose), MAX_COMBINATIONS) if bit_count(loose) > 1 else 0
-        ):
-            self.write_combination(way, loose)
-            counts = self.trial_combination() != taken and self.is_admissible(
-                mode, some, closed, noise, state
-            )
+        work, found, taken = self.workspace(), 0, self.trial_combination()
+        undecided = self.write_first_slips(mode, subset, False, state)
+        count = min(3 ** bit_count(undecided), MAX_COMBINATIONS)
+        for combination in range(count if bit_count(undecided) > 1 else 0):
+            self.write_combination(combination, undecided)
+            counts = self.trial_combination() != taken
+            counts = counts and self.is_admissible(mode, subset, closed, noise, state)
             for k in range(self.body_count):
-                slips = workspace[k * BODY_STRIDE + at.SLIP_SENSE]
-                if counts and loose >> k & 1 != 0 and slips != 0.0:
-                    workspace[k * BODY_STRIDE + at.SLIP_SENSE] = 0.0
-                    held = solve_trial(self, mode, some, closed, False, False, noise, state)
+                slips = work[k * BODY_STRIDE + at.SLIP_SENSE]
+                if counts and undecided >> k & 1 != 0 and slips != 0.0:
+                    work[k * BODY_STRIDE + at.SLIP_SENSE] = 0.0
+                    held = solve_trial(self, mode, subset, closed, False, False, noise, state)
                     friction = self.friction_coefficient(k, STATIC)
-                    counts = held.fault >= 0 or self.exceeds_friction(k, friction, False)
-                    workspace[k * BODY_STRIDE + at.SLIP_SENSE] = slips
+                    counts = held.violation >= 0 or self.exceeds_friction(k, friction, False)
+                    work[k * BODY_STRIDE + at.SLIP_SENSE] = slips
             found += 1 if counts else 0
         self.write_combination(taken, 2**self.body_count - 1)
-        solve_trial(self, mode, some, closed, False, False, noise, state)
+        solve_trial(self, mode, subset, closed, False, False, noise, state)
         return found
 
     @kernel
-    def is_admissible(self, mode: int, some: int, closed: int, noise: float, state: Vector) -> bool:
+    def is_admissible(
+        self, mode: int, subset: int, closed: int, noise: float, state: Vector
+    ) -> bool:
         """Whether a set of corners that bear, with the slips as written, is admissible."""
-        way = self.trial_combination()
-        found = solve_trial(self, mode, some, closed, False, False, noise, state)
-        k = self.correct_one_slip(mode, some, closed, False, STATIC, noise, state)
-        self.write_combination(way, 2**self.body_count - 1)
-        return found.fault < 0 and k < 0
+        combination = self.trial_combination()
+        found = solve_trial(self, mode, subset, closed, False, False, noise, state)
+        k = self.correct_one_slip(mode, subset, closed, False, STATIC, noise, state)
+        self.write_combination(combination, 2**self.body_count - 1)
+        return found.violation < 0 and k < 0
 
     @kernel
     def solve_standing(self, mode: int, corners: int, state: Vector) -> None:
@@ -339,49 +318,49 @@ class SlipTrials(SlipperyBases, RigidChain):
         A body whose slip would be reversed, as no friction can do, is held, too. Friction does not
         act at a base in tension, where it would drive the slip.
         """
-        workspace, turned = self.workspace(), True
+        work, changed = self.workspace(), True
         self.write_slips_before_impact(mode, corners, state)
-        while turned:
-            turned = False
+        while changed:
+            changed = False
             solve_trial(self, mode, corners, corners, False, True, 0.0, state)
             for k in range(self.body_count):
-                sense = workspace[k * BODY_STRIDE + at.SLIP_SENSE]
+                sense = work[k * BODY_STRIDE + at.SLIP_SENSE]
                 if sense != 0.0:
                     pivot = self.trial_pivot(k, mode, corners, True)
                     rate, least = self.pivot_slip_rate(k, pivot, state)
                     after = self.slip_acceleration(k, pivot, True, state) + rate
                     if sense * after < -abs(sense) * (least + NOISE_OF_SLIP * abs(after)):
-                        workspace[k * BODY_STRIDE + at.SLIP_SENSE] = 0.0
-                        turned = True
+                        work[k * BODY_STRIDE + at.SLIP_SENSE] = 0.0
+                        changed = True
                     elif abs(sense) == 1.0 and self.normal_force(k) < 0.0:
-                        workspace[k * BODY_STRIDE + at.SLIP_SENSE] = FRICTIONLESS * sense
-                        turned = True
+                        work[k * BODY_STRIDE + at.SLIP_SENSE] = FRICTIONLESS * sense
+                        changed = True
 
     @kernel
     def try_stopping_slips(
-        self, mode: int, some: int, closed: int, noise: float, state: Vector
+        self, mode: int, subset: int, closed: int, noise: float, state: Vector
     ) -> Trial:
         """Let a set of closed corners bear by impulses that stop a slip, each slip in turn."""
-        workspace = self.workspace()
+        work = self.workspace()
         for stopped in range(self.body_count):
-            self.write_slips_before_impact(mode, some, state)
-            if workspace[stopped * BODY_STRIDE + at.SLIP_SENSE] == 0.0:
+            self.write_slips_before_impact(mode, subset, state)
+            if work[stopped * BODY_STRIDE + at.SLIP_SENSE] == 0.0:
                 continue
-            workspace[stopped * BODY_STRIDE + at.SLIP_SENSE] = 0.0
+            work[stopped * BODY_STRIDE + at.SLIP_SENSE] = 0.0
             for _ in range(MAX_SLIP_CHANGES * self.body_count):
-                found = solve_trial(self, mode, some, closed, False, True, noise, state)
-                k = self.correct_one_slip(mode, some, closed, True, IMPULSIVE, noise, state)
+                found = solve_trial(self, mode, subset, closed, False, True, noise, state)
+                k = self.correct_one_slip(mode, subset, closed, True, IMPULSIVE, noise, state)
                 if k < 0:
-                    if found.fault < 0 and workspace[stopped * BODY_STRIDE + at.SLIP_SENSE] == 0.0:
+                    if found.violation < 0 and work[stopped * BODY_STRIDE + at.SLIP_SENSE] == 0.0:
                         return found
                     break
         return Trial(0, math.inf)
 
     @kernel
-    def write_slips_before_impact(self, mode: int, some: int, state: Vector) -> None:
+    def write_slips_before_impact(self, mode: int, subset: int, state: Vector) -> None:
         """Write the senses of the slips before an impact, of bodies that may slip in it."""
         for k in range(self.body_count):
-            pivot, i = self.trial_pivot(k, mode, some, True), k * BODY_STRIDE
+            pivot, i = self.trial_pivot(k, mode, subset, True), k * BODY_STRIDE
             self.workspace()[i + at.SLIP_SENSE] = 0.0
             if pivot != NO_PIVOT and self.friction_coefficient(k, IMPULSIVE) < math.inf:
                 rate, least = self.pivot_slip_rate(k, pivot, state)
@@ -389,16 +368,16 @@ class SlipTrials(SlipperyBases, RigidChain):
                     self.workspace()[i + at.SLIP_SENSE] = math.copysign(1.0, rate)
 
     @inlined
-    def trial_pivot(self, k: int, mode: int, some: int, impulsive: bool) -> int:
+    def trial_pivot(self, k: int, mode: int, subset: int, impulsive: bool) -> int:
         """Return the pivot at which a body is held or slips in a trial of corners, or `NOWHERE`.
 
         On a deformable base friction has no part in impacts.
         """
-        bears, standing = some >> 2 * k & BOTH, self.part_mode(mode, k)
+        bears, body_mode = subset >> 2 * k & BOTH, self.part_mode(mode, k)
         if self.is_rigid(k):
             return NO_PIVOT if bears == 0 else self.bearing_pivot(bears)
-        idle = impulsive or self.on_base(k).flies(standing.contact)
-        return NO_PIVOT if idle or not self.is_slippery(k) else standing.pivot
+        idle = impulsive or self.on_base(k).flies(body_mode.contact)
+        return NO_PIVOT if idle or not self.is_slippery(k) else body_mode.pivot
 
     @inlined
     def slip_before_trial(
@@ -411,7 +390,7 @@ class SlipTrials(SlipperyBases, RigidChain):
 
     @kernel
     def correct_one_slip(
-        self, mode: int, some: int, closed: int, impulsive: bool, holding: int, noise: float,
+        self, mode: int, subset: int, closed: int, impulsive: bool, coefficient: int, noise: float,
         state: Vector,
     ) -> int:  # fmt: skip
         """Correct the slip of one body in the present trial, and give its number; else -1.
@@ -419,17 +398,17 @@ class SlipTrials(SlipperyBases, RigidChain):
         A held body slips if friction, of the coefficient `holding`, cannot hold it; a slipping one
         is held if it does not slip. Accelerations up to `noise` count as zero.
         """
-        workspace = self.workspace()
+        work = self.workspace()
         for k in range(self.body_count):
-            i, pivot = k * BODY_STRIDE, self.trial_pivot(k, mode, some, impulsive)
-            friction = self.friction_coefficient(k, holding)
-            pulled = self.is_rigid(k) and some & closed & BOTH << 2 * k == 0
-            if pivot == NO_PIVOT or friction == math.inf or pulled:
+            i, pivot = k * BODY_STRIDE, self.trial_pivot(k, mode, subset, impulsive)
+            friction = self.friction_coefficient(k, coefficient)
+            in_tension = self.is_rigid(k) and subset & closed & BOTH << 2 * k == 0
+            if pivot == NO_PIVOT or friction == math.inf or in_tension:
                 continue
-            sense = workspace[i + at.SLIP_SENSE]
+            sense = work[i + at.SLIP_SENSE]
             if sense == 0.0:
                 if self.exceeds_friction(k, friction, impulsive):
-                    workspace[i + at.SLIP_SENSE] = -math.copysign(1.0, self.holding_force(k))
+                    work[i + at.SLIP_SENSE] = -math.copysign(1.0, self.holding_force(k))
                     return k
             else:
                 rate, least = self.slip_before_trial(k, pivot, mode, state)
@@ -440,7 +419,7 @@ class SlipTrials(SlipperyBases, RigidChain):
                     else:  # as it starts to slip, friction is what holds it
                         least = noise
                     if sense * after < -least:
-                        workspace[i + at.SLIP_SENSE] = 0.0
+                        work[i + at.SLIP_SENSE] = 0.0
                         return k
         return -1
 
@@ -457,21 +436,20 @@ class SlipTrials(SlipperyBases, RigidChain):
         least = NOISE * abs(press)
         if not impulsive:  # a body that has just started to slip is not held at the bound
             least = ROUNDING * self.row_value(k, at.FORCE_SCALE)
-            least = (
-                least if self.workspace()[k * BODY_STRIDE + at.STARTING_SENSE] == 0.0 else -least
-            )
+            starts = self.workspace()[k * BODY_STRIDE + at.STARTING_SENSE] != 0.0
+            least = -least if starts else least
         return abs(self.holding_force(k)) > friction * max(press, 0.0) + least
 
     @kernel
     def slip_acceleration(self, k: int, pivot: int, impulsive: bool, state: Vector) -> float:
         """Return the acceleration of the slip of a point, or its change in an impact."""
         i, part, body = k * BODY_STRIDE, self.on_base(k), self.state_of(k, state)
-        workspace, constraints, rate = self.workspace(), self.constraints(), body.angular_velocity
+        work, rows, rate = self.workspace(), self.constraints(), body.angular_velocity
         reach = part.body.reach(part.body.pin(pivot), part.body.attitude(body.rotation))
         spare = MAX_CONSTRAINTS * self.body_count - 1  # a slipping body has no hold: free
-        keeps = spare * CONSTRAINT_STRIDE + at.JACOBIAN
-        write_jacobian(self, k, 1.0, 0.0, -reach.rate, keeps, workspace, constraints)
-        found = combined_acceleration(self.body_count, k, keeps, workspace, constraints)
+        jacobian = spare * CONSTRAINT_STRIDE + at.JACOBIAN
+        write_jacobian(self, k, 1.0, 0.0, -reach.rate, jacobian, work, rows)
+        found = combined_acceleration(self.body_count, k, jacobian, work, rows)
         if impulsive:
             return found
-        return found - tangential_coriolis(i, workspace) - reach.bend * rate * rate
+        return found - tangential_coriolis(i, work) - reach.bend * rate * rate
