@@ -82,7 +82,7 @@ class TiedSlideRock(TiedNumbers, LinkMechanics, SlideSwitches):  # pyright: igno
 
     @inlined
     def workspace(self) -> Vector:
-        """Return the room for speeds, loads and accelerations of the block."""
+        """Return the workspace for speeds, loads and accelerations of the block."""
         return view_of(self.rows, 0, BODY_STRIDE)
 
     @inlined
@@ -129,7 +129,7 @@ class TiedSlideRock(TiedNumbers, LinkMechanics, SlideSwitches):  # pyright: igno
 
     @inlined
     def write_kinematics_and_poses(self, mode: int, state: Vector, work: Vector) -> None:
-        """Write displacement, rotation and velocity of the block, as :meth:`lay`."""
+        """Write displacement, rotation and velocity of the block, as :meth:`write_poses`."""
         self.write_poses(mode, state, work)
 
     @inlined

@@ -49,7 +49,7 @@ class CornerGuards(RigidCorners):
                 left = self.on_base(k).base.is_held(body_mode.contact, True)
                 i = GUARDS * k + (0 if left else CORNER_GUARDS)
                 values[i] = -values[i]
-                # it stays held if, released, it would fall, or others would pull or close
+                # it stays held if, released, it would fall, or others would be in tension or close
                 falls = self.fall_if_released(k, left, mode, state, ground)
                 values[i + RELEASE_GUARD] = max(falls, self.largest_tension(mode))
         slides = self.some_end_slides(mode)
@@ -62,7 +62,7 @@ class CornerGuards(RigidCorners):
 
     @kernel
     def largest_tension(self, mode: int) -> float:
-        """Return largest tension in a corner that bears in the last solution, over FORCE_SIZE."""
+        """Return largest tension in a corner that bears in the last solution, over FORCE_SCALE."""
         most = -math.inf
         for k in range(self.body_count):
             if self.is_rigid(k) and self.part_mode(mode, k).contact & IN_TENSION == 0:

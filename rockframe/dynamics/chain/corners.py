@@ -77,7 +77,7 @@ class RigidCorners(Chain):
 
     @kernel
     def with_bearing_corners(self, mode: int, corners: int, in_tension: int) -> int:
-        """Return the mode in which `corners` bear; those in `pulled` are held without pressing."""
+        """Return the mode in which `corners` bear; those in `in_tension` are only held."""
         new = mode
         for k in range(self.body_count):
             if self.is_rigid(k):
@@ -142,7 +142,7 @@ class RigidCorners(Chain):
 
     @inlined
     def trial_sense(self, k: int) -> float:
-        """Return the sense of slip of a body on its rigid base in the trial at hand: 0, held."""
+        """Return the sense of slip of a body on its rigid base in the present trial: 0, held."""
         return 0.0
 
     @inlined
@@ -164,16 +164,16 @@ class RigidCorners(Chain):
 
     @inlined
     def with_rigid_slip(self, k: int, bears: int, mode: int) -> int:
-        """Return the mode in which a body slips on its base, if it does: it does not."""
+        """Return the mode with the slip of a body on its rigid base: none slips here."""
         return mode
 
     @inlined
     def restore_trial_slips(self, mode: int, impulsive: bool) -> None:
-        """Forget which slips were tried: none were."""
+        """Restore the slips of a mode for the next trial: none slips here."""
 
     @inlined
     def write_free_slips(self, mode: int, state: Vector) -> None:
-        """Note in which sense bodies that no corner bears would slip: none would."""
+        """Write the senses in which bodies in flight would slip on landing: none slips here."""
 
     @inlined
     def write_slip_guards(
@@ -183,17 +183,17 @@ class RigidCorners(Chain):
 
     @inlined
     def release_all(self, mode: int, state: Vector, memory: Vector) -> int:
-        """Let bodies move along deformable bases, of which friction holds them: none does."""
+        """Release bodies that friction holds on deformable bases: there are none here."""
         return mode
 
     @inlined
     def resume_slips(self, mode: int, state: Vector, memory: Vector) -> int:
-        """Return the mode in which these slip on, or are held."""
+        """Return the mode in which released bodies slip, or are held again: none are here."""
         return mode
 
     @inlined
     def with_deformable_slips(self, mode: int, state: Vector, memory: Vector) -> int:
-        """Return the mode in which these slip as was tried with the corners."""
+        """Return the mode with the slips on deformable bases of the last trial: none slips here."""
         return mode
 
     @inlined
@@ -207,7 +207,7 @@ class RigidCorners(Chain):
     def try_corners(
         self, mode: int, subset: int, closed: int, impulsive: bool, noise: float, state: Vector
     ) -> Trial:
-        """Let a set of the closed corners bear, each held against sliding."""
+        """Solve with a set of the closed corners bearing, each held against sliding."""
         return solve_trial(self, mode, subset, closed, False, impulsive, noise, state)
 
     @inlined
@@ -319,7 +319,7 @@ class RigidCorners(Chain):
 
     @kernel
     def move_onto_base(self, k: int, left: bool, body_mode: Mode, state: Vector) -> int:
-        """Move a corner that lands exactly onto its base; give the set that touches then."""
+        """Move a landing corner exactly onto its base; return the set of corners that touch it."""
         part, first = self.on_base(k), BEFORE_HORIZONTAL * k
         line = part.body.base_line_at(self.state_of(k, state))
         both = not part.flies(body_mode.contact)
@@ -350,7 +350,7 @@ class RigidCorners(Chain):
 
     @kernel
     def fix_held_points(self, mode: int, state: Vector, memory: Vector) -> None:
-        """Fix the held points of a mode where they are now; the velocities agree with it."""
+        """Store the present places of the held points of a mode, with consistent velocities."""
         for k in range(self.body_count):
             part, body_mode = self.on_base(k), self.part_mode(mode, k)
             if self.is_rigid(k) and not part.is_free(body_mode):

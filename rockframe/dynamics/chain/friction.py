@@ -86,7 +86,7 @@ class SlippingChain(SlipperyBases):
     ) -> int:
         """Return the mode in which friction can hold all held bodies, and opposes other slips.
 
-        Where no mode satisfies that with static friction, kinetic friction decides what is held.
+        If there is no such mode with static friction, kinetic friction decides what is held.
         """
         most, near = MAX_SLIP_CHANGES * self.body_count, NEARLY_ZERO
         for tries in range(2 * most):
@@ -95,7 +95,7 @@ class SlippingChain(SlipperyBases):
             coefficient = STATIC if tries < most else KINETIC
             found, push = self.overloaded_hold(released, coefficient, mode)
             if found >= 0:
-                if tries > 0:  # a body let go at the limit of its friction has another force now
+                if tries > 0:  # a body released at the limit of its friction has another force now
                     near = 0.0
                 mode = self.release(found, mode, state, memory)
                 mode = self.with_slip_sense(mode, found, -push)
@@ -109,14 +109,14 @@ class SlippingChain(SlipperyBases):
 
     @kernel
     def end_short_slips(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Return the mode in which bodies are held whose slip would stop after a negligible way."""
+        """Return the mode in which bodies are held whose remaining slip is negligible."""
         for k in range(self.body_count):
             mode = self.end_short_slip(k, mode, state, ground, memory)
         return self.find_consistent_slips(-1, mode, state, ground, memory)
 
     @kernel
     def overloaded_hold(self, released: int, coefficient: int, mode: int) -> tuple[int, float]:
-        """Return a body that friction `holding` cannot hold, or -1, and the force that would."""
+        """Return a body that friction cannot hold, or -1, and the force that would hold it."""
         work = self.workspace()
         for j in range(self.body_count):
             if not self.on_base(j).is_free(self.part_mode(mode, j)):

@@ -43,7 +43,7 @@ ROUNDING: Final = 1e-12
 NEARLY_ZERO: Final = 1e-5
 """Acceleration of a corner over gravity that counts as zero as its force comes to zero [1]."""
 JAMMED: Final = -2
-"""In place of the corner that leaves: no finite forces solve, and impulses must stop a slip."""
+"""In place of the leaving corner: no finite forces solve, and impulses must stop a slip."""
 ALL_SLIPS_ROUND: Final = 4
 """Number of the round of candidates in which all combinations of slips are tried."""
 MAX_PIVOTS: Final = 1000
@@ -51,7 +51,7 @@ MAX_PIVOTS: Final = 1000
 
 
 class Trial(NamedTuple):
-    """Outcome for a candidate set: the first corner at fault, or -1; energy lost in the impact."""
+    """Outcome for a candidate set: the first corner that violates a condition, or -1, and loss."""
 
     violation: int
     loss: float
@@ -71,7 +71,7 @@ class BearingCorners(NamedTuple):
 
 @kernel
 def bit_count(corners: int) -> int:
-    """Return the number of corners in a set."""
+    """Return the number of members of a set, which has a bit for each."""
     rest, count = corners, 0
     while rest > 0:
         count += rest & 1
@@ -80,7 +80,7 @@ def bit_count(corners: int) -> int:
 
 
 class NearbySubsets(NamedTuple):
-    """The subsets of `closed` that differ from `reference` in at most `most` corners."""
+    """The subsets of `closed` that differ from `reference` in at most a number of corners."""
 
     closed: int
     reference: int
@@ -147,7 +147,7 @@ def solve_trial(
     system: Any, mode: int, subset: int, closed: int, sticks: bool, impulsive: bool, noise: float,
     state: Vector,
 ) -> Trial:  # fmt: skip
-    """Solve with the set `some` of the closed corners constrained, and check the solution.
+    """Solve with a `subset` of the closed corners constrained, and check the solution.
 
     Bodies fly in `mode`. Solves for impulses, or for forces under the loads in the workspace. With
     `sticks` every body with a closed corner is held along its base, else only those that bear.
@@ -223,7 +223,7 @@ def write_trial_data(system: Any, impulsive: bool, state: Vector) -> None:
 def first_violation(
     system: Any, subset: int, closed: int, impulsive: bool, least: float, noise: float
 ) -> int:
-    """Return the first corner that is at fault by :eq:`eq-admissible`; -1 if none is."""
+    """Return the first corner that violates :eq:`eq-admissible`; -1 if none does."""
     work, rows, above = system.workspace(), system.constraints(), 0.0
     for corner in range(2 * system.body_count):
         k, side = corner // 2, corner % 2
@@ -238,7 +238,7 @@ def first_violation(
             if rows[which * CONSTRAINT_STRIDE + at.FORCE] < -least - none:
                 return corner
             continue
-        # as a corner parts under new forces, both its force and its acceleration are zero
+        # as a corner separates under new forces, both its force and its acceleration are zero
         least_rise = noise if impulsive else -noise
         if free_corner_rise(system, k, side) <= least_rise:
             return corner
@@ -276,7 +276,7 @@ def trial_noise(system: Any, closed: int, impulsive: bool, state: Vector) -> flo
 def find_bearing_corners(
     system: Any, mode: int, closed: int, in_tension: int, before: int, leaving: int, state: Vector
 ) -> BearingCorners:
-    """Find the closed corners that bear, beside those in `pulled`, which are held in any case.
+    """Find the closed corners that bear, beside those `in_tension`, which are held in any case.
 
     After an impact (`leaving` 0): the admissible set that loses the least energy; if there is none,
     the solution with sticking assumed, which is unique. Under new forces, as the force of the
@@ -339,7 +339,7 @@ def solve_subset(
     system: Any, search: int, mode: int, subset: int, closed: int, impulsive: bool, noise: float,
     state: Vector,
 ) -> Trial:  # fmt: skip
-    """Let a set of the closed corners bear, and find the slips in the given way."""
+    """Solve with a set of the closed corners bearing, and search for the slips."""
     if search == JAMMED:
         return system.try_stopping_slips(mode, subset, closed, noise, state)
     if search == ALL_SLIPS_ROUND:
@@ -355,8 +355,8 @@ def find_held_corner(
     """Return a set of corners, one of which is held though it does not press, and that corner.
 
     It is the only corner of its body in the set. Without it the set would not be admissible: the
-    corner would fall back, or another one would have to pull. If there are several such sets, the
-    one nearest to `before` is taken, preferably with `leaving` as the held corner. The corner is 0
+    corner would fall back, or another one would be in tension. Of several such sets the one
+    nearest to `before` is chosen, preferably with `leaving` as the held corner. The corner is 0
     if there is none.
     """
     chosen, held, least, closed = before, 0, math.inf, near.closed
@@ -382,7 +382,7 @@ def find_held_corner(
 
 @kernel
 def all_in_compression(system: Any, corners: int) -> bool:
-    """Whether the forces of all of some corners are compression, beyond rounding."""
+    """Whether all corners of a set are in compression, beyond rounding."""
     for corner in range(2 * system.body_count):
         if corners >> corner & 1 != 0:
             k = corner // 2

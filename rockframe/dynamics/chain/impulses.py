@@ -1,4 +1,4 @@
-"""Impulses in an event: of rigid bases, and of a deformable base on which an end lands (its blow).
+"""Impulses in an event: of rigid bases, and of a deformable base on which an end lands.
 
 First the corners that bear on rigid bases react to the impulse of the landing as constraints. If
 this takes tension or more than friction, all impulses of the event are undone and found again, the
@@ -31,9 +31,9 @@ from rockframe.dynamics.chain.rows import BODY_STRIDE, CONSTRAINT_STRIDE
 from rockframe.dynamics.switching import end_speed
 
 MAX_BISECTIONS: Final = 60
-"""Most steps of a bisection for the share of a blow: the bits of a float, and some."""
+"""Most steps of a bisection for the scale of a landing impulse: above the bits of a float."""
 MAX_LANDING_SCALE: Final = 1e3
-"""Largest share of a blow; if more is needed the blow stays as it was found first."""
+"""Largest scale of a landing impulse; if more is needed the impulse stays unscaled."""
 
 
 SLIP_TOLERANCE: Final = 1e-9
@@ -41,14 +41,14 @@ SLIP_TOLERANCE: Final = 1e-9
 
 
 class LandingScales(NamedTuple):
-    """Factors of a blow: `press` of the whole impulse, `along` of its friction beside that [1]."""
+    """Factors of a landing impulse: of the whole, and of its friction in addition [1]."""
 
-    press: float
-    along: float
+    normal: float
+    tangential: float
 
 
 class LandingSpeeds(NamedTuple):
-    """Velocities as impulses are found again: rise of an end beyond the old one, and slip."""
+    """Velocities after new impulses: of an end, less the target, and of slip."""
 
     excess: float
     slip: float  # velocity of slip, positive in the sense of the friction
@@ -78,7 +78,7 @@ class RigidImpulses(CornerGuards):
 
     @kernel
     def add_constraint_impulse(self, k: int, which: int, work: Vector, rows: Vector) -> None:
-        """Add the impulse of a rigid base's constraint to the sums of the bodies it acts on."""
+        """Add the impulse of a rigid base's constraint to the totals of the bodies it acts on."""
         first = which * CONSTRAINT_STRIDE
         force, direction = rows[first + at.FORCE], first + at.FORCE_DIRECTION
         for body in range(k, min(k + 2, self.body_count)):
@@ -97,7 +97,7 @@ class RigidImpulses(CornerGuards):
 
     @inlined
     def needs_new_impulses(self, closed: int, mode: int) -> bool:
-        """Whether impulses must be found again: a corner pulled, or a closed one did not act."""
+        """Whether impulses must be found again: in tension, or none at a closed corner."""
         return self.has_tension_impulse() or closed != self.bearing_corners(mode)
 
     @kernel
@@ -142,7 +142,7 @@ class RigidImpulses(CornerGuards):
 
     @kernel
     def undo_impulses(self, k: int, scales: LandingScales, mode: int, state: Vector) -> None:
-        """Undo the impulses of rigid bases, and scale the blow on a body to its shares."""
+        """Undo the impulses of rigid bases, and scale the landing impulse on a body."""
         work = self.workspace()
         write_kinematics(self, mode, state, work)
         for j in range(self.body_count):
@@ -150,10 +150,10 @@ class RigidImpulses(CornerGuards):
             work[i + at.LOAD_X] = -work[i + at.IMPULSE_X]
             work[i + at.LOAD_Y] = -work[i + at.IMPULSE_Y]
             work[i + at.LOAD_MOMENT] = -work[i + at.IMPULSE_MOMENT]
-        i, off = k * BODY_STRIDE, scales.press - 1.0
+        i, off = k * BODY_STRIDE, scales.normal - 1.0
         normal, moment = off * work[i + at.LANDING_NORMAL], off * work[i + at.LANDING_MOMENT]
         add_base_load(self, k, normal, moment, work)
-        off = scales.press * scales.along - 1.0
+        off = scales.normal * scales.tangential - 1.0
         add_tangential_load(self, k, off * work[i + at.LANDING_TANGENTIAL], work)
         solve_trial(self, mode, 0, 0, False, True, 0.0, state)
         self.change_velocities(state)
@@ -162,10 +162,10 @@ class RigidImpulses(CornerGuards):
     def landing_scales(
         self, k: int, ends: int, mode: int, closed: int, state: Vector
     ) -> LandingScales:
-        """Return the shares of a blow, and of its friction, as the impulses are found again.
+        """Return factors of a landing impulse, and of its friction, with new impulses elsewhere.
 
-        The blow is such that one end has the speed that restitution leaves it, and none a higher
-        one; its friction does not reverse the slip.
+        One end gets the speed that restitution prescribes, and none a higher one. Friction does
+        not reverse the slip.
         """
         work, i = self.workspace(), k * BODY_STRIDE
         if work[i + at.LANDING_NORMAL] <= 0.0 and work[i + at.LANDING_TANGENTIAL] == 0.0:
@@ -193,10 +193,10 @@ class RigidImpulses(CornerGuards):
     def friction_scale(
         self, k: int, opposed: bool, press: float, mode: int, closed: int, state: Vector
     ) -> float:
-        """Return the share of friction beside a share `press` of the blow: it must oppose the slip.
+        """Return the factor of friction for a factor `press` of the landing impulse.
 
-        It is 1 if friction did not oppose the slip in the first solution (`rubs` is false). The
-        slip is linear in the share as long as the same corners bear.
+        Friction must oppose the slip. The factor is 1 if it did not in the first solution
+        (`opposed` is false). The slip is linear in it as long as the same corners bear.
         """
         if not opposed or self.workspace()[k * BODY_STRIDE + at.LANDING_TANGENTIAL] == 0.0:
             return 1.0
@@ -220,7 +220,7 @@ class RigidImpulses(CornerGuards):
     def try_landing(
         self, k: int, ends: int, scales: LandingScales, mode: int, closed: int, state: Vector
     ) -> LandingSpeeds:
-        """Return velocities, with impulses found again for shares of a blow; restores the state."""
+        """Return velocities with a scaled landing impulse and new others; restores the state."""
         part, n, before = self.on_base(k), self.coordinates(), self.velocities(state)
         left, noise_left = end_speed(part, True, self.state_of(k, state))
         right, noise_right = end_speed(part, False, self.state_of(k, state))
@@ -245,7 +245,7 @@ class RigidImpulses(CornerGuards):
 
     @kernel
     def slip_along_friction(self, k: int, mode: int, state: Vector) -> float:
-        """Return the velocity of slip of a body, positive in the sense of its blow's friction."""
+        """Return the velocity of slip, positive in the sense of the friction of the landing."""
         part, body = self.on_base(k), self.state_of(k, state)
         pin = part.body.pin(self.part_mode(mode, k).pivot)
         reach = part.body.reach(pin, part.body.attitude(body.rotation))

@@ -112,7 +112,7 @@ class Linkable:
             raise NotImplementedError
 
         def write_poses(self, mode: int, state: Vector, work: Vector) -> None:
-            """Write displacements and rotations of bodies; `place_bodies` must have run before."""
+            """Write displacements and rotations of bodies, after `write_kinematics`."""
             raise NotImplementedError
 
         def write_kinematics_and_poses(self, mode: int, state: Vector, work: Vector) -> None:
@@ -140,7 +140,7 @@ class Linkable:
             raise NotImplementedError
 
         def link_event_index(self) -> int:
-            """Return the index, in the memory, of the number of the last event's link."""
+            """Return the index in the memory of the last event's link."""
             raise NotImplementedError
 
         def energies_of_bodies(self, mode: int, state: Vector) -> Energies:
@@ -196,24 +196,24 @@ class LinkRows(Linkable):
 
     @inlined
     def poses(self) -> Vector:
-        """Return the room for displacements of bodies, and for the loads of links on them."""
+        """Return displacements and rotations of bodies, and the forces of links on them."""
         return view_of(self.rows, self.links_end(), POSE_STRIDE * self.body_count)
 
     @inlined
     def slopes(self) -> Vector:
-        """Return the room for accelerations, rates of the links' variables, and powers."""
+        """Return the workspace for accelerations, rates of the links' variables, and powers."""
         first = self.links_end() + POSE_STRIDE * self.body_count
         return view_of(self.rows, first, self.coordinates() + self.variables() + POWERS)
 
     @inlined
     def slopes_end(self) -> int:
-        """Return the index behind the room for slopes."""
+        """Return the index behind the workspace for slopes."""
         lies = POSE_STRIDE * self.body_count + self.coordinates()
         return self.links_end() + lies + self.variables() + POWERS
 
     @inlined
     def guard_workspace(self, which: int) -> Vector:
-        """Return the room for guards (0) or their rates (1)."""
+        """Return the workspace for guards (0) or their rates (1)."""
         return view_of(self.rows, self.slopes_end() + which * self.guards(), self.guards())
 
     @inlined
@@ -223,7 +223,7 @@ class LinkRows(Linkable):
 
     @inlined
     def column_workspace(self) -> Vector:
-        """Return the room for columns."""
+        """Return the workspace for columns."""
         return view_of(self.rows, self.slopes_end() + 2 * self.guards(), self.columns())
 
     def array_length(self) -> int:

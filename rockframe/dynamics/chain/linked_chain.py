@@ -35,7 +35,7 @@ from rockframe.dynamics.trigonometry import sine_cosine, versine
 
 
 class LinkedBodies(LinkMechanics, Chain):
-    """Displacements of the bodies of a chain, as links need them. A mixin of systems.
+    """Bodies of a chain with the displacements that links depend on. A mixin of systems.
 
     The horizontal coordinate of the lowest body is integrated even while the body is held, as
     those of all other bodies are, since the elongations of links depend on it.
@@ -70,7 +70,7 @@ class LinkedBodies(LinkMechanics, Chain):
 
     @kernel
     def write_poses(self, mode: int, state: Vector, work: Vector) -> None:
-        """Write displacements and rotations of bodies; `place_bodies` must have run before."""
+        """Write displacements and rotations of bodies, after `write_kinematics`."""
         poses, x, y, rate, angle = self.poses(), 0.0, 0.0, 0.0, 0.0
         for k in range(self.body_count - 1, -1, -1):
             i, j = k * BODY_STRIDE, k * POSE_STRIDE
@@ -107,7 +107,7 @@ class LinkedChain(LinkedChainNumbers, LinkedBodies):  # pyright: ignore[reportGe
 
 
 class LinkedBodiesOnGround(LinkedBodies):
-    """Displacements of bodies of which the lowest may stand on rigid ground. A mixin of systems.
+    """Linked bodies, of which the lowest may stand on rigid ground. A mixin of systems.
 
     Forces of links are finite, so that links take no part in impacts. While rigid ground holds the
     lowest body, its horizontal coordinate is the place of the held point, and does not change.

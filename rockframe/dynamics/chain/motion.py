@@ -20,7 +20,7 @@ from rockframe.dynamics.chain.rows import (
 from rockframe.dynamics.protocol import Ground
 from rockframe.dynamics.trigonometry import sine_cosine
 
-FREE: Final = 0.0  # in the column HELD of the workspace
+FREE: Final = 0.0  # values of HOLD_STATE in the workspace
 HELD: Final = 1.0
 NOT_ELIMINATED: Final = -1.0
 """Code of a trial for a body whose constraints have not been eliminated."""
@@ -28,14 +28,14 @@ NOT_ELIMINATED: Final = -1.0
 
 @inlined
 def reset_elimination(system: ChainArray, work: Vector) -> None:
-    """Discard what was eliminated: the next solution starts from the beginning."""
+    """Mark all constraints as not eliminated: the next solution starts from the beginning."""
     i = (system.body_count - 1) * BODY_STRIDE
     work[i + at.TRIAL_CODE], work[i + at.FORCES_VALID] = NOT_ELIMINATED, 0.0
 
 
 @kernel
 def write_kinematics(system: ChainArray, mode: int, state: Vector, work: Vector) -> None:
-    """Write places and rates of all bodies relative to what they stand on, and velocities."""
+    """Write positions and rates of all bodies relative to what they stand on, and velocities."""
     reset_elimination(system, work)
     count, angle, rate, speed_x, speed_y = system.body_count, 0.0, 0.0, 0.0, 0.0
     below = 0.0  # top of the body below above its centre of mass
@@ -75,7 +75,7 @@ def write_kinematics(system: ChainArray, mode: int, state: Vector, work: Vector)
 
 @kernel
 def input_power(system: ChainArray, state: Vector, ground: Ground, work: Vector) -> float:
-    """Return the power of the ground at the rates of a state, for the places in the workspace."""
+    """Return the power of the ground at the rates of a state, with `work` for its placement."""
     count, supplied, rate, speed_x, speed_y = system.body_count, 0.0, 0.0, 0.0, 0.0
     for k in range(count - 1, -1, -1):
         i, mass, body = k * BODY_STRIDE, system.row_value(k, at.MASS), system.state_of(k, state)
@@ -153,9 +153,10 @@ def write_jacobian(
     system: ChainArray, k: int, along: float, normal: float, rotation: float, first: int,
     work: Vector, rows: Vector,
 ) -> None:  # fmt: skip
-    """Write a combination of a body's relative accelerations by weights in the axes of the ground.
+    """Write the weights of accelerations in a combination of a body's relative accelerations.
 
-    Those of the body, then of the one below: also its components as a generalized force on both.
+    In the axes of the ground, of the body, then of the one below. They are also the components
+    of a generalized force on both.
     """
     i = k * BODY_STRIDE
     sine, cosine = work[i + at.SINE], work[i + at.COSINE]
@@ -228,9 +229,9 @@ def inverse_mass_product(system: ChainArray, k: int, one: int, other: int, rows:
 
 
 @inlined
-def matrix_entry(system: ChainArray, moving: int, kept: int, force: int, rows: Vector) -> float:
-    """Return response of constraint `kept` to a unit force of `force`: an entry of the matrix."""
-    a, b = kept * CONSTRAINT_STRIDE, force * CONSTRAINT_STRIDE
+def matrix_entry(system: ChainArray, moving: int, row: int, column: int, rows: Vector) -> float:
+    """Return the response of constraint `row` to a unit force of constraint `column`."""
+    a, b = row * CONSTRAINT_STRIDE, column * CONSTRAINT_STRIDE
     one, other = int(rows[a + at.CONSTRAINED_BODY]), int(rows[b + at.CONSTRAINED_BODY])
     jacobian, direction, found = a + at.JACOBIAN, b + at.FORCE_DIRECTION, 0.0
     if one == other:
@@ -324,7 +325,9 @@ def solve_motion(
     stride = MAX_CONSTRAINTS * system.body_count
     for r in range(count - 1, -1, -1):
         force = rows[r * CONSTRAINT_STRIDE + at.RIGHT_HAND_SIDE]
-        for c in range(min(count, r + band + 1) - 1, r, -1):  # the force found last comes last
+        for c in range(
+            min(count, r + band + 1) - 1, r, -1
+        ):  # the force that was found last comes last
             force -= matrix[r * stride + c] * rows[c * CONSTRAINT_STRIDE + at.FORCE]
         rows[r * CONSTRAINT_STRIDE + at.FORCE] = force * matrix[r * stride + r]
     for r in range(count):

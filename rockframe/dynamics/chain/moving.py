@@ -73,7 +73,7 @@ class MovingBodies(ChainArray):
 
     @kernel
     def write_constraints(self, moving: int, mode: int, state: Vector, work: Vector) -> int:
-        """Write the constraints of the first `moving` bodies in a mode; give their number."""
+        """Write the constraints of the first `moving` bodies in a mode; return their number."""
         count, rows = 0, self.constraints()
         for k in range(moving):
             body_mode = self.part_mode(mode, k)
@@ -169,7 +169,7 @@ class MovingBodies(ChainArray):
 
     @kernel
     def find_forces(self, mode: int, state: Vector, ground: Ground) -> Vector:
-        """Return what `accelerate` gives, leave all forces, and note for which mode and state."""
+        """Return what `accelerate` does, with forces of all bodies and the inputs they are for."""
         found = self.accelerate_bodies(self.body_count, mode, state, ground)
         note = self.solved_inputs()
         note[0], note[2], note[3] = mode >> HALF_OF_BITS, ground.x, ground.y
@@ -341,7 +341,7 @@ class MovingBodies(ChainArray):
     ) -> VelocityChange:
         """Return the changes of velocities by an impulse of a base, or by a hold that stops a slip.
 
-        The changes of all velocities are in the room for slopes until the next solution.
+        The changes of all velocities are in `slopes` until the next solution.
         """
         work, out = self.workspace(), self.slopes()
         write_kinematics(self, mode, state, work)
@@ -382,7 +382,7 @@ class MovingBodies(ChainArray):
 
     @inlined
     def add_velocity_changes(self, state: Vector) -> None:
-        """Add the room for slopes to the velocities; held points keep their constraint exactly."""
+        """Add the changes in `slopes` to the velocities; held points remain held exactly."""
         out, work, n = self.slopes(), self.workspace(), self.coordinates()
         for i in range(n):
             state[n + i] += out[i]
@@ -394,7 +394,7 @@ class MovingBodies(ChainArray):
 
     @kernel
     def velocities(self, state: Vector) -> Vector:
-        """Return a copy of all velocities, in a room that the next call overwrites."""
+        """Return a copy of all velocities, which the next call overwrites."""
         out, n = self.velocity_workspace(), self.coordinates()
         for i in range(n):
             out[i] = state[n + i]

@@ -37,7 +37,7 @@ from rockframe.dynamics.switching import comes_back, end_speed, lift_by_slip, st
 
 # memory, behind the held places and the body of the last event
 ADMISSIBLE_COUNT: Final = 1  # number of admissible sets, or of slips, in the last event
-CHOSEN_CORNERS: Final = 2  # the set of corners that was taken
+CHOSEN_CORNERS: Final = 2  # the set of corners that was chosen
 NEXT_BEST_CORNERS: Final = 3  # the next best set, or -1
 SET_MEMORY: Final = ("admissible_sets", "set_taken", "other_set")
 """Names of these three."""
@@ -71,7 +71,7 @@ class RigidChain(RigidImpulses):
     def switch_contacts(
         self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Let a corner lift off or land, or a body change its contact with a deformable base."""
+        """Carry out a change of contact, at a corner on a rigid base or on a deformable base."""
         k, count = guard // GUARDS, self.body_count
         contact, which = self.part_mode(mode, k).contact, guard - k * GUARDS
         left = which < CORNER_GUARDS
@@ -99,7 +99,7 @@ class RigidChain(RigidImpulses):
             ends = self.landed_ends(k, left, mode, new)
             new = self.find_new_impulses(k, ends, closed, new, state, ground, memory)
             stay_if_small(self, self.on_base(k), k, left, new, state, ground, memory)
-            # the impulse of the hold is a part of the blow then, and has been scaled with it
+            # the impulse of the hold is a part of the landing impulse, and has been scaled with it
             memory[IMPACT_LOSS] += memory[REPINNING_LOSS] - pinned
             memory[REPINNING_LOSS] = pinned
         struck = memory[LAST_EVENT] in (IMPACT, REST)
@@ -141,11 +141,11 @@ class RigidChain(RigidImpulses):
     def reengage_end(
         self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Let a pad that rises behind an end touch it again; return the new mode.
+        """Bring an end into contact again with a pad that has followed it; return the new mode.
 
         After an impact elsewhere has slowed the end down, its pad presses it, but with a falling
-        force. If holding the end would not last, and its impulse would throw a corner down that is
-        at its rigid base, the end is not held: it is marked as one that lifts off while pressed.
+        force. If holding the end would not last, and its impulse would drive another corner into
+        its rigid base, the end is not held: it is marked as one that lifts off while pressed.
         """
         k, left = guard // GUARDS, guard % GUARDS < CORNER_GUARDS
         part, was = self.on_base(k), self.part_mode(mode, k)
@@ -171,8 +171,8 @@ class RigidChain(RigidImpulses):
     ) -> int:
         """Release corners that would be in tension if an end, reached by its pad, slid on it.
 
-        Corners that bear react to the impulse of the hold as if they could pull. They are released
-        if without them this impulse presses the end on its pad instead of lifting it.
+        The solution lets corners that bear react to the impulse of the hold in tension. They are
+        released if without them this impulse presses the end on its pad instead of lifting it.
         """
         part, was, body = self.on_base(k), self.part_mode(mode, k), self.state_of(k, state)
         if not part.flies(was.contact):
@@ -230,10 +230,10 @@ class RigidChain(RigidImpulses):
         self, k: int, left: bool, mode: int, new: int, state: Vector, ground: Ground,
         memory: Vector,
     ) -> int:  # fmt: skip
-        """Hold a corner that, held, was in tension and that, released, falls: neither is possible.
+        """Hold a corner that is in tension if it is held and falls if it is released.
 
-        Or of which the other corner of its body falls, practically at its base. Such a jam comes
-        from the constraints that hold bodies along their bases.
+        Or one whose body has another corner that is practically at its base and falls. The
+        constraints that hold bodies along their bases cause such a jam.
         """
         rises, falls = self.end_accelerations(k, new, state, ground), False
         for side in range(2):
@@ -259,7 +259,7 @@ class RigidChain(RigidImpulses):
     def stand_on_corners(
         self, corners: int, in_tension: int, mode: int, state: Vector, memory: Vector
     ) -> int:
-        """Let bodies stand on corners, by impulses that may be tension; return the new mode."""
+        """Stop bodies on corners, by impulses that may be tension; return the new mode."""
         self.project_onto_contacts(mode, state, memory)
         flying = self.with_bearing_corners(mode, 0, 0)
         kinetic = self.energies(flying, state).kinetic  # places the bodies, too
@@ -279,8 +279,8 @@ class RigidChain(RigidImpulses):
     ) -> int:  # fmt: skip
         """Undo impulses of rigid bases in an event elsewhere; find new ones, in compression only.
 
-        They act at the corners `closed`. The blow at the ends of body `k` that have landed is
-        scaled, so that it does not throw them up.
+        They act at the corners `closed`. The impulse at the ends of body `k` that have landed is
+        scaled, so that these do not rebound faster than restitution allows.
         """
         free = self.release_all(mode, state, memory)
         self.project_onto_contacts(free, state, memory)
@@ -299,7 +299,7 @@ class RigidChain(RigidImpulses):
         self, mode: int, closed: int, before: int, leaving: int, state: Vector, ground: Ground,
         memory: Vector,
     ) -> int:  # fmt: skip
-        """Find which of the closed corners bear, and let these bear; return the new mode.
+        """Find which of the closed corners bear; return the mode in which they do.
 
         After an impact if `leaving` is 0, else under new forces as that corner lifts off.
         """
@@ -335,7 +335,7 @@ class RigidChain(RigidImpulses):
 
     @inlined
     def rest_repeatedly(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Let bodies come to rest, repeatedly: one at rest may let another come to rest."""
+        """Bring bodies to rest, repeatedly: one at rest may allow another to come to rest."""
         new = mode
         for _ in range(self.body_count):
             new = self.rest_small_rebounds(new, state, ground, memory)
@@ -343,7 +343,7 @@ class RigidChain(RigidImpulses):
 
     @kernel
     def rest_small_rebounds(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Let bodies whose rebound is negligible come to rest, together or one by one."""
+        """Bring bodies whose rebound is negligible to rest, together or one by one."""
         n, corners, small, count = self.coordinates(), self.bearing_corners(mode), 0, 0
         slope = self.find_forces(mode, state, ground)
         for k in range(self.body_count):
@@ -368,7 +368,7 @@ class RigidChain(RigidImpulses):
     def rest_on_corners(
         self, corners: int, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Let bodies stand on both corners if these are in compression; else give `mode`."""
+        """Bring bodies to rest on both corners if these are in compression; else return `mode`."""
         before, lost = self.velocities(state), memory[IMPACT_LOSS]
         all_of_them = self.bearing_corners(mode) | corners
         resting = self.stand_on_corners(all_of_them, 0, mode, state, memory)

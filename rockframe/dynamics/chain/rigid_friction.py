@@ -15,8 +15,8 @@ from rockframe.dynamics.chain.impact import JAMMED, BearingCorners, find_bearing
 from rockframe.dynamics.chain.motion import set_inertia_loads
 from rockframe.dynamics.chain.rigid import ADMISSIBLE_COUNT, CHOSEN_CORNERS, NEXT_BEST_CORNERS
 from rockframe.dynamics.chain.rows import BODY_STRIDE, GUARDS
+from rockframe.dynamics.chain.slip_trials import SlipTrials
 from rockframe.dynamics.chain.slips import OFFSET, ROUNDING, STATIC
-from rockframe.dynamics.chain.tried_slips import SlipTrials
 from rockframe.dynamics.events import IMPACT, REST, SILENT, STICK
 from rockframe.dynamics.on_base import HOLD, SLIP, Mode
 from rockframe.dynamics.pads import CORNER_GUARDS
@@ -24,7 +24,7 @@ from rockframe.dynamics.protocol import HELD_PLACE, IMPACT_LOSS, LAST_EVENT, Gro
 from rockframe.dynamics.switching import stay_if_small
 
 FRICTION_CHANGED: Final = -1
-"""In place of the corner that leaves: only friction has changed."""
+"""In place of the leaving corner: only friction has changed."""
 
 
 class SlippingRigidChain(SlipTrials):
@@ -68,7 +68,7 @@ class SlippingRigidChain(SlipTrials):
             new = self.find_contacts_and_slips(mode, state, ground, memory)
             memory[LAST_EVENT] = self.slip_event(k, mode, new)
             memory[HELD_PLACE + self.body_count] = k + 1.0
-            if memory[LAST_EVENT] == STICK:  # once a body is held bounces may end
+            if memory[LAST_EVENT] == STICK:  # once a body is held, rebounds may end
                 new = self.rest_repeatedly(new, state, ground, memory)
                 new = self.with_consistent_slips(new, state, ground, memory)
         elif self.is_slippery(k):
@@ -114,7 +114,7 @@ class SlippingRigidChain(SlipTrials):
     ) -> int:
         """Hold bodies again whose slip on deformable bases after an impact is negligible.
 
-        Then bounces may end, too.
+        After that, rebounds may end, too.
         """
         new = mode
         for k in range(self.body_count):
@@ -176,7 +176,7 @@ class SlippingRigidChain(SlipTrials):
 
     @inlined
     def restore_slips(self, mode: int, state: Vector, memory: Vector) -> None:
-        """Continue the slips after an event from their stored values, maybe of new points."""
+        """Continue the slips after an event from their stored values."""
         for k in range(self.body_count):
             memory[self.slip_memory(k) + OFFSET] -= self.contact_point(k, mode, state, memory)
         self.update_peak_slips(mode, state, memory)
@@ -189,12 +189,12 @@ class SlippingRigidChain(SlipTrials):
         new, event = mode, memory[LAST_EVENT]
         for _ in range(self.body_count):
             self.find_forces(new, state, ground)
-            amiss = False
+            violated = False
             for k in range(self.body_count):
-                amiss |= self.violates_friction(k, new, state)
+                violated |= self.violates_friction(k, new, state)
                 # with other corners it may be held
                 self.workspace()[k * BODY_STRIDE + at.STARTING_SENSE] = 0.0
-            if not amiss:
+            if not violated:
                 break
             new = self.find_contacts_and_slips(new, state, ground, memory)
             memory[LAST_EVENT] = event
@@ -202,7 +202,7 @@ class SlippingRigidChain(SlipTrials):
 
     @kernel
     def violates_friction(self, k: int, mode: int, state: Vector) -> bool:
-        """Whether friction cannot hold a body that is held, or acts along the slip."""
+        """Whether friction cannot hold a held body, or acts in the sense of the slip."""
         part, body_mode = self.on_base(k), self.part_mode(mode, k)
         friction, work = self.friction_coefficient(k, STATIC), self.workspace()
         if part.flies(body_mode.contact) or friction == math.inf:
@@ -237,7 +237,7 @@ class SlippingRigidChain(SlipTrials):
     def find_contacts_and_slips(
         self, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Return the mode whose corners and slips agree with the forces, found by trial of sets."""
+        """Return the mode whose corners and slips agree with the forces, by trial of sets."""
         sets, before = HELD_PLACE + self.body_count, self.bearing_corners(mode)
         self.project_onto_contacts(mode, state, memory)  # of bodies that were held and may slip
         self.write_trial_slips(mode)
@@ -288,7 +288,7 @@ class SlippingRigidChain(SlipTrials):
     ) -> BearingCorners:
         """Stop slips by impulses, as no finite forces solve the equations, :eq:`eq-stack-jam`.
 
-        Gives the corners that bear then. Where no set is admissible nothing is changed.
+        Returns the corners that bear. If no set is admissible, nothing is changed.
         """
         kinetic = self.energies(flying, state).kinetic  # places the bodies, too
         set_inertia_loads(self, 0.0, 0.0, self.workspace())

@@ -41,20 +41,18 @@ BASE_COLUMNS: Final = 3
 """Columns of a base, of which pads have two."""
 
 # workspace behind the rows, for each body. First its frame, which rotates with the body below or
-# rests with the ground: its axes lie along and normal to the surface that the body stands on
+# is fixed to the ground: its axes are tangential and normal to the surface under the body
 SINE: Final = 0  # of the rotation of the frame
 COSINE: Final = 1
-TANGENTIAL: Final = 2  # centre of mass from that of the body below, along the frame [m]
-NORMAL: Final = 3  # the same, normal to it [m]
-TANGENTIAL_RATE: Final = 4  # rate of ACROSS [m s^-1]
-NORMAL_RATE: Final = 5  # rate of ARM [m s^-1]
-PIVOT_ARM: Final = 6  # dx/da of the centre of mass about the point of the base that is held [m]
-PIVOT_CENTRIPETAL: Final = (
-    7  # d2x/da2 times the square of RATE, an acceleration along the frame [m s^-2]
-)
+TANGENTIAL: Final = 2  # position of the centre of mass relative to that of the body below [m]
+NORMAL: Final = 3
+TANGENTIAL_RATE: Final = 4  # their rates [m s^-1]
+NORMAL_RATE: Final = 5
+PIVOT_ARM: Final = 6  # dx/da of the centre of mass about the held point of the base [m]
+PIVOT_CENTRIPETAL: Final = 7  # d2x/da2 times the square of ROTATION_RATE, tangential [m s^-2]
 FRAME_ROTATION_RATE: Final = 8  # angular velocity of the frame [s^-1]
 ROTATION_RATE: Final = 9  # angular velocity of the body relative to the frame [s^-1]
-HOLD_STATE: Final = 10  # whether a point of its base is held along the frame
+HOLD_STATE: Final = 10  # HELD or FREE: whether a point of its base is held tangentially
 # velocity of the centre of mass, loads, and accelerations, in the axes of the ground; in an event
 # impulses stand for loads, and changes of velocities for accelerations
 SPEED_X: Final = 11
@@ -65,12 +63,12 @@ LOAD_MOMENT: Final = 15
 ACCELERATION_X: Final = 16
 ACCELERATION_Y: Final = 17
 ANGULAR_ACCELERATION: Final = 18
-# force of the base on the body, along and normal to the frame [m s^-2]
+# force of the base on the body, in the axes of the frame [m s^-2]
 TANGENTIAL_FORCE: Final = 19
 NORMAL_FORCE: Final = 20
 # on a rigid base: numbers of the constraints of the corners, or -1, and impulses of these in an
-# event; impulses of all rigid bases on the body, in the axes of the ground; impulses of a base that
-# is not rigid as an end lands on it: normal to the base, their moment, and along it
+# event; impulses of all rigid bases on the body, in the axes of the ground; impulses of a
+# deformable base as an end lands on it: normal, their moment, and tangential
 LEFT_CONSTRAINT: Final = 21
 RIGHT_CONSTRAINT: Final = 22
 LEFT_IMPULSE: Final = 23
@@ -86,13 +84,11 @@ IMPULSE_COUNT: Final = 8  # numbers from LEFT_IMPULSE on
 SLIP_SENSE: Final = 31  # in the present trial
 STARTING_SENSE: Final = 32  # in which friction that is overcome lets the body start to slip
 FRICTION_RATIO: Final = 33  # friction over normal force at a corner that slips, with its sign [1]
-FRICTION_LOAD: Final = (
-    34  # friction among the loads, of a body that slips on a base that is not rigid
-)
+FRICTION_LOAD: Final = 34  # friction among the loads, of a body that slips on a deformable base
 TANGENTIAL_CONSTRAINT: Final = 35  # number of the constraint that holds the body along its base
-# of the left, then the right corner on a rigid base, for the search for corners that bear: rate of
-# its height with the rotation, the normal acceleration (or change of velocity) by which it rests on
-# the base; dx/da about it, and the tangential acceleration (or change) by which it does not slip
+# of the left, then the right corner on a rigid base, for the search for corners that bear:
+# derivative of its height by the rotation, prescribed normal acceleration (or change of velocity)
+# if it bears; dx/da about it, prescribed tangential acceleration (or change) if it does not slip
 CORNER_LEVERS: Final = 36
 NORMAL_PRESCRIBED: Final = 38
 CORNER_ARMS: Final = 40
@@ -106,24 +102,23 @@ LOW_BITS: Final = 48
 ATTITUDE: Final = 49  # sine and cosine of the rotation on the base, and h(1 - cos a) [m]
 TRIAL_CODE: Final = 52  # code of the constraints of the body in the last trial of corners
 CONSTRAINT_COUNT: Final = 53  # how many constraints it and the bodies below have in that trial
-FORCES_VALID: Final = 54  # whether the forces of the last solution are valid, see `solved_room`
+FORCES_VALID: Final = 54  # whether the forces of the last solution are valid, see `solved_inputs`
 BODY_STRIDE: Final = 55  # numbers of each body
 
-MAX_CONSTRAINTS: Final = 3  # of each body; the numbers of a constraint are
+MAX_CONSTRAINTS: Final = 3  # of each body; numbers of a constraint:
 CONSTRAINED_BODY: Final = 0  # number of its body
 PRESCRIBED: Final = 1  # prescribed value of the combination of accelerations that it constrains
 FORCE: Final = 2  # Lagrange multiplier: its force, or its impulse in an event
-JACOBIAN: Final = (
-    3  # that combination: weights of X, Y, ROTATION of its body, then of the one below
-)
-FORCE_DIRECTION: Final = (
-    9  # force and moment of a unit multiplier on its body, then on the one below
-)
+# weights of the accelerations x, y and rotation of its body, then of the one below
+JACOBIAN: Final = 3
+# force and moment of a unit multiplier on its body, then on the one below
+FORCE_DIRECTION: Final = 9
 RIGHT_HAND_SIDE: Final = 15  # right-hand side of its equation, reduced by elimination
-UNSYMMETRIC: Final = 16  # whether its force, or that of one before it, acts elsewhere than it keeps
+# whether the force of this constraint, or of one before it, is not along its Jacobian
+UNSYMMETRIC: Final = 16
 CONSTRAINT_STRIDE: Final = 17  # numbers of a constraint
-# then slopes, guards and their rates, velocities, columns, the matrix of the constraints, and what
-# the forces were solved for
+# then slopes, guards and their rates, velocities, columns, the matrix of the constraints, and the
+# inputs of the last solution for forces
 
 GUARDS: Final = 2 * CORNER_GUARDS + BODY_GUARDS
 """Guards of each body."""
@@ -143,7 +138,7 @@ RIGID_MODES: Final = 2 * 2 * END_STATES  # what is held follows from the corners
 
 
 INPUTS_BEFORE_STATE: Final = 4
-"""Numbers before the state in `solved_room`: both halves of the mode, and ground acceleration."""
+"""Numbers before the state in `solved_inputs`: both halves of the mode, and ground acceleration."""
 
 
 @kernel
@@ -171,9 +166,9 @@ class ChainArray(InState, CalledBySteps, ChainNumbers):
         return self.body_count
 
     @inlined
-    def row_value(self, k: int, which: int) -> float:
+    def row_value(self, k: int, column: int) -> float:
         """Return a number of a body's row, by its column."""
-        return float(self.rows[k * ROW_STRIDE + which])
+        return float(self.rows[k * ROW_STRIDE + column])
 
     @inlined
     def workspace(self) -> Vector:
@@ -182,7 +177,7 @@ class ChainArray(InState, CalledBySteps, ChainNumbers):
 
     @inlined
     def constraints(self) -> Vector:
-        """Return the room for constraints."""
+        """Return the numbers of all constraints."""
         width = MAX_CONSTRAINTS * CONSTRAINT_STRIDE
         return view_of(
             self.rows, self.body_count * (ROW_STRIDE + BODY_STRIDE), self.body_count * width
@@ -190,7 +185,7 @@ class ChainArray(InState, CalledBySteps, ChainNumbers):
 
     @inlined
     def slopes(self) -> Vector:
-        """Return the room for accelerations and powers."""
+        """Return the workspace for accelerations and powers."""
         return view_of(self.rows, self.constraints_end(), DEGREES * self.body_count + POWERS)
 
     @inlined
@@ -200,32 +195,32 @@ class ChainArray(InState, CalledBySteps, ChainNumbers):
 
     @inlined
     def guard_workspace(self, which: int) -> Vector:
-        """Return the room for guards (0) or their rates (1)."""
+        """Return the workspace for guards (0) or their rates (1)."""
         first = self.constraints_end() + self.body_count * (DEGREES + which * GUARDS) + POWERS
         return view_of(self.rows, first, GUARDS * self.body_count)
 
     @inlined
     def velocity_workspace(self) -> Vector:
-        """Return the room for velocities."""
+        """Return the workspace for velocities."""
         first = self.constraints_end() + self.body_count * (DEGREES + 2 * GUARDS) + POWERS
         return view_of(self.rows, first, DEGREES * self.body_count)
 
     @inlined
     def column_workspace(self) -> Vector:
-        """Return the room for columns."""
+        """Return the workspace for columns."""
         first = self.constraints_end() + self.body_count * (2 * DEGREES + 2 * GUARDS) + POWERS
         return view_of(self.rows, first, COLUMNS * self.body_count)
 
     @inlined
     def constraint_matrix(self) -> Vector:
-        """Return the room for the matrix of the constraints: what each does to each other one."""
-        work = 2 * DEGREES + 2 * GUARDS + COLUMNS
-        first = self.constraints_end() + self.body_count * work + POWERS
+        """Return the matrix of the constraints: responses of each to the forces of the others."""
+        each = 2 * DEGREES + 2 * GUARDS + COLUMNS
+        first = self.constraints_end() + self.body_count * each + POWERS
         return view_of(self.rows, first, (MAX_CONSTRAINTS * self.body_count) ** 2)
 
     @inlined
     def solved_inputs(self) -> Vector:
-        """Return the room for the mode, ground acceleration and state of the last solution."""
+        """Return the mode, ground acceleration and state of the last solution for forces."""
         first = self.chain_end() - INPUTS_BEFORE_STATE - 2 * DEGREES * self.body_count
         return view_from(self.rows, first)
 

@@ -40,7 +40,7 @@ class SlipperyBases(SlippingBodies):
     ) -> int:
         """Carry out the switch of an end's contact, or of the held point of a body.
 
-        In the mode that is given the body is released, unless nothing happens.
+        In the new mode the body is released, except after a silent event.
         """
         if which < 2 * CORNER_GUARDS:
             left = which < CORNER_GUARDS
@@ -80,7 +80,7 @@ class SlipperyBases(SlippingBodies):
     ) -> int:
         """Reduce the speed of the end that lands, or of both, with friction in the impact.
 
-        Other deformable bases press with forces. The friction of these has no impulse.
+        Other deformable bases act with finite forces: their friction has no impulse.
         """
         mode = self.release_all(mode, state, memory)
         for j in range(self.body_count):
@@ -122,8 +122,8 @@ class SlipperyBases(SlippingBodies):
     def strike_ends(self, k: int, mode: int, state: Vector) -> int:
         """Reduce the speeds of both ends in one impact, each by its own factor eps; return 0.
 
-        Where friction would lift one of them, the other strikes alone: returns LEFT_ONLY or
-        RIGHT_ONLY for this one, and leaves the velocities as they are.
+        Where friction would lift one of them, only the other has an impact: returns LEFT_ONLY or
+        RIGHT_ONLY for this one, and leaves the velocities unchanged.
         """
         body, base = self.on_base(k)
         line = body.base_line_at(self.state_of(k, state))
@@ -191,7 +191,7 @@ class SlipperyBases(SlippingBodies):
     ) -> tuple[float, float]:
         """Return the changes of its body's rate of rise and of slip by impulses of a base.
 
-        The changes of all velocities are in the room for slopes until the next solution.
+        The changes of all velocities are in `slopes` until the next solution.
         """
         work, out = self.workspace(), self.slopes()
         write_kinematics(self, mode, state, work)
@@ -222,7 +222,7 @@ class SlipperyBases(SlippingBodies):
     ) -> int:
         """Hold a body whose decelerating slip on its deformable base is negligible.
 
-        Its remaining way is added to its place, and its velocity is stopped.
+        The rest of its slip is added to its position at once, and its velocity is set to zero.
         """
         body = self.on_base(k).body
         if not self.part_mode(mode, k).slides:
@@ -236,7 +236,7 @@ class SlipperyBases(SlippingBodies):
         if rate * rate >= 2.0 * slows * REST_AMPLITUDE * body.size():
             return mode
         kinetic = self.energies_of_bodies(slips, state).kinetic
-        state[self.horizontal_of(k)] += 0.5 * rate * abs(rate) / slows  # the way until it stops
+        state[self.horizontal_of(k)] += 0.5 * rate * abs(rate) / slows  # the slip until it stops
         # an impulse of its base stops it, without friction of slips elsewhere
         _, slides = self.impulse_response(k, 0.0, 0.0, 1.0, slips, state)
         self.impulse_response(k, 0.0, 0.0, -rate / slides, slips, state)
@@ -249,9 +249,10 @@ class SlipperyBases(SlippingBodies):
     def with_intermediate_contact(
         self, k: int, left: bool, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Return mode after an end has lifted off, or is pressed again, and the held point moved.
+        """Return the mode after an end has lifted off, or touches again, and the held point moved.
 
-        If that change would reverse its switch at once the end gets the contact between the two.
+        If the new forces would reverse the switch immediately, the end gets the contact state
+        between the two.
         """
         part, now, event = self.on_base(k), self.part_mode(mode, k), memory[LAST_EVENT]
         if event not in (SEPARATION, REENGAGEMENT) or part.flies(now.contact):

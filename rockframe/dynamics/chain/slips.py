@@ -27,7 +27,7 @@ STATIC: Final = 0
 KINETIC: Final = 1
 IMPULSIVE: Final = 2  # in impacts
 FRICTION_STRIDE: Final = 3
-"""Coefficients of each body, behind the array of the chain; the room for columns follows."""
+"""Coefficients of each body, behind the array of the chain; the workspace for columns follows."""
 SLIP_COLUMNS: Final = 2  # slip and its rate
 
 OFFSET: Final = 0  # slip less the place of the held point [m]
@@ -54,7 +54,7 @@ class SlippingBodies(Chain):
 
     @inlined
     def column_workspace(self) -> Vector:
-        """Return the room for columns."""
+        """Return the workspace for columns."""
         first = self.chain_end() + FRICTION_STRIDE * self.body_count
         return view_of(self.rows, first, (COLUMNS + SLIP_COLUMNS) * self.body_count)
 
@@ -76,7 +76,7 @@ class SlippingBodies(Chain):
 
     @inlined
     def with_slip_sense(self, mode: int, k: int, sense: float) -> int:
-        """Return the mode in which a body slips in a sense."""
+        """Return the mode in which a body slips to the right (1) or left (-1)."""
         was, value = self.part_mode(mode, k), self.body_mode_count() * 2**k
         new = self.with_part(mode, k, Mode(was.contact, was.pivot, True))
         new -= new // value % 2 * value
@@ -153,7 +153,7 @@ class SlippingBodies(Chain):
 
     @kernel
     def set_friction_load(self, k: int, sense: float, work: Vector) -> None:
-        """Replace the friction among a body's loads by that of a slip in a sense.
+        """Set the kinetic friction among a body's loads, for a sense of slip.
 
         The normal force of springs and dashpots is known, so is friction, :eq:`eq-mixed-slips`.
         """
@@ -212,7 +212,7 @@ class SlippingBodies(Chain):
 
     @kernel
     def with_slip(self, k: int, sense: float, mode: int, state: Vector, memory: Vector) -> int:
-        """Return the mode in which a body slips in a sense, or, with 0, is held."""
+        """Return the mode in which a body slips in a sense, or is held if the sense is 0."""
         body_mode = self.part_mode(mode, k)
         if sense != 0.0:
             return self.with_slip_sense(self.release(k, mode, state, memory), k, sense)
@@ -270,6 +270,6 @@ class SlippingBodies(Chain):
 
 
 def friction_numbers(frictions: Sequence[tuple[float, float, float]]) -> Vector:
-    """Return the coefficients of friction of all bases, then the room for columns."""
+    """Return the coefficients of friction of all bases, then a workspace for columns."""
     work = (COLUMNS + SLIP_COLUMNS) * len(frictions)
     return np.concatenate([np.ravel(frictions), np.zeros(work)])

@@ -79,7 +79,7 @@ class SlipTrials(SlipperyBases, RigidChain):
 
     @kernel
     def with_rigid_slip(self, k: int, bears: int, mode: int) -> int:
-        """Return the mode with the slip, on a rigid base, that the last trial gave a body."""
+        """Return the mode with the slip of a body on its rigid base in the last trial."""
         sense = self.trial_sense(k)
         if bears != 0 and sense != 0.0:
             return self.with_slip_sense(mode, k, sense)
@@ -113,7 +113,7 @@ class SlipTrials(SlipperyBases, RigidChain):
 
     @inlined
     def bearing_pivot(self, bears: int) -> int:
-        """Return the pivot at corners that bear; where both do they have one velocity."""
+        """Return the pivot at the corners that bear: if both do, they have the same velocity."""
         return PIVOT_LEFT if bears == LEFT_ONLY else PIVOT_RIGHT
 
     @inlined
@@ -186,9 +186,9 @@ class SlipTrials(SlipperyBases, RigidChain):
 
     @kernel
     def needs_new_impulses(self, closed: int, mode: int) -> bool:
-        """Whether impulses must be found again: a base with friction acted, or a corner pulled.
+        """Whether impulses must be found again: friction or tension acted.
 
-        Or a closed corner did not act, as it did not bear before.
+        Or a closed corner had no impulse, as it did not bear before.
         """
         work = self.workspace()
         for k in range(self.body_count):
@@ -202,7 +202,7 @@ class SlipTrials(SlipperyBases, RigidChain):
     def try_corners(
         self, mode: int, subset: int, closed: int, impulsive: bool, noise: float, state: Vector
     ) -> Trial:
-        """Let a set of the closed corners bear, and find which of their bodies slip, base by base.
+        """Solve with a set of the closed corners bearing; find which bodies slip, base by base.
 
         In an impact the velocities after it decide. Under new forces, slipping bodies continue to
         slip, and held ones start to slip if friction cannot hold them.
@@ -221,7 +221,7 @@ class SlipTrials(SlipperyBases, RigidChain):
 
     @kernel
     def write_first_slips(self, mode: int, subset: int, impulsive: bool, state: Vector) -> int:
-        """Write the first slips of a trial; return the set of bodies whose slip is open."""
+        """Write the first slips of a trial; return the set of bodies whose slip is undecided."""
         work, undecided = self.workspace(), 0
         for k in range(self.body_count):
             i, pivot = k * BODY_STRIDE, self.trial_pivot(k, mode, subset, impulsive)
@@ -240,10 +240,10 @@ class SlipTrials(SlipperyBases, RigidChain):
     def try_all_slips(
         self, mode: int, subset: int, closed: int, noise: float, state: Vector
     ) -> Trial:
-        """Let a set of the closed corners bear with the first consistent combination of slips.
+        """Solve with a set of the closed corners bearing and the first consistent slips.
 
         The search base by base may fail where the slip of one body, say of an end on pads, makes
-        another base push harder the more it is held back.
+        another base push harder the more its slip is resisted.
         """
         undecided = self.write_first_slips(mode, subset, False, state)
         for combination in range(min(3 ** bit_count(undecided), MAX_COMBINATIONS)):
@@ -256,7 +256,7 @@ class SlipTrials(SlipperyBases, RigidChain):
 
     @inlined
     def write_combination(self, combination: int, bodies: int) -> None:
-        """Write the slips of a set of bodies: digits, in base 3, of the number `way`."""
+        """Write the slips of a set of bodies: digits of `combination` in base 3."""
         for k in range(self.body_count):
             if bodies >> k & 1 != 0:
                 self.workspace()[k * BODY_STRIDE + at.SLIP_SENSE] = float((combination + 1) % 3 - 1)
@@ -304,7 +304,7 @@ class SlipTrials(SlipperyBases, RigidChain):
     def is_admissible(
         self, mode: int, subset: int, closed: int, noise: float, state: Vector
     ) -> bool:
-        """Whether a set of corners that bear, with the slips as written, is admissible."""
+        """Whether a set of bearing corners with the present slips is admissible."""
         combination = self.trial_combination()
         found = solve_trial(self, mode, subset, closed, False, False, noise, state)
         k = self.correct_one_slip(mode, subset, closed, False, STATIC, noise, state)
@@ -313,10 +313,10 @@ class SlipTrials(SlipperyBases, RigidChain):
 
     @kernel
     def solve_standing(self, mode: int, corners: int, state: Vector) -> None:
-        """Find the impulses by which bodies stand on corners: slipping ones slip, others are held.
+        """Find the impulses by which bodies stand on corners: some slip, others are held.
 
-        A body whose slip would be reversed, as no friction can do, is held, too. Friction does not
-        act at a base in tension, where it would drive the slip.
+        A body whose slip would be reversed is held, too, since friction only opposes slip.
+        Friction does not act at a base in tension, where it would drive the slip.
         """
         work, changed = self.workspace(), True
         self.write_slips_before_impact(mode, corners, state)
@@ -340,7 +340,7 @@ class SlipTrials(SlipperyBases, RigidChain):
     def try_stopping_slips(
         self, mode: int, subset: int, closed: int, noise: float, state: Vector
     ) -> Trial:
-        """Let a set of closed corners bear by impulses that stop a slip, each slip in turn."""
+        """Solve for impulses at a set of closed corners that stop a slip, each slip in turn."""
         work = self.workspace()
         for stopped in range(self.body_count):
             self.write_slips_before_impact(mode, subset, state)
@@ -369,7 +369,7 @@ class SlipTrials(SlipperyBases, RigidChain):
 
     @inlined
     def trial_pivot(self, k: int, mode: int, subset: int, impulsive: bool) -> int:
-        """Return the pivot at which a body is held or slips in a trial of corners, or `NOWHERE`.
+        """Return the pivot at which a body is held or slips in a trial of corners, or `NO_PIVOT`.
 
         On a deformable base friction has no part in impacts.
         """
@@ -393,9 +393,9 @@ class SlipTrials(SlipperyBases, RigidChain):
         self, mode: int, subset: int, closed: int, impulsive: bool, coefficient: int, noise: float,
         state: Vector,
     ) -> int:  # fmt: skip
-        """Correct the slip of one body in the present trial, and give its number; else -1.
+        """Correct the slip of one body in the present trial, and return its number; else -1.
 
-        A held body slips if friction, of the coefficient `holding`, cannot hold it; a slipping one
+        A held body slips if friction, of number `coefficient`, cannot hold it; a slipping one
         is held if it does not slip. Accelerations up to `noise` count as zero.
         """
         work = self.workspace()
