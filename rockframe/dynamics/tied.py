@@ -106,7 +106,7 @@ def pulled(
 ) -> Tied:
     """Return elongation and force of a link; `stretch` is an elongation for the force alone."""
     moved, way, direction = point
-    apart, along, meets = np.array(tie.apart), any(tie.along), False
+    apart, along, meets = np.array(tie.separation), any(tie.along), False
     if along:
         elongation = float(direction @ moved)
     else:
@@ -134,7 +134,7 @@ def _answer(
 ) -> tuple[float, int, float, float]:
     """Return a link's force, its state, and the force's derivatives by elongation and rate."""
     law: Any = tie.numbers.law
-    length, reach = math.hypot(*tie.apart), tie.reach
+    length, reach = math.hypot(*tie.separation), tie.length_scale
     stretch, own = Stretch(elongation, 0.0, 0.0, length, 1e-15 * reach), np.zeros(law.variables())
     starting = law.starting(stretch, own)
     found = starting if state is None else state
@@ -154,7 +154,7 @@ def _reached(tie: ChainLink, moved: Vector, way: Matrix) -> Reached:
     """Return relative displacement, its derivatives and the direction of a link."""
     if any(tie.along):
         return Reached(moved, way, np.array(tie.along))
-    now = np.array(tie.apart) + moved
+    now = np.array(tie.separation) + moved
     length = math.hypot(*now)
     return Reached(moved, way, now / length if length else np.zeros(2))
 

@@ -59,14 +59,15 @@ class ChainLink(NamedTuple):
     on_point: tuple[float, float]  # from the centre of mass of its body to the right and up
     to: int  # a body, or `GROUND`
     to_point: tuple[float, float]  # likewise; not used on the ground
-    apart: tuple[float, float]  # from the second point to the first, as the link is given
+    separation: tuple[float, float]  # from the second point to the first, as the link is given
     numbers: LinkNumbers
     along: tuple[float, float] = (0.0, 0.0)  # unit vector along which a load or a wall acts
 
     @property
-    def reach(self) -> float:
+    def length_scale(self) -> float:
         """Length that the rounding noise of the elongation is proportional to [m]."""
-        return math.hypot(*self.apart) + math.hypot(*self.on_point) + math.hypot(*self.to_point)
+        length = math.hypot(*self.separation)
+        return length + math.hypot(*self.on_point) + math.hypot(*self.to_point)
 
 
 class LinkedChainNumbers(NamedTuple):
@@ -252,10 +253,11 @@ def link_row(link: ChainLink, law: Any, value: int) -> Vector:
 
     `law` is the law of the class of all links, with the numbers of this link.
     """
-    apart, reach = math.hypot(*link.apart), math.hypot(*link.on_point) + math.hypot(*link.to_point)
+    length = math.hypot(*link.separation)
+    arms = math.hypot(*link.on_point) + math.hypot(*link.to_point)
     geometry = (
-        link.on, *link.on_point, link.to, *link.to_point, *link.apart, apart,
-        ROUNDING * (apart + reach), 0.0, value, padded_state_count(link.numbers.law.states()),
+        link.on, *link.on_point, link.to, *link.to_point, *link.separation, length,
+        ROUNDING * (length + arms), 0.0, value, padded_state_count(link.numbers.law.states()),
         *link.along,
     )  # fmt: skip
     return np.array([*geometry, *numbers_in(law)], dtype=np.float64)

@@ -199,7 +199,7 @@ def _columns(base: BaseNumbers, k: int) -> tuple[Column, ...]:
 
 def link_force_rounding(ties: Sequence[ChainLink]) -> float:
     """Return the noise in forces of corners from the rounding of the lengths of stiff ties."""
-    return ROUNDING * sum(one.numbers.stiffness * one.reach for one in ties)
+    return ROUNDING * sum(one.numbers.stiffness * one.length_scale for one in ties)
 
 
 def visible_links(ties: Sequence[ChainLink]) -> int:
@@ -218,7 +218,7 @@ def link_scales(system: LinkMechanics, ties: Sequence[ChainLink]) -> list[float]
 
 def link_guard_tolerance(tie: ChainLink) -> Vector:
     """Return the rounding noise of a link's guards."""
-    return np.full(GUARDS_OF_LINK, ROUNDING * tie.reach)
+    return np.full(GUARDS_OF_LINK, ROUNDING * tie.length_scale)
 
 
 def link_columns(ties: int, shown: int) -> Iterator[Column]:
