@@ -94,8 +94,8 @@ class CornerGuards(RigidCorners):
             if self.is_rigid(other):
                 rises = self.end_accelerations(other, free, state, ground)
                 for side in range(2):
-                    let_go = other == k and left == (side == 0)
-                    if let_go or self.is_closing(other, side == 0, -rises[side], free, state):
+                    released = other == k and left == (side == 0)
+                    if released or self.is_closing(other, side == 0, -rises[side], free, state):
                         most = max(most, -rises[side] / self.row_value(other, at.GRAVITY))
         self.set_sway(lowest, held, still, state)
         return most
