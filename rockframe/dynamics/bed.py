@@ -17,8 +17,8 @@ from rockframe.dynamics.events import REENGAGEMENT, SEPARATION
 DOWN: Final = 0  # below the level of the unloaded bed
 RAISED: Final = 1
 # contacts of both ends in one integer: left end + 2 * right end
-LEFT_BIT: Final = 1  # mask of the left end
-RIGHT_BIT: Final = 1  # shift to the right end
+LEFT_MASK: Final = 1  # mask of the left end
+RIGHT_SHIFT: Final = 1  # shift to the right end
 CONTACTS: Final = 4
 
 
@@ -34,13 +34,13 @@ class Ends(NamedTuple):
 @inlined
 def end_contact(contact: int, left: bool) -> int:
     """Return the contact of one end."""
-    return contact & LEFT_BIT if left else contact >> RIGHT_BIT & LEFT_BIT
+    return contact & LEFT_MASK if left else contact >> RIGHT_SHIFT & LEFT_MASK
 
 
 @inlined
 def both_contacts(left: int, right: int) -> int:
     """Return the contacts of both ends in one integer."""
-    return left + (right << RIGHT_BIT)
+    return left + (right << RIGHT_SHIFT)
 
 
 @inlined
@@ -56,7 +56,7 @@ def between(left: float, right: float, place: float) -> float:
 
 
 @inlined
-def first_place(near: float, far: float) -> float:
+def contact_start(near: float, far: float) -> float:
     """Return the distance, from the near end, beyond which a linear function is positive.
 
     As a share of the length of the base. It may be negative, down to -1, as a step may overshoot
@@ -72,13 +72,13 @@ def compressed_part(left: int, right: int, ends: Ends) -> tuple[float, float]:
     """Return the places between which the bed is compressed, from the contacts of both ends."""
     if left == RAISED and right == RAISED:
         return 0.0, 0.0
-    start = first_place(ends.u_left, ends.u_right) if left == RAISED else 0.0
-    end = 1.0 - first_place(ends.u_right, ends.u_left) if right == RAISED else 1.0
+    start = contact_start(ends.u_left, ends.u_right) if left == RAISED else 0.0
+    end = 1.0 - contact_start(ends.u_right, ends.u_left) if right == RAISED else 1.0
     return start, max(start, end)
 
 
 @inlined
-def end_of(u: float) -> int:
+def contact_of_end(u: float) -> int:
     """Return the contact of an end, DOWN or RAISED, from the compression under it."""
     return DOWN if u > 0.0 else RAISED
 
@@ -185,7 +185,9 @@ class Bed(Base, BedNumbers):
         """Return the energy of the compressed springs, and the energy less that at rest."""
         ends, delta = self.ends(line), self.settlement
         half = 0.5 * self.stiffness * self.width
-        start, end = compressed_part(end_of(ends.u_left), end_of(ends.u_right), ends)
+        start, end = compressed_part(
+            contact_of_end(ends.u_left), contact_of_end(ends.u_right), ends
+        )
         u0 = between(ends.u_left, ends.u_right, start)
         u1 = between(ends.u_left, ends.u_right, end)
         stored = half * (end - start) * mean_product(u0, u1, u0, u1)
@@ -231,7 +233,7 @@ class Bed(Base, BedNumbers):
     def starting(self, line: BaseLine, own: Variables) -> int:
         """Return the contact at the start of a run."""
         ends = self.ends(line)
-        return both_contacts(end_of(ends.u_left), end_of(ends.u_right))
+        return both_contacts(contact_of_end(ends.u_left), contact_of_end(ends.u_right))
 
     @kernel
     def resting_height(self, left: float, right: float, own: Variables) -> float:

@@ -50,7 +50,7 @@ def _mass(chain: StandingChain, stands: list[Stand]) -> Matrix:
         sine, cosine = sine_cosine(turned)
         axes = np.array([[cosine, -sine], [sine, cosine]])
         place = places[k] = place + np.array([stand.across, arm]) @ axes
-        ways[: k + 1, :2, 2 * k] = stand.reach.rate * axes[0]
+        ways[: k + 1, :2, 2 * k] = stand.reach.derivative * axes[0]
         ways[: k + 1, 2, 2 * k] = 1.0
         ways[: k + 1, :2, 2 * k + 1] = axes[1]
         turned, top = turned + stand.state.rotation, chain.bodies[k].top

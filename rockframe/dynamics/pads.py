@@ -30,9 +30,9 @@ LEAVING: Final = 4  # lifted off, though the change of the held point left its p
 
 # two corners' contacts in one integer: that of the left one in its lowest bits; behind them the
 # states of the laws of both, the left one first
-CORNER_BITS: Final = 7  # mask of one corner
-RIGHT_BIT: Final = 3  # shift to the right corner
-CORNER: Final = 1 << RIGHT_BIT
+CORNER_MASK: Final = 7  # mask of one corner
+RIGHT_SHIFT: Final = 3  # shift to the right corner
+CORNER: Final = 1 << RIGHT_SHIFT
 CONTACTS: Final = CORNER * CORNER
 
 # guards of a corner, before those of its law's state
@@ -52,7 +52,7 @@ ROUNDING: Final = 4.0 * sys.float_info.epsilon
 @inlined
 def corner_contact(contact: int, left: bool) -> int:
     """Return the contact of one corner."""
-    return contact & CORNER_BITS if left else (contact >> RIGHT_BIT) & CORNER_BITS
+    return contact & CORNER_MASK if left else (contact >> RIGHT_SHIFT) & CORNER_MASK
 
 
 class PadNumbers(NamedTuple):

@@ -20,7 +20,7 @@ from rockframe.dynamics.body import (
     BodyState,
     Reach,
 )
-from rockframe.dynamics.on_base import Mode, OnBase
+from rockframe.dynamics.on_base import BodyOnBase, Mode
 from rockframe.many import asin, sqrt
 
 ROUNDING: Final = 4.0 * sys.float_info.epsilon
@@ -44,7 +44,7 @@ RATES: Final = ("angular_velocity", "vertical_velocity")
 class StandingBody(NamedTuple):
     """A body on its base in a chain of bodies, with the numbers that are fixed for statics."""
 
-    part: OnBase
+    part: BodyOnBase
     mass: float  # over the reference mass [1]
     top: float  # height of its deck above its centre of mass [m]
     beside: float  # centre of mass to the right of that of the body beneath, upright [m]
@@ -69,13 +69,13 @@ class StandingBody(NamedTuple):
         across = self.beside + pin + (body.height * attitude.sine - pin * attitude.cosine)
         return body.reach(pin, attitude), across
 
-    def with_share(self, share: float) -> "StandingBody":
+    def scaled(self, share: float) -> "StandingBody":
         """Return the body with a share of its eccentricity."""
         body = self.part.body
         if self.beside == 0.0 and body.left == body.right:
             return self
         half, off = 0.5 * (body.left + body.right), 0.5 * share * (body.left - body.right)
-        part = OnBase(body._replace(left=half + off, right=half - off), self.part.base)
+        part = BodyOnBase(body._replace(left=half + off, right=half - off), self.part.base)
         return self._replace(part=part, beside=share * self.beside)
 
 
@@ -94,7 +94,7 @@ class Stand(NamedTuple):
 
 
 def standing_body(
-    part: OnBase, mass: float = 1.0, top: float = 0.0, beside: float = 0.0, own: Any = None
+    part: BodyOnBase, mass: float = 1.0, top: float = 0.0, beside: float = 0.0, own: Any = None
 ) -> StandingBody:
     """Return a body on its base; `own`: the base's variables, by default those before any run."""
     body, base = part
@@ -138,7 +138,7 @@ def settled(standing: StandingBody, rotation: float, press: float) -> Stand:
         halved = tries > SECANTS and tries % 2 == 0 and low > -math.inf and high < math.inf
         if halved or not low < height < high:
             height = 0.5 * (low + high)
-    mode = standing.part.standing(contact, state)
+    mode = standing.part.mode_for_contact(contact, state)
     return Stand(state, mode, *standing.way(attitude, mode.pivot), line, force, press, own)
 
 
@@ -149,7 +149,7 @@ def lifted(standing: StandingBody, rotation: float, height: float) -> Stand:
     state, attitude = BodyState(rotation, height, 0.0, 0.0, 0.0, 0.0), body.attitude(rotation)
     line = body.base_line(state, attitude)
     contact = base.starting(line, own)
-    force, mode = base.force(contact, line, own), standing.part.standing(contact, state)
+    force, mode = base.force(contact, line, own), standing.part.mode_for_contact(contact, state)
     return Stand(state, mode, *standing.way(attitude, mode.pivot), line, force, force.upward, own)
 
 

@@ -52,11 +52,11 @@ class StandingChain(NamedTuple):
         level = self.along_gravity == 0.0 and not self.ties
         return level and all(one.beside == 0.0 for one in self.bodies)
 
-    def with_share(self, share: float) -> "StandingChain":
+    def scaled(self, share: float) -> "StandingChain":
         """Return the chain with a share of its slope and of the eccentricity of its bodies."""
         if share == 1.0:
             return self
-        bodies = tuple(one.with_share(share) for one in self.bodies)
+        bodies = tuple(one.scaled(share) for one in self.bodies)
         return StandingChain(bodies, share * self.along_gravity, self.ties, share * self.pull)
 
     def frames(self, rotations: Sequence[float]) -> list[tuple[float, float]]:
@@ -265,7 +265,7 @@ class StandingChain(NamedTuple):
                 height += mass * standing.top
                 side, height = side * cosine + height * sine, height * cosine - side * sine
             mass += standing.mass
-            moment = normal * side - along * (height + mass * stand.reach.rate)
+            moment = normal * side - along * (height + mass * stand.reach.derivative)
             found.append((moment, -mass * normal))
             side += mass * stand.across
             height += mass * (standing.part.body.height + stand.state.vertical)
@@ -332,6 +332,4 @@ class StandingChain(NamedTuple):
         rows = np.array(sums).reshape(-1, len(stands))
         start = Balance.of(self, stands, len(rows))
         held = rows @ start.rotations
-        return followed(
-            lambda share: HeldBodies(self.with_share(share), rows, held), Path(0.0, start)
-        )
+        return followed(lambda share: HeldBodies(self.scaled(share), rows, held), Path(0.0, start))

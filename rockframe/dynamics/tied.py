@@ -221,7 +221,7 @@ def _point(
     for j in range(k, len(stands)):
         frame = frames[j]
         far = arm if j == k else arm + _between(k, j, stands, frames)
-        way[:, 2 * j] = stands[j].reach.rate * frame.along + np.array([far[1], -far[0]])
+        way[:, 2 * j] = stands[j].reach.derivative * frame.along + np.array([far[1], -far[0]])
         way[:, 2 * j + 1] = frame.normal
     return one.place + turned, way
 

@@ -10,7 +10,7 @@ from rockframe.components import Component, Link, Load, Tendon
 from rockframe.components.block_numbers import BlockSI
 from rockframe.dynamics.base_numbers import BaseNumbers
 from rockframe.dynamics.chain.link_rows import ChainLink
-from rockframe.dynamics.on_base import OnBase
+from rockframe.dynamics.on_base import BodyOnBase
 from rockframe.dynamics.protocol import ContactModel
 from rockframe.dynamics.standing import Stand, StandingBody, standing_body
 from rockframe.dynamics.statics import StandingChain
@@ -233,7 +233,7 @@ class StackSetting(Setting):
             law = BaseLoad(body, self.options).law(mass)
             carried = math.fsum(one.mass for one in self.bodies[: lowest + 1])
             numbers.append(self.bases[lowest].law(law, mass, carried))
-            part = OnBase(law, numbers[-1].law)
+            part = BodyOnBase(law, numbers[-1].law)
             link = standing_body(part, body.mass / mass, height - body.centre_height, beside)
             if lowest == lifted:
                 small = min(one.settlement for one in self.standing.chain.bodies)

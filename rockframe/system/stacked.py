@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from rockframe.dynamics.alone import eccentricity_of
-from rockframe.dynamics.on_base import OnBase
+from rockframe.dynamics.on_base import BodyOnBase
 from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.dynamics.standing import Stand, standing_body
 from rockframe.dynamics.statics import StandingChain
@@ -119,7 +119,7 @@ class StackedSetting(Setting):
     def _standing(self, cap_mass: float, cap_inertia: float) -> StandingBodies:
         both = self._stack(cap_mass, cap_inertia)
         links = tuple(
-            standing_body(OnBase(one.body, one.base.law), one.mass, one.top, one.beside)
+            standing_body(BodyOnBase(one.body, one.base.law), one.mass, one.top, one.beside)
             for one in both
         )
         chain = StandingChain(links, self.slope.along_gravity)

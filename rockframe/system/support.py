@@ -15,7 +15,7 @@ from rockframe.components.bases import Separation
 from rockframe.dynamics.alone import eccentricity_of
 from rockframe.dynamics.base_numbers import BaseNumbers, bed_numbers, pads_numbers
 from rockframe.dynamics.body import Body
-from rockframe.dynamics.on_base import OnBase
+from rockframe.dynamics.on_base import BodyOnBase
 from rockframe.dynamics.standing import Stand, of_base, standing_body, uplift_rotation
 from rockframe.dynamics.statics import StandingChain
 from rockframe.many import sqrt
@@ -220,7 +220,7 @@ class Support(ABC):
     def standing(self) -> StandingBodies:
         """Its body alone on it, by the law."""
         body, numbers = self.load.rigid_body, self.base_numbers
-        link = standing_body(OnBase(body, numbers.law), beside=eccentricity_of(body))
+        link = standing_body(BodyOnBase(body, numbers.law), beside=eccentricity_of(body))
         chain = StandingChain((link,), self.load.options.slope.along_gravity)
         return StandingBodies(chain, self.load.body.mass, (numbers,))
 

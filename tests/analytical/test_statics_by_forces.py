@@ -16,7 +16,7 @@ from rockframe.dynamics.body import CENTRE, BodyState
 from rockframe.dynamics.coupled.model import state_at
 from rockframe.dynamics.coupled.model import system_of as coupled_of
 from rockframe.dynamics.linear import linear
-from rockframe.dynamics.on_base import OnBase
+from rockframe.dynamics.on_base import BodyOnBase
 from rockframe.dynamics.pads import ElasticPads
 from rockframe.dynamics.protocol import Ground, Start
 from rockframe.dynamics.standing import PLACES, RATES, of_base, standing_body
@@ -216,7 +216,7 @@ def bodies(beside=0.0, along=0.0):
                 body, stiffness=(900.0, 1500.0)[k], damping=1.0, restitution=(1, 1), load=above
             )
         links.append(
-            standing_body(OnBase(body, base.law), MASSES[k], TOPS[k], eccentricity_of(body))
+            standing_body(BodyOnBase(body, base.law), MASSES[k], TOPS[k], eccentricity_of(body))
         )
     return StandingChain(tuple(links), along)
 
@@ -348,7 +348,7 @@ def test_a_law_that_pushes_is_in_equilibrium_at_rest_and_at_the_start_of_a_run()
     body = rigid_body(left=0.5, right=0.5, height=2.0, inertia=1.5, restraint=CENTRE,
                    small_rotation=False, gravity=G)  # fmt: skip
     pads = pads_numbers(body, stiffness=2000.0, damping=3.0, restitution=(0.9, 0.9)).law
-    part = OnBase(body, ProppedPads(*pads))
+    part = BodyOnBase(body, ProppedPads(*pads))
     for rotation in (0.0, 0.001, -0.02):
         state, mode = starting_state(part, Start(rotation), ())
         force = part.base.force(mode.contact, body.base_line_at(state), ())

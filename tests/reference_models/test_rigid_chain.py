@@ -226,7 +226,7 @@ def test_forces_stand_for_the_mode_state_and_ground_that_they_were_solved_for_al
     ground = Ground(0.5, 0.1)
     system.find_forces(standing, state, ground)
     assert system.forces_stand(standing, state, ground)
-    slips = system.with_part(standing, 0, system.part_mode(standing, 0)._replace(slides=True))
+    slips = system.with_body_mode(standing, 0, system.body_mode(standing, 0)._replace(slides=True))
     moved = state.copy()
     moved[-1] = 1e-12
     assert not system.forces_stand(slips, state, ground)

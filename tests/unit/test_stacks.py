@@ -101,13 +101,13 @@ def test_the_number_of_a_mode_tells_how_each_body_stands(slips):
     system = assemble((three, ground)).model.system
     rng = np.random.default_rng(3)
     for mode in rng.integers(0, system.modes(), 500).tolist():
-        parts = [system.part_mode(mode, k) for k in range(3)]
+        parts = [system.body_mode(mode, k) for k in range(3)]
         for k, part in enumerate(parts):
-            other = system.with_part(mode, k, system.part_mode(int(rng.integers(mode + 1)), k))
-            assert [system.part_mode(other, j) for j in range(3) if j != k] == [
+            other = system.with_body_mode(mode, k, system.body_mode(int(rng.integers(mode + 1)), k))
+            assert [system.body_mode(other, j) for j in range(3) if j != k] == [
                 one for j, one in enumerate(parts) if j != k
             ]
-            assert system.with_part(other, k, part) == mode
+            assert system.with_body_mode(other, k, part) == mode
 
 
 @pytest.mark.long

@@ -8,7 +8,7 @@ import numpy as np
 from rockframe.compiled import Vector
 from rockframe.dynamics.alone import Alone
 from rockframe.dynamics.cascade.system import COLUMNS, Cascade
-from rockframe.dynamics.on_base import OnBase
+from rockframe.dynamics.on_base import BodyOnBase
 from rockframe.dynamics.protocol import BODY_COLUMNS, HELD_PLACE, MEMORY, ContactModel, Start
 from rockframe.dynamics.stacked import CONTACTS
 
@@ -70,7 +70,7 @@ def cascade(
     )
 
 
-def _part_of(model: ContactModel) -> OnBase:
+def _part_of(model: ContactModel) -> BodyOnBase:
     if not isinstance(model.system, Alone):
         msg = f"a cascade is made of two models of one body on a base, got {model.name!r}"
         raise TypeError(msg)

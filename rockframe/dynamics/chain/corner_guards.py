@@ -38,13 +38,13 @@ class CornerGuards(RigidCorners):
         self.find_corner_forces(mode, state, ground)
         for k in range(self.body_count):
             if self.is_rigid(k):
-                self.write_corner_guards(k, self.part_mode(mode, k), state, values, changes)
+                self.write_corner_guards(k, self.body_mode(mode, k), state, values, changes)
                 self.write_slip_guards(k, mode, state, values, changes)
             elif self.is_slippery(k):
                 self.write_idle(k, values, changes)
                 self.write_slip_guards(k, mode, state, values, changes)
         for k in range(self.body_count):
-            standing = self.part_mode(mode, k)
+            standing = self.body_mode(mode, k)
             if self.is_rigid(k) and standing.contact & PULLED != 0:
                 left = self.on_base(k).base.is_held(standing.contact, True)
                 i = GUARDS * k + (0 if left else CORNER_GUARDS)
@@ -65,7 +65,7 @@ class CornerGuards(RigidCorners):
         """Return largest tension in a corner that bears in the last solution, over FORCE_SIZE."""
         most = -math.inf
         for k in range(self.body_count):
-            if self.is_rigid(k) and self.part_mode(mode, k).contact & PULLED == 0:
+            if self.is_rigid(k) and self.body_mode(mode, k).contact & PULLED == 0:
                 for side in range(2):
                     if self.places()[k * PLACES + at.LEFT_CORNER + side] != NONE:
                         pull = -self.corner_force(k, side == 0) / self.number(k, at.FORCE_SIZE)
@@ -83,7 +83,7 @@ class CornerGuards(RigidCorners):
         held, still = state[x], state[self.coordinates() + x]
         if k == lowest:
             self.free_lowest(mode, state)
-        free = self.with_part(mode, k, Mode(both_contacts(RAISED, RAISED), 0, False))
+        free = self.with_body_mode(mode, k, Mode(both_contacts(RAISED, RAISED), 0, False))
         free = self.let_slip_if_amiss(free, state, ground)
         for other in range(self.body_count):
             if self.is_rigid(other):
@@ -92,13 +92,13 @@ class CornerGuards(RigidCorners):
                     let_go = other == k and left == (side == 0)
                     if let_go or self.is_near(other, side == 0, -rises[side], free, state):
                         most = max(most, -rises[side] / self.number(other, at.GRAVITY))
-        self.set_sway(lowest, held, still, state)
+        self.set_horizontal(lowest, held, still, state)
         return most
 
     @kernel
     def is_near(self, k: int, left: bool, fall: float, mode: int, state: Vector) -> bool:
         """Whether a corner that does not bear is practically at its base and falls onto it."""
-        part, standing = self.on_base(k), self.part_mode(mode, k)
+        part, standing = self.on_base(k), self.body_mode(mode, k)
         line = part.body.base_line_at(self.standing_state(k, standing, state))
         level, speed = line.left, line.left_speed
         if not left:
@@ -110,7 +110,7 @@ class CornerGuards(RigidCorners):
     def throws_down(self, mode: int, state: Vector) -> bool:
         """Whether a corner that is at its rigid base, but does not bear, moves down."""
         for k in range(self.body_count):
-            part, standing = self.on_base(k), self.part_mode(mode, k)
+            part, standing = self.on_base(k), self.body_mode(mode, k)
             line = part.body.base_line_at(self.standing_state(k, standing, state))
             for side in range(2):
                 gap, speed = line.left, line.left_speed
@@ -125,10 +125,10 @@ class CornerGuards(RigidCorners):
     def free_lowest(self, mode: int, state: Vector) -> None:
         """Write place and rate of the lowest body; while held, its state has the held point's."""
         k, x = self.body_count - 1, self.horizontal_of(self.body_count - 1)
-        standing = self.part_mode(mode, k)
+        standing = self.body_mode(mode, k)
         if not self.on_base(k).is_free(standing):
             place, rate = self.sway_at(k, standing, state[x], state)
-            self.set_sway(k, place, rate, state)
+            self.set_horizontal(k, place, rate, state)
 
     @inlined
     def let_slip_if_amiss(self, mode: int, state: Vector, ground: Ground) -> int:

@@ -55,7 +55,7 @@ class RigidCorners(Chain):
         found = 0
         for k in range(self.body_count):
             if self.is_rigid(k):
-                part, contact = self.on_base(k), self.part_mode(mode, k).contact
+                part, contact = self.on_base(k), self.body_mode(mode, k).contact
                 found |= (1 if part.base.is_held(contact, True) else 0) << 2 * k
                 found |= (2 if part.base.is_held(contact, False) else 0) << 2 * k
         return found
@@ -65,7 +65,7 @@ class RigidCorners(Chain):
         """Return the set of corners that are held in a mode though they do not press."""
         found, bearing = 0, self.bearing(mode)
         for k in range(self.body_count):
-            if self.is_rigid(k) and self.part_mode(mode, k).contact & PULLED != 0:
+            if self.is_rigid(k) and self.body_mode(mode, k).contact & PULLED != 0:
                 found |= bearing & BOTH << 2 * k
         return found
 
@@ -91,7 +91,7 @@ class RigidCorners(Chain):
                     pivot = PIVOT_LEFT
                 elif bears == RIGHT_ONLY:
                     pivot = PIVOT_RIGHT
-                new = self.with_part(new, k, Mode(contact, pivot, False))
+                new = self.with_body_mode(new, k, Mode(contact, pivot, False))
                 new = self.standing_on(k, bears, new)
         return new
 
@@ -120,7 +120,7 @@ class RigidCorners(Chain):
         self, k: int, count: int, mode: int, state: Vector, moves: bool, room: Vector, rows: Vector
     ) -> int:
         """Add the constraints of corners that bear on a rigid base, :eq:`eq-rigid-corner`."""
-        i, part, standing = k * PLACES, self.on_base(k), self.part_mode(mode, k)
+        i, part, standing = k * PLACES, self.on_base(k), self.body_mode(mode, k)
         room[i + at.LEFT_CORNER] = room[i + at.RIGHT_CORNER] = NONE
         if not self.is_rigid(k) or part.flies(standing.contact):
             return count
@@ -267,13 +267,13 @@ class RigidCorners(Chain):
         """Return how many bodies, from the top, may move: those below rest on the ground."""
         moving, bearing = self.body_count, self.bearing(mode)
         for k in range(self.body_count - 1, -1, -1):
-            if bearing >> 2 * k & BOTH != BOTH or self.part_mode(mode, k).slides:
+            if bearing >> 2 * k & BOTH != BOTH or self.body_mode(mode, k).slides:
                 break
             moving = k
         return moving
 
     @inlined
-    def observed_base(self, k: int, standing: Mode, body: BodyState) -> Variables:
+    def base_columns(self, k: int, standing: Mode, body: BodyState) -> Variables:
         """Return the base's columns in the results: of a rigid one, the forces of its corners."""
         if self.is_rigid(k):
             return self.corner_force(k, True), self.corner_force(k, False), 0.0
@@ -286,7 +286,7 @@ class RigidCorners(Chain):
         pin, attitude = part.body.pin(standing.pivot), part.body.attitude(body.rotation)
         reach = part.body.reach(pin, attitude)
         place = held + part.body.about_pin(pin, attitude)
-        return place, reach.rate * body.angular_velocity
+        return place, reach.derivative * body.angular_velocity
 
     @kernel
     def resting_corners(self, mode: int, state: Vector) -> int:
@@ -294,7 +294,7 @@ class RigidCorners(Chain):
         found = 0
         for k in range(self.body_count):
             if self.is_rigid(k):
-                body = self.standing_state(k, self.part_mode(mode, k), state)
+                body = self.standing_state(k, self.body_mode(mode, k), state)
                 found |= self.level_corners(k, body) << 2 * k
         return found
 
@@ -333,7 +333,7 @@ class RigidCorners(Chain):
         """Write to the state the coordinates and rates that contacts with rigid bases prescribe."""
         n = self.coordinates()
         for k in range(self.body_count):
-            part, standing = self.on_base(k), self.part_mode(mode, k)
+            part, standing = self.on_base(k), self.body_mode(mode, k)
             if self.is_rigid(k) and not part.flies(standing.contact):
                 body = self.standing_state(k, standing, state)
                 first = BEFORE_HORIZONTAL * k
@@ -342,13 +342,13 @@ class RigidCorners(Chain):
                 state[n + first + VERTICAL] = body.vertical_velocity
                 if not standing.slides:
                     place, rate = self.sway_at(k, standing, memory[HELD_PLACE + k], state)
-                    self.set_sway(k, place, rate, state)
+                    self.set_horizontal(k, place, rate, state)
 
     @kernel
     def hold_contacts(self, mode: int, state: Vector, memory: Vector) -> None:
         """Fix the held points of a mode where they are now; the velocities agree with it."""
         for k in range(self.body_count):
-            part, standing = self.on_base(k), self.part_mode(mode, k)
+            part, standing = self.on_base(k), self.body_mode(mode, k)
             if self.is_rigid(k) and not part.is_free(standing):
                 pin, place = part.body.pin(standing.pivot), state[self.horizontal_of(k)]
                 attitude = part.body.attitude(self.standing_state(k, standing, state).rotation)

@@ -11,10 +11,10 @@ from rockframe.dynamics.chain.rows import GUARDS, PLACES
 from rockframe.dynamics.chain.slippery import SlipperyBases
 from rockframe.dynamics.chain.slips import KINETIC, OFFSET, STATIC, TRIES
 from rockframe.dynamics.events import IMPACT, SILENT
-from rockframe.dynamics.on_base import HOLD, IDLE, SLIP, Mode
+from rockframe.dynamics.on_base import HOLD, IDLE_GUARDS, SLIP, Mode
 from rockframe.dynamics.pads import CORNER_GUARDS
 from rockframe.dynamics.protocol import HELD_PLACE, LAST_EVENT, Ground, Slope
-from rockframe.dynamics.switching import stay_if_small
+from rockframe.dynamics.switching import stop_negligible_rebound
 
 
 class SlippingChain(SlipperyBases):
@@ -32,8 +32,8 @@ class SlippingChain(SlipperyBases):
         self, k: int, slides: bool, mode: int, state: Vector, slope: Slope, ground: Ground
     ) -> Guards:
         """Return the guards of a body: of contacts, of the friction that holds it, of its slip."""
-        part, standing, body = self.on_base(k), self.part_mode(mode, k), self.state_of(k, state)
-        first, press, sliding = BEFORE_HORIZONTAL * k, k * PLACES + at.PRESS, IDLE
+        part, standing, body = self.on_base(k), self.body_mode(mode, k), self.state_of(k, state)
+        first, press, sliding = BEFORE_HORIZONTAL * k, k * PLACES + at.PRESS, IDLE_GUARDS
         if k == 0:
             self.forces_from(mode, state, slope, ground)
         if not part.flies(standing.contact):
@@ -74,7 +74,7 @@ class SlippingChain(SlipperyBases):
         elif which < 2 * CORNER_GUARDS:
             left = which < CORNER_GUARDS
             if memory[LAST_EVENT] == IMPACT:
-                stay_if_small(self, self.on_base(k), k, left, new, state, ground, memory)
+                stop_negligible_rebound(self, self.on_base(k), k, left, new, state, ground, memory)
             if self.reverses_at_once(k, left, new, state, ground, memory):
                 new = self.end_short_slips(new, state, ground, memory)
             new = self.wait(k, left, new, state, ground, memory)
@@ -119,7 +119,7 @@ class SlippingChain(SlipperyBases):
         """Return a body that friction `holding` cannot hold, or -1, and the force that would."""
         room = self.places()
         for j in range(self.body_count):
-            if not self.on_base(j).is_free(self.part_mode(mode, j)):
+            if not self.on_base(j).is_free(self.body_mode(mode, j)):
                 i, friction = j * PLACES, self.friction_of(j, holding)
                 thrust, most = room[i + at.THRUST], friction * max(room[i + at.PRESS], 0.0)
                 if j == lets_go or abs(thrust) > most + self.rounding(j, friction):
@@ -133,7 +133,7 @@ class SlippingChain(SlipperyBases):
         Accelerations up to `near` times gravity do not count.
         """
         for j in range(self.body_count):
-            part, standing = self.on_base(j), self.part_mode(mode, j)
+            part, standing = self.on_base(j), self.body_mode(mode, j)
             if standing.slides and not part.flies(standing.contact):
                 rate, noise = self.slip_rate(j, mode, state)
                 least = near * math.sqrt(part.body.gravity / part.body.size())

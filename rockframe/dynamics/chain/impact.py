@@ -157,7 +157,7 @@ def attempt(
     count, start, same = 0, 0, True
     # from the bottom up: successive candidates differ in the highest bodies
     for k in range(system.body_count - 1, -1, -1):
-        i, standing = k * PLACES, system.part_mode(mode, k)
+        i, standing = k * PLACES, system.body_mode(mode, k)
         bears, touches = some >> 2 * k & BOTH, closed >> 2 * k & BOTH
         holds = touches | bears if sticks else bears
         sense = 0.0 if sticks else system.slip_sense(k)
@@ -206,10 +206,10 @@ def write_corners(system: Any, impulsive: bool, state: Vector) -> None:
             for side in range(2):
                 pin = part.body.pin(PIVOT_LEFT if side == 0 else PIVOT_RIGHT)
                 reach = part.body.reach(pin, attitude)
-                room[i + at.REACHES + side] = reach.rate
-                room[i + at.STAYS + side] = reach.rate * rate - body.horizontal_velocity
+                room[i + at.REACHES + side] = reach.derivative
+                room[i + at.STAYS + side] = reach.derivative * rate - body.horizontal_velocity
                 if not impulsive:
-                    along = coriolis_along(i, room) + reach.bend * rate * rate
+                    along = coriolis_along(i, room) + reach.second_derivative * rate * rate
                     room[i + at.STAYS + side] = along
                     room[i + at.RESTS + side] = -coriolis_normal(i, room) - bends[side]
 

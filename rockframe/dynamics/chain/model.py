@@ -8,14 +8,14 @@ import numpy as np
 
 from rockframe.compiled import Vector
 from rockframe.dynamics.alone import (
-    part_tolerance,
+    guard_tolerances,
     radius_of,
     rocking_rate,
-    rounding_at,
+    rounding_estimate,
 )
 from rockframe.dynamics.base_numbers import BaseNumbers
 from rockframe.dynamics.bed import both_contacts
-from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, DEGREES, ROTATION, VERTICAL
+from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, BODY_DOF, ROTATION, VERTICAL
 from rockframe.dynamics.body import BodyState
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.friction import SlippingChain
@@ -29,7 +29,7 @@ from rockframe.dynamics.chain.slips import SlippingBodies, coefficients
 from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.links import GUARDS as GUARDS_OF_LINK
 from rockframe.dynamics.links import SteadyForce
-from rockframe.dynamics.on_base import Mode, OnBase
+from rockframe.dynamics.on_base import BodyOnBase, Mode
 from rockframe.dynamics.pads import CORNER_GUARDS, ROUNDING
 from rockframe.dynamics.protocol import (
     BODY_COLUMNS,
@@ -151,7 +151,7 @@ def chain(
             one.mass * one.body.gravity * radius_of(one.body) * one.body.angle for one in links
         ),
         initial=lambda start: _initial(system, starts, start),
-        rounding=None if all(is_rigid(one.base) for one in links) else rounding_at(
+        rounding=None if all(is_rigid(one.base) for one in links) else rounding_estimate(
             sum(radius_of(one.body) for one in links),
             sum(one.base.settlement for one in links),
             _answers(links), fastest, len(scales),
@@ -164,7 +164,7 @@ def chain(
 
 def _weights(count: int, k: int) -> Vector:
     """Return weights of the coordinates in the rotation of body `k`: its own and those below."""
-    weights = np.zeros(DEGREES * count)
+    weights = np.zeros(BODY_DOF * count)
     first = BEFORE_HORIZONTAL * k + ROTATION
     weights[first : BEFORE_HORIZONTAL * count : BEFORE_HORIZONTAL] = 1.0
     return weights
@@ -174,7 +174,7 @@ def _tolerance(base: BaseNumbers, carried: float) -> Vector:
     """Return the rounding noise of a body's guards; each end of a bed uses one guard."""
     if is_rigid(base):
         return np.full(GUARDS, ROUNDING_OF_FORCES * carried)
-    found = part_tolerance(base)
+    found = guard_tolerances(base)
     ends = len(base.end_tolerance)
     if ends == CORNER_GUARDS:
         return found
@@ -260,7 +260,7 @@ class Starts(NamedTuple):
     held: Callable[[float], float] | None
 
 
-def _placed(highest: OnBase, starts: Starts, start: Start) -> list[AtRest]:
+def _placed(highest: BodyOnBase, starts: Starts, start: Start) -> list[AtRest]:
     """Return rotations and heights of all bodies: at rest, but of the highest as `start` says."""
     placed = list(starts.rest or [AtRest(0.0, 0.0)] * len(starts.links))
     if start.rotation is None and start.vertical_displacement is None:
@@ -279,7 +279,7 @@ def _placed(highest: OnBase, starts: Starts, start: Start) -> list[AtRest]:
     return [AtRest(rotation, height), *placed[1:]]
 
 
-def _starting_contact(part: OnBase, base: BaseNumbers, body: BodyState) -> int:
+def _starting_contact(part: BodyOnBase, base: BaseNumbers, body: BodyState) -> int:
     if not is_rigid(base):
         return part.base.starting(part.body.base_line_at(body), ())
     side = body.rotation or body.angular_velocity
@@ -292,7 +292,7 @@ def _write_start(
 ) -> None:  # fmt: skip
     """Write place, velocities and held point of body `k` to state and memory."""
     part, count = system.on_base(k), system.bodies()
-    n, i, x = DEGREES * count, BEFORE_HORIZONTAL * k, system.horizontal_of(k)
+    n, i, x = BODY_DOF * count, BEFORE_HORIZONTAL * k, system.horizontal_of(k)
     offset = system.number(k, at.BESIDE) if k + 1 < count else 0.0
     state[i + ROTATION], state[i + VERTICAL] = body.rotation, body.vertical
     state[n + i + ROTATION] = body.angular_velocity
@@ -305,13 +305,13 @@ def _write_start(
         state[x] = pin + offset + part.body.about_pin(pin, attitude)
     if moves and not free:
         reach = part.body.reach(pin, attitude)
-        state[n + x] = reach.rate * body.angular_velocity
+        state[n + x] = reach.derivative * body.angular_velocity
 
 
 def _initial(system: Chain, starts: Starts, start: Start) -> tuple[int, Vector, Vector]:
     """Return mode, state and memory at the start: all at rest but body 0, as `start` says."""
     count = len(starts.links)
-    state = np.zeros(2 * DEGREES * count + system.variables())
+    state = np.zeros(2 * BODY_DOF * count + system.variables())
     memory = np.zeros(len(MEMORY) + count)
     placed, mode = _placed(system.on_base(0), starts, start), 0
     for k, one in enumerate(placed):
@@ -325,9 +325,11 @@ def _initial(system: Chain, starts: Starts, start: Start) -> tuple[int, Vector, 
         if body.rotation == 0.0 and k > 0:
             leaning = body._replace(rotation=placed[k - 1].rotation)
         part = system.on_base(k)
-        standing = part.standing(_starting_contact(part, starts.links[k].base, body), leaning)
-        _write_start(system, k, standing, part.starting_pin(standing, leaning), body, state, memory)
-        mode = system.with_part(mode, k, standing)
+        standing = part.mode_for_contact(
+            _starting_contact(part, starts.links[k].base, body), leaning
+        )
+        _write_start(system, k, standing, part.initial_pin(standing, leaning), body, state, memory)
+        mode = system.with_body_mode(mode, k, standing)
     if isinstance(system, RigidChain):
         memory = np.concatenate([memory, [1.0, 0.0, 0.0]])
         system.write_contacts(mode, state, memory)

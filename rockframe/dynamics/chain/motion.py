@@ -37,14 +37,14 @@ def place_bodies(system: Rows, mode: int, state: Vector, room: Vector) -> None:
     sine, cosine = 0.0, 1.0
     for k in range(count - 1, -1, -1):
         i = k * PLACES
-        part, standing = system.on_base(k), system.part_mode(mode, k)
+        part, standing = system.on_base(k), system.body_mode(mode, k)
         body = system.standing_state(k, standing, state)
         attitude = part.body.attitude(body.rotation)
         reach = part.body.reach(part.body.pin(standing.pivot), attitude)
         free = part.is_free(standing)
         room[i + at.ATTITUDE], room[i + at.ATTITUDE + 1] = attitude.sine, attitude.cosine
         room[i + at.ATTITUDE + 2] = attitude.rise
-        sway = body.horizontal_velocity if free else reach.rate * body.angular_velocity
+        sway = body.horizontal_velocity if free else reach.derivative * body.angular_velocity
         lowest = k == count - 1
         across = 0.0 if lowest else body.horizontal
         arm = 0.0 if lowest else below + part.body.height + body.vertical
@@ -54,10 +54,10 @@ def place_bodies(system: Rows, mode: int, state: Vector, room: Vector) -> None:
         room[i + at.SINE], room[i + at.COSINE] = sine, cosine
         room[i + at.ACROSS], room[i + at.ARM] = across, arm
         room[i + at.SWAY], room[i + at.RISE] = sway, body.vertical_velocity
-        room[i + at.REACH] = reach.rate
+        room[i + at.REACH] = reach.derivative
         room[i + at.FRAME_RATE], room[i + at.RATE] = rate, body.angular_velocity
         room[i + at.HELD] = FREE if free else HELD
-        room[i + at.DRIFT] = reach.bend * body.angular_velocity * body.angular_velocity
+        room[i + at.DRIFT] = reach.second_derivative * body.angular_velocity * body.angular_velocity
         room[i + at.SPEED_X], room[i + at.SPEED_Y] = speed_x, speed_y
         angle += body.rotation
         if lowest and not part.body.small:

@@ -4,7 +4,7 @@ Equations :eq:`eq-chain`; forces and energies are per unit of the reference mass
 """
 
 from rockframe.compiled import Vector, inlined, kernel
-from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, DEGREES, ROTATION, VERTICAL
+from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, BODY_DOF, ROTATION, VERTICAL
 from rockframe.dynamics.body import Attitude
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.motion import (
@@ -49,8 +49,8 @@ class MovingBodies(Rows):
         if self.moving_bodies(mode) == 0:
             return 0
         lowest = self.body_count - 1
-        free = self.on_base(lowest).is_free(self.part_mode(mode, lowest))
-        return DEGREES * self.body_count - (0 if free else 1)
+        free = self.on_base(lowest).is_free(self.body_mode(mode, lowest))
+        return BODY_DOF * self.body_count - (0 if free else 1)
 
     @inlined
     def moving_bodies(self, mode: int) -> int:
@@ -63,20 +63,20 @@ class MovingBodies(Rows):
         fastest = 0.0
         for k in range(self.body_count):
             if not self.is_slippery(k):
-                fastest = max(fastest, self.on_base(k).relaxation_in(self.part_mode(mode, k)))
+                fastest = max(fastest, self.on_base(k).relaxation_in(self.body_mode(mode, k)))
         return fastest
 
     @inlined
-    def own_place(self, k: int) -> int:
+    def base_variable_index(self, k: int) -> int:
         """Return the index in the state of the own variables of bases, which have none here."""
-        return 2 * DEGREES * self.body_count
+        return 2 * BODY_DOF * self.body_count
 
     @kernel
     def constrain(self, moving: int, mode: int, state: Vector, room: Vector) -> int:
         """Write the constraints of the first `moving` bodies in a mode; give their number."""
         count, rows = 0, self.constraints()
         for k in range(moving):
-            standing = self.part_mode(mode, k)
+            standing = self.body_mode(mode, k)
             count = self.add_corners(k, count, mode, state, True, room, rows)
             count = self.hold_or_slide(k, count, standing, state, room, rows)
         return count
@@ -211,23 +211,23 @@ class MovingBodies(Rows):
         self.solve(moving, self.constrain(moving, mode, state, room), room)
         for k in range(self.body_count):
             i = k * PLACES
-            if self.part_mode(mode, k).slides:
+            if self.body_mode(mode, k).slides:
                 slip = room[i + at.SWAY] - room[i + at.REACH] * room[i + at.RATE]
                 dissipated -= room[i + at.THRUST] * slip
-        powers = DEGREES * self.body_count + self.variables()
+        powers = BODY_DOF * self.body_count + self.variables()
         out[powers], out[powers + 1] = dissipated, supplied
         return out
 
     @kernel
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
         """Return power dissipated, of the slope, and that of the ground at the state's rates."""
-        dissipated = slope[DEGREES * self.body_count + self.variables()]
+        dissipated = slope[BODY_DOF * self.body_count + self.variables()]
         return dissipated, input_power(self, state, ground, self.places())
 
     @inlined
     def contact_with_force(self, k: int, mode: int) -> int:
         """Return the contact by which the force of a body's base is computed."""
-        standing = self.part_mode(mode, k)
+        standing = self.body_mode(mode, k)
         if self.is_slippery(k):  # its base presses whether the body slips or not
             return standing.contact
         return self.on_base(k).contact_with_force(standing)
@@ -293,7 +293,7 @@ class MovingBodies(Rows):
         kinetic = gravity = elastic = change = rise = rate = 0.0
         for k in range(self.body_count - 1, -1, -1):
             i, mass = k * PLACES, self.number(k, at.MASS)
-            body = self.standing_state(k, self.part_mode(mode, k), state)
+            body = self.standing_state(k, self.body_mode(mode, k), state)
             x, y = room[i + at.SPEED_X], room[i + at.SPEED_Y]
             rate += body.angular_velocity
             kinetic += 0.5 * (mass * (x * x + y * y) + self.number(k, at.INERTIA) * rate * rate)
@@ -315,19 +315,19 @@ class MovingBodies(Rows):
         )
 
     @kernel
-    def place(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
+    def centre_position(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
         """Return the place of a body's centre of mass along the body below, or along the ground."""
         if k + 1 < self.body_count:
             return state[self.horizontal_of(k)]
         part, body = self.on_base(k), self.state_of(k, state)
         attitude = part.body.attitude(body.rotation)
-        return part.horizontal_place(
-            self.part_mode(mode, k), body, attitude, memory[HELD_PLACE + k]
+        return part.horizontal_position(
+            self.body_mode(mode, k), body, attitude, memory[HELD_PLACE + k]
         )
 
     @kernel
     def response(
-        self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
+        self, k: int, mode: int, impulse: float, moment: float, slip: float, state: Vector
     ) -> VelocityChange:
         """Return the changes of velocities by an impulse of a base, or by a hold that stops a slip.
 
@@ -336,7 +336,7 @@ class MovingBodies(Rows):
         room, out = self.places(), self.slopes()
         place_bodies(self, mode, state, room)
         load_bodies(self, 0.0, 0.0, room)
-        press_at(self, k, press, moment, room)
+        press_at(self, k, impulse, moment, room)
         self.answer(k, mode, slip, state)
         first = BEFORE_HORIZONTAL * k
         thrust = room[k * PLACES + at.THRUST]
@@ -394,15 +394,17 @@ class MovingBodies(Rows):
         """Return the accelerations of the left and right end away from the body below."""
         slope, first = self.find_forces(mode, state, ground), BEFORE_HORIZONTAL * k
         body = self.state_of(k, state)
-        return self.on_base(k).end_rises(body, slope[first + VERTICAL], slope[first + ROTATION])
+        return self.on_base(k).end_accelerations_at(
+            body, slope[first + VERTICAL], slope[first + ROTATION]
+        )
 
     @kernel
-    def tendency(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
+    def incipient_rotation(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
         """Return the sign of the rotation that will follow; at rest it is a guess."""
         if ground.x != 0.0:
             return -ground.x
         if self.body_count == 1:
-            return self.on_base(k).base.tilt(self.part_mode(mode, k).contact)
+            return self.on_base(k).base.tilt(self.body_mode(mode, k).contact)
         other = state[BEFORE_HORIZONTAL * (k - 1) + ROTATION] if k > 0 else 0.0
         if k == 0:
             other = -state[self.coordinates() + BEFORE_HORIZONTAL + ROTATION]

@@ -13,10 +13,10 @@ import numpy as np
 from rockframe.compiled import Vector, inlined, kernel, numbers_in, view_from, view_of
 from rockframe.dynamics.base_numbers import BaseNumbers
 from rockframe.dynamics.bed import Bed, Rigid
-from rockframe.dynamics.bodies import DEGREES, InState
+from rockframe.dynamics.bodies import BODY_DOF, StateAccess
 from rockframe.dynamics.body import BY_CONTACT, Body, BodyState
 from rockframe.dynamics.chain.any_base import BASE_NUMBERS, ON_BED, ON_PADS, ON_RIGID, AnyBase
-from rockframe.dynamics.on_base import BODY_GUARDS, Mode, OnBase
+from rockframe.dynamics.on_base import BODY_GUARDS, BodyOnBase, Mode
 from rockframe.dynamics.pads import CORNER, CORNER_GUARDS, ElasticPads
 from rockframe.dynamics.point_law import Viscoelastic
 from rockframe.dynamics.protocol import POWERS, CalledBySteps
@@ -96,7 +96,7 @@ STAYS: Final = 42
 # the body's part of the mode that was unpacked last, and that mode, its bits in two halves
 CONTACT: Final = 44
 PIVOT: Final = 45
-SLIDES: Final = 46
+SLIDING_BIT: Final = 46
 HIGH_BITS: Final = 47
 LOW_BITS: Final = 48
 ATTITUDE: Final = 49  # sine and cosine of the rotation on the base, and h(1 - cos a) [m]
@@ -141,7 +141,7 @@ SOLVED_FOR: Final = 4
 @kernel
 def room_of(count: int) -> int:
     """Return the length of the workspace behind the rows, for a number of bodies."""
-    each = PLACES + MOST_CONSTRAINTS * CONSTRAINT + 4 * DEGREES + 2 * GUARDS + COLUMNS
+    each = PLACES + MOST_CONSTRAINTS * CONSTRAINT + 4 * BODY_DOF + 2 * GUARDS + COLUMNS
     return count * each + POWERS + (MOST_CONSTRAINTS * count) ** 2 + SOLVED_FOR
 
 
@@ -152,7 +152,7 @@ class Lists(NamedTuple):
     rows: Vector  # the rows of all bodies, then the workspace
 
 
-class Rows(InState, CalledBySteps, Lists):
+class Rows(StateAccess, CalledBySteps, Lists):
     """Access to the rows and the workspace of a chain. A mixin of systems."""
 
     __slots__ = ()
@@ -181,7 +181,7 @@ class Rows(InState, CalledBySteps, Lists):
     @inlined
     def slopes(self) -> Vector:
         """Return the room for accelerations and powers."""
-        return view_of(self.rows, self.after_constraints(), DEGREES * self.body_count + POWERS)
+        return view_of(self.rows, self.after_constraints(), BODY_DOF * self.body_count + POWERS)
 
     @inlined
     def after_constraints(self) -> int:
@@ -191,32 +191,32 @@ class Rows(InState, CalledBySteps, Lists):
     @inlined
     def guard_room(self, which: int) -> Vector:
         """Return the room for guards (0) or their rates (1)."""
-        first = self.after_constraints() + self.body_count * (DEGREES + which * GUARDS) + POWERS
+        first = self.after_constraints() + self.body_count * (BODY_DOF + which * GUARDS) + POWERS
         return view_of(self.rows, first, GUARDS * self.body_count)
 
     @inlined
     def velocity_room(self) -> Vector:
         """Return the room for velocities."""
-        first = self.after_constraints() + self.body_count * (DEGREES + 2 * GUARDS) + POWERS
-        return view_of(self.rows, first, DEGREES * self.body_count)
+        first = self.after_constraints() + self.body_count * (BODY_DOF + 2 * GUARDS) + POWERS
+        return view_of(self.rows, first, BODY_DOF * self.body_count)
 
     @inlined
     def column_room(self) -> Vector:
         """Return the room for columns."""
-        first = self.after_constraints() + self.body_count * (2 * DEGREES + 2 * GUARDS) + POWERS
+        first = self.after_constraints() + self.body_count * (2 * BODY_DOF + 2 * GUARDS) + POWERS
         return view_of(self.rows, first, COLUMNS * self.body_count)
 
     @inlined
     def matrix(self) -> Vector:
         """Return the room for the matrix of the constraints: what each does to each other one."""
-        room = 2 * DEGREES + 2 * GUARDS + COLUMNS
+        room = 2 * BODY_DOF + 2 * GUARDS + COLUMNS
         first = self.after_constraints() + self.body_count * room + POWERS
         return view_of(self.rows, first, (MOST_CONSTRAINTS * self.body_count) ** 2)
 
     @inlined
     def solved_room(self) -> Vector:
         """Return the room for the mode, ground acceleration and state of the last solution."""
-        first = self.behind_chain() - SOLVED_FOR - 2 * DEGREES * self.body_count
+        first = self.behind_chain() - SOLVED_FOR - 2 * BODY_DOF * self.body_count
         return view_from(self.rows, first)
 
     @inlined
@@ -225,7 +225,7 @@ class Rows(InState, CalledBySteps, Lists):
         return self.body_count * ROW + room_of(self.body_count)
 
     @inlined
-    def on_base(self, k: int) -> OnBase:
+    def on_base(self, k: int) -> BodyOnBase:
         """Return a body on its base."""
         r = view_from(self.rows, k * ROW)
         body = Body(r[0], r[1], r[2], r[3], r[4], r[5], int(r[6]), r[7] != 0.0)
@@ -233,7 +233,7 @@ class Rows(InState, CalledBySteps, Lists):
         base = AnyBase(
             int(r[LAW]), n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10], n[11],
         )  # fmt: skip
-        return OnBase(body, base)
+        return BodyOnBase(body, base)
 
     @inlined
     def standing_state(self, k: int, standing: Mode, state: Vector) -> BodyState:
@@ -247,16 +247,16 @@ class Rows(InState, CalledBySteps, Lists):
         return int(self.number(k, PLACE_VALUE)) * int(self.number(k, MODE_COUNT))
 
     @inlined
-    def part_mode(self, mode: int, k: int) -> Mode:
+    def body_mode(self, mode: int, k: int) -> Mode:
         """Return the mode of a body; as divisions are slow, the one unpacked last is remembered."""
         room, i, high = self.places(), k * PLACES, mode >> HALF_OF_BITS
         low = mode - (high << HALF_OF_BITS)
         if room[i + HIGH_BITS] != high or room[i + LOW_BITS] != low:
             found = self.read_mode(mode, k)
             room[i + CONTACT], room[i + PIVOT] = found.contact, found.pivot
-            room[i + SLIDES] = 1.0 if found.slides else 0.0
+            room[i + SLIDING_BIT] = 1.0 if found.slides else 0.0
             room[i + HIGH_BITS], room[i + LOW_BITS] = high, low
-        return Mode(int(room[i + CONTACT]), int(room[i + PIVOT]), room[i + SLIDES] != 0.0)
+        return Mode(int(room[i + CONTACT]), int(room[i + PIVOT]), room[i + SLIDING_BIT] != 0.0)
 
     @kernel
     def read_mode(self, mode: int, k: int) -> Mode:
@@ -270,7 +270,7 @@ class Rows(InState, CalledBySteps, Lists):
         return Mode(contact, standing % PIVOTS, standing >= PIVOTS)
 
     @kernel
-    def with_part(self, mode: int, k: int, part: Mode) -> int:
+    def with_body_mode(self, mode: int, k: int, part: Mode) -> int:
         """Return the chain's mode with another mode of a body."""
         value, modes = int(self.number(k, PLACE_VALUE)), int(self.number(k, MODE_COUNT))
         low, high = part.contact % CORNER, part.contact // CORNER

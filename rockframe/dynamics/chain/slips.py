@@ -77,22 +77,25 @@ class SlippingBodies(Chain):
     @inlined
     def slipping(self, mode: int, k: int, sense: float) -> int:
         """Return the mode in which a body slips in a sense."""
-        was, value = self.part_mode(mode, k), self.modes_of_bodies() * 2**k
-        new = self.with_part(mode, k, Mode(was.contact, was.pivot, True))
+        was, value = self.body_mode(mode, k), self.modes_of_bodies() * 2**k
+        new = self.with_body_mode(mode, k, Mode(was.contact, was.pivot, True))
         new -= new // value % 2 * value
         return new + value if sense < 0.0 else new
 
     @inlined
     def slip_rate(self, k: int, mode: int, state: Vector) -> tuple[float, float]:
         """Return the velocity of slip of the point named by the mode, and its rounding noise."""
-        return self.slip_on(k, self.part_mode(mode, k).pivot, state)
+        return self.slip_on(k, self.body_mode(mode, k).pivot, state)
 
     @kernel
     def slip_on(self, k: int, pivot: int, state: Vector) -> tuple[float, float]:
         """Return the velocity of slip of a point of a base, and its rounding noise."""
         part, body = self.on_base(k), self.state_of(k, state)
         pin = part.body.pin(pivot)
-        about = part.body.reach(pin, part.body.attitude(body.rotation)).rate * body.angular_velocity
+        about = (
+            part.body.reach(pin, part.body.attitude(body.rotation)).derivative
+            * body.angular_velocity
+        )
         sway = body.horizontal_velocity
         return sway - about, NOISE * (abs(sway) + abs(about))
 
@@ -100,9 +103,9 @@ class SlippingBodies(Chain):
     def point_of(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
         """Return the place along the base of the point that is held, or slips."""
         part, body = self.on_base(k), self.state_of(k, state)
-        pin = part.body.pin(self.part_mode(mode, k).pivot)
+        pin = part.body.pin(self.body_mode(mode, k).pivot)
         attitude = part.body.attitude(body.rotation)
-        return self.place(k, mode, state, memory) - part.body.about_pin(pin, attitude)
+        return self.centre_position(k, mode, state, memory) - part.body.about_pin(pin, attitude)
 
     @inlined
     def kept(self, k: int) -> int:
@@ -118,7 +121,7 @@ class SlippingBodies(Chain):
     def keep_peaks(self, mode: int, state: Vector, memory: Vector) -> None:
         """Update the largest slips of all bodies in contact."""
         for k in range(self.body_count):
-            if self.on_base(k).flies(self.part_mode(mode, k).contact):
+            if self.on_base(k).flies(self.body_mode(mode, k).contact):
                 continue
             slip, first = self.slip_of(k, mode, state, memory), self.kept(k)
             memory[first + PEAK_LEFT] = max(memory[first + PEAK_LEFT], -slip)
@@ -132,7 +135,7 @@ class SlippingBodies(Chain):
     @inlined
     def kind_of(self, k: int, old: int, new: int) -> int:
         """Return the kind of event by which a body starts, stops or reverses its slip."""
-        slipped, slips = self.part_mode(old, k).slides, self.part_mode(new, k).slides
+        slipped, slips = self.body_mode(old, k).slides, self.body_mode(new, k).slides
         if not slips:
             return events.STICK if slipped else SILENT
         if not slipped:
@@ -147,7 +150,7 @@ class SlippingBodies(Chain):
     @inlined
     def load_by_friction(self, k: int, mode: int, room: Vector) -> None:
         """Load a body that slips on a deformable base by its friction."""
-        if self.is_slippery(k) and self.part_mode(mode, k).slides:
+        if self.is_slippery(k) and self.body_mode(mode, k).slides:
             self.drag(k, self.sense(mode, k), room)
 
     @kernel
@@ -166,7 +169,7 @@ class SlippingBodies(Chain):
         self, k: int, mode: int, state: Vector, slope: Slope, press: float, size: float
     ) -> SlidingGuards:
         """Return the guards of a body's friction, over the force `size`, and of its slip."""
-        standing, body = self.part_mode(mode, k), self.state_of(k, state)
+        standing, body = self.body_mode(mode, k), self.state_of(k, state)
         if not standing.slides:
             hold = self.friction_of(k, STATIC) * max(press, 0.0)
             hold -= abs(self.places()[k * PLACES + at.THRUST])
@@ -174,9 +177,9 @@ class SlippingBodies(Chain):
         law, sense, rate = self.on_base(k).body, self.sense(mode, k), body.angular_velocity
         reach = law.reach(law.pin(standing.pivot), law.attitude(body.rotation))
         scale = 1.0 / math.sqrt(law.gravity * law.size())
-        change = slope[self.horizontal_of(k)] - reach.bend * rate * rate
-        change -= reach.rate * slope[BEFORE_HORIZONTAL * k + ROTATION]
-        sway, rotating = body.horizontal_velocity, reach.rate * rate
+        change = slope[self.horizontal_of(k)] - reach.second_derivative * rate * rate
+        change -= reach.derivative * slope[BEFORE_HORIZONTAL * k + ROTATION]
+        sway, rotating = body.horizontal_velocity, reach.derivative * rate
         # rounding must not stop a slip that starts or is very slow
         slip = scale * (sense * (sway - rotating) + NOISE * (abs(sway) + abs(rotating)))
         least = self.rounding(k, self.friction_of(k, KINETIC)) / self.number(k, at.MASS)
@@ -202,7 +205,7 @@ class SlippingBodies(Chain):
         Those without velocity of slip are held; the bound of friction is not checked here.
         """
         for k in range(self.body_count):
-            if self.is_slippery(k) and self.part_mode(mode, k).slides:
+            if self.is_slippery(k) and self.body_mode(mode, k).slides:
                 rate, noise = self.slip_rate(k, mode, state)
                 sense = math.copysign(1.0, rate) if abs(rate) > noise else 0.0
                 mode = self.with_slip(k, sense, mode, state, memory)
@@ -211,13 +214,13 @@ class SlippingBodies(Chain):
     @kernel
     def with_slip(self, k: int, sense: float, mode: int, state: Vector, memory: Vector) -> int:
         """Return the mode in which a body slips in a sense, or, with 0, is held."""
-        standing = self.part_mode(mode, k)
+        standing = self.body_mode(mode, k)
         if sense != 0.0:
             return self.slipping(self.let_go(k, mode, state, memory), k, sense)
         if standing.slides:
             self.end_slip(k, mode, state)
             point = self.point_of(k, mode, state, memory)
-            mode = self.with_part(mode, k, Mode(standing.contact, standing.pivot, False))
+            mode = self.with_body_mode(mode, k, Mode(standing.contact, standing.pivot, False))
             memory[HELD_PLACE + k] = point
         return mode
 
@@ -235,12 +238,14 @@ class SlippingBodies(Chain):
     @kernel
     def let_go(self, k: int, mode: int, state: Vector, memory: Vector) -> int:
         """Release a held body along its base; return the mode in which it may move."""
-        part, was = self.on_base(k), self.part_mode(mode, k)
+        part, was = self.on_base(k), self.body_mode(mode, k)
         if part.is_free(was):
             return mode
-        place, body = self.place(k, mode, state, memory), self.state_of(k, state)
-        self.set_sway(k, place, part.sway(was, body, part.body.attitude(body.rotation)), state)
-        return self.with_part(mode, k, Mode(was.contact, was.pivot, True))
+        place, body = self.centre_position(k, mode, state, memory), self.state_of(k, state)
+        self.set_horizontal(
+            k, place, part.horizontal_velocity(was, body, part.body.attitude(body.rotation)), state
+        )
+        return self.with_body_mode(mode, k, Mode(was.contact, was.pivot, True))
 
     @kernel
     def end_slip(self, k: int, mode: int, state: Vector) -> None:
@@ -253,7 +258,7 @@ class SlippingBodies(Chain):
         """Write slip and rate of slip of a body, behind the columns of all bodies."""
         j = COLUMNS * self.body_count + SLIP_COLUMNS * k
         out[j] = self.slip_of(k, mode, state, memory)
-        moves = self.on_base(k).is_free(self.part_mode(mode, k))
+        moves = self.on_base(k).is_free(self.body_mode(mode, k))
         out[j + 1] = self.slip_rate(k, mode, state)[0] if moves else 0.0
 
     def slips(self, k: int, ending: Ending) -> tuple[float, float, float]:

@@ -3,15 +3,20 @@
 from rockframe.compiled import Vector, inlined, kernel, put
 from rockframe.dynamics.base import Guards, Variables
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION, VERTICAL
-from rockframe.dynamics.body import BodyState, accelerated
+from rockframe.dynamics.body import BodyState, with_accelerations
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.moving import MovingBodies
 from rockframe.dynamics.chain.rows import COLUMNS, GUARDS, OBSERVED, PLACES
 from rockframe.dynamics.events import IMPACT
-from rockframe.dynamics.on_base import HOLD, IDLE, SLIP, Mode, SlidingGuards
+from rockframe.dynamics.on_base import HOLD, IDLE_GUARDS, SLIP, Mode, SlidingGuards
 from rockframe.dynamics.pads import CORNER_GUARDS, LEAVING, corner_contact
 from rockframe.dynamics.protocol import HELD_PLACE, LAST_EVENT, Ground, Slope
-from rockframe.dynamics.switching import checked_sliding, disturbed, lift_by_slip, switch_part
+from rockframe.dynamics.switching import (
+    lift_per_slip,
+    mode_after_disturbance,
+    recheck_sliding,
+    switch_mode,
+)
 
 
 class Chain(MovingBodies):
@@ -32,14 +37,14 @@ class Chain(MovingBodies):
     @kernel
     def contact_state_of(self, mode: int, k: int) -> int:
         """Return the contact state of a body."""
-        return self.on_base(k).shown_contact(self.part_mode(mode, k))
+        return self.on_base(k).contact_state(self.body_mode(mode, k))
 
     @kernel
     def some_end_slides(self, mode: int) -> bool:
         """Whether an end of some body is in sliding contact."""
         found = False
         for k in range(self.body_count):
-            found |= self.part_mode(mode, k).slides and not self.is_slippery(k)
+            found |= self.body_mode(mode, k).slides and not self.is_slippery(k)
         return found
 
     @kernel
@@ -68,8 +73,8 @@ class Chain(MovingBodies):
         self, k: int, slides: bool, mode: int, state: Vector, slope: Slope, ground: Ground
     ) -> Guards:
         """Return the guards of a body on a deformable base, and their rates."""
-        part, standing, body = self.on_base(k), self.part_mode(mode, k), self.state_of(k, state)
-        first, sliding = BEFORE_HORIZONTAL * k, IDLE
+        part, standing, body = self.on_base(k), self.body_mode(mode, k), self.state_of(k, state)
+        first, sliding = BEFORE_HORIZONTAL * k, IDLE_GUARDS
         vertical, angular = slope[first + VERTICAL], slope[first + ROTATION]
         if self.is_slippery(k):  # these guards have been written before
             values, changes = self.guard_room(0), self.guard_room(1)
@@ -77,7 +82,7 @@ class Chain(MovingBodies):
             sliding = SlidingGuards(values[i + HOLD], values[i + SLIP], changes[i + SLIP])
             standing = Mode(standing.contact, standing.pivot, False)
         elif slides and standing.slides:
-            rise = lift_by_slip(self, part, k, mode, state)
+            rise = lift_per_slip(self, part, k, mode, state)
             self.forces_from(mode, state, slope, ground)
             push = self.places()[k * PLACES + at.THRUST]
             horizontal = slope[self.horizontal_of(k)]
@@ -117,13 +122,13 @@ class Chain(MovingBodies):
     ) -> int:
         """Carry out the switch of a body on a deformable base."""
         k = guard // GUARDS
-        new = switch_part(self, self.on_base(k), k, guard - k * GUARDS, mode, state, ground, memory)
+        new = switch_mode(self, self.on_base(k), k, guard - k * GUARDS, mode, state, ground, memory)
         for above in range(k):
             if memory[LAST_EVENT] == IMPACT or not self.waits_on(above, new, state, ground):
                 new = self.disturb(above, new, state)
         for below in range(k + 1, self.body_count):
             if not self.is_rigid(below) and not self.is_slippery(below):
-                new = checked_sliding(self, self.on_base(below), below, new, state)
+                new = recheck_sliding(self, self.on_base(below), below, new, state)
         memory[HELD_PLACE + self.body_count] = k + 1.0
         return new
 
@@ -133,7 +138,7 @@ class Chain(MovingBodies):
 
         It does as long as the force of its pad decreases, unless the event is an impact.
         """
-        contact = self.part_mode(mode, k).contact
+        contact = self.body_mode(mode, k).contact
         for side in range(2):
             if not self.is_rigid(k) and corner_contact(contact, side == 0) == LEAVING:
                 return self.presses_less(k, side == 0, mode, state, ground)
@@ -144,18 +149,18 @@ class Chain(MovingBodies):
         """Whether the force of a deformable base on an end does not rise."""
         part, rises = self.on_base(k), self.end_accelerations(k, mode, state, ground)
         line = part.body.base_line_at(self.state_of(k, state))
-        return not part.base.will_press(left, accelerated(line, rises[0], rises[1]), ())
+        return not part.base.will_press(left, with_accelerations(line, rises[0], rises[1]), ())
 
     @kernel
     def disturb(self, k: int, mode: int, state: Vector) -> int:
         """Return the mode after an event of another body has changed the speeds of this one."""
         if self.is_rigid(k):
             return mode
-        part, was = self.on_base(k), self.part_mode(mode, k)
+        part, was = self.on_base(k), self.body_mode(mode, k)
         if self.is_slippery(k):
             contact = part.base.disturbed(was.contact)
-            return self.with_part(mode, k, Mode(contact, was.pivot, was.slides))
-        return disturbed(self, part, k, mode, state)
+            return self.with_body_mode(mode, k, Mode(contact, was.pivot, was.slides))
+        return mode_after_disturbance(self, part, k, mode, state)
 
     @kernel
     def observe(
@@ -176,7 +181,7 @@ class Chain(MovingBodies):
         shear = room[(self.body_count - 1) * PLACES + at.THRUST]
         rotation = rate = rise = x = 0.0
         for k in range(self.body_count - 1, -1, -1):
-            i, j, standing = k * PLACES, COLUMNS * k, self.part_mode(mode, k)
+            i, j, standing = k * PLACES, COLUMNS * k, self.body_mode(mode, k)
             body = self.standing_state(k, standing, state)
             rotation += body.rotation
             rate += body.angular_velocity
@@ -186,14 +191,14 @@ class Chain(MovingBodies):
                 x += room[i + at.ARM] * sine + room[i + at.ACROSS] * cosine
                 x -= self.number(k, at.BESIDE)
             else:
-                x = self.place(k, mode, state, memory)
+                x = self.centre_position(k, mode, state, memory)
             out[j], out[j + 1], out[j + 2], out[j + 3] = rotation, rate, rise, room[i + at.SPEED_Y]
             out[j + 4], out[j + 5], out[j + 6] = x, shear, room[i + at.SPEED_X]
             out[j + 7] = room[i + at.ROTATION]
             out[j + 8], out[j + 9] = room[i + at.X], room[i + at.Y]
             out[j + 10], out[j + 11] = room[i + at.THRUST], room[i + at.PRESS]
             out[j + 12], out[j + 13] = body.rotation, body.vertical
-            put(self.observed_base(k, standing, body), j + COLUMNS - OBSERVED, out)
+            put(self.base_columns(k, standing, body), j + COLUMNS - OBSERVED, out)
             self.observe_slip(k, mode, state, memory, out)
         return out
 
@@ -206,7 +211,7 @@ class Chain(MovingBodies):
         """Find the forces of corners on rigid bases: there are none here."""
 
     @inlined
-    def observed_base(self, k: int, standing: Mode, body: BodyState) -> Variables:
+    def base_columns(self, k: int, standing: Mode, body: BodyState) -> Variables:
         """Return the base's columns in the results."""
         return self.observed_on(k, standing, body)
 
@@ -216,4 +221,4 @@ class Chain(MovingBodies):
         part = self.on_base(k)
         if self.is_slippery(k):
             return part.base.observed(standing.contact, part.body.base_line_at(body), ())
-        return part.observed_base(standing, body, part.body.attitude(body.rotation), ())
+        return part.base_columns(standing, body, part.body.attitude(body.rotation), ())

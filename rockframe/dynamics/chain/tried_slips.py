@@ -58,7 +58,7 @@ class TriedSlips(SlipperyBases, RigidChain):
     @inlined
     def sense_in(self, mode: int, k: int) -> float:
         """Return the sense of slip of a body on its base in a mode; 0 if it does not slip."""
-        if (self.is_rigid(k) or self.is_slippery(k)) and self.part_mode(mode, k).slides:
+        if (self.is_rigid(k) or self.is_slippery(k)) and self.body_mode(mode, k).slides:
             return self.sense(mode, k)
         return 0.0
 
@@ -90,7 +90,7 @@ class TriedSlips(SlipperyBases, RigidChain):
     def as_tried(self, mode: int, state: Vector, memory: Vector) -> int:
         """Return the mode with the slips on deformable bases of the last trial."""
         for k in range(self.body_count):
-            if self.is_slippery(k) and not self.on_base(k).flies(self.part_mode(mode, k).contact):
+            if self.is_slippery(k) and not self.on_base(k).flies(self.body_mode(mode, k).contact):
                 mode = self.with_slip(k, self.slip_sense(k), mode, state, memory)
         return mode
 
@@ -363,7 +363,7 @@ class TriedSlips(SlipperyBases, RigidChain):
 
         On a deformable base friction has no part in impacts.
         """
-        bears, standing = some >> 2 * k & BOTH, self.part_mode(mode, k)
+        bears, standing = some >> 2 * k & BOTH, self.body_mode(mode, k)
         if self.is_rigid(k):
             return NOWHERE if bears == 0 else self.pin_on(bears)
         idle = impulsive or self.on_base(k).flies(standing.contact)
@@ -372,7 +372,7 @@ class TriedSlips(SlipperyBases, RigidChain):
     @inlined
     def slip_before(self, k: int, pivot: int, mode: int, state: Vector) -> tuple[float, float]:
         """Return the velocity of slip before a trial of corners, and its rounding noise."""
-        if not self.is_rigid(k) and not self.part_mode(mode, k).slides:
+        if not self.is_rigid(k) and not self.body_mode(mode, k).slides:
             return 0.0, 0.0  # held: the state need not have its velocity
         return self.slip_on(k, pivot, state)
 
@@ -435,8 +435,8 @@ class TriedSlips(SlipperyBases, RigidChain):
         reach = part.body.reach(part.body.pin(pivot), part.body.attitude(body.rotation))
         spare = MOST_CONSTRAINTS * self.body_count - 1  # a slipping body has no hold: free
         keeps = spare * CONSTRAINT + at.KEEPS
-        write_direction(self, k, 1.0, 0.0, -reach.rate, keeps, room, rows)
+        write_direction(self, k, 1.0, 0.0, -reach.derivative, keeps, room, rows)
         found = of_both(self.body_count, k, keeps, room, rows)
         if impulsive:
             return found
-        return found - coriolis_along(i, room) - reach.bend * rate * rate
+        return found - coriolis_along(i, room) - reach.second_derivative * rate * rate

@@ -8,16 +8,16 @@ import numpy as np
 
 from rockframe.compiled import Vector
 from rockframe.dynamics.alone import (
-    part_tolerance,
+    guard_tolerances,
     radius_of,
     rocking_rate,
-    rounding_at,
+    rounding_estimate,
     starting_state,
 )
 from rockframe.dynamics.bodies import ROTATION, VERTICAL
 from rockframe.dynamics.body import BodyState
 from rockframe.dynamics.coupled.system import Coupled
-from rockframe.dynamics.on_base import OnBase
+from rockframe.dynamics.on_base import BodyOnBase
 from rockframe.dynamics.protocol import HELD_PLACE, MEMORY, ContactModel, Start
 from rockframe.dynamics.stacked import (
     COLUMNS,
@@ -50,8 +50,8 @@ UPRIGHT: Final = StackRest(0.0, 0.0, 0.0, 0.0)
 def system_of(block: ChainBody, cap: ChainBody) -> Coupled:
     """Return the system of a block on a cap."""
     return Coupled(
-        OnBase(block.body, block.base.law), OnBase(cap.body, cap.base.law), cap.mass, cap.top,
-        block.beside,
+        BodyOnBase(block.body, block.base.law), BodyOnBase(cap.body, cap.base.law), cap.mass,
+        cap.top, block.beside,
     )  # fmt: skip
 
 
@@ -78,7 +78,7 @@ def coupled(block: ChainBody, cap: ChainBody, mass: float, rest: StackRest) -> C
         ),
         rotation_weights=np.array([1.0, 0.0, 1.0, 0.0, 0.0, 0.0]),
         scales=_scales(block, cap),
-        guard_tolerance=np.concatenate([part_tolerance(block.base), part_tolerance(cap.base)]),
+        guard_tolerance=np.concatenate([guard_tolerances(block.base), guard_tolerances(cap.base)]),
         columns=(*COLUMNS, *block.base.columns, *cap.base.columns),
         contacts=CONTACTS,
         memory=(*MEMORY, "held_place_of_cap"),
@@ -102,13 +102,15 @@ def _scales(block: ChainBody, cap: ChainBody) -> Vector:
 
 
 def _rounding(block: ChainBody, cap: ChainBody, fastest: float) -> Callable[[float], Vector]:
-    """Estimate the rounding noise of each state variable, as :func:`rounding_at` does."""
+    """Estimate the rounding noise of each state variable, as :func:`rounding_estimate` does."""
     body, pads, soil = block.body, block.base, cap.base
     rotating = 0.5 * (body.left + body.right) / (body.inertia + body.height**2)
     sizes = radius_of(body), radius_of(cap.body)
-    answers = np.array([rotating, 1.0, 1.0 / sizes[1], 1.0, 1.0, 1.0])
+    sensitivities = np.array([rotating, 1.0, 1.0 / sizes[1], 1.0, 1.0, 1.0])
     variables = len(pads.variable_scales) + len(soil.variable_scales)
-    return rounding_at(sum(sizes), pads.settlement + soil.settlement, answers, fastest, variables)
+    return rounding_estimate(
+        sum(sizes), pads.settlement + soil.settlement, sensitivities, fastest, variables
+    )
 
 
 def state_at(
@@ -125,27 +127,27 @@ def state_at(
     cap = BodyState(place.cap_rotation, place.cap_vertical, 0.0, 0.0, 0.0, 0.0)
     contact = upper.base.starting(upper.body.base_line_at(block), system.upper_own(state))
     under = lower.base.starting(lower.body.base_line_at(cap), system.lower_own(state))
-    standing = upper.standing(contact, block)
+    block_mode = upper.mode_for_contact(contact, block)
     # a cap at rest upright has no side yet: it takes that of the block
     leaning = cap if cap.rotation != 0.0 else block
-    of_cap = lower.standing(under, leaning)
-    pin, beside = upper.starting_pin(standing, block), system.beside
+    cap_mode = lower.mode_for_contact(under, leaning)
+    pin, beside = upper.initial_pin(block_mode, block), system.beside
     attitude = upper.body.attitude(block.rotation)
     state[ROTATION], state[VERTICAL] = block.rotation, block.vertical
     state[LOWER_ROTATION], state[LOWER_VERTICAL] = cap.rotation, cap.vertical
     state[COORDINATES + ROTATION] = block.angular_velocity
     state[COORDINATES + VERTICAL] = block.vertical_velocity
     state[HORIZONTAL] = pin + beside + upper.body.about_pin(pin, attitude)
-    if not upper.is_free(standing):
+    if not upper.is_free(block_mode):
         reach = upper.body.reach(pin, attitude)
-        state[COORDINATES + HORIZONTAL] = reach.rate * block.angular_velocity
+        state[COORDINATES + HORIZONTAL] = reach.derivative * block.angular_velocity
     memory[HELD_PLACE + UPPER] = pin + beside
-    cap_pin = lower.starting_pin(of_cap, leaning)
+    cap_pin = lower.initial_pin(cap_mode, leaning)
     memory[HELD_PLACE + LOWER] = cap_pin
-    if lower.is_free(of_cap):
+    if lower.is_free(cap_mode):
         leant = lower.body.attitude(cap.rotation)
         state[LOWER_HORIZONTAL] = cap_pin + lower.body.about_pin(cap_pin, leant)
-    return system.with_part(upper.number_of(standing), LOWER, of_cap), state, memory
+    return system.with_body_mode(upper.number_of(block_mode), LOWER, cap_mode), state, memory
 
 
 def _starting(system: Coupled, rest: StackRest) -> Callable[[Start], tuple[int, Vector, Vector]]:

@@ -8,7 +8,7 @@ import numpy as np
 from rockframe.compiled import Vector
 from rockframe.dynamics.alone import Alone
 from rockframe.dynamics.body import PIVOT_CENTRE
-from rockframe.dynamics.on_base import OnBase
+from rockframe.dynamics.on_base import BodyOnBase
 from rockframe.dynamics.pads import corner_contact
 from rockframe.proof.balls import ball
 from rockframe.proof.pads.flow import point
@@ -26,7 +26,7 @@ _REACH: Final = 1.6
 """Length of a step, over the inverse of the fastest angular frequency."""
 
 
-def pad_numbers(part: OnBase, limits: OverturningAngles, inputs: Deviations) -> PadBalls:
+def pad_numbers(part: BodyOnBase, limits: OverturningAngles, inputs: Deviations) -> PadBalls:
     """Return a block on elastic pads in balls."""
     body, base = part.body, part.base
     return PadBalls(
