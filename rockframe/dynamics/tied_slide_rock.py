@@ -47,7 +47,7 @@ from rockframe.dynamics.slide_motion import (
 )
 from rockframe.dynamics.slide_rock import SlideRock, SlideSwitches, slide_rock
 from rockframe.dynamics.trigonometry import sine_cosine, versine
-from rockframe.dynamics.vibrations import greatest_share
+from rockframe.dynamics.vibrations import greatest_eigenvalue
 
 BLOCK_COLUMNS: Final = len(COLUMNS)
 SLIP_COLUMNS: Final = ("slip", "slip_velocity")
@@ -264,5 +264,5 @@ def link_bounds(block: SlideRock, ties: Sequence[ChainLink]) -> tuple[float, flo
         stiffness += tie.numbers.stiffness * jacobian.T @ jacobian
         damping += tie.numbers.damping * jacobian.T @ jacobian
     root = np.diag([1.0, 1.0, math.sqrt(block.inertia)])
-    fastest, damped = (greatest_share(one, root) for one in (stiffness, damping))
+    fastest, damped = (greatest_eigenvalue(one, root) for one in (stiffness, damping))
     return math.sqrt(max(fastest, 0.0)), max(damped, 0.0)

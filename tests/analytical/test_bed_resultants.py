@@ -6,11 +6,11 @@ import math
 import numpy as np
 import pytest
 
-from rockframe.dynamics.alone import alone, rigid_body
 from rockframe.dynamics.base_numbers import bed_numbers
 from rockframe.dynamics.bed import Bed, Ends, both_contacts, contact_of_end
 from rockframe.dynamics.body import CENTRE, BaseLine, with_accelerations
 from rockframe.dynamics.protocol import Ground, Start
+from rockframe.dynamics.single_body import rigid_body, single_body
 
 pytestmark = pytest.mark.analytical
 
@@ -182,7 +182,7 @@ def body(alpha, y, spin, speed, *, small, damping=45.0, by_pressure=False):
     """Return a model, its state and the mode that belongs to it."""
     block = shape(small=small)
     bed = bed_numbers(block, stiffness=STIFFNESS, damping=damping, by_pressure=by_pressure)
-    model = alone("Winkler", block, bed, mass=1.0)
+    model = single_body("Winkler", block, bed, mass=1.0)
     mode, state, _ = model.initial(Start(alpha, spin, y, speed))
     return model, mode, state
 

@@ -9,7 +9,6 @@ from reference_models.rigid_pair.count_impacts import KINDS, draw_impact
 from reference_models.rigid_pair.pair import Body, Pair, Pattern, Phase
 
 import rockframe as rf
-from rockframe.dynamics.alone import rigid_body
 from rockframe.dynamics.base_numbers import rigid_numbers
 from rockframe.dynamics.bodies import ROTATION
 from rockframe.dynamics.chain import rows as at
@@ -25,6 +24,7 @@ from rockframe.dynamics.chain.motion import (
 from rockframe.dynamics.chain.rigid import ADMISSIBLE, TAKEN
 from rockframe.dynamics.chain.rows import PLACES
 from rockframe.dynamics.protocol import HELD_PLACE, IMPACT_LOSS, Ground, Start
+from rockframe.dynamics.single_body import rigid_body
 from rockframe.dynamics.vibrations import ChainBody
 from rockframe.solve.accuracy import accuracy_of
 from rockframe.solve.integrate import integrate

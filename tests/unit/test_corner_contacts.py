@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from rockframe.dynamics.alone import alone, rigid_body
 from rockframe.dynamics.base_numbers import pads_numbers
 from rockframe.dynamics.bodies import BODY_DOF, ROTATION, VERTICAL
 from rockframe.dynamics.body import BY_CONTACT, PIVOT_RIGHT
@@ -20,6 +19,7 @@ from rockframe.dynamics.pads import (
     corner_contact,
 )
 from rockframe.dynamics.protocol import MEMORY, Ground
+from rockframe.dynamics.single_body import rigid_body, single_body
 from rockframe.dynamics.switching import mode_after_disturbance
 
 G = 9.81
@@ -27,7 +27,7 @@ BODY = rigid_body(
     left=0.5, right=0.5, height=2.0, inertia=4.25 / 3.0, restraint=BY_CONTACT, small_rotation=False,
     gravity=G,
 )  # fmt: skip
-SYSTEM = alone(
+SYSTEM = single_body(
     "two-spring",
     BODY,
     pads_numbers(BODY, stiffness=4e3, damping=60.0, restitution=(0.9, 0.9)),

@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 
 from rockframe.compiled import Vector
-from rockframe.dynamics.alone import Alone
 from rockframe.dynamics.cascade.system import COLUMNS, Cascade
 from rockframe.dynamics.on_base import BodyOnBase
 from rockframe.dynamics.protocol import BODY_COLUMNS, HELD_PLACE, MEMORY, ContactModel, Start
+from rockframe.dynamics.single_body import SingleBody
 from rockframe.dynamics.stacked import CONTACTS
 
 
@@ -27,7 +27,8 @@ def cascade(
     Parameters
     ----------
     first : ContactModel
-        Block and cap as one body on the soil, of :func:`rockframe.dynamics.alone.alone`.
+        Block and cap as one body on the soil, by
+        :func:`rockframe.dynamics.single_body.single_body`.
     second : ContactModel
         The block on its base, of the same function.
     top, cap_centre : float
@@ -71,7 +72,7 @@ def cascade(
 
 
 def _part_of(model: ContactModel) -> BodyOnBase:
-    if not isinstance(model.system, Alone):
+    if not isinstance(model.system, SingleBody):
         msg = f"a cascade is made of two models of one body on a base, got {model.name!r}"
         raise TypeError(msg)
     return model.system.part

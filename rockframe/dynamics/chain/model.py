@@ -7,12 +7,6 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from rockframe.compiled import Vector
-from rockframe.dynamics.alone import (
-    guard_tolerances,
-    radius_of,
-    rocking_rate,
-    rounding_estimate,
-)
 from rockframe.dynamics.base_numbers import BaseNumbers
 from rockframe.dynamics.bed import both_contacts
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, BODY_DOF, ROTATION, VERTICAL
@@ -39,6 +33,12 @@ from rockframe.dynamics.protocol import (
     ContactModel,
     Start,
     column_of,
+)
+from rockframe.dynamics.single_body import (
+    guard_tolerances,
+    radius_of,
+    rocking_rate,
+    rounding_estimate,
 )
 from rockframe.dynamics.vibrations import ChainBody, fastest_vibration, is_rigid, per_own_mass
 

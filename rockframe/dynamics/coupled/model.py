@@ -7,18 +7,18 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from rockframe.compiled import Vector
-from rockframe.dynamics.alone import (
+from rockframe.dynamics.bodies import ROTATION, VERTICAL
+from rockframe.dynamics.body import BodyState
+from rockframe.dynamics.coupled.system import Coupled
+from rockframe.dynamics.on_base import BodyOnBase
+from rockframe.dynamics.protocol import HELD_PLACE, MEMORY, ContactModel, Start
+from rockframe.dynamics.single_body import (
     guard_tolerances,
     radius_of,
     rocking_rate,
     rounding_estimate,
     starting_state,
 )
-from rockframe.dynamics.bodies import ROTATION, VERTICAL
-from rockframe.dynamics.body import BodyState
-from rockframe.dynamics.coupled.system import Coupled
-from rockframe.dynamics.on_base import BodyOnBase
-from rockframe.dynamics.protocol import HELD_PLACE, MEMORY, ContactModel, Start
 from rockframe.dynamics.stacked import (
     COLUMNS,
     CONTACTS,

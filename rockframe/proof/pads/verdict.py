@@ -6,10 +6,10 @@ from typing import Final
 import numpy as np
 
 from rockframe.compiled import Vector
-from rockframe.dynamics.alone import Alone
 from rockframe.dynamics.body import PIVOT_CENTRE
 from rockframe.dynamics.on_base import BodyOnBase
 from rockframe.dynamics.pads import corner_contact
+from rockframe.dynamics.single_body import SingleBody
 from rockframe.proof.balls import ball
 from rockframe.proof.pads.flow import point
 from rockframe.proof.pads.law import PadBalls, Standing
@@ -41,7 +41,7 @@ def pad_numbers(part: BodyOnBase, limits: OverturningAngles, inputs: Deviations)
 
 
 def way_of(
-    law: Alone,
+    law: SingleBody,
     mode: int,
     state: Vector,
     motion: Motion,
@@ -73,7 +73,7 @@ def way_of(
 
 
 def prove_pads(
-    law: Alone,
+    law: SingleBody,
     mode: int,
     state: Vector,
     motion: Motion,

@@ -12,6 +12,7 @@ from rockframe.dynamics.base import Guards, Variables
 from rockframe.dynamics.base_numbers import BaseNumbers
 from rockframe.dynamics.bodies import BODY_DOF, ROTATION, VERTICAL, StateAccess
 from rockframe.dynamics.body import CENTRE, Body, BodyState
+from rockframe.dynamics.body_statics import equilibrium_pose, standing_body
 from rockframe.dynamics.on_base import (
     BODY_GUARDS,
     IDLE_GUARDS,
@@ -31,7 +32,6 @@ from rockframe.dynamics.protocol import (
     Slope,
     Start,
 )
-from rockframe.dynamics.standing import settled, standing_body
 from rockframe.dynamics.switching import lift_per_slip, switch_mode
 from rockframe.many import atan2, hypot, sqrt
 
@@ -46,7 +46,7 @@ class SingleBodyNumbers(NamedTuple):
     part: BodyOnBase
 
 
-class Alone(StateAccess, SingleBodyNumbers):
+class SingleBody(StateAccess, SingleBodyNumbers):
     """One body on a base, per unit mass: a system."""
 
     __slots__ = ()
@@ -248,7 +248,7 @@ def rigid_body(
     )
 
 
-def alone(
+def single_body(
     name: str, body: Body, base: BaseNumbers, mass: float, rest_rotation: float = 0.0
 ) -> ContactModel:
     """Assemble the model of a body on a base.
@@ -277,7 +277,7 @@ def alone(
     sensitivities = np.array([width / (body.inertia + body.height**2), 1.0, 1.0])
     return ContactModel(
         name=name,
-        system=Alone(part),
+        system=SingleBody(part),
         rotation_limits=(atan2(body.left, body.height), atan2(body.right, body.height)),
         rotation_weights=np.array([1.0, 0.0, 0.0]),
         scales=np.concatenate([
@@ -343,7 +343,8 @@ def starting_state(part: BodyOnBase, start: Start, own: Variables) -> tuple[Body
     body, base, rotation = part.body, part.base, start.rotation or 0.0
     height = start.vertical_displacement
     if height is None:
-        height = settled(standing_body(part, own=own), rotation, body.gravity).state.vertical
+        pose = equilibrium_pose(standing_body(part, own=own), rotation, body.gravity)
+        height = pose.state.vertical
     state = BodyState(rotation, height, 0.0, start.angular_velocity, start.vertical_velocity, 0.0)
     return state, part.mode_for_contact(base.starting(body.base_line_at(state), own), state)
 
