@@ -203,7 +203,7 @@ class Base:
         return 1.0
 
 
-def root_above_zero(function: Callable[[float], float], start: float) -> float:
+def positive_root(function: Callable[[float], float], start: float) -> float:
     """Return the root of an increasing function that is negative at zero, searched from `start`."""
     from scipy.optimize import root_scalar
 
@@ -213,7 +213,7 @@ def root_above_zero(function: Callable[[float], float], start: float) -> float:
     return float(found.root)
 
 
-def height_under(
+def equilibrium_height(
     base: Base, weight: float, depth: float, ends: tuple[float, float], own: Any
 ) -> float:
     """Return the height at which a base carries a weight, found numerically.
@@ -242,4 +242,4 @@ def height_under(
         return float(base.force(base.starting(line, own), line, own).upward) - weight
 
     highest = depth - min(ends)
-    return highest - root_above_zero(lambda down: excess(highest - down), depth)
+    return highest - positive_root(lambda down: excess(highest - down), depth)

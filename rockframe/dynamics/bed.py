@@ -50,7 +50,7 @@ def mean_product(f0: float, f1: float, g0: float, g1: float) -> float:
 
 
 @inlined
-def between(left: float, right: float, place: float) -> float:
+def interpolated(left: float, right: float, place: float) -> float:
     """Return a value between the ends of the base of a quantity that is linear along it."""
     return left + place * (right - left)
 
@@ -127,8 +127,8 @@ class Bed(Base, BedNumbers):
     @inlined
     def pressure(self, place: float, ends: Ends) -> float:
         """Return the pressure at a place of the base."""
-        u = between(ends.u_left, ends.u_right, place)
-        return self.stiffness * u - self.damping * between(ends.v_left, ends.v_right, place)
+        u = interpolated(ends.u_left, ends.u_right, place)
+        return self.stiffness * u - self.damping * interpolated(ends.v_left, ends.v_right, place)
 
     @inlined
     def bearing_part(self, contact: int, ends: Ends) -> tuple[float, float]:
@@ -153,12 +153,12 @@ class Bed(Base, BedNumbers):
         """
         ends = self.ends(line)
         start, end = self.bearing_part(contact, ends)
-        v0 = between(ends.v_left, ends.v_right, start)
-        v1 = between(ends.v_left, ends.v_right, end)
-        p0 = self.stiffness * between(ends.u_left, ends.u_right, start) - self.damping * v0
-        p1 = self.stiffness * between(ends.u_left, ends.u_right, end) - self.damping * v1
-        l0 = between(line.left_lever, line.right_lever, start)
-        l1 = between(line.left_lever, line.right_lever, end)
+        v0 = interpolated(ends.v_left, ends.v_right, start)
+        v1 = interpolated(ends.v_left, ends.v_right, end)
+        p0 = self.stiffness * interpolated(ends.u_left, ends.u_right, start) - self.damping * v0
+        p1 = self.stiffness * interpolated(ends.u_left, ends.u_right, end) - self.damping * v1
+        l0 = interpolated(line.left_lever, line.right_lever, start)
+        l1 = interpolated(line.left_lever, line.right_lever, end)
         length = self.width * (end - start)
         dissipated = self.damping * length * mean_product(v0, v1, v0, v1)
         # without dashpots all of the compressed part bears
@@ -174,10 +174,10 @@ class Bed(Base, BedNumbers):
     @kernel
     def spring_power(self, start: float, end: float, ends: Ends) -> float:
         """Return the power that the springs release between two places of the bed."""
-        u0 = between(ends.u_left, ends.u_right, start)
-        u1 = between(ends.u_left, ends.u_right, end)
-        v0 = between(ends.v_left, ends.v_right, start)
-        v1 = between(ends.v_left, ends.v_right, end)
+        u0 = interpolated(ends.u_left, ends.u_right, start)
+        u1 = interpolated(ends.u_left, ends.u_right, end)
+        v0 = interpolated(ends.v_left, ends.v_right, start)
+        v1 = interpolated(ends.v_left, ends.v_right, end)
         return self.stiffness * self.width * (end - start) * mean_product(u0, u1, v0, v1)
 
     @kernel
@@ -188,8 +188,8 @@ class Bed(Base, BedNumbers):
         start, end = compressed_part(
             contact_of_end(ends.u_left), contact_of_end(ends.u_right), ends
         )
-        u0 = between(ends.u_left, ends.u_right, start)
-        u1 = between(ends.u_left, ends.u_right, end)
+        u0 = interpolated(ends.u_left, ends.u_right, start)
+        u1 = interpolated(ends.u_left, ends.u_right, end)
         stored = half * (end - start) * mean_product(u0, u1, u0, u1)
         if end - start < 1.0:
             return stored, stored - half * delta * delta

@@ -23,7 +23,7 @@ from rockframe.dynamics.body import (
 )
 from rockframe.dynamics.events import FLIGHT, FULL, LEFT, RIGHT
 from rockframe.dynamics.protocol import Ground
-from rockframe.dynamics.sliding import NO_LEVER
+from rockframe.dynamics.sliding import NEGLIGIBLE_LIFT
 
 # guards of a body, behind those of both ends of its base
 HOLD: Final = 0  # of a sliding end: the force of the hold that keeps it at its level
@@ -257,7 +257,7 @@ class BodyOnBase(NamedTuple):
         reach = body.reach(body.pin(mode.pivot), body.attitude(state.rotation))
         upwards = 1.0 if rise < 0.0 else -1.0
         hold = -upwards * push / body.gravity
-        if abs(rise) < NO_LEVER:
+        if abs(rise) < NEGLIGIBLE_LIFT:
             # held beneath the centre of mass the body is not lifted by the hold
             return SlidingGuards(hold, -1.0, 0.0)
         slip = state.horizontal_velocity - reach.derivative * rate

@@ -15,7 +15,7 @@ from rockframe.dynamics.base import (
     EndEvent,
     Guards,
     Variables,
-    height_under,
+    equilibrium_height,
 )
 from rockframe.dynamics.body import BaseLine
 from rockframe.dynamics.events import IMPACT, REENGAGEMENT, SEPARATION, SILENT
@@ -405,7 +405,7 @@ class Pads(Base, PadNumbers):
 
     def resting_height(self, left: float, right: float, own: Any) -> float:
         """Return the height at which the pads carry the weight [m], found numerically."""
-        return height_under(self, self.gravity, 2.0 * self.rest, (left, right), own)
+        return equilibrium_height(self, self.gravity, 2.0 * self.rest, (left, right), own)
 
     @kernel
     def observed(self, contact: int, line: BaseLine, own: Any) -> Variables:

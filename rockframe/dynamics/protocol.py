@@ -53,7 +53,7 @@ MEMORY: Final = (
 )  # fmt: skip
 """Names of the numbers that every system remembers, in their order."""
 
-MOST_MODES: Final = 2**63 - 1
+MAX_MODES: Final = 2**63 - 1
 """Modes that a system may have: each is a whole number of 64 bits, one of which is its sign."""
 
 POWERS: Final = 2
@@ -369,10 +369,10 @@ class ContactModel:
 
     def __post_init__(self) -> None:
         count = self.system.modes()
-        if count > MOST_MODES:
+        if count > MAX_MODES:
             msg = (
                 f"the contacts of its bases give the scene {count:.3g} modes, more than the "
-                f"{MOST_MODES:.3g} that can be numbered: give a base of your own fewer contacts"
+                f"{MAX_MODES:.3g} that can be numbered: give a base of your own fewer contacts"
             )
             raise AssemblyError([msg])
 

@@ -16,7 +16,7 @@ from rockframe.dynamics.base import (
     EndEvent,
     Guards,
     Variables,
-    height_under,
+    equilibrium_height,
 )
 from rockframe.dynamics.body import BaseLine
 from rockframe.dynamics.events import REENGAGEMENT, SEPARATION, SILENT
@@ -249,7 +249,7 @@ class Springs(Base, SpringNumbers):
 
     def resting_height(self, left: float, right: float, own: Any) -> float:
         """Return the height at which the springs carry the weight [m], found numerically."""
-        return height_under(self, self.weight, 2.0 * self.settlement, (left, right), own)
+        return equilibrium_height(self, self.weight, 2.0 * self.settlement, (left, right), own)
 
     @kernel
     def observed(self, contact: int, line: BaseLine, own: Vector) -> Variables:

@@ -32,11 +32,11 @@ from rockframe.dynamics.protocol import (
     Ground,
 )
 from rockframe.dynamics.sliding import (
-    DISTURBED,
+    LIFT_OFF_NOISE,
     blend,
     is_lifted,
-    share_of_loss,
-    share_until_lifted,
+    loss_share,
+    share_at_lift_off,
     speed_noise,
 )
 
@@ -173,14 +173,14 @@ def repin_at_landing(
     idle = target > 0.0 and after - speed <= noise  # no slip to stop: forces decide
     if idle or not is_lifted(speed, after, noise):
         return False
-    share = share_until_lifted(speed, after)
+    share = share_at_lift_off(speed, after)
     attitude = part.body.attitude(body.rotation)
     held = part.horizontal_velocity(system.body_mode(new, k), body, attitude)
     system.set_horizontal(k, old_horizontal, held, state)
     system.blend_velocities(before, share, state)
     system.record_impulse(k, 0.0, 0.0, share * hold)
     memory[HELD_PLACE + k] = place
-    memory[REPINNING_LOSS] = blend(lost, memory[REPINNING_LOSS], share_of_loss(share))
+    memory[REPINNING_LOSS] = blend(lost, memory[REPINNING_LOSS], loss_share(share))
     now, _ = end_speed(part, left, system.state_of(k, state))
     system.shift_vertical(k, 0.0, target - now, state)
     return True
@@ -385,7 +385,7 @@ def recheck_sliding(system: Bodies, part: BodyOnBase, k: int, mode: int, state: 
     left = part.base.is_held(was.contact, True)
     speed, noise = end_speed(part, left, system.state_of(k, state))
     target = following_speed(system, part, k, left, state)
-    if abs(speed - target) <= DISTURBED * max(noise, part.base.least_landing()):
+    if abs(speed - target) <= LIFT_OFF_NOISE * max(noise, part.base.least_landing()):
         system.shift_vertical(k, 0.0, target - speed, state)
         return mode
     return lift_off(system, part, k, mode, state)

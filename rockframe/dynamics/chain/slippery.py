@@ -20,7 +20,7 @@ from rockframe.dynamics.events import IMPACT, PIVOT_CHANGE, REENGAGEMENT, SEPARA
 from rockframe.dynamics.on_base import Mode
 from rockframe.dynamics.pads import CORNER_GUARDS
 from rockframe.dynamics.protocol import IMPACT_LOSS, LAST_EVENT, Ground
-from rockframe.dynamics.sliding import NOISE
+from rockframe.dynamics.sliding import SPEED_ROUNDING
 from rockframe.dynamics.switching import end_speed, next_pivot
 
 
@@ -168,7 +168,7 @@ class SlipperyBases(SlippingBodies):
         self.take_answer(state)
         self.record_impulse(k, press, moment, along)
         after, noise = self.slip_rate(k, mode, state)
-        if abs(after) <= noise + 2.0 * NOISE * abs(slip):
+        if abs(after) <= noise + 2.0 * SPEED_ROUNDING * abs(slip):
             self.end_slip(k, mode, state)
 
     @inlined

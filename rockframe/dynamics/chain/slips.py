@@ -20,7 +20,7 @@ from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.events import SILENT
 from rockframe.dynamics.on_base import Mode, SlidingGuards
 from rockframe.dynamics.protocol import HELD_PLACE, Ending, Slope
-from rockframe.dynamics.sliding import NOISE
+from rockframe.dynamics.sliding import SPEED_ROUNDING
 
 # coefficients of friction [1]
 STATIC: Final = 0
@@ -97,7 +97,7 @@ class SlippingBodies(Chain):
             * body.angular_velocity
         )
         sway = body.horizontal_velocity
-        return sway - about, NOISE * (abs(sway) + abs(about))
+        return sway - about, SPEED_ROUNDING * (abs(sway) + abs(about))
 
     @inlined
     def point_of(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
@@ -181,7 +181,7 @@ class SlippingBodies(Chain):
         change -= reach.derivative * slope[BEFORE_HORIZONTAL * k + ROTATION]
         sway, rotating = body.horizontal_velocity, reach.derivative * rate
         # rounding must not stop a slip that starts or is very slow
-        slip = scale * (sense * (sway - rotating) + NOISE * (abs(sway) + abs(rotating)))
+        slip = scale * (sense * (sway - rotating) + SPEED_ROUNDING * (abs(sway) + abs(rotating)))
         least = self.rounding(k, self.friction_of(k, KINETIC)) / self.number(k, at.MASS)
         return SlidingGuards(1.0, slip, scale * (sense * change + least))
 
@@ -196,7 +196,7 @@ class SlippingBodies(Chain):
             mass += self.number(j, at.MASS)
         thrust = abs(self.places()[k * PLACES + at.THRUST])
         weight = mass * self.number(k, at.GRAVITY)
-        return ROUNDING * thrust + (ROUNDING + NOISE * friction) * weight
+        return ROUNDING * thrust + (ROUNDING + SPEED_ROUNDING * friction) * weight
 
     @kernel
     def go_on(self, mode: int, state: Vector, memory: Vector) -> int:

@@ -35,7 +35,7 @@ from rockframe.dynamics.chain.rows import CONSTRAINT, MOST_CONSTRAINTS, PLACES
 from rockframe.dynamics.chain.slippery import SlipperyBases
 from rockframe.dynamics.chain.slips import IMPULSIVE, KINETIC, ROUNDING, STATIC, TRIES
 from rockframe.dynamics.on_base import Mode
-from rockframe.dynamics.sliding import NOISE as NOISE_OF_SLIP
+from rockframe.dynamics.sliding import SPEED_ROUNDING
 
 NOWHERE: Final = -1
 """In place of a pivot, where a body neither slips nor is held by friction."""
@@ -321,7 +321,7 @@ class TriedSlips(SlipperyBases, RigidChain):
                     pivot = self.tried_at(k, mode, corners, True)
                     rate, least = self.slip_on(k, pivot, state)
                     after = self.slips_on(k, pivot, True, state) + rate
-                    if sense * after < -abs(sense) * (least + NOISE_OF_SLIP * abs(after)):
+                    if sense * after < -abs(sense) * (least + SPEED_ROUNDING * abs(after)):
                         room[k * PLACES + at.SLIPS] = 0.0
                         turned = True
                     elif abs(sense) == 1.0 and self.pressed(k) < 0.0:
@@ -403,7 +403,7 @@ class TriedSlips(SlipperyBases, RigidChain):
                 if impulsive or abs(rate) <= least:
                     after = self.slips_on(k, pivot, impulsive, state)
                     if impulsive:
-                        after, least = after + rate, least + NOISE_OF_SLIP * abs(after)
+                        after, least = after + rate, least + SPEED_ROUNDING * abs(after)
                     else:  # as it starts to slip, friction is what holds it
                         least = noise
                     if sense * after < -least:
