@@ -132,7 +132,7 @@ class Bed(Base, BedNumbers):
 
     @inlined
     def bearing_part(self, contact: int, ends: Ends) -> tuple[float, float]:
-        """Return the places between which the base bears."""
+        """Return the places between which the base presses the bed."""
         start, end = compressed_part(end_contact(contact, True), end_contact(contact, False), ends)
         if not self.by_pressure:
             return start, end
@@ -161,7 +161,7 @@ class Bed(Base, BedNumbers):
         l1 = interpolated(line.left_lever, line.right_lever, end)
         length = self.width * (end - start)
         dissipated = self.damping * length * mean_product(v0, v1, v0, v1)
-        # without dashpots all of the compressed part bears
+        # without dashpots all of the compressed part presses
         if self.by_pressure and self.damping > 0.0:
             down, up = compressed_part(
                 end_contact(contact, True), end_contact(contact, False), ends
@@ -248,12 +248,12 @@ class Bed(Base, BedNumbers):
 
     @kernel
     def observed(self, contact: int, line: BaseLine, own: Variables) -> Variables:
-        """Return bed's reaction, the length in contact, and the greater pressure at its ends."""
+        """Return reaction, length in contact, and the greater of the pressures at its ends."""
         ends = self.ends(line)
         start, end = self.bearing_part(contact, ends)
         left, right = self.pressure(start, ends), self.pressure(end, ends)
-        toe = max(left, right) if end > start else 0.0
-        return self.force(contact, line, own).upward, self.width * (end - start), toe
+        greatest = max(left, right) if end > start else 0.0
+        return self.force(contact, line, own).upward, self.width * (end - start), greatest
 
 
 class Rigid(Bed):

@@ -36,7 +36,7 @@ MAX_BISECTIONS: Final = 60
 DIFFERENCE_STEP: Final = 1e-3
 """Step of a coordinate, over its size, for derivatives of forces [1]."""
 STENCIL: Final = ((1.0, 2.0 / 3.0), (2.0, -1.0 / 12.0))
-"""Steps to both sides, and weights, of a finite difference of fourth order."""
+"""Numbers of steps to both sides, and weights, of a finite difference of fourth order."""
 DISPLACEMENTS: Final = ("rotation", "vertical")
 RATES: Final = ("angular_velocity", "vertical_velocity")
 
@@ -47,7 +47,7 @@ class StandingBody(NamedTuple):
     part: BodyOnBase
     mass: float  # over the reference mass [1]
     top: float  # height of its deck above its centre of mass [m]
-    beside: float  # centre of mass to the right of that of the body beneath, upright [m]
+    offset: float  # centre of mass to the right of that of the body beneath, upright [m]
     settlement: float  # of its base, a typical size [m]
     own: Any  # variables of its base's own, as they are before any run
     # on a rigid base: 1 if it has lifted and bears on its right corner, -1 on its left one, else 0
@@ -66,17 +66,17 @@ class StandingBody(NamedTuple):
         """Return the position of the centre of mass along the deck beneath, and its derivatives."""
         body = self.part.body
         pin = body.pin(pivot)
-        across = self.beside + pin + (body.height * attitude.sine - pin * attitude.cosine)
+        across = self.offset + pin + (body.height * attitude.sine - pin * attitude.cosine)
         return body.reach(pin, attitude), across
 
     def scaled(self, share: float) -> "StandingBody":
         """Return the body with a share of its eccentricity."""
         body = self.part.body
-        if self.beside == 0.0 and body.left == body.right:
+        if self.offset == 0.0 and body.left == body.right:
             return self
         half, off = 0.5 * (body.left + body.right), 0.5 * share * (body.left - body.right)
         part = BodyOnBase(body._replace(left=half + off, right=half - off), self.part.base)
-        return self._replace(part=part, beside=share * self.beside)
+        return self._replace(part=part, offset=share * self.offset)
 
 
 class Pose(NamedTuple):
@@ -94,14 +94,14 @@ class Pose(NamedTuple):
 
 
 def standing_body(
-    part: BodyOnBase, mass: float = 1.0, top: float = 0.0, beside: float = 0.0, own: Any = None
+    part: BodyOnBase, mass: float = 1.0, top: float = 0.0, offset: float = 0.0, own: Any = None
 ) -> StandingBody:
     """Return a body on its base; `own`: the base's variables, by default those before any run."""
     body, base = part
     if own is None:
         own = base.read(np.zeros(base.variables()), 0)
     rest = body.base_line_at(BodyState(0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
-    return StandingBody(part, mass, top, beside, base.level(True, rest, own), own)
+    return StandingBody(part, mass, top, offset, base.level(True, rest, own), own)
 
 
 def equilibrium_pose(standing: StandingBody, rotation: float, load: float) -> Pose:
@@ -232,8 +232,8 @@ def base_derivatives(
         return base.force(contact, line, own)
 
     moment = upward = 0.0
-    for offset, weight in STENCIL:
-        before, after = force(offset * step), force(-offset * step)
+    for steps, weight in STENCIL:
+        before, after = force(steps * step), force(-steps * step)
         moment -= weight / step * (before.moment - after.moment)
         upward -= weight / step * (before.upward - after.upward)
     return moment, upward

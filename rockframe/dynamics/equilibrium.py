@@ -166,11 +166,11 @@ def load_stiffness(
     found = np.zeros((2 * len(poses), 2 * len(poses)))
     for at, size in enumerate(chain.sizes):
         step = DIFFERENCE_STEP * size
-        for offset, weight in stencil:
+        for steps, weight in stencil:
             before, after = (
                 chain.generalized_loads(others, of_links(others))
                 for others in (
-                    chain.displaced(poses, at, by) for by in (-offset * step, offset * step)
+                    chain.displaced(poses, at, by) for by in (-steps * step, steps * step)
                 )
             )
             found[:, at] += weight / step * (before - after)
@@ -313,7 +313,7 @@ class _Step:
         if not link_force.coincide:
             misfit = link_force.elongation - float(self.guess.elongations[i])
             return [_StiffDirection(i, along, 1.0 / stiffness, misfit)] if stiffness > 0.0 else []
-        if not along.any():  # points that meet without force may part in any direction
+        if not along.any():  # points that coincide without force may part in any direction
             directions = np.eye(2) if stiffness > 0.0 else ()
             return [_StiffDirection(i, one, 1.0 / stiffness, 0.0) for one in directions]
         found = list[_StiffDirection]()

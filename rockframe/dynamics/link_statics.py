@@ -35,9 +35,9 @@ class LinkForce(NamedTuple):
     damping: float  # derivative of the force by the rate of elongation
     elongation: float
     jacobian: Matrix  # derivatives of `displacement` by all coordinates
-    direction: Vector  # unit, from the second to the first; zero where they meet without force
+    direction: Vector  # unit, from the second to the first; zero where they coincide without force
     displacement: Vector  # displacement of its first point relative to its second [m]
-    coincide: bool  # whether both points coincide as it is given
+    coincide: bool  # whether both points coincide in the undeformed geometry
 
     @property
     def loads(self) -> Vector:
@@ -47,7 +47,7 @@ class LinkForce(NamedTuple):
 
     @property
     def damping_matrix(self) -> Matrix:
-        """Damping matrix of its dashpot, along the link or, where points meet, in any direction."""
+        """Damping matrix of its dashpot, along the link, or in any direction if points coincide."""
         along = self.direction @ self.jacobian
         if self.direction.any():
             return self.damping * np.outer(along, along)
@@ -67,15 +67,15 @@ class _Frame(NamedTuple):
 class LinkKinematics(NamedTuple):
     """Motion of the first point of a link relative to its second."""
 
-    displacement: Vector  # displacement from where it is given [m]
+    displacement: Vector  # displacement from the undeformed geometry [m]
     jacobian: Matrix  # derivatives of this by all coordinates
-    direction: Vector  # unit vector away from the second point; zero where both meet
+    direction: Vector  # unit vector away from the second point; zero where both coincide
 
 
 def link_kinematics(
     bodies: Sequence[StandingBody], poses: Sequence[Pose], ties: Sequence[ChainLink]
 ) -> list[LinkKinematics]:
-    """Return the relative displacements of the points of links, for given places of bodies."""
+    """Return the relative displacements of the points of links, from the poses of bodies."""
     frames, found = _frames(bodies, poses) if ties else [], list[LinkKinematics]()
     for one in ties:
         on, on_jacobian = _point(one.on, one.on_point, poses, frames)
@@ -91,7 +91,7 @@ def link_forces(
     states: Sequence[int] | None = None,
     elongations: Sequence[float] | None = None,
 ) -> list[LinkForce]:
-    """Return elongations and forces of links, for given places of bodies.
+    """Return elongations and forces of links, from the poses of bodies.
 
     With `elongations` the forces are those of these elongations instead.
     """
@@ -166,7 +166,7 @@ def _relative_motion(tie: ChainLink, displacement: Vector, jacobian: Matrix) -> 
 
 
 def links_at_rest(ties: Sequence[ChainLink]) -> list[LinkForce]:
-    """Return elongations and forces of links in the geometry in which they are given."""
+    """Return elongations and forces of links in the undeformed geometry."""
     return [link_force(one, _relative_motion(one, np.zeros(2), np.zeros((2, 1)))) for one in ties]
 
 
@@ -193,7 +193,7 @@ def links_of_rocking_bodies(
 
 
 def _frames(bodies: Sequence[StandingBody], poses: Sequence[Pose]) -> list[_Frame]:
-    """Return displacements of bodies from where they are given, and their axes."""
+    """Return displacements of bodies from the undeformed geometry, and their axes."""
     found, place, rotation = list[_Frame](), np.zeros(2), 0.0
     sine, cosine = 0.0, 1.0
     for k in range(len(poses) - 1, -1, -1):
@@ -201,10 +201,12 @@ def _frames(bodies: Sequence[StandingBody], poses: Sequence[Pose]) -> list[_Fram
         fixed = bodies[k + 1].top + body.height if k + 1 < len(poses) else body.height
         along, normal = np.array([cosine, -sine]), np.array([sine, cosine])
         vers = versine(sine, cosine)
-        lift = np.array([fixed * sine, -fixed * vers])  # of what is fixed normal to the base
-        beside = bodies[k].beside
-        sway = (pose.across - beside) * along + beside * np.array([-vers, -sine])
-        place = place + sway + lift + pose.state.vertical * normal
+        shift_normal = np.array(
+            [fixed * sine, -fixed * vers]
+        )  # of what is fixed normal to the base
+        offset = bodies[k].offset
+        shift_along = (pose.across - offset) * along + offset * np.array([-vers, -sine])
+        place = place + shift_along + shift_normal + pose.state.vertical * normal
         rotation += pose.state.rotation
         sine, cosine = sine_cosine(rotation)
         found.append(_Frame(place, sine, cosine, along, normal))

@@ -236,8 +236,8 @@ def point_law(law: type[Law]) -> type[Law]:
     if ("states" in own) != ("guard" in own) or ("variables" in own) != ("rates" in own):
         faults.append(f"{law.__name__} has only one of states and guard, or variables and rates")
     parts = {_WithVariables: "variables" in own, _WithGuard: "guard" in own, PointLaw: True}
-    wanted = (part for part, is_wanted in parts.items() if is_wanted)
-    return complete_law(law, own, faults, lambda name: name != "settle", wanted)
+    mixins = (part for part, is_needed in parts.items() if is_needed)
+    return complete_law(law, own, faults, lambda name: name != "settle", mixins)
 
 
 @point_law

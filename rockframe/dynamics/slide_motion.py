@@ -187,23 +187,23 @@ class SlideMotion(OnRigidGround, SlideNumbers):
         if bearing == FULL:
             along = across if sign == 0.0 else -sign * self.kinetic * weight
             return Contact(along - across, 0.0, 0.0, along, weight)
-        beside, above = self.centre_from_corner(self.side(bearing), state[ROTATION])
+        arm_x, arm_y = self.centre_from_corner(self.side(bearing), state[ROTATION])
         square = state[DOF + ROTATION] * state[DOF + ROTATION]
-        pressing = weight - above * square
+        pressing = weight - arm_y * square
         if bearing >= FLIGHT_RIGHT:
             angular = moment / self.inertia
-            slip = beside * square - across - above * angular
-            return Contact(slip, angular, beside * angular - pressing, 0.0, 0.0)
+            slip = arm_x * square - across - arm_y * angular
+            return Contact(slip, angular, arm_x * angular - pressing, 0.0, 0.0)
         if sign == 0.0:
-            inertia = self.inertia + beside * beside + above * above
-            angular = (weight * beside - across * above + moment) / inertia
-            along = across + above * angular - beside * square
-            return Contact(0.0, angular, 0.0, along, pressing - beside * angular)
-        arm = beside + sign * self.kinetic * above
-        angular = (pressing * arm + moment) / (self.inertia + beside * arm)
-        normal = pressing - beside * angular
+            inertia = self.inertia + arm_x * arm_x + arm_y * arm_y
+            angular = (weight * arm_x - across * arm_y + moment) / inertia
+            along = across + arm_y * angular - arm_x * square
+            return Contact(0.0, angular, 0.0, along, pressing - arm_x * angular)
+        arm = arm_x + sign * self.kinetic * arm_y
+        angular = (pressing * arm + moment) / (self.inertia + arm_x * arm)
+        normal = pressing - arm_x * angular
         along = -sign * self.kinetic * normal
-        slip = along - across - above * angular + beside * square
+        slip = along - across - arm_y * angular + arm_x * square
         return Contact(slip, angular, 0.0, along, normal)
 
     @inlined
@@ -215,9 +215,9 @@ class SlideMotion(OnRigidGround, SlideNumbers):
     @inlined
     def centre_velocity(self, mode: int, state: Vector) -> tuple[float, float]:
         """Return the velocity of the centre of mass relative to the ground."""
-        beside, above = self.centre_from_corner(self.side(self.bearing_in(mode)), state[ROTATION])
+        arm_x, arm_y = self.centre_from_corner(self.side(self.bearing_in(mode)), state[ROTATION])
         rate = state[DOF + ROTATION]
-        return state[DOF + SLIP] + above * rate, state[DOF + RISE] - beside * rate
+        return state[DOF + SLIP] + arm_y * rate, state[DOF + RISE] - arm_x * rate
 
     @inlined
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> Numbers:
@@ -317,10 +317,10 @@ class SlideMotion(OnRigidGround, SlideNumbers):
     @inlined
     def centre_acceleration(self, mode: int, state: Vector, slope: Slope) -> tuple[float, float]:
         """Return the acceleration of the centre of mass relative to the ground, from a slope."""
-        beside, above = self.centre_from_corner(self.side(self.bearing_in(mode)), state[ROTATION])
+        arm_x, arm_y = self.centre_from_corner(self.side(self.bearing_in(mode)), state[ROTATION])
         square = state[DOF + ROTATION] * state[DOF + ROTATION]
-        sway = slope[SLIP] + above * slope[ROTATION] - beside * square
-        return sway, slope[RISE] - beside * slope[ROTATION] - above * square
+        horizontal = slope[SLIP] + arm_y * slope[ROTATION] - arm_x * square
+        return horizontal, slope[RISE] - arm_x * slope[ROTATION] - arm_y * square
 
     @kernel
     def columns_under(
@@ -329,17 +329,17 @@ class SlideMotion(OnRigidGround, SlideNumbers):
         """Return the columns of :meth:`observe` under given loads."""
         bearing, rotation, rate = self.bearing_in(mode), state[ROTATION], state[DOF + ROTATION]
         side = self.side(bearing)
-        beside, _ = self.centre_from_corner(side, rotation)
+        arm_x, _ = self.centre_from_corner(side, rotation)
         across, up = self.centre_velocity(mode, state)
-        sway, rise = self.centre_acceleration(mode, state, slope)
-        shear, normal = sway + loads.along, rise + loads.weight
+        horizontal, rise = self.centre_acceleration(mode, state, slope)
+        shear, normal = horizontal + loads.along, rise + loads.weight
         left, right = (0.0, normal) if side > 0.0 else (normal, 0.0)
         if bearing == FULL:
             width = self.left + self.right
             tipping = self.height * shear - loads.moment
             left = (self.right * normal + tipping) / width
             right = (self.left * normal - tipping) / width
-        place = state[SLIP] + (side * self.distance(side) + beside)
+        place = state[SLIP] + (side * self.distance(side) + arm_x)
         lift = self.centre_rise(mode, state)
-        body = rotation, rate, lift, up, place, shear, across, slope[ROTATION], sway, rise
+        body = rotation, rate, lift, up, place, shear, across, slope[ROTATION], horizontal, rise
         return body + (shear, normal, left, right, state[SLIP], state[DOF + SLIP])

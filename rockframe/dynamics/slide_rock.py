@@ -184,16 +184,16 @@ class SlideSwitches(SlideMotion):
 
     @kernel
     def impact_impulses(
-        self, beside: float, above: float, lever: float, slip: float, normal_velocity: float
+        self, arm_x: float, arm_y: float, lever: float, slip: float, normal_velocity: float
     ) -> tuple[float, float]:
         """Return the impulses along and normal to the ground that stop a corner.
 
-        The normal one acts at a distance of `lever` times `beside` from the centre of mass.
+        The normal one acts at a distance of `lever` times `arm_x` from the centre of mass.
         """
         inertia, friction = self.inertia, self.impulsive
-        mixed, along = -beside * above / inertia, 1.0 + above * above / inertia
+        mixed, along = -arm_x * arm_y / inertia, 1.0 + arm_y * arm_y / inertia
         answers = ImpulseResponse(
-            1.0 + lever * beside * beside / inertia, mixed, lever * mixed, along
+            1.0 + lever * arm_x * arm_x / inertia, mixed, lever * mixed, along
         )
         if friction == math.inf and slip * mixed < normal_velocity * along:
             friction = self.kinetic  # holding the corner would take tension of the ground
@@ -205,18 +205,18 @@ class SlideSwitches(SlideMotion):
     ) -> None:
         """Write the rates after an impact on a corner: slip and rise become those of it."""
         side, rate = self.side(bearing), state[DOF + ROTATION]
-        beside, above = self.centre_from_corner(side, state[ROTATION])
+        arm_x, arm_y = self.centre_from_corner(side, state[ROTATION])
         across, up = speeds
         along, normal = self.impact_impulses(
-            beside, above, lever, across - above * rate, up + beside * rate
+            arm_x, arm_y, lever, across - arm_y * rate, up + arm_x * rate
         )
-        rate += (lever * beside * normal - above * along) / self.inertia
-        slip = across + along - above * rate
+        rate += (lever * arm_x * normal - arm_y * along) / self.inertia
+        slip = across + along - arm_y * rate
         # rounding noise of a slip that has ended
-        noise = ROUNDING * (abs(across) + abs(along) + abs(above * rate))
+        noise = ROUNDING * (abs(across) + abs(along) + abs(arm_y * rate))
         state[DOF + SLIP] = slip if abs(slip) > noise else 0.0
         state[DOF + ROTATION] = rate
-        state[DOF + RISE] = up + beside * rate if normal == 0.0 else 0.0
+        state[DOF + RISE] = up + arm_x * rate if normal == 0.0 else 0.0
 
     @kernel
     def land_flat(self, state: Vector, across: float, up: float) -> None:
@@ -340,8 +340,8 @@ class SlideSwitches(SlideMotion):
         )
         if fall <= 0.0 or not small or not leans:
             return False
-        beside, above = self.centre_from_corner(side, state[ROTATION])
-        state[DOF + ROTATION] -= beside * rise / (self.inertia + beside * beside + above * above)
+        arm_x, arm_y = self.centre_from_corner(side, state[ROTATION])
+        state[DOF + ROTATION] -= arm_x * rise / (self.inertia + arm_x * arm_x + arm_y * arm_y)
         state[DOF + RISE] = 0.0
         return True
 

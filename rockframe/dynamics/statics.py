@@ -59,9 +59,9 @@ class StandingChain(NamedTuple):
 
     @property
     def rests_upright(self) -> bool:
-        """Whether no load turns the bodies away from upright."""
+        """Whether no load rotates the bodies away from upright."""
         level = self.along_gravity == 0.0 and not self.ties
-        return level and all(one.beside == 0.0 for one in self.bodies)
+        return level and all(one.offset == 0.0 for one in self.bodies)
 
     def scaled(self, share: float) -> "StandingChain":
         """Return the chain with a share of its slope and of the eccentricity of its bodies."""
@@ -194,7 +194,7 @@ class StandingChain(NamedTuple):
         ])  # fmt: skip
 
     def displaced(self, poses: Sequence[Pose], at: int, by: float) -> list[Pose]:
-        """Return the bodies with one coordinate moved, the forces of their bases unchanged."""
+        """Return the bodies with one coordinate changed, the forces of their bases unchanged."""
         k, found = at // 2, [*poses]
         standing, now = self.bodies[k], poses[k]
         state = now.state._replace(**{DISPLACEMENTS[at % 2]: now.state[at % 2] + by})
@@ -240,8 +240,8 @@ class StandingChain(NamedTuple):
         for k, (standing, one) in enumerate(zip(self.bodies, poses, strict=True)):
             if standing.corner:
                 poses[k] = pose_on_corner(standing, one.state.rotation, -float(loads[2 * k + 1]))
-        bears = all(one.normal_force >= 0.0 for one in poses)
-        return self._with_arms(poses) if bears else None
+        is_compressed = all(one.normal_force >= 0.0 for one in poses)
+        return self._with_arms(poses) if is_compressed else None
 
     def link_kinematics(self, poses: Sequence[Pose]) -> list[LinkKinematics]:
         """Return displacements of the points of the links."""

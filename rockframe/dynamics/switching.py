@@ -65,8 +65,8 @@ def set_end_speed(
 ) -> None:  # fmt: skip
     """Set the speed of an end to `speed`, shifted by its rounding noise in a direction."""
     now, noise = end_speed(part, left, system.state_of(k, state))
-    beside = direction * max(noise, part.base.least_landing())
-    system.shift_vertical(k, 0.0, speed + beside - now, state)
+    shift = direction * max(noise, part.base.least_landing())
+    system.shift_vertical(k, 0.0, speed + shift - now, state)
 
 
 @kernel
@@ -257,8 +257,8 @@ def mode_after_separation(
             contact = part.base.held(now.contact, left)
             return system.with_body_mode(new, k, Mode(contact, was.pivot, True))
     elif presses and repins and not flies:
-        waits = part.base.waiting(now.contact, left)
-        return system.with_body_mode(new, k, Mode(waits, now.pivot, False))
+        waiting = part.base.waiting(now.contact, left)
+        return system.with_body_mode(new, k, Mode(waiting, now.pivot, False))
     return new
 
 

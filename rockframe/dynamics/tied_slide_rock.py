@@ -185,8 +185,8 @@ class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[repo
         """Write the acceleration of the block, from a slope."""
         workspace = self.places()
         self.lay(mode, state, workspace)
-        sway, rise = self.centre_acceleration(mode, state, slope)
-        workspace[at.X], workspace[at.Y], workspace[at.ROTATION] = sway, rise, slope[ROTATION]
+        horizontal, rise = self.centre_acceleration(mode, state, slope)
+        workspace[at.X], workspace[at.Y], workspace[at.ROTATION] = horizontal, rise, slope[ROTATION]
 
     @inlined
     def switch_body(

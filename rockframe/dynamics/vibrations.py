@@ -23,7 +23,7 @@ class ChainBody(NamedTuple):
     base: BaseNumbers
     mass: float  # over the reference mass [1]
     top: float  # height of the body's top above its centre of mass [m]
-    beside: float  # its centre of mass to the right of that of the body below, upright [m]
+    offset: float  # its centre of mass to the right of that of the body below, upright [m]
 
 
 def is_rigid(base: BaseNumbers) -> bool:
@@ -112,11 +112,11 @@ def upright_jacobians(links: Sequence[ChainBody]) -> tuple[Matrix, Matrix, Matri
     for k in range(count - 1, -1, -1):
         one = links[k]
         arm = 0.0 if k == count - 1 else deck + one.body.height
-        beside = 0.0 if k == count - 1 else one.beside
+        offset = 0.0 if k == count - 1 else one.offset
         own, up = np.zeros(2 * count), np.zeros(2 * count)
         own[2 * k], up[2 * k + 1] = 1.0, 1.0
         x[k] = below_x + arm * below_rotation + one.body.height * own
-        y[k] = below_y - beside * below_rotation + up
+        y[k] = below_y - offset * below_rotation + up
         rotation[k] = below_rotation + own
         below_x, below_y, below_rotation, deck = x[k], y[k], rotation[k], one.top
     return x, y, rotation

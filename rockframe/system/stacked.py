@@ -119,7 +119,7 @@ class StackedSetting(Setting):
     def _standing(self, cap_mass: float, cap_inertia: float) -> StandingBodies:
         both = self._stack(cap_mass, cap_inertia)
         links = tuple(
-            standing_body(BodyOnBase(one.body, one.base.law), one.mass, one.top, one.beside)
+            standing_body(BodyOnBase(one.body, one.base.law), one.mass, one.top, one.offset)
             for one in both
         )
         chain = StandingChain(links, self.slope.along_gravity)
@@ -280,7 +280,7 @@ class CascadeSetting(StackedSetting):
             self.upper.compile(),
             top=centre + self.cap.half_height,
             cap_centre=centre,
-            beside=body.eccentricity,
+            offset=body.eccentricity,
             rest_rotation=self.lower.rest_rotation,
         )
 

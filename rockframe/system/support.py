@@ -220,7 +220,7 @@ class Support(ABC):
     def standing(self) -> StandingBodies:
         """Its body alone on it, by the law."""
         body, numbers = self.load.rigid_body, self.base_numbers
-        link = standing_body(BodyOnBase(body, numbers.law), beside=eccentricity_of(body))
+        link = standing_body(BodyOnBase(body, numbers.law), offset=eccentricity_of(body))
         chain = StandingChain((link,), self.load.options.slope.along_gravity)
         return StandingBodies(chain, self.load.body.mass, (numbers,))
 

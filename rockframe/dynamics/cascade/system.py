@@ -63,7 +63,7 @@ class Stages(NamedTuple):
     mass_ratio: float  # mass of the lower body over that of the block
     top: float  # height of the cap's top above the centre of mass of the lower body [m]
     cap_centre: float  # height of the cap's centre above it [m]
-    beside: float  # distance of it to the right of the middle of the cap [m]
+    offset: float  # distance of it to the right of the middle of the cap [m]
 
 
 class Cascade(Stacked, Stages):
@@ -92,14 +92,14 @@ class Cascade(Stacked, Stages):
         sine, cosine = attitude.sine, attitude.cosine
         exact_cosine = 0.0 if self.lower.body.small else cosine
         return PointMotion(
-            centre_velocity + self.top * cosine * rate + self.beside * exact_sine * rate,
-            state.vertical_velocity - self.top * sine * rate + self.beside * cosine * rate,
+            centre_velocity + self.top * cosine * rate + self.offset * exact_sine * rate,
+            state.vertical_velocity - self.top * sine * rate + self.offset * cosine * rate,
             horizontal
             + self.top * (cosine * angular - exact_sine * rate * rate)
-            + self.beside * (exact_sine * angular + exact_cosine * rate * rate),
+            + self.offset * (exact_sine * angular + exact_cosine * rate * rate),
             vertical
             - self.top * (sine * angular + cosine * rate * rate)
-            + self.beside * (cosine * angular - exact_sine * rate * rate),
+            + self.offset * (cosine * angular - exact_sine * rate * rate),
         )
 
     @inlined
@@ -271,9 +271,9 @@ class Cascade(Stacked, Stages):
             above.vertical + self.upper.body.gravity + on_top.y,
             lower.rotation,
             lower.angular_velocity,
-            lower.vertical - self.cap_centre * versine + self.beside * attitude.sine,
+            lower.vertical - self.cap_centre * versine + self.offset * attitude.sine,
             lower.vertical_velocity
-            + (self.beside * attitude.cosine - self.cap_centre * attitude.sine)
+            + (self.offset * attitude.cosine - self.cap_centre * attitude.sine)
             * lower.angular_velocity,
             upper.rotation,
             upper.vertical,

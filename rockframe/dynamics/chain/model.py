@@ -56,7 +56,7 @@ class AtRest(NamedTuple):
 def chain_of(links: Sequence[ChainBody], ties: Sequence[ChainLink] = ()) -> Chain:
     """Return the system of stacked bodies, from the top down, without their ties."""
     kind = RigidChain if any(is_rigid(one.base) for one in links) else Chain
-    rows = [row_of(one.body, one.base, one.mass, one.top, one.beside) for one in links]
+    rows = [row_of(one.body, one.base, one.mass, one.top, one.offset) for one in links]
     for row in rows:
         row[at.FORCE_SIZE] = max(row[at.FORCE_SIZE], rounding_of_ties(ties) / ROUNDING_OF_FORCES)
     return kind(*lists_of(rows))

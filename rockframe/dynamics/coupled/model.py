@@ -51,7 +51,7 @@ def system_of(block: ChainBody, cap: ChainBody) -> Coupled:
     """Return the system of a block on a cap."""
     return Coupled(
         BodyOnBase(block.body, block.base.law), BodyOnBase(cap.body, cap.base.law), cap.mass,
-        cap.top, block.beside,
+        cap.top, block.offset,
     )  # fmt: skip
 
 
@@ -93,10 +93,12 @@ def coupled(block: ChainBody, cap: ChainBody, mass: float, rest: StackRest) -> C
 
 def _scales(block: ChainBody, cap: ChainBody) -> Vector:
     body, pads, soil = block.body, block.base, cap.base
-    sway, rocking = radius_of(body) * body.angle, rocking_rate(body)
+    horizontal, rocking = radius_of(body) * body.angle, rocking_rate(body)
     on_pads = sqrt(pads.vertical_stiffness)
     on_soil = sqrt(soil.vertical_stiffness / (1.0 + cap.mass))
-    sizes = np.array([body.angle, pads.settlement, body.angle, soil.settlement, sway, sway])
+    sizes = np.array(
+        [body.angle, pads.settlement, body.angle, soil.settlement, horizontal, horizontal]
+    )
     rates = np.array([rocking, on_pads, rocking, on_soil, rocking, rocking])
     return np.concatenate([sizes, sizes * rates, pads.variable_scales, soil.variable_scales])
 
@@ -116,7 +118,7 @@ def _rounding(block: ChainBody, cap: ChainBody, fastest: float) -> Callable[[flo
 def state_at(
     system: Coupled, place: StackRest, rate: float = 0.0, vertical_velocity: float = 0.0
 ) -> tuple[int, Vector, Vector]:
-    """Return mode, state and memory of a block on a cap at given places, the cap at rest.
+    """Return mode, state and memory of a block on a cap at a placement, the cap at rest.
 
     `rate` and `vertical_velocity` are those of the block.
     """
@@ -131,17 +133,17 @@ def state_at(
     # a cap at rest upright has no side yet: it takes that of the block
     leaning = cap if cap.rotation != 0.0 else block
     cap_mode = lower.mode_for_contact(under, leaning)
-    pin, beside = upper.initial_pin(block_mode, block), system.beside
+    pin, offset = upper.initial_pin(block_mode, block), system.offset
     attitude = upper.body.attitude(block.rotation)
     state[ROTATION], state[VERTICAL] = block.rotation, block.vertical
     state[LOWER_ROTATION], state[LOWER_VERTICAL] = cap.rotation, cap.vertical
     state[COORDINATES + ROTATION] = block.angular_velocity
     state[COORDINATES + VERTICAL] = block.vertical_velocity
-    state[HORIZONTAL] = pin + beside + upper.body.about_pin(pin, attitude)
+    state[HORIZONTAL] = pin + offset + upper.body.about_pin(pin, attitude)
     if not upper.is_free(block_mode):
         reach = upper.body.reach(pin, attitude)
         state[COORDINATES + HORIZONTAL] = reach.derivative * block.angular_velocity
-    memory[HELD_PLACE + UPPER] = pin + beside
+    memory[HELD_PLACE + UPPER] = pin + offset
     cap_pin = lower.initial_pin(cap_mode, leaning)
     memory[HELD_PLACE + LOWER] = cap_pin
     if lower.is_free(cap_mode):
@@ -151,18 +153,17 @@ def state_at(
 
 
 def _starting(system: Coupled, rest: StackRest) -> Callable[[Start], tuple[int, Vector, Vector]]:
-    """Return the function that makes the initial state: the cap at rest, the block as given."""
+    """Return the function of the initial state: the cap at rest, the block as the start states."""
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:
         place = rest
         is_stated = start.rotation is not None or start.vertical_displacement is not None
         if is_stated or rest == UPRIGHT:
-            turned = rest.rotation
+            rotation = rest.rotation
             if start.rotation is not None:
-                turned = start.rotation - rest.cap_rotation
+                rotation = start.rotation - rest.cap_rotation
             own = system.upper.base.read(np.zeros(system.variables()), 0)
-            there = replace(start, rotation=turned)
-            block, _ = starting_state(system.upper, there, own)
+            block, _ = starting_state(system.upper, replace(start, rotation=rotation), own)
             place = rest._replace(rotation=block.rotation, vertical=block.vertical)
         return state_at(system, place, start.angular_velocity, start.vertical_velocity)
 

@@ -1,4 +1,4 @@
-"""Kinematics of two bodies, one on the other, and their accelerations under given forces.
+"""Kinematics of two bodies, one on the other, and their accelerations under forces.
 
 Kinematics :eq:`eq-coupled-kinematics` and the solution of the equations of motion. The upper
 body is called the block and the lower one the cap; all is per unit mass of the block.
@@ -20,7 +20,7 @@ class Pair(NamedTuple):
     lower: BodyOnBase  # the cap on the ground
     cap_mass: float  # m_c/m; the cap's inertia is I_c/m
     top: float  # of the cap above its centre of mass [m]
-    beside: float  # block's centre of mass to the right of the cap's, both upright [m]
+    offset: float  # block's centre of mass to the right of the cap's, both upright [m]
 
 
 class Configuration(NamedTuple):
@@ -52,7 +52,7 @@ class Forces(NamedTuple):
 
 
 class KnownTerms(NamedTuple):
-    """Known accelerations in the equations of motion, besides forces.
+    """Known accelerations in the equations of motion, other than forces.
 
     `cap_horizontal` and `block_along` are the parts of the cap's horizontal acceleration, and of
     the block's along the cap, that do not depend on the unknowns; loads are those on the cap, per
@@ -80,7 +80,7 @@ def configuration(
     pair: Pair, modes: Modes, states: States, upper: Attitude, lower: Attitude, block_free: bool,
     cap_free: bool,
 ) -> Configuration:  # fmt: skip
-    """Return the geometry of states, with each body held at its pivot or free as given."""
+    """Return the geometry of states, with each body held at its pivot or free."""
     block, cap = pair.upper.body, pair.lower.body
     sine, cosine = lower.sine, lower.cosine
     if cap.small:  # the frame's rotation is exact even with small-rotation kinematics on the bases

@@ -181,13 +181,13 @@ class Coupled(Stacked, Pair):
         """
         geometry = self.geometry_of(mode, states)
         s, c, cap_rate = geometry.sine, geometry.cosine, states.lower.angular_velocity
-        sway = slope[LOWER_HORIZONTAL]
+        cap_x = slope[LOWER_HORIZONTAL]
         if not geometry.cap_free:  # the slope has no acceleration of a coordinate that is held
-            sway = (
+            cap_x = (
                 geometry.cap_reach.derivative * slope[LOWER_ROTATION]
                 + geometry.cap_reach.second_derivative * cap_rate * cap_rate
             )
-        x = sway + ground.x
+        x = cap_x + ground.x
         y = slope[LOWER_VERTICAL] + self.upper.body.gravity + ground.y
         thrust = (
             c * x - s * y + slope[HORIZONTAL] + geometry.arm * slope[LOWER_ROTATION]
@@ -218,14 +218,14 @@ class Coupled(Stacked, Pair):
         states = self.states_in(state)
         geometry = self.geometry_of(mode, states)
         across, up = block_velocity(geometry, states)
-        sway, lift = cap_horizontal_velocity(geometry, states), states.lower.vertical_velocity
+        cap_x, cap_y = cap_horizontal_velocity(geometry, states), states.lower.vertical_velocity
         cap_rate = states.lower.angular_velocity
         block_rate = cap_rate + states.upper.angular_velocity
         kinetic = 0.5 * (
             across * across
             + up * up
             + self.upper.body.inertia * block_rate * block_rate
-            + self.cap_mass * (sway * sway + lift * lift)
+            + self.cap_mass * (cap_x * cap_x + cap_y * cap_y)
             + self.lower.body.inertia * cap_rate * cap_rate
         )
         height = block_rise(geometry, states) + self.cap_mass * states.lower.vertical
@@ -245,7 +245,7 @@ class Coupled(Stacked, Pair):
         geometry = self.geometry_of(mode, states)
         across, up = block_velocity(geometry, states)
         along = (
-            geometry.arm * geometry.sine + states.upper.horizontal * geometry.cosine - self.beside
+            geometry.arm * geometry.sine + states.upper.horizontal * geometry.cosine - self.offset
         )
         thrust, normal, base_shear = self.contact_forces(mode, states, slope, ground)
         return (
@@ -304,8 +304,8 @@ class Coupled(Stacked, Pair):
             restraint = c * motion.thrust + s * forces.normal
             restraint += self.cap_mass * motion.cap_horizontal
             cap_rate, lift = motion.cap_angular, motion.cap_vertical
-        sway = motion.cap_horizontal if geometry.cap_free else 0.0
-        others = (motion.angular, normal, motion.cap_angular, motion.cap_vertical, along, sway)
+        cap_along = motion.cap_horizontal if geometry.cap_free else 0.0
+        others = (motion.angular, normal, motion.cap_angular, motion.cap_vertical, along, cap_along)
         return VelocityChange(cap_rate, lift, restraint, others)
 
     @kernel
