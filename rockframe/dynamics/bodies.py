@@ -86,7 +86,7 @@ class Bodies(Protocol):
         ...
 
     def incipient_rotation(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
-        """Return the sign of the rotation that body `k`, upright and at rest, will begin."""
+        """Return the sign of the rotation that begins as body `k` is upright and at rest."""
         ...
 
 

@@ -37,7 +37,7 @@ class LinkForce(NamedTuple):
     jacobian: Matrix  # derivatives of `displacement` by all coordinates
     direction: Vector  # unit, from the second to the first; zero where they coincide without force
     displacement: Vector  # displacement of its first point relative to its second [m]
-    coincide: bool  # whether both points coincide in the undeformed geometry
+    coincide: bool  # whether both points coincide in the reference geometry
 
     @property
     def loads(self) -> Vector:
@@ -67,7 +67,7 @@ class _Frame(NamedTuple):
 class LinkKinematics(NamedTuple):
     """Motion of the first point of a link relative to its second."""
 
-    displacement: Vector  # displacement from the undeformed geometry [m]
+    displacement: Vector  # displacement from the reference geometry [m]
     jacobian: Matrix  # derivatives of this by all coordinates
     direction: Vector  # unit vector away from the second point; zero where both coincide
 
@@ -166,7 +166,7 @@ def _relative_motion(tie: ChainLink, displacement: Vector, jacobian: Matrix) -> 
 
 
 def links_at_rest(ties: Sequence[ChainLink]) -> list[LinkForce]:
-    """Return elongations and forces of links in the undeformed geometry."""
+    """Return elongations and forces of links in the reference geometry."""
     return [link_force(one, _relative_motion(one, np.zeros(2), np.zeros((2, 1)))) for one in ties]
 
 
@@ -193,7 +193,7 @@ def links_of_rocking_bodies(
 
 
 def _frames(bodies: Sequence[StandingBody], poses: Sequence[Pose]) -> list[_Frame]:
-    """Return displacements of bodies from the undeformed geometry, and their axes."""
+    """Return displacements of bodies from the reference geometry, and their axes."""
     found, place, rotation = list[_Frame](), np.zeros(2), 0.0
     sine, cosine = 0.0, 1.0
     for k in range(len(poses) - 1, -1, -1):

@@ -32,12 +32,12 @@ GUARDS: Final = 2
 
 
 class Stretch(NamedTuple):
-    """Elongation of a link from the geometry in which it was given [m], and its rates."""
+    """Elongation of a link from the geometry in which it is defined [m], and its rates."""
 
     elongation: float
     rate: float  # its rate
     acceleration: float  # rate of the rate, where guards are evaluated; else 0
-    given: float  # length in the geometry in which it was given
+    given: float  # length in the reference geometry
     noise: float  # rounding of the elongation
 
 
@@ -338,7 +338,7 @@ class Tie(NamedTuple):
         return found
 
     def guard(self, which: int, state: int, stretch: Stretch, own: Vector) -> tuple[float, float]:
-        """Return the elongation left until the state ends, or the rate that must not reverse."""
+        """Return the elongation until the end of the state, or the rate that must not reverse."""
         x, sign = stretch.elongation - self.slack - own[0], 1.0
         value, rate = 1.0, 0.0
         if which == UPPER:
@@ -392,6 +392,6 @@ class Tie(NamedTuple):
         return SHOWN_PRESSED if state == SLACK and self.pushes != 0.0 else state
 
     def idles(self, state: int) -> bool:
-        """Whether it is broken, or hangs slack without a dashpot."""
+        """Whether it is broken, or slack without a dashpot."""
         slack = state == SLACK and self.pushes == 0.0 and self.damping == 0.0
         return state == BROKEN or slack

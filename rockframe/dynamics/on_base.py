@@ -157,7 +157,7 @@ class BodyOnBase(NamedTuple):
 
     @inlined
     def contact_with_force(self, mode: Mode) -> int:
-        """Return the contact by which the base's force is computed: a sliding end has none."""
+        """Return the contact by which the base's force is computed: none acts on a sliding end."""
         if mode.slides:
             return self.base.follows(mode.contact, self.base.is_held(mode.contact, True))
         return mode.contact

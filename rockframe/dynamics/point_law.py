@@ -1,6 +1,6 @@
 """Force laws of a point of a base, for pads and springs, and how to write another one.
 
-Two pads, or a bed of many springs, decide when a point touches the base, is followed by it without
+Two pads, or a bed of many springs, determine when a point touches the base, moves with it without
 a force, or is clear of it. A law gives the force on a point that touches. It is a named tuple of
 numbers per unit mass with some of the methods of :class:`PointLaw`; :func:`point_law` gives it the
 others.

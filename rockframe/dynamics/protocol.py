@@ -171,7 +171,7 @@ class EquationsWithPowers(Equations, Protocol):
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
         """Return the power dissipated and the power put in by the ground [m^2 s^-3].
 
-        `slope` is what :meth:`accelerate` has just returned for the same coordinates at other rates.
+        `slope` is what :meth:`accelerate` has just returned for the same coordinates, other rates.
         """
         ...
 

@@ -76,8 +76,8 @@ class RockingNumbers(NamedTuple):
     gravity: float  # g
     small: bool  # whether sines and cosines are expanded
     wall: float = 0.0  # side of a wall behind the block, -1 left, 1 right; 0 for none
-    rebound: float = 0.0  # ratio of the angular velocities at an impact on base and wall
-    wall_share: float = 0.0  # h over the height at which the block at rest leans on the wall
+    wall_restitution: float = 0.0  # ratio of the angular velocities at an impact on base and wall
+    wall_share: float = 0.0  # h over the height at which the block at rest touches the wall
 
 
 class BlockOnRigidGround(RockingNumbers, OnRigidGround):
@@ -181,14 +181,16 @@ class BlockOnRigidGround(RockingNumbers, OnRigidGround):
             memory[LAST_EVENT] = UPLIFT
             if self.wall != 0.0:
                 return ON_RIGHT if self.wall < 0.0 else ON_LEFT
-            if self.gravity + ground.y <= 0.0:  # no weight left: the ground decides the side
+            if (
+                self.gravity + ground.y <= 0.0
+            ):  # no weight left: the ground acceleration determines the side
                 return ON_LEFT if ground.x > 0.0 else ON_RIGHT
             return ON_RIGHT if guard == UPLIFT_ON_RIGHT else ON_LEFT
         before = state[1]
         new = ON_LEFT if mode == ON_RIGHT else ON_RIGHT
         after = self.corner(new).restitution * before
         if self.wall != 0.0:  # it continues to rock about the same corner, away from the wall
-            new, after = mode, self.rebound * before
+            new, after = mode, self.wall_restitution * before
         state[0] = 0.0
         restoring = extra - self.side(new) * self.angular_acceleration(new, 0.0, ground)
         rebound = after * after / (2.0 * restoring) if restoring > 0.0 else math.inf
