@@ -27,7 +27,7 @@ class Bodies(Protocol):
         """Return contact, held point and sliding of body `k` in a mode."""
         ...
 
-    def with_body_mode(self, mode: int, k: int, new: Mode) -> int:
+    def with_body_mode(self, mode: int, k: int, part: Mode) -> int:
         """Return the system's mode with another mode of body `k`."""
         ...
 

@@ -26,13 +26,13 @@ from rockframe.many import asin, sqrt
 ROUNDING: Final = 4.0 * sys.float_info.epsilon
 """Rounding noise of heights over their sizes [1]."""
 MAX_ITERATIONS: Final = 200
-"""Most iterations for a height."""
+"""Largest number of iterations for a height."""
 MAX_SECANTS: Final = 8
 """Iterations by secants alone; then every second one bisects, as contact may end in between."""
 UPLIFT_TOLERANCE: Final = 1e-9
 """Accuracy of the uplift angle: full contact before it less this share, partial beyond [1]."""
 MAX_BISECTIONS: Final = 60
-"""Most iterations for the uplift angle, and bisections where these do not find it."""
+"""Largest number of iterations for the uplift angle, then of bisections if these fail."""
 DIFFERENCE_STEP: Final = 1e-3
 """Step of a coordinate, over its size, for derivatives of forces [1]."""
 STENCIL: Final = ((1.0, 2.0 / 3.0), (2.0, -1.0 / 12.0))

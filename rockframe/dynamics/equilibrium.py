@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rockframe.dynamics.statics import StandingChain
 
 MAX_ITERATIONS: Final = 40
-"""Most steps of Newton's method."""
+"""Largest number of steps of Newton's method."""
 TOLERANCE: Final = 1e-12
 """Change of a coordinate in the last step, over the sum of its value and its size [1]."""
 MAX_ROTATION_STEP: Final = 0.05
@@ -36,8 +36,8 @@ MIN_STEP: Final = 1e-3
 """Least step along the path, over its length, or over the size of what changes [1]."""
 MIN_SHARE: Final = 2.0**-30
 """Least share of a step's elongation that a link without stiffness so far takes [1]."""
-FORCE_TOLERANCE: Final = 1e3
-"""Last change of a link's force over the weight, allowed as a multiple of CLOSE [1]."""
+FORCE_TOLERANCE_RATIO: Final = 1e3
+"""Last change of a link's force over the weight, allowed as a multiple of TOLERANCE [1]."""
 DIVERGED: Final = 1e9
 """Change of a coordinate over its size at which a step has failed [1]."""
 REVERSAL: Final = 0.25
@@ -72,7 +72,7 @@ class ChainEquilibrium(NamedTuple):
     def from_poses(
         cls, chain: "StandingChain", poses: Sequence[Pose], held: int = 1
     ) -> "ChainEquilibrium":
-        """Return forces and places of bodies as they stand, no couple yet on `held` rotations."""
+        """Return the equilibrium of poses, without couples as yet on `held` rotations."""
         links = chain.link_forces(poses)
         return cls(
             np.array([one.state.rotation for one in poses]),
@@ -92,7 +92,7 @@ class EquilibriumPath(NamedTuple):
     before: "tuple[float, ChainEquilibrium] | None" = None
 
     def extrapolated(self, at: float) -> ChainEquilibrium:
-        """Return the equilibrium further on by linear extrapolation."""
+        """Return a prediction of the equilibrium further on, by linear extrapolation."""
         if self.before is None:
             return self.equilibrium
         share = (at - self.at) / (self.at - self.before[0])
@@ -135,19 +135,19 @@ def follow_equilibrium(
 def find_equilibrium(held: HeldBodies, guess: ChainEquilibrium) -> ChainEquilibrium | None:
     """Return a stable equilibrium near a guess, by Newton's steps.
 
-    Heights follow from the forces of bases, so that a loss of contact within a step does no harm.
+    Heights follow from the forces of bases, so that contact may be lost within a step.
     """
     equilibrium, poses = guess, held.chain.poses_of(guess)
     damped, before = 1.0, np.zeros(2 * len(guess.rotations))
     for count in range(MAX_ITERATIONS):
         now = _Step(held, poses, equilibrium)
-        if not now.is_finite:
+        if not now.is_bounded:
             return None
         if now.has_converged and count == 0:
             return guess if now.is_stable() else None
         # alternating contacts or links would make the steps oscillate
-        returns = now.step @ before < -REVERSAL * (before @ before)
-        damped = max(0.5 * damped, MIN_DAMPING) if returns else min(1.0, 2.0 * damped)
+        reverses = now.step @ before < -REVERSAL * (before @ before)
+        damped = max(0.5 * damped, MIN_DAMPING) if reverses else min(1.0, 2.0 * damped)
         before = now.step
         share = min(damped, MAX_ROTATION_STEP / max(_max_abs(now.step[::2]), MAX_ROTATION_STEP))
         equilibrium = now.after(share)
@@ -239,8 +239,8 @@ class _Step:
             found = np.linalg.solve(self.matrix, misfits)
         except np.linalg.LinAlgError:
             found = np.full(len(misfits), math.nan)
-        self.is_finite = bool((np.abs(found) < DIVERGED).all())
-        if self.is_finite:
+        self.is_bounded = bool((np.abs(found) < DIVERGED).all())
+        if self.is_bounded:
             self.step = self.constraint @ found[: self.free.sum()]
             forces = held.chain.weight * found[self.free.sum() :]
             self._set_link_changes(forces[: len(self.stiff_directions)].tolist())
@@ -262,7 +262,7 @@ class _Step:
         for one, force in zip(self.stiff_directions, forces, strict=True):
             self.force_change[one.link] += force * one.direction
         for i, (link, one) in enumerate(zip(self.chain.ties, self.links, strict=True)):
-            rounding = FORCE_TOLERANCE * TOLERANCE * self.chain.weight
+            rounding = FORCE_TOLERANCE_RATIO * TOLERANCE * self.chain.weight
             as_predicted = _max_abs(self.force_change[i]) <= rounding
             if not one.coincide:
                 self.elongation_change[i], as_predicted = self._elongation_change(

@@ -27,9 +27,9 @@ def linearized_chain(chain: StandingChain, poses: list[Pose]) -> LinearMatrices:
     """Return the matrices of small motion about rest."""
     size = 2 * len(poses)
     damping = np.zeros((size, size))
-    ties = chain.link_forces(poses)
-    states = [one.state for one in ties]
-    for one in ties:
+    links = chain.link_forces(poses)
+    states = [one.state for one in links]
+    for one in links:
         damping += one.damping_matrix
     for k, (standing, pose) in enumerate(zip(chain.bodies, poses, strict=True)):
         own = slice(2 * k, 2 * k + 2)
@@ -40,7 +40,7 @@ def linearized_chain(chain: StandingChain, poses: list[Pose]) -> LinearMatrices:
 
 
 def _mass(chain: StandingChain, poses: list[Pose]) -> Matrix:
-    """Return the mass matrix: with a body all bodies above it move."""
+    """Return the mass matrix: all bodies above a body move with it."""
     size = 2 * len(poses)
     jacobians = np.zeros((len(poses), 3, size))  # of each body: to the right, up, rotation
     places, place = np.zeros((len(poses), 2)), np.zeros(2)

@@ -1,6 +1,6 @@
 """Statics of links between bodies: elongations, forces, and generalised forces on the bodies.
 
-A link is in the state that slow loading up to its elongation brings it into. Its force does work
+A link is in the state that follows from slow loading up to its elongation. Its force does work
 on every rotation and height between its points, :eq:`eq-link-statics`.
 """
 
@@ -116,9 +116,8 @@ def link_force(
     else:
         length, coincide = math.hypot(*(apart + displacement)) + math.hypot(*apart), not apart.any()
         elongation = float((2.0 * apart + displacement) @ displacement) / length if length else 0.0
-    found = _law_values(
-        tie, elongation if of_elongation is None or coincide else of_elongation, state
-    )
+    in_law = elongation if of_elongation is None or coincide else of_elongation
+    found = _law_values(tie, in_law, state)
     if not direction.any() and found[0] != 0.0:
         direction = np.array([0.0, 1.0])
     return LinkForce(*found, elongation, jacobian, direction, displacement, coincide)
@@ -201,9 +200,8 @@ def _frames(bodies: Sequence[StandingBody], poses: Sequence[Pose]) -> list[_Fram
         fixed = bodies[k + 1].top + body.height if k + 1 < len(poses) else body.height
         along, normal = np.array([cosine, -sine]), np.array([sine, cosine])
         vers = versine(sine, cosine)
-        shift_normal = np.array(
-            [fixed * sine, -fixed * vers]
-        )  # of what is fixed normal to the base
+        # shift of the centre of mass by rotation of the fixed distance normal to the base
+        shift_normal = np.array([fixed * sine, -fixed * vers])
         offset = bodies[k].offset
         shift_along = (pose.across - offset) * along + offset * np.array([-vers, -sine])
         place = place + shift_along + shift_normal + pose.state.vertical * normal
@@ -235,7 +233,7 @@ def _point(
 
 
 def _centre_offset(k: int, j: int, poses: Sequence[Pose], frames: Sequence[_Frame]) -> Vector:
-    """Return the place of the centre of mass of body k from that of body j below it."""
+    """Return the centre of mass of body k relative to that of body j below it."""
     return sum(
         (poses[i].across * frames[i].along + poses[i].arm * frames[i].normal
          for i in range(k, j)), start=np.zeros(2),

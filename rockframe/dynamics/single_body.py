@@ -168,9 +168,9 @@ class SingleBody(StateAccess, SingleBodyNumbers):
         return self.part.mode_of(mode)
 
     @kernel
-    def with_body_mode(self, mode: int, k: int, new: Mode) -> int:
+    def with_body_mode(self, mode: int, k: int, part: Mode) -> int:
         """Return the number of a mode of the body."""
-        return self.part.number_of(new)
+        return self.part.number_of(part)
 
     @kernel
     def centre_position(self, k: int, mode: int, state: Vector, memory: Vector) -> float:

@@ -135,12 +135,12 @@ class Stacked(StateAccess):
         return modes.upper if k == UPPER else modes.lower
 
     @kernel
-    def with_body_mode(self, mode: int, k: int, new: Mode) -> int:
+    def with_body_mode(self, mode: int, k: int, part: Mode) -> int:
         """Return the mode of both bodies with another mode of one."""
         count = self.upper.modes()
         if k == UPPER:
-            return mode - mode % count + self.upper.number_of(new)
-        return mode % count + count * self.lower.number_of(new)
+            return mode - mode % count + self.upper.number_of(part)
+        return mode % count + count * self.lower.number_of(part)
 
     @kernel
     def velocities(self, state: Vector) -> tuple[float, ...]:

@@ -64,7 +64,7 @@ class StandingChain(NamedTuple):
         return level and all(one.offset == 0.0 for one in self.bodies)
 
     def scaled(self, share: float) -> "StandingChain":
-        """Return the chain with a share of its slope and of the eccentricity of its bodies."""
+        """Return the chain with a share of its slope, eccentricities and forces of links."""
         if share == 1.0:
             return self
         bodies = tuple(one.scaled(share) for one in self.bodies)
@@ -102,12 +102,12 @@ class StandingChain(NamedTuple):
         return self._path_end(self._grow_loads(poses, np.eye(len(rotations)).tolist()))
 
     def _has_broken(self, poses: Sequence[Pose]) -> bool:
-        """Whether a link is broken with the bodies where they are."""
+        """Whether a link is broken in these poses."""
         found = self.link_forces(poses) if poses and self.ties else []
         return any(is_broken(one, of.elongation) for one, of in zip(self.ties, found, strict=False))
 
     def _single_body_at(self, rotation: float) -> list[Pose] | None:
-        """Return a single body at a rotation, with links as after slow loading up to there."""
+        """Return a single body at a rotation, with links in their state after slow loading."""
         poses = self._under_weight([rotation])
         if poses is None or not self.ties:
             return poses

@@ -31,40 +31,40 @@ def is_rigid(base: BaseNumbers) -> bool:
     return isinstance(base.law, Rigid)
 
 
-def per_own_mass(link: ChainBody) -> Body:
+def per_own_mass(one: ChainBody) -> Body:
     """Return the body per unit of its own mass."""
-    return link.body._replace(inertia=link.body.inertia / link.mass)
+    return one.body._replace(inertia=one.body.inertia / one.mass)
 
 
 def fastest_vibration(
-    links: Sequence[ChainBody], ties: Sequence["ChainLink"] = ()
+    bodies: Sequence[ChainBody], ties: Sequence["ChainLink"] = ()
 ) -> tuple[float, float]:
     """Return upper bounds of angular frequency and damping rate, whichever bodies fly [s^-1].
 
     Neither gravity nor a loss of contact makes a vibration faster.
     """
     fastest = damping = 0.0
-    for first in range(len(links)):
-        moving = links[first:]
+    for first in range(len(bodies)):
+        moving = bodies[first:]
         link_stiffness, link_damping = _link_matrices(moving, ties, first)
         root, stiffness, base_damping = upright_matrices(moving)
         fastest = max(fastest, greatest_eigenvalue(stiffness + link_stiffness, root))
         damping = max(damping, greatest_eigenvalue(base_damping + link_damping, root))
     # a body at rest on a rigid base makes no vibration faster; a rocking one has a rate of its own
-    rocking = sum(rocking_rate(per_own_mass(one)) ** 2 for one in links if is_rigid(one.base))
+    rocking = sum(rocking_rate(per_own_mass(one)) ** 2 for one in bodies if is_rigid(one.base))
     return math.sqrt(max(fastest, rocking)), damping
 
 
 def _link_matrices(
-    links: Sequence[ChainBody], ties: Sequence["ChainLink"], first: int
+    bodies: Sequence[ChainBody], ties: Sequence["ChainLink"], first: int
 ) -> tuple[Matrix, Matrix]:
     """Return bounds of the stiffness and damping of links, whatever their directions.
 
     Bodies before number `first` do not move.
     """
-    size = 2 * len(links)
+    size = 2 * len(bodies)
     stiffness, damping = np.zeros((size, size)), np.zeros((size, size))
-    x, y, rotation = upright_jacobians(links)
+    x, y, rotation = upright_jacobians(bodies)
     for tie in ties:
         jacobian = np.zeros((2, size))
         for k, point, sign in ((tie.on, tie.on_point, 1.0), (tie.to, tie.to_point, -1.0)):
@@ -85,32 +85,32 @@ def greatest_eigenvalue(matrix: Matrix, root: Matrix) -> float:
     return float(np.linalg.eigvalsh(inverse.T @ matrix @ inverse).max())
 
 
-def upright_matrices(links: Sequence[ChainBody]) -> tuple[Matrix, Matrix, Matrix]:
+def upright_matrices(bodies: Sequence[ChainBody]) -> tuple[Matrix, Matrix, Matrix]:
     """Return root of the masses, stiffness of the bases and damping of small motion, upright.
 
     In the order of rotation and height of each body relative to what it stands on, from the top
     down.
     """
-    x, y, rotation = upright_jacobians(links)
-    root = np.sqrt([one.mass for one in links])[:, None]
-    gyration = np.sqrt([one.body.inertia for one in links])[:, None]
+    x, y, rotation = upright_jacobians(bodies)
+    root = np.sqrt([one.mass for one in bodies])[:, None]
+    gyration = np.sqrt([one.body.inertia for one in bodies])[:, None]
     springs = np.array([
-        each for one in links
+        each for one in bodies
         for each in (one.base.rotational_stiffness, one.base.vertical_stiffness)
     ])  # fmt: skip
-    times = np.repeat([one.base.damping_time for one in links], 2)
+    times = np.repeat([one.base.damping_time for one in bodies], 2)
     rows = np.concatenate([root * x, root * y, gyration * rotation])
     return np.linalg.qr(rows).R, np.diag(springs), np.diag(springs * times)
 
 
-def upright_jacobians(links: Sequence[ChainBody]) -> tuple[Matrix, Matrix, Matrix]:
+def upright_jacobians(bodies: Sequence[ChainBody]) -> tuple[Matrix, Matrix, Matrix]:
     """Return derivatives of x, y and rotation of each body by all coordinates, upright."""
-    count = len(links)
+    count = len(bodies)
     x, y, rotation = (np.zeros((count, 2 * count)) for _ in range(3))
     below_x, below_y, below_rotation = (np.zeros(2 * count) for _ in range(3))
     deck = 0.0
     for k in range(count - 1, -1, -1):
-        one = links[k]
+        one = bodies[k]
         arm = 0.0 if k == count - 1 else deck + one.body.height
         offset = 0.0 if k == count - 1 else one.offset
         own, up = np.zeros(2 * count), np.zeros(2 * count)
