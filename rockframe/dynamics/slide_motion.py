@@ -230,7 +230,7 @@ class SlideMotion(OnRigidGround, SlideNumbers):
     def accelerations(
         self, mode: int, state: Vector, ground: Ground, loads: Loads
     ) -> tuple[float, float, float, float, float]:
-        """Return what :meth:`accelerate` gives, under given loads."""
+        """Return the values of :meth:`accelerate` under given loads."""
         found = self.contact(mode, state, loads)
         across, up = self.centre_velocity(mode, state)
         supplied = -ground.x * across - ground.y * up
@@ -272,7 +272,7 @@ class SlideMotion(OnRigidGround, SlideNumbers):
             elif self.static < math.inf:
                 limit = self.static * found.normal
                 to_right, to_left = scale * (limit + found.along), scale * (limit - found.along)
-            elif bearing != FULL:  # one that would fall back is held, in tension
+            elif bearing != FULL:  # a corner that would fall back is held, in tension
                 pressing = scale * max(found.normal, -self.free_acceleration(bearing, state, loads))
             if bearing == FULL:
                 tipping = found.along - loads.moment / self.height

@@ -172,7 +172,7 @@ class SlideSwitches(SlideMotion):
         first, second = (TO_LEFT, TO_RIGHT) if held.along > 0.0 else (TO_RIGHT, TO_LEFT)
         if self.slip_grows(corner + first, state, loads):
             return corner + first
-        # where neither grows the event came too early, and the corner stays held
+        # where neither grows the event was too early, and the corner remains held
         return corner + (second if self.slip_grows(corner + second, state, loads) else HELD)
 
     @inlined
@@ -203,7 +203,7 @@ class SlideSwitches(SlideMotion):
     def apply_impact(
         self, bearing: int, state: Vector, speeds: tuple[float, float], lever: float
     ) -> None:
-        """Write the rates after an impact on a corner: slip and rise become those of it."""
+        """Write the rates after an impact on a corner, whose slip and rise they then include."""
         side, rate = self.side(bearing), state[DOF + ROTATION]
         arm_x, arm_y = self.centre_from_corner(side, state[ROTATION])
         across, up = speeds
@@ -220,7 +220,7 @@ class SlideSwitches(SlideMotion):
 
     @kernel
     def land_flat(self, state: Vector, across: float, up: float) -> None:
-        """Stop a block that lands on its whole base; the slip that friction leaves continues."""
+        """Stop a block that lands on its whole base, but for the slip that friction cannot stop."""
         left = abs(across) - self.impulsive * -up if self.impulsive < math.inf else 0.0
         lasts = left > 0.0 and not self.is_slip_negligible(left)
         state[DOF + SLIP] = math.copysign(left, across) if lasts else 0.0
@@ -256,16 +256,15 @@ class SlideSwitches(SlideMotion):
                 )
             if self.is_rebound_negligible(trial, state, loads):
                 state[DOF + ROTATION] = 0.0
-                if state[DOF + SLIP] != 0.0:  # the bounces end with the momentum across the ground
+                if state[DOF + SLIP] != 0.0:  # the bounces end as in a flat landing
                     self.land_flat(state, across, up)
                 base = self.mode_on_base(state, self.loads(touched, state, ground), False, FULL)
                 # no rest where the ground acceleration tips the block over a corner
-                if base // SLIP_STATES == FULL:
+                rest_bearing = base // SLIP_STATES
+                if rest_bearing == FULL:
                     memory[LAST_EVENT] = REST
                 bounces = self.bearing_in(after) >= FLIGHT_RIGHT
-                rests = base // SLIP_STATES == FULL or (
-                    bounces and base // SLIP_STATES == old_bearing
-                )
+                rests = rest_bearing == FULL or (bounces and rest_bearing == old_bearing)
                 after = base if rests else after
             if not rests:
                 state[DOF + SLIP], state[DOF + ROTATION], state[DOF + RISE] = slip, rate, rise

@@ -98,7 +98,7 @@ class Stacked(StateAccess):
 
     @inlined
     def relaxation_in(self, mode: int) -> float:
-        """Return the rate at which a sliding end follows its base, of the faster base [s^-1]."""
+        """Return the rate at which a sliding end follows its base, the larger of both [s^-1]."""
         modes = self.modes_in(mode)
         return max(self.upper.relaxation_in(modes.upper), self.lower.relaxation_in(modes.lower))
 
