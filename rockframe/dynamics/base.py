@@ -5,8 +5,8 @@ ends of the body's base line, not the body, so that any body can stand on any ba
 `left` is true for the left end.
 
 The **contact** of a base is a whole number of its own, below :meth:`Base.contacts`. An end
-that *is held* bears, or is about to; if neither end is held, the body flies. The base's own
-variables obey first-order equations, and follow the coordinates in the state.
+that *is held* presses the base, or is about to; if neither end is held, the body flies. The
+base's own variables obey first-order equations, and follow the coordinates in the state.
 """
 
 from collections.abc import Callable
@@ -35,7 +35,7 @@ class EndEvent(NamedTuple):
 
     contact: int  # of the base from then on
     event: int  # an EventKind of rockframe.dynamics.events
-    crossed: bool  # whether the end is at the level where it parts from the base, or meets it
+    crossed: bool  # whether the end is at the level where it separates from the base, or lands
 
 
 class Base:
@@ -184,12 +184,12 @@ class Base:
 
     @kernel
     def unpressed(self, contact: int, left: bool) -> int:
-        """Return the contact with an end that stays held though the base no longer presses it."""
+        """Return the contact with an end that remains held though the base no longer presses it."""
         return contact
 
     @kernel
     def engaged(self, contact: int, left: bool, line: BaseLine, own: Any) -> int:
-        """Return the contact after an end has landed and the restraint has caught its body."""
+        """Return the contact after an end has landed and its body is held by the restraint."""
         return contact
 
     @kernel
@@ -203,7 +203,7 @@ class Base:
         return 1.0
 
 
-def root_above_zero(function: Callable[[float], float], start: float) -> float:
+def positive_root(function: Callable[[float], float], start: float) -> float:
     """Return the root of an increasing function that is negative at zero, searched from `start`."""
     from scipy.optimize import root_scalar
 
@@ -213,7 +213,7 @@ def root_above_zero(function: Callable[[float], float], start: float) -> float:
     return float(found.root)
 
 
-def height_under(
+def equilibrium_height(
     base: Base, weight: float, depth: float, ends: tuple[float, float], own: Any
 ) -> float:
     """Return the height at which a base carries a weight, found numerically.
@@ -227,7 +227,7 @@ def height_under(
     depth : float
         Estimate of its settlement [m].
     ends : tuple of float
-        Heights of both ends above the height that is looked for [m].
+        Heights of both ends above the height that is sought [m].
     own : Variables
         The base's own variables, which are set to those of the start of a run.
 
@@ -242,4 +242,4 @@ def height_under(
         return float(base.force(base.starting(line, own), line, own).upward) - weight
 
     highest = depth - min(ends)
-    return highest - root_above_zero(lambda down: excess(highest - down), depth)
+    return highest - positive_root(lambda down: excess(highest - down), depth)

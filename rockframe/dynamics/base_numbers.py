@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 
 from rockframe.compiled import Vector
-from rockframe.dynamics.base import Base, root_above_zero
+from rockframe.dynamics.base import Base, positive_root
 from rockframe.dynamics.bed import Bed, Rigid
 from rockframe.dynamics.body import BaseLine, Body
 from rockframe.dynamics.pads import LEAVE, REENGAGE, ROUNDING, ElasticPads, Pads
@@ -162,16 +162,16 @@ def springs_under(
     """
     weight, width = load * body.gravity, body.left + body.right
     count, of_law = len(places), law.variables()
-    still = BaseLine(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    at_rest = BaseLine(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
     def point(pressed: float, speed: float) -> Point:
-        return Point(pressed, speed, 0.0, 0.0, pressed, 0.5, still)
+        return Point(pressed, speed, 0.0, 0.0, pressed, 0.5, at_rest)
 
     def force(pressed: float, speed: float = 0.0) -> float:
         return float(law.force(0, point(pressed, speed), np.zeros(of_law)))
 
     pressure = weight / math.fsum(lengths)
-    settlement = root_above_zero(lambda depth: force(depth) - pressure, pressure / force(1.0))
+    settlement = positive_root(lambda depth: force(depth) - pressure, pressure / force(1.0))
     stiffness = law.force_rate(0, point(settlement, 1.0), np.zeros(of_law))
     damping = force(settlement, 1.0) - force(settlement)
     levers = body.left - width * np.asarray(places)
@@ -185,8 +185,8 @@ def springs_under(
             law.energy(point(settlement, 0.0), np.zeros(of_law)),
             weight,
             pressure,
-            idle=(1.0,) * (GUARDS * (count - count // 2)),
-            steady=(0.0,) * (count * (1 + of_law)),
+            idle_guards=(1.0,) * (GUARDS * (count - count // 2)),
+            zero_rates=(0.0,) * (count * (1 + of_law)),
         ),
         (*_BED_COLUMNS, *columns),
         settlement=settlement,

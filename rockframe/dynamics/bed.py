@@ -17,8 +17,8 @@ from rockframe.dynamics.events import REENGAGEMENT, SEPARATION
 DOWN: Final = 0  # below the level of the unloaded bed
 RAISED: Final = 1
 # contacts of both ends in one integer: left end + 2 * right end
-LEFT_BIT: Final = 1  # mask of the left end
-RIGHT_BIT: Final = 1  # shift to the right end
+LEFT_MASK: Final = 1  # mask of the left end
+RIGHT_SHIFT: Final = 1  # shift to the right end
 CONTACTS: Final = 4
 
 
@@ -34,13 +34,13 @@ class Ends(NamedTuple):
 @inlined
 def end_contact(contact: int, left: bool) -> int:
     """Return the contact of one end."""
-    return contact & LEFT_BIT if left else contact >> RIGHT_BIT & LEFT_BIT
+    return contact & LEFT_MASK if left else contact >> RIGHT_SHIFT & LEFT_MASK
 
 
 @inlined
 def both_contacts(left: int, right: int) -> int:
     """Return the contacts of both ends in one integer."""
-    return left + (right << RIGHT_BIT)
+    return left + (right << RIGHT_SHIFT)
 
 
 @inlined
@@ -50,13 +50,13 @@ def mean_product(f0: float, f1: float, g0: float, g1: float) -> float:
 
 
 @inlined
-def between(left: float, right: float, place: float) -> float:
+def interpolated(left: float, right: float, place: float) -> float:
     """Return a value between the ends of the base of a quantity that is linear along it."""
     return left + place * (right - left)
 
 
 @inlined
-def first_place(near: float, far: float) -> float:
+def contact_start(near: float, far: float) -> float:
     """Return the distance, from the near end, beyond which a linear function is positive.
 
     As a share of the length of the base. It may be negative, down to -1, as a step may overshoot
@@ -72,13 +72,13 @@ def compressed_part(left: int, right: int, ends: Ends) -> tuple[float, float]:
     """Return the places between which the bed is compressed, from the contacts of both ends."""
     if left == RAISED and right == RAISED:
         return 0.0, 0.0
-    start = first_place(ends.u_left, ends.u_right) if left == RAISED else 0.0
-    end = 1.0 - first_place(ends.u_right, ends.u_left) if right == RAISED else 1.0
+    start = contact_start(ends.u_left, ends.u_right) if left == RAISED else 0.0
+    end = 1.0 - contact_start(ends.u_right, ends.u_left) if right == RAISED else 1.0
     return start, max(start, end)
 
 
 @inlined
-def end_of(u: float) -> int:
+def contact_of_end(u: float) -> int:
     """Return the contact of an end, DOWN or RAISED, from the compression under it."""
     return DOWN if u > 0.0 else RAISED
 
@@ -127,12 +127,12 @@ class Bed(Base, BedNumbers):
     @inlined
     def pressure(self, place: float, ends: Ends) -> float:
         """Return the pressure at a place of the base."""
-        u = between(ends.u_left, ends.u_right, place)
-        return self.stiffness * u - self.damping * between(ends.v_left, ends.v_right, place)
+        u = interpolated(ends.u_left, ends.u_right, place)
+        return self.stiffness * u - self.damping * interpolated(ends.v_left, ends.v_right, place)
 
     @inlined
     def bearing_part(self, contact: int, ends: Ends) -> tuple[float, float]:
-        """Return the places between which the base bears."""
+        """Return the places between which the base presses the bed."""
         start, end = compressed_part(end_contact(contact, True), end_contact(contact, False), ends)
         if not self.by_pressure:
             return start, end
@@ -153,15 +153,15 @@ class Bed(Base, BedNumbers):
         """
         ends = self.ends(line)
         start, end = self.bearing_part(contact, ends)
-        v0 = between(ends.v_left, ends.v_right, start)
-        v1 = between(ends.v_left, ends.v_right, end)
-        p0 = self.stiffness * between(ends.u_left, ends.u_right, start) - self.damping * v0
-        p1 = self.stiffness * between(ends.u_left, ends.u_right, end) - self.damping * v1
-        l0 = between(line.left_lever, line.right_lever, start)
-        l1 = between(line.left_lever, line.right_lever, end)
+        v0 = interpolated(ends.v_left, ends.v_right, start)
+        v1 = interpolated(ends.v_left, ends.v_right, end)
+        p0 = self.stiffness * interpolated(ends.u_left, ends.u_right, start) - self.damping * v0
+        p1 = self.stiffness * interpolated(ends.u_left, ends.u_right, end) - self.damping * v1
+        l0 = interpolated(line.left_lever, line.right_lever, start)
+        l1 = interpolated(line.left_lever, line.right_lever, end)
         length = self.width * (end - start)
         dissipated = self.damping * length * mean_product(v0, v1, v0, v1)
-        # without dashpots all of the compressed part bears
+        # without dashpots all of the compressed part presses
         if self.by_pressure and self.damping > 0.0:
             down, up = compressed_part(
                 end_contact(contact, True), end_contact(contact, False), ends
@@ -174,10 +174,10 @@ class Bed(Base, BedNumbers):
     @kernel
     def spring_power(self, start: float, end: float, ends: Ends) -> float:
         """Return the power that the springs release between two places of the bed."""
-        u0 = between(ends.u_left, ends.u_right, start)
-        u1 = between(ends.u_left, ends.u_right, end)
-        v0 = between(ends.v_left, ends.v_right, start)
-        v1 = between(ends.v_left, ends.v_right, end)
+        u0 = interpolated(ends.u_left, ends.u_right, start)
+        u1 = interpolated(ends.u_left, ends.u_right, end)
+        v0 = interpolated(ends.v_left, ends.v_right, start)
+        v1 = interpolated(ends.v_left, ends.v_right, end)
         return self.stiffness * self.width * (end - start) * mean_product(u0, u1, v0, v1)
 
     @kernel
@@ -185,9 +185,11 @@ class Bed(Base, BedNumbers):
         """Return the energy of the compressed springs, and the energy less that at rest."""
         ends, delta = self.ends(line), self.settlement
         half = 0.5 * self.stiffness * self.width
-        start, end = compressed_part(end_of(ends.u_left), end_of(ends.u_right), ends)
-        u0 = between(ends.u_left, ends.u_right, start)
-        u1 = between(ends.u_left, ends.u_right, end)
+        start, end = compressed_part(
+            contact_of_end(ends.u_left), contact_of_end(ends.u_right), ends
+        )
+        u0 = interpolated(ends.u_left, ends.u_right, start)
+        u1 = interpolated(ends.u_left, ends.u_right, end)
         stored = half * (end - start) * mean_product(u0, u1, u0, u1)
         if end - start < 1.0:
             return stored, stored - half * delta * delta
@@ -231,7 +233,7 @@ class Bed(Base, BedNumbers):
     def starting(self, line: BaseLine, own: Variables) -> int:
         """Return the contact at the start of a run."""
         ends = self.ends(line)
-        return both_contacts(end_of(ends.u_left), end_of(ends.u_right))
+        return both_contacts(contact_of_end(ends.u_left), contact_of_end(ends.u_right))
 
     @kernel
     def resting_height(self, left: float, right: float, own: Variables) -> float:
@@ -246,12 +248,12 @@ class Bed(Base, BedNumbers):
 
     @kernel
     def observed(self, contact: int, line: BaseLine, own: Variables) -> Variables:
-        """Return bed's reaction, the length in contact, and the greater pressure at its ends."""
+        """Return reaction, length in contact, and the greater of the pressures at its ends."""
         ends = self.ends(line)
         start, end = self.bearing_part(contact, ends)
         left, right = self.pressure(start, ends), self.pressure(end, ends)
-        toe = max(left, right) if end > start else 0.0
-        return self.force(contact, line, own).upward, self.width * (end - start), toe
+        greatest = max(left, right) if end > start else 0.0
+        return self.force(contact, line, own).upward, self.width * (end - start), greatest
 
 
 class Rigid(Bed):

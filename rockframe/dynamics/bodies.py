@@ -16,18 +16,18 @@ ROTATION: Final = 0
 VERTICAL: Final = 1
 BEFORE_HORIZONTAL: Final = 2
 """Coordinates of each body that come before the horizontal ones of all bodies."""
-DEGREES: Final = 3
+BODY_DOF: Final = 3
 """Coordinates of a body."""
 
 
 class Bodies(Protocol):
     """What events need of a system of bodies: access to body `k`, and responses to impulses."""
 
-    def part_mode(self, mode: int, k: int) -> Mode:
+    def body_mode(self, mode: int, k: int) -> Mode:
         """Return contact, held point and sliding of body `k` in a mode."""
         ...
 
-    def with_part(self, mode: int, k: int, part: Mode) -> int:
+    def with_body_mode(self, mode: int, k: int, part: Mode) -> int:
         """Return the system's mode with another mode of body `k`."""
         ...
 
@@ -35,28 +35,28 @@ class Bodies(Protocol):
         """Return placement and rates of body `k` relative to its base."""
         ...
 
-    def own_place(self, k: int) -> int:
+    def base_variable_index(self, k: int) -> int:
         """Return the index in the state of the own variables of the base of body `k`."""
         ...
 
-    def place(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
+    def centre_position(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
         """Return the horizontal place of the centre of mass of body `k`, relative to its base."""
         ...
 
-    def change(self, k: int, rise: float, speed: float, state: Vector) -> None:
+    def shift_vertical(self, k: int, rise: float, speed: float, state: Vector) -> None:
         """Add to height and vertical velocity of body `k`."""
         ...
 
-    def stand_upright(self, k: int, state: Vector) -> None:
+    def set_upright(self, k: int, state: Vector) -> None:
         """Set the rotation of body `k` to zero."""
         ...
 
-    def set_sway(self, k: int, place: float, velocity: float, state: Vector) -> None:
+    def set_horizontal(self, k: int, place: float, velocity: float, state: Vector) -> None:
         """Set horizontal coordinate and velocity of body `k`."""
         ...
 
     def response(
-        self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
+        self, k: int, mode: int, impulse: float, moment: float, slip: float, state: Vector
     ) -> VelocityChange:
         """Return changes of velocities by an impulse of a base, or by a hold that stops a slip."""
         ...
@@ -65,7 +65,7 @@ class Bodies(Protocol):
         """Change the velocities by a response."""
         ...
 
-    def note_blow(self, k: int, press: float, moment: float, along: float) -> None:
+    def record_impulse(self, k: int, normal: float, moment: float, along: float) -> None:
         """Record the impulse of a base on body `k` as an end lands."""
         ...
 
@@ -85,12 +85,12 @@ class Bodies(Protocol):
         """Return the upward accelerations of the left and right end of the base of body `k`."""
         ...
 
-    def tendency(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
-        """Return the sign of the rotation that body `k`, upright and at rest, will begin."""
+    def incipient_rotation(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
+        """Return the sign of the rotation that begins as body `k` is upright and at rest."""
         ...
 
 
-class InState:
+class StateAccess:
     """Access to the coordinates of bodies in the state. A mixin of named tuples."""
 
     __slots__ = ()
@@ -102,7 +102,7 @@ class InState:
     @inlined
     def coordinates(self) -> int:
         """Return the number of coordinates."""
-        return DEGREES * self.bodies()
+        return BODY_DOF * self.bodies()
 
     @inlined
     def horizontal_of(self, k: int) -> int:
@@ -119,19 +119,19 @@ class InState:
         )  # fmt: skip
 
     @kernel
-    def change(self, k: int, rise: float, speed: float, state: Vector) -> None:
+    def shift_vertical(self, k: int, rise: float, speed: float, state: Vector) -> None:
         """Add to the height of body `k` and to its vertical velocity."""
         i = BEFORE_HORIZONTAL * k + VERTICAL
         state[i] += rise
         state[self.coordinates() + i] += speed
 
     @kernel
-    def stand_upright(self, k: int, state: Vector) -> None:
+    def set_upright(self, k: int, state: Vector) -> None:
         """Set the rotation of body `k` to zero."""
         state[BEFORE_HORIZONTAL * k + ROTATION] = 0.0
 
     @kernel
-    def set_sway(self, k: int, place: float, velocity: float, state: Vector) -> None:
+    def set_horizontal(self, k: int, place: float, velocity: float, state: Vector) -> None:
         """Set the horizontal coordinate and velocity of body `k`."""
         i = self.horizontal_of(k)
         state[i] = place
@@ -145,7 +145,7 @@ class InState:
         state[i + VERTICAL] += response.vertical
 
     @inlined
-    def note_blow(self, k: int, press: float, moment: float, along: float) -> None:
+    def record_impulse(self, k: int, normal: float, moment: float, along: float) -> None:
         """Record the impulse of a base on a body that lands: it is not needed here."""
 
     @kernel

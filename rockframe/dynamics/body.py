@@ -89,7 +89,7 @@ class BaseLine(NamedTuple):
 
 
 @inlined
-def accelerated(line: BaseLine, left: float, right: float) -> BaseLine:
+def with_accelerations(line: BaseLine, left: float, right: float) -> BaseLine:
     """Return a base line with the accelerations of its ends."""
     return BaseLine(
         line.left, line.right, line.left_speed, line.right_speed, line.left_lever,
@@ -98,10 +98,10 @@ def accelerated(line: BaseLine, left: float, right: float) -> BaseLine:
 
 
 class Reach(NamedTuple):
-    """Derivatives of the centre of mass's horizontal place x by the rotation a [m]."""
+    """Derivatives of the horizontal position x of the centre of mass by the rotation a [m]."""
 
-    rate: float  # dx/da
-    bend: float  # d2x/da2
+    derivative: float  # dx/da
+    second_derivative: float  # d2x/da2
 
 
 class Body(NamedTuple):

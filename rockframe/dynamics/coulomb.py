@@ -17,36 +17,37 @@ class ImpulseResponse(NamedTuple):
 
 @inlined
 def coulomb_impulse(
-    answers: ImpulseResponse, slip: float, sinking: float, friction: float
+    response: ImpulseResponse, slip: float, normal_velocity: float, friction: float
 ) -> tuple[float, float]:
-    """Return impulses along and normal to the base that change the normal velocity by -`sinking`.
+    """Return impulses along and normal to the base that stop a point's normal velocity.
 
-    `sinking` is negative. The normal impulse grows until this change is reached; friction opposes
-    the slip by `friction` times the normal impulse. The slip may end, and reverse, within the
-    impact. An infinite coefficient holds the point that strikes.
+    `normal_velocity` is negative. The normal impulse grows until the point no longer approaches;
+    friction opposes the slip by `friction` times the normal impulse. The slip may end, and reverse,
+    within the impact. An infinite coefficient holds the point that strikes.
     """
-    normal_by_normal, normal_by_along, along_by_normal, along_by_along = answers
-    both = normal_by_normal * along_by_along - normal_by_along * along_by_normal
+    normal_by_normal, normal_by_along, along_by_normal, along_by_along = response
+    determinant = normal_by_normal * along_by_along - normal_by_along * along_by_normal
     along = normal = 0.0
     if slip != 0.0 and friction < math.inf:
         ratio = -math.copysign(friction, slip)
-        change = along_by_normal + ratio * along_by_along
-        slowing = normal_by_normal + ratio * normal_by_along
-        stops = -slip / change if slip * change < 0.0 else math.inf
-        ends = -sinking / slowing if slowing > 0.0 else math.inf
-        if ends < math.inf and ends <= stops:
-            return ratio * ends, ends
-        if stops < math.inf:
-            normal, along = stops, ratio * stops
-            slip, sinking = 0.0, sinking + slowing * stops
-    pushed = (slip * normal_by_along - sinking * along_by_along) / both
-    held = -(slip + along_by_normal * pushed) / along_by_along
-    if friction == math.inf and pushed < 0.0:  # the impulse that stops the slip throws the point up
+        slip_rate = along_by_normal + ratio * along_by_along
+        normal_rate = normal_by_normal + ratio * normal_by_along
+        normal_at_stick = -slip / slip_rate if slip * slip_rate < 0.0 else math.inf
+        normal_at_end = -normal_velocity / normal_rate if normal_rate > 0.0 else math.inf
+        if normal_at_end < math.inf and normal_at_end <= normal_at_stick:
+            return ratio * normal_at_end, normal_at_end
+        if normal_at_stick < math.inf:
+            normal, along = normal_at_stick, ratio * normal_at_stick
+            slip, normal_velocity = 0.0, normal_velocity + normal_rate * normal_at_stick
+    sticking_normal = (slip * normal_by_along - normal_velocity * along_by_along) / determinant
+    sticking_along = -(slip + along_by_normal * sticking_normal) / along_by_along
+    if friction == math.inf and sticking_normal < 0.0:
+        # the impulse that stops the slip throws the point up
         return -slip / along_by_along, 0.0
-    if friction < math.inf and abs(held) > friction * pushed:
-        ratio = math.copysign(friction, held)
-        across = normal_by_normal + ratio * normal_by_along
-        if across > 0.0:
-            pushed = -sinking / across
-            held = ratio * pushed
-    return along + held, normal + pushed
+    if friction < math.inf and abs(sticking_along) > friction * sticking_normal:
+        ratio = math.copysign(friction, sticking_along)
+        normal_rate = normal_by_normal + ratio * normal_by_along
+        if normal_rate > 0.0:
+            sticking_normal = -normal_velocity / normal_rate
+            sticking_along = ratio * sticking_normal
+    return along + sticking_along, normal + sticking_normal

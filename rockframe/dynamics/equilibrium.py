@@ -12,32 +12,39 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from rockframe.compiled import Matrix, Vector
+from rockframe.dynamics.body_statics import (
+    DIFFERENCE_STEP,
+    DISPLACEMENTS,
+    ROUNDING,
+    STENCIL,
+    Pose,
+    base_derivatives,
+)
 from rockframe.dynamics.chain.link_rows import ChainLink
-from rockframe.dynamics.standing import PLACES, ROUNDING, STENCIL, STEP, Stand, of_base
-from rockframe.dynamics.tied import Tied, force_at, is_broken
+from rockframe.dynamics.link_statics import LinkForce, is_broken, static_link_force
 
 if TYPE_CHECKING:
     from rockframe.dynamics.statics import StandingChain
 
-TRIES: Final = 40
-"""Most steps of Newton's method."""
-CLOSE: Final = 1e-12
+MAX_ITERATIONS: Final = 40
+"""Largest number of steps of Newton's method."""
+TOLERANCE: Final = 1e-12
 """Change of a coordinate in the last step, over the sum of its value and its size [1]."""
-NEAR: Final = 0.05
+MAX_ROTATION_STEP: Final = 0.05
 """Largest difference of a rotation from its prediction, and largest step of Newton's [rad]."""
-LEAST_STEP: Final = 1e-3
+MIN_STEP: Final = 1e-3
 """Least step along the path, over its length, or over the size of what changes [1]."""
-LEAST_SHARE: Final = 2.0**-30
+MIN_SHARE: Final = 2.0**-30
 """Least share of a step's elongation that a link without stiffness so far takes [1]."""
-ANSWERED: Final = 1e3
-"""Last change of a link's force over the weight, allowed as a multiple of CLOSE [1]."""
-FAR: Final = 1e9
+FORCE_TOLERANCE_RATIO: Final = 1e3
+"""Last change of a link's force over the weight, allowed as a multiple of TOLERANCE [1]."""
+DIVERGED: Final = 1e9
 """Change of a coordinate over its size at which a step has failed [1]."""
-RETURNS: Final = 0.25
+REVERSAL: Final = 0.25
 """Share of the last step that a step must undo for steps to be halved [1]."""
-LEAST_DAMPED: Final = 2.0**-6
+MIN_DAMPING: Final = 2.0**-6
 """Least share of a step after halving [1]."""
-SUDDEN: Final = 0.25
+MAX_FORCE_CHANGE: Final = 0.25
 """Largest change of force in a step of a link without stiffness so far, over the weight [1]."""
 SECANT: Final = ((1.0, 0.5),)
 """Stencil of a first derivative of second order, which is enough for a step of Newton's."""
@@ -47,295 +54,319 @@ class HeldBodies(NamedTuple):
     """Bodies under their loads, and rotations that couples hold."""
 
     chain: "StandingChain"
-    sums: Matrix  # weights of the rotations on bases in each rotation that is held
+    rotation_weights: Matrix  # weights of the rotations on bases in each rotation that is held
     rotations: Vector
 
 
-class Balance(NamedTuple):
+class ChainEquilibrium(NamedTuple):
     """An equilibrium: rotations of bodies, from the top down, forces of bases and of links."""
 
     rotations: Vector
     heights: Vector  # used where a base carries nothing
-    presses: Vector  # normal forces of bases
-    stretches: Vector  # elongations of links at which their laws give their forces
-    pulls: Matrix  # forces of links, to the right and up
+    normal_forces: Vector  # normal forces of bases
+    elongations: Vector  # elongations of links at which their laws give their forces
+    link_forces: Matrix  # forces of links, to the right and up
     couples: Vector  # couples that hold rotations, against them
 
     @classmethod
-    def of(cls, chain: "StandingChain", stands: Sequence[Stand], held: int = 1) -> "Balance":
-        """Return forces and places of bodies as they stand, no couple yet on `held` rotations."""
-        tied = chain.tied(stands)
+    def from_poses(
+        cls, chain: "StandingChain", poses: Sequence[Pose], held: int = 1
+    ) -> "ChainEquilibrium":
+        """Return the equilibrium of poses, without couples as yet on `held` rotations."""
+        links = chain.link_forces(poses)
         return cls(
-            np.array([one.state.rotation for one in stands]),
-            np.array([one.state.vertical for one in stands]),
-            np.array([one.press for one in stands]),
-            np.array([one.elongation for one in tied]),
-            np.array([one.force * one.direction for one in tied]).reshape(-1, 2),
+            np.array([one.state.rotation for one in poses]),
+            np.array([one.state.vertical for one in poses]),
+            np.array([one.normal_force for one in poses]),
+            np.array([one.elongation for one in links]),
+            np.array([one.force * one.direction for one in links]).reshape(-1, 2),
             np.zeros(held),
         )
 
 
-class Path(NamedTuple):
+class EquilibriumPath(NamedTuple):
     """An equilibrium on a path, and the one before it."""
 
     at: float
-    place: Balance
-    before: "tuple[float, Balance] | None" = None
+    equilibrium: ChainEquilibrium
+    before: "tuple[float, ChainEquilibrium] | None" = None
 
-    def foreseen(self, at: float) -> Balance:
-        """Return the equilibrium further on by linear extrapolation."""
+    def extrapolated(self, at: float) -> ChainEquilibrium:
+        """Return a prediction of the equilibrium further on, by linear extrapolation."""
         if self.before is None:
-            return self.place
+            return self.equilibrium
         share = (at - self.at) / (self.at - self.before[0])
-        pairs = zip(self.place, self.before[1], strict=True)
-        return Balance(*(now + share * (now - before) for now, before in pairs))
+        pairs = zip(self.equilibrium, self.before[1], strict=True)
+        return ChainEquilibrium(*(now + share * (now - before) for now, before in pairs))
 
 
-def followed(
-    held: Callable[[float], HeldBodies], path: Path, to: float = 1.0, size: float = math.inf
-) -> Path | None:
+def follow_equilibrium(
+    held: Callable[[float], HeldBodies],
+    path: EquilibriumPath,
+    to: float = 1.0,
+    size: float = math.inf,
+) -> EquilibriumPath | None:
     """Follow a stable equilibrium along a path; None where it ends.
 
     `size` is the length of the path within which, about, an end of a base lifts off.
     """
-    step = way = to - path.at
-    least_to_break = LEAST_STEP * abs(way)
-    least = min(least_to_break, LEAST_STEP * size)
+    step = length = to - path.at
+    least_to_break = MIN_STEP * abs(length)
+    least = min(least_to_break, MIN_STEP * size)
     while path.at != to:
-        ahead = to if abs(to - path.at) <= abs(step) else path.at + step
-        bodies, guess = held(ahead), path.foreseen(ahead)
-        found = balanced(bodies, guess)
-        if found is not None and _greatest(found.rotations - guess.rotations) > NEAR:
+        after = to if abs(to - path.at) <= abs(step) else path.at + step
+        bodies, guess = held(after), path.extrapolated(after)
+        found = find_equilibrium(bodies, guess)
+        if found is not None and _max_abs(found.rotations - guess.rotations) > MAX_ROTATION_STEP:
             found = None
-        # with a link broken that in truth holds the bodies may be in equilibrium, too
-        breaks = found is not None and _breaks(bodies.chain, path.place, found)
+        # bodies may be in equilibrium, too, with a link broken that is not
+        breaks = found is not None and _link_breaks(bodies.chain, path.equilibrium, found)
         if found is None or (breaks and abs(step) >= least_to_break):
             if abs(step) < least:
                 return None
             step *= 0.5
         elif breaks:
-            path, step = Path(ahead, found), to - ahead
+            path, step = EquilibriumPath(after, found), to - after
         else:
-            path, step = Path(ahead, found, (path.at, path.place)), 2.0 * step
+            path, step = EquilibriumPath(after, found, (path.at, path.equilibrium)), 2.0 * step
     return path
 
 
-def balanced(held: HeldBodies, guess: Balance) -> Balance | None:
+def find_equilibrium(held: HeldBodies, guess: ChainEquilibrium) -> ChainEquilibrium | None:
     """Return a stable equilibrium near a guess, by Newton's steps.
 
-    Heights follow from the forces of bases, so that a loss of contact within a step does no harm.
+    Heights follow from the forces of bases, so that contact may be lost within a step.
     """
-    place, stands = guess, held.chain.stands_at(guess)
+    equilibrium, poses = guess, held.chain.poses_of(guess)
     damped, before = 1.0, np.zeros(2 * len(guess.rotations))
-    for count in range(TRIES):
-        now = _Step(held, stands, place)
-        if not now.leads:
+    for count in range(MAX_ITERATIONS):
+        now = _Step(held, poses, equilibrium)
+        if not now.is_bounded:
             return None
-        if now.is_last and count == 0:
+        if now.has_converged and count == 0:
             return guess if now.is_stable() else None
         # alternating contacts or links would make the steps oscillate
-        returns = now.move @ before < -RETURNS * (before @ before)
-        damped = max(0.5 * damped, LEAST_DAMPED) if returns else min(1.0, 2.0 * damped)
-        before = now.move
-        share = min(damped, NEAR / max(_greatest(now.move[::2]), NEAR))
-        place = now.ahead(share)
-        if share == 1.0 and now.is_last:
-            return place if now.is_stable() else None
-        stands = held.chain.stands_at(place)
+        reverses = now.step @ before < -REVERSAL * (before @ before)
+        damped = max(0.5 * damped, MIN_DAMPING) if reverses else min(1.0, 2.0 * damped)
+        before = now.step
+        share = min(damped, MAX_ROTATION_STEP / max(_max_abs(now.step[::2]), MAX_ROTATION_STEP))
+        equilibrium = now.after(share)
+        if share == 1.0 and now.has_converged:
+            return equilibrium if now.is_stable() else None
+        poses = held.chain.poses_of(equilibrium)
     return None
 
 
-def of_loads(
-    chain: "StandingChain", stands: Sequence[Stand],
-    of_links: Callable[[Sequence[Stand]], Vector],
+def load_stiffness(
+    chain: "StandingChain", poses: Sequence[Pose],
+    of_links: Callable[[Sequence[Pose]], Vector],
     stencil: Sequence[tuple[float, float]] = STENCIL,
 ) -> Matrix:  # fmt: skip
     """Return minus the derivatives of the generalised forces of weights and links."""
-    found = np.zeros((2 * len(stands), 2 * len(stands)))
+    found = np.zeros((2 * len(poses), 2 * len(poses)))
     for at, size in enumerate(chain.sizes):
-        step = STEP * size
-        for place, weight in stencil:
-            before, behind = (
-                chain.loads(others, of_links(others))
-                for others in (chain.moved(stands, at, by) for by in (-place * step, place * step))
+        step = DIFFERENCE_STEP * size
+        for steps, weight in stencil:
+            before, after = (
+                chain.generalized_loads(others, of_links(others))
+                for others in (
+                    chain.displaced(poses, at, by) for by in (-steps * step, steps * step)
+                )
             )
-            found[:, at] += weight / step * (before - behind)
+            found[:, at] += weight / step * (before - after)
     return found
 
 
-def of_bases(chain: "StandingChain", stands: Sequence[Stand], *, from_rest: bool = False) -> Matrix:
+def base_stiffness(
+    chain: "StandingChain", poses: Sequence[Pose], *, from_rest: bool = False
+) -> Matrix:
     """Return minus the derivatives of the generalised forces of bases, zero for rigid ones.
 
     With loads that grow `from_rest`, variables of a base's own follow them.
     """
-    found = np.zeros((2 * len(stands), 2 * len(stands)))
-    for k, (standing, stand) in enumerate(zip(chain.bodies, stands, strict=True)):
+    found = np.zeros((2 * len(poses), 2 * len(poses)))
+    for k, (standing, pose) in enumerate(zip(chain.bodies, poses, strict=True)):
         if not standing.corner:
             own = slice(2 * k, 2 * k + 2)
-            ways = [of_base(standing, stand, name, from_rest=from_rest) for name in PLACES]
-            found[own, own] = np.array(ways).T
+            jacobians = [
+                base_derivatives(standing, pose, name, from_rest=from_rest)
+                for name in DISPLACEMENTS
+            ]
+            found[own, own] = np.array(jacobians).T
     return found
 
 
-def _breaks(chain: "StandingChain", before: Balance, after: Balance) -> bool:
+def _link_breaks(chain: "StandingChain", before: ChainEquilibrium, after: ChainEquilibrium) -> bool:
     """Whether a link breaks between two equilibria."""
-    stretches = zip(chain.ties, before.stretches.tolist(), after.stretches.tolist(), strict=True)
-    return any(is_broken(one, now) and not is_broken(one, was) for one, was, now in stretches)
+    pairs = zip(chain.ties, before.elongations.tolist(), after.elongations.tolist(), strict=True)
+    return any(is_broken(one, now) and not is_broken(one, was) for one, was, now in pairs)
 
 
-def _greatest(values: Vector) -> float:
+def _max_abs(values: Vector) -> float:
     """Return the greatest absolute value."""
     return float(np.abs(values).max())
 
 
-class _Answer(NamedTuple):
+class _StiffDirection(NamedTuple):
     """A direction in which a link has stiffness, so that its force is an unknown."""
 
     link: int
     direction: Vector
     compliance: float
-    lack: float  # difference of its force from that of its law, as an elongation
+    misfit: float  # difference of its force from that of its law, as an elongation
 
 
 class _Step:
-    """One step of Newton's method from a given place, :eq:`eq-static-steps`."""
+    """One step of Newton's method from a guess, :eq:`eq-static-steps`."""
 
-    def __init__(self, held: HeldBodies, stands: Sequence[Stand], place: Balance) -> None:
-        self.held, self.chain, self.stands, self.place = held, held.chain, stands, place
-        self.coordinates = np.array([value for one in stands for value in one.state[:2]])
+    def __init__(self, held: HeldBodies, poses: Sequence[Pose], guess: ChainEquilibrium) -> None:
+        self.held, self.chain, self.poses, self.guess = held, held.chain, poses, guess
+        self.coordinates = np.array([value for one in poses for value in one.state[:2]])
         self.sizes = held.chain.sizes
-        self.tied = held.chain.tied(stands, stretches=place.stretches.tolist())
-        self.pulls = place.pulls.copy()
-        each = enumerate(self.tied)
-        self.answers = [one for i, tied in each for one in self._answers_of(i, tied)]
-        # derivatives of coordinates by the free ones, over the sizes of these
-        self.following = held.chain.following(stands) * self.sizes
-        self.free = self.following.any(axis=0)
-        self.following = self.following[:, self.free]
-        self.of_bases = of_bases(held.chain, stands, from_rest=True)
-        self.matrix, lacks = self._equations()
-        try:
-            found = np.linalg.solve(self.matrix, lacks)
-        except np.linalg.LinAlgError:
-            found = np.full(len(lacks), math.nan)
-        self.leads = bool((np.abs(found) < FAR).all())
-        if self.leads:
-            self.move = self.following @ found[: self.free.sum()]
-            forces = held.chain.weight * found[self.free.sum() :]
-            self._link_moves(forces[: len(self.answers)].tolist())
-            self.more_couple = self.sizes[1] / self.sizes[0] * forces[len(self.answers) :]
-
-    def _link_moves(self, forces: Sequence[float]) -> None:
-        """Set the changes of links in this step, and whether it is the last one."""
-        allowed = CLOSE * (np.abs(self.coordinates) + self.sizes)
-        # rotations are added: none is known better than the rounding of the greatest one
-        known = ROUNDING * _greatest(self.coordinates[::2])
-        allowed += known * self.sizes / np.repeat(self.sizes[::2], 2)
-        self.is_last = bool((np.abs(self.move) <= allowed).all())
-        self.more_pull = np.zeros_like(self.pulls)
-        self.more_stretch = [
-            float(one.direction @ one.way @ self.move) + one.elongation - stretch
-            for one, stretch in zip(self.tied, self.place.stretches.tolist(), strict=True)
+        self.links = held.chain.link_forces(poses, elongations=guess.elongations.tolist())
+        self.link_forces = guess.link_forces.copy()
+        each = enumerate(self.links)
+        self.stiff_directions = [
+            one for i, link_force in each for one in self._stiff_directions_of(i, link_force)
         ]
-        for one, force in zip(self.answers, forces, strict=True):
-            self.more_pull[one.link] += force * one.direction
-        for i, (link, one) in enumerate(zip(self.chain.ties, self.tied, strict=True)):
-            rounding = ANSWERED * CLOSE * self.chain.weight
-            answers = _greatest(self.more_pull[i]) <= rounding
-            if not one.meets:
-                self.more_stretch[i], answers = self._stretched(link, one, i, rounding)
-            self.is_last = self.is_last and answers
+        # derivatives of coordinates by the free ones, over the sizes of these
+        self.constraint = held.chain.constraint_matrix(poses) * self.sizes
+        self.free = self.constraint.any(axis=0)
+        self.constraint = self.constraint[:, self.free]
+        self.base_stiffness = base_stiffness(held.chain, poses, from_rest=True)
+        self.matrix, misfits = self._equations()
+        try:
+            found = np.linalg.solve(self.matrix, misfits)
+        except np.linalg.LinAlgError:
+            found = np.full(len(misfits), math.nan)
+        self.is_bounded = bool((np.abs(found) < DIVERGED).all())
+        if self.is_bounded:
+            self.step = self.constraint @ found[: self.free.sum()]
+            forces = held.chain.weight * found[self.free.sum() :]
+            self._set_link_changes(forces[: len(self.stiff_directions)].tolist())
+            couples = forces[len(self.stiff_directions) :]
+            self.couple_change = self.sizes[1] / self.sizes[0] * couples
 
-    def _stretched(
-        self, link: ChainLink, tied: Tied, i: int, rounding: float
+    def _set_link_changes(self, forces: Sequence[float]) -> None:
+        """Set the changes of links in this step, and whether it is the last one."""
+        allowed = TOLERANCE * (np.abs(self.coordinates) + self.sizes)
+        # rotations are added up: none is more accurate than the rounding of the greatest one
+        known = ROUNDING * _max_abs(self.coordinates[::2])
+        allowed += known * self.sizes / np.repeat(self.sizes[::2], 2)
+        self.has_converged = bool((np.abs(self.step) <= allowed).all())
+        self.force_change = np.zeros_like(self.link_forces)
+        self.elongation_change = [
+            float(one.direction @ one.jacobian @ self.step) + one.elongation - stretch
+            for one, stretch in zip(self.links, self.guess.elongations.tolist(), strict=True)
+        ]
+        for one, force in zip(self.stiff_directions, forces, strict=True):
+            self.force_change[one.link] += force * one.direction
+        for i, (link, one) in enumerate(zip(self.chain.ties, self.links, strict=True)):
+            rounding = FORCE_TOLERANCE_RATIO * TOLERANCE * self.chain.weight
+            as_predicted = _max_abs(self.force_change[i]) <= rounding
+            if not one.coincide:
+                self.elongation_change[i], as_predicted = self._elongation_change(
+                    link, one, i, rounding
+                )
+            self.has_converged = self.has_converged and as_predicted
+
+    def _elongation_change(
+        self, link: ChainLink, link_force: LinkForce, i: int, rounding: float
     ) -> tuple[float, bool]:
         """Return change of a link's elongation, and whether its force is then the predicted one.
 
         Where the link only begins to have stiffness the change is kept small.
         """
-        share, stretch, more = 1.0, float(self.place.stretches[i]), self.more_stretch[i]
+        share, more = 1.0, self.elongation_change[i]
+        stretch = float(self.guess.elongations[i])
 
-        def surprise(more: float) -> float:
-            foreseen = tied.force + tied.stiffness * more
-            return self.chain.pull * abs(force_at(link, stretch + more) - foreseen)
+        def force_error(more: float) -> float:
+            predicted = link_force.force + link_force.stiffness * more
+            return self.chain.link_factor * abs(static_link_force(link, stretch + more) - predicted)
 
-        rounding += CLOSE * self.chain.pull * tied.stiffness * abs(stretch)
-        as_foreseen = surprise(more) <= rounding
-        while tied.stiffness <= 0.0 and share > LEAST_SHARE:
-            if surprise(share * more) <= SUDDEN * self.chain.weight:
+        rounding += TOLERANCE * self.chain.link_factor * link_force.stiffness * abs(stretch)
+        as_predicted = force_error(more) <= rounding
+        while link_force.stiffness <= 0.0 and share > MIN_SHARE:
+            if force_error(share * more) <= MAX_FORCE_CHANGE * self.chain.weight:
                 break
             share *= 0.5
-        return share * more, as_foreseen
+        return share * more, as_predicted
 
-    def ahead(self, share: float) -> Balance:
-        """Return the place after a share of the step."""
-        there = self.coordinates + share * self.move
-        presses = np.array([one.press for one in self.stands])
-        presses -= share * (self.of_bases @ self.move)[1::2]
-        stretches = self.place.stretches + share * np.array(self.more_stretch)
-        pulls = self.pulls + share * self.more_pull
-        couples = self.place.couples + share * self.more_couple
-        return Balance(there[::2], there[1::2], presses, stretches, pulls, couples)
+    def after(self, share: float) -> ChainEquilibrium:
+        """Return the next guess, after a share of the step."""
+        new = self.coordinates + share * self.step
+        normal_forces = np.array([one.normal_force for one in self.poses])
+        normal_forces -= share * (self.base_stiffness @ self.step)[1::2]
+        elongations = self.guess.elongations + share * np.array(self.elongation_change)
+        link_forces = self.link_forces + share * self.force_change
+        couples = self.guess.couples + share * self.couple_change
+        return ChainEquilibrium(
+            new[::2], new[1::2], normal_forces, elongations, link_forces, couples
+        )
 
-    def _answers_of(self, i: int, tied: Tied) -> list[_Answer]:
+    def _stiff_directions_of(self, i: int, link_force: LinkForce) -> list[_StiffDirection]:
         """Return directions in which a link has stiffness; in others its law gives its force."""
-        force, hardness = self.chain.pull * tied.force, self.chain.pull * tied.stiffness
-        along, pull = tied.direction, self.pulls[i].copy()
-        self.pulls[i] = force * along
-        if not tied.meets:
-            lack = tied.elongation - float(self.place.stretches[i])
-            return [_Answer(i, along, 1.0 / hardness, lack)] if hardness > 0.0 else []
-        if not along.any():  # points that meet without force may part in any direction
-            directions = np.eye(2) if hardness > 0.0 else ()
-            return [_Answer(i, one, 1.0 / hardness, 0.0) for one in directions]
-        found = list[_Answer]()
-        if hardness > 0.0:
+        force = self.chain.link_factor * link_force.force
+        stiffness = self.chain.link_factor * link_force.stiffness
+        along, pull = link_force.direction, self.link_forces[i].copy()
+        self.link_forces[i] = force * along
+        if not link_force.coincide:
+            misfit = link_force.elongation - float(self.guess.elongations[i])
+            return [_StiffDirection(i, along, 1.0 / stiffness, misfit)] if stiffness > 0.0 else []
+        if not along.any():  # points that coincide without force may part in any direction
+            directions = np.eye(2) if stiffness > 0.0 else ()
+            return [_StiffDirection(i, one, 1.0 / stiffness, 0.0) for one in directions]
+        found = list[_StiffDirection]()
+        if stiffness > 0.0:
             tension = float(pull @ along)
-            self.pulls[i] = tension * along
-            found.append(_Answer(i, along, 1.0 / hardness, (force - tension) / hardness))
+            self.link_forces[i] = tension * along
+            found.append(_StiffDirection(i, along, 1.0 / stiffness, (force - tension) / stiffness))
         if force > 0.0:  # a taut link also has stiffness across
             across = np.array([-along[1], along[0]])
-            beside, compliance = float(pull @ across), math.hypot(*tied.moved) / force
-            self.pulls[i] += beside * across
-            found.append(_Answer(i, across, compliance, -beside * compliance))
+            beside, compliance = float(pull @ across), math.hypot(*link_force.displacement) / force
+            self.link_forces[i] += beside * across
+            found.append(_StiffDirection(i, across, compliance, -beside * compliance))
         return found
 
-    def _loads(self, stands: Sequence[Stand]) -> Vector:
+    def _loads(self, poses: Sequence[Pose]) -> Vector:
         """Return the generalised forces of links, of fixed sizes, as bodies move."""
-        found = np.zeros(2 * len(stands))
-        points = self.chain.reached(stands)
-        for pull, here, there in zip(self.pulls, self.tied, points, strict=True):
+        found = np.zeros(2 * len(poses))
+        points = self.chain.link_kinematics(poses)
+        for pull, here, there in zip(self.link_forces, self.links, points, strict=True):
             kept = pull
-            if here.direction.any() and not here.meets:
+            if here.direction.any() and not here.coincide:
                 kept = (pull @ here.direction) * there.direction
-            found -= kept @ there.way
+            found -= kept @ there.jacobian
         return found
 
     def _equations(self) -> tuple[Matrix, Vector]:
         """Return matrix and right-hand side of the equations, symmetrical and non-dimensional."""
         chain, weight, free, sizes = self.chain, self.chain.weight, self.free, self.sizes
         energy = weight * sizes[1]
-        forces = chain.loads(self.stands, self._loads(self.stands))
-        for k, (standing, one) in enumerate(zip(chain.bodies, self.stands, strict=True)):
+        forces = chain.generalized_loads(self.poses, self._loads(self.poses))
+        for k, (standing, one) in enumerate(zip(chain.bodies, self.poses, strict=True)):
             if not standing.corner:
                 forces[2 * k : 2 * k + 2] += one.force.moment, one.force.upward
-        forces[::2] -= self.place.couples @ self.held.sums
-        inner = self.of_bases + of_loads(chain, self.stands, self._loads, SECANT)
+        forces[::2] -= self.guess.couples @ self.held.rotation_weights
+        inner = self.base_stiffness + load_stiffness(chain, self.poses, self._loads, SECANT)
         inner *= sizes * sizes[:, None] / energy
-        ways = [weight / energy * one.direction @ self.tied[one.link].way for one in self.answers]
-        sums = np.zeros((len(self.held.sums), len(sizes)))
-        sums[:, ::2] = self.held.sums / sizes[0]
-        tight = np.array([*ways, *sums]).reshape(-1, len(sizes)) @ self.following
-        soft = [-one.compliance * weight**2 / energy for one in self.answers]
+        jacobians = [
+            weight / energy * one.direction @ self.links[one.link].jacobian
+            for one in self.stiff_directions
+        ]
+        rotation_weights = np.zeros((len(self.held.rotation_weights), len(sizes)))
+        rotation_weights[:, ::2] = self.held.rotation_weights / sizes[0]
+        tight = np.array([*jacobians, *rotation_weights]).reshape(-1, len(sizes)) @ self.constraint
+        soft = [-one.compliance * weight**2 / energy for one in self.stiff_directions]
         matrix = np.block(
             [
                 [inner[np.ix_(free, free)], tight.T],
-                [tight, np.diag([*soft, *np.zeros(len(sums))])],
+                [tight, np.diag([*soft, *np.zeros(len(rotation_weights))])],
             ]
         )
-        off = self.held.rotations / sizes[0] - sums @ self.coordinates
-        lacks = [-one.lack * weight / energy for one in self.answers]
-        return matrix, np.array([*(sizes * forces / energy)[free], *lacks, *off])
+        off = self.held.rotations / sizes[0] - rotation_weights @ self.coordinates
+        misfits = [-one.misfit * weight / energy for one in self.stiff_directions]
+        return matrix, np.array([*(sizes * forces / energy)[free], *misfits, *off])
 
     def is_stable(self) -> bool:
         """Whether the equilibrium is stable: as many positive eigenvalues as free coordinates."""

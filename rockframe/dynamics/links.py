@@ -23,21 +23,21 @@ from rockframe.dynamics.point_law import complete_law, methods_of_law
 from rockframe.proposals import hinted
 
 Law = TypeVar("Law")
-NEEDED: Final = ("force", "energy")
+REQUIRED: Final = ("force", "energy")
 """Methods that a law must give."""
-INLINED: Final = ("force", "power", "idles", "with_numbers")
+INLINED_METHODS: Final = ("force", "power", "idles", "with_numbers")
 """Methods that are compiled into their callers."""
 GUARDS: Final = 2
 """Guards of every link; a law may need fewer."""
 
 
 class Stretch(NamedTuple):
-    """Elongation of a link from the geometry in which it was given [m], and its rates."""
+    """Elongation of a link from the geometry in which it is defined [m], and its rates."""
 
     elongation: float
     rate: float  # its rate
     acceleration: float  # rate of the rate, where guards are evaluated; else 0
-    given: float  # length in the geometry in which it was given
+    given: float  # length in the reference geometry
     noise: float  # rounding of the elongation
 
 
@@ -148,11 +148,11 @@ def link_law(law: type[Law]) -> type[Law]:
     ArgumentError
         It is no named tuple, lacks a method, or a field has the name of a method.
     """
-    own, faults = methods_of_law(law, LinkLaw, NEEDED)
+    own, faults = methods_of_law(law, LinkLaw, REQUIRED)
     together = {"guard", "switch", "states"}
     if together & own.keys() and not together <= own.keys():
         faults.append(f"{law.__name__} has only some of states, guard and switch")
-    return complete_law(law, own, faults, INLINED.__contains__, [LinkLaw])
+    return complete_law(law, own, faults, INLINED_METHODS.__contains__, [LinkLaw])
 
 
 @link_law
@@ -173,9 +173,9 @@ class SteadyForce(NamedTuple):
 # states of a tie; a tie that pushes has, in place of slack, yielding in compression
 SLACK: Final = 0
 TAUT: Final = 1
-YIELDS: Final = 2
+YIELDING: Final = 2
 BROKEN: Final = 3
-YIELDS_PRESSED: Final = SLACK
+YIELDING_PRESSED: Final = SLACK
 # its number in the results, which differs from that of slack
 SHOWN_PRESSED: Final = 4
 
@@ -183,9 +183,9 @@ LOWER: Final = 0
 """Guard of the end of a state by shortening, or by reversal."""
 UPPER: Final = 1
 """Guard of the end of a state by lengthening."""
-CLEAR: Final = 16.0
+MARGIN: Final = 16.0
 """Margin of a state beyond its end, in roundings of the elongation: prevents repeated switches."""
-TAUT_NOISE: Final = 1e3
+TAUT_TOLERANCE: Final = 1e3
 """At the start a tie is taut if it is slack by less than this many roundings of elongation."""
 
 
@@ -218,7 +218,7 @@ class Bumper(NamedTuple):
 
     def starting(self, stretch: Stretch, own: Vector) -> int:
         """Return the state at the start: touched if the gap is closed."""
-        return TAUT if stretch.elongation - self.gap > TAUT_NOISE * stretch.noise else SLACK
+        return TAUT if stretch.elongation - self.gap > TAUT_TOLERANCE * stretch.noise else SLACK
 
     def guard(self, which: int, state: int, stretch: Stretch, own: Vector) -> tuple[float, float]:
         """Return the distance of the point from the end of the state, and its rate."""
@@ -226,7 +226,7 @@ class Bumper(NamedTuple):
         if state == SLACK and which == UPPER:
             return -x, -stretch.rate
         if state == TAUT and which == LOWER:
-            return x + CLEAR * stretch.noise, stretch.rate
+            return x + MARGIN * stretch.noise, stretch.rate
         return 1.0, 0.0
 
     def switch(self, which: int, state: int, stretch: Stretch, own: Vector) -> LinkEvent:
@@ -273,8 +273,8 @@ class Tie(NamedTuple):
 
     stiffness: float  # k/m
     damping: float  # c/m
-    free: float  # elongation at which it becomes taut
-    most: float  # elongation of the spring at its strength
+    slack: float  # elongation at which it becomes taut
+    limit: float  # elongation of the spring at its strength
     brittle: float  # 1 if it breaks then, 0 if it yields
     pushes: float  # 1 if it also resists compression
 
@@ -282,22 +282,22 @@ class Tie(NamedTuple):
         """Return k x + c l'; k x is the strength while it yields, and zero while it is slack."""
         if state == BROKEN:
             return 0.0
-        x = stretch.elongation - self.free - own[0]
-        if state == YIELDS:
-            x = self.most
+        x = stretch.elongation - self.slack - own[0]
+        if state == YIELDING:
+            x = self.limit
         elif state == SLACK:
-            x = -self.most if self.pushes != 0.0 else 0.0
+            x = -self.limit if self.pushes != 0.0 else 0.0
         return self.stiffness * x + self.damping * stretch.rate
 
     def energy(self, state: int, stretch: Stretch, own: Vector) -> float:
         """Return k x^2/2."""
-        x = stretch.elongation - self.free - own[0]
+        x = stretch.elongation - self.slack - own[0]
         if state == BROKEN:
             x = 0.0
-        elif state == YIELDS:
-            x = self.most
+        elif state == YIELDING:
+            x = self.limit
         elif state == SLACK:
-            x = self.most if self.pushes != 0.0 else 0.0
+            x = self.limit if self.pushes != 0.0 else 0.0
         return 0.5 * self.stiffness * x * x
 
     def power(self, state: int, stretch: Stretch, own: Vector) -> float:
@@ -305,10 +305,10 @@ class Tie(NamedTuple):
         if state == BROKEN:
             return 0.0
         lost = self.damping * stretch.rate * stretch.rate
-        if state == YIELDS:
-            lost += self.stiffness * self.most * stretch.rate
+        if state == YIELDING:
+            lost += self.stiffness * self.limit * stretch.rate
         elif state == SLACK and self.pushes != 0.0:
-            lost -= self.stiffness * self.most * stretch.rate
+            lost -= self.stiffness * self.limit * stretch.rate
         return lost
 
     def variables(self) -> int:
@@ -322,40 +322,40 @@ class Tie(NamedTuple):
     def starting(self, stretch: Stretch, own: Vector) -> int:
         """Return the state after slow loading up to here."""
         own[0] = 0.0
-        x = stretch.elongation - self.free
+        x = stretch.elongation - self.slack
         found = TAUT
-        if x > self.most and self.brittle != 0.0:
+        if x > self.limit and self.brittle != 0.0:
             found = BROKEN
-        elif x > self.most:
-            own[0], found = x - self.most, YIELDS
+        elif x > self.limit:
+            own[0], found = x - self.limit, YIELDING
         elif self.pushes != 0.0:
-            if x < -self.most and self.brittle != 0.0:
+            if x < -self.limit and self.brittle != 0.0:
                 found = BROKEN
-            elif x < -self.most:
-                own[0], found = x + self.most, YIELDS_PRESSED
-        elif x < -TAUT_NOISE * stretch.noise:
+            elif x < -self.limit:
+                own[0], found = x + self.limit, YIELDING_PRESSED
+        elif x < -TAUT_TOLERANCE * stretch.noise:
             found = SLACK
         return found
 
     def guard(self, which: int, state: int, stretch: Stretch, own: Vector) -> tuple[float, float]:
-        """Return the elongation left until the state ends, or the rate that must not reverse."""
-        x, sign = stretch.elongation - self.free - own[0], 1.0
+        """Return the elongation until the end of the state, or the rate that must not reverse."""
+        x, sign = stretch.elongation - self.slack - own[0], 1.0
         value, rate = 1.0, 0.0
         if which == UPPER:
             sign = -1.0
         if state == TAUT and which == UPPER:
-            value = self.most - x
+            value = self.limit - x
         elif state == TAUT and self.pushes != 0.0:
-            value = x + self.most
+            value = x + self.limit
         elif state == TAUT:
             # a tie without unstretched length never becomes slack
-            has_length = stretch.given + self.free + own[0] > stretch.noise
-            value = x + CLEAR * stretch.noise if has_length else math.inf
-        elif state == YIELDS and which == LOWER:
-            return self.turning(1.0, stretch)
+            has_length = stretch.given + self.slack + own[0] > stretch.noise
+            value = x + MARGIN * stretch.noise if has_length else math.inf
+        elif state == YIELDING and which == LOWER:
+            return self.reversal_guard(1.0, stretch)
         elif state == SLACK and which == UPPER:
             if self.pushes != 0.0:
-                return self.turning(-1.0, stretch)
+                return self.reversal_guard(-1.0, stretch)
             value = -x
         else:
             sign = 0.0
@@ -364,19 +364,19 @@ class Tie(NamedTuple):
         rate = sign * stretch.rate
         return value, rate
 
-    def turning(self, sign: float, stretch: Stretch) -> tuple[float, float]:
+    def reversal_guard(self, sign: float, stretch: Stretch) -> tuple[float, float]:
         """Return the rate that must not reverse, times a time: guards of links are lengths."""
         time = sign / math.sqrt(self.stiffness)
         return time * stretch.rate, time * stretch.acceleration
 
     def switch(self, which: int, state: int, stretch: Stretch, own: Vector) -> LinkEvent:
         """Return the next state; the stored energy of a tie that breaks is lost."""
-        x = stretch.elongation - self.free
-        if state == YIELDS:
-            own[0] = x - self.most + CLEAR * stretch.noise
+        x = stretch.elongation - self.slack
+        if state == YIELDING:
+            own[0] = x - self.limit + MARGIN * stretch.noise
             return LinkEvent(TAUT, LINK_UNLOADS, 0.0)
         if state == SLACK and self.pushes != 0.0:
-            own[0] = x + self.most - CLEAR * stretch.noise
+            own[0] = x + self.limit - MARGIN * stretch.noise
             return LinkEvent(TAUT, LINK_UNLOADS, 0.0)
         if state == SLACK:
             return LinkEvent(TAUT, LINK_TAUT, 0.0)
@@ -385,13 +385,13 @@ class Tie(NamedTuple):
         if self.brittle != 0.0:
             lost = 0.5 * self.stiffness * (x - own[0]) * (x - own[0])
             return LinkEvent(BROKEN, LINK_BREAKS, lost)
-        return LinkEvent(YIELDS if which == UPPER else YIELDS_PRESSED, LINK_YIELDS, 0.0)
+        return LinkEvent(YIELDING if which == UPPER else YIELDING_PRESSED, LINK_YIELDS, 0.0)
 
     def shown(self, state: int) -> int:
         """Return the state that users see."""
         return SHOWN_PRESSED if state == SLACK and self.pushes != 0.0 else state
 
     def idles(self, state: int) -> bool:
-        """Whether it is broken, or hangs slack without a dashpot."""
+        """Whether it is broken, or slack without a dashpot."""
         slack = state == SLACK and self.pushes == 0.0 and self.damping == 0.0
         return state == BROKEN or slack

@@ -18,12 +18,12 @@ from rockframe.dynamics.body import (
     BaseLine,
     Body,
     BodyState,
-    accelerated,
     pivot_of,
+    with_accelerations,
 )
 from rockframe.dynamics.events import FLIGHT, FULL, LEFT, RIGHT
 from rockframe.dynamics.protocol import Ground
-from rockframe.dynamics.sliding import NO_LEVER
+from rockframe.dynamics.sliding import NEGLIGIBLE_LIFT
 
 # guards of a body, behind those of both ends of its base
 HOLD: Final = 0  # of a sliding end: the force of the hold that keeps it at its level
@@ -32,10 +32,10 @@ PIVOT: Final = 2  # of the rule of restraint: change of the held corner
 BODY_GUARDS: Final = 3
 
 # a mode as an integer: the pivot in its lowest bits, then whether an end slides, then the contact
-PIVOT_BITS: Final = 3  # mask of the pivot
-SLIDES: Final = 4  # bit of sliding
-CONTACT_BIT: Final = 3  # shift to the contact
-STANDINGS: Final = 1 << CONTACT_BIT
+PIVOT_MASK: Final = 3
+SLIDING_BIT: Final = 4
+CONTACT_SHIFT: Final = 3
+MODES_PER_CONTACT: Final = 1 << CONTACT_SHIFT
 """Modes of each contact."""
 
 
@@ -75,11 +75,11 @@ class SlidingGuards(NamedTuple):
     slip_rate: float
 
 
-IDLE: Final = SlidingGuards(1.0, 1.0, 0.0)
+IDLE_GUARDS: Final = SlidingGuards(1.0, 1.0, 0.0)
 """The guards where no end slides."""
 
 
-class OnBase(NamedTuple):
+class BodyOnBase(NamedTuple):
     """A body and the base that it stands on."""
 
     body: Body
@@ -88,7 +88,7 @@ class OnBase(NamedTuple):
     @kernel
     def modes(self) -> int:
         """Return the number of modes; some of these numbers do not occur."""
-        return STANDINGS * self.base.contacts()
+        return MODES_PER_CONTACT * self.base.contacts()
 
     @kernel
     def guards(self) -> int:
@@ -98,12 +98,12 @@ class OnBase(NamedTuple):
     @inlined
     def mode_of(self, mode: int) -> Mode:
         """Read a mode from its number."""
-        return Mode(mode >> CONTACT_BIT, mode & PIVOT_BITS, (mode & SLIDES) != 0)
+        return Mode(mode >> CONTACT_SHIFT, mode & PIVOT_MASK, (mode & SLIDING_BIT) != 0)
 
     @kernel
     def number_of(self, mode: Mode) -> int:
         """Return the number of a mode."""
-        return mode.pivot + (SLIDES if mode.slides else 0) + (mode.contact << CONTACT_BIT)
+        return mode.pivot + (SLIDING_BIT if mode.slides else 0) + (mode.contact << CONTACT_SHIFT)
 
     @inlined
     def flies(self, contact: int) -> bool:
@@ -116,7 +116,7 @@ class OnBase(NamedTuple):
         return mode.slides or self.flies(mode.contact)
 
     @inlined
-    def shown_contact(self, mode: Mode) -> int:
+    def contact_state(self, mode: Mode) -> int:
         """Return the contact state that users see."""
         left, right = self.base.is_held(mode.contact, True), self.base.is_held(mode.contact, False)
         if left and right:
@@ -131,7 +131,7 @@ class OnBase(NamedTuple):
         return self.base.following_rate() if mode.slides else 0.0
 
     @kernel
-    def standing(self, contact: int, state: BodyState) -> Mode:
+    def mode_for_contact(self, contact: int, state: BodyState) -> Mode:
         """Return the mode of a contact, with the pivot of the restraint rule."""
         if self.flies(contact):
             return Mode(contact, 0, False)
@@ -144,10 +144,10 @@ class OnBase(NamedTuple):
         )
         return Mode(contact, pivot, False)
 
-    def starting_pin(self, mode: Mode, state: BodyState) -> float:
-        """Return the point of the base that starts at its place at rest, as `Body.pin` [m].
+    def initial_pin(self, mode: Mode, state: BodyState) -> float:
+        """Return the point of the base that starts at its position at rest, as `Body.pin` [m].
 
-        It is the held point; in flight the one that the rule would hold if both ends were to bear.
+        It is the held point, or in flight the one that would be held with both ends in contact.
         """
         pivot = mode.pivot
         if self.flies(mode.contact):
@@ -157,18 +157,18 @@ class OnBase(NamedTuple):
 
     @inlined
     def contact_with_force(self, mode: Mode) -> int:
-        """Return the contact by which the base's force is computed: a sliding end has none."""
+        """Return the contact by which the base's force is computed: none acts on a sliding end."""
         if mode.slides:
             return self.base.follows(mode.contact, self.base.is_held(mode.contact, True))
         return mode.contact
 
     @inlined
-    def sway(self, mode: Mode, state: BodyState, attitude: Attitude) -> float:
+    def horizontal_velocity(self, mode: Mode, state: BodyState, attitude: Attitude) -> float:
         """Return the horizontal velocity of the centre of mass: about the held point, or free."""
         if self.is_free(mode):
             return state.horizontal_velocity
         reach = self.body.reach(self.body.pin(mode.pivot), attitude)
-        return reach.rate * state.angular_velocity
+        return reach.derivative * state.angular_velocity
 
     @inlined
     def rates_in(self, mode: Mode, state: BodyState, own: Any, ground: Ground) -> Rates:
@@ -183,10 +183,10 @@ class OnBase(NamedTuple):
         reach = body.reach(body.pin(mode.pivot), attitude)
         supplied = -ground.y * speed
         if not self.is_free(mode):
-            push = reach.rate * (ground.x + reach.bend * rate * rate)
-            angular = (base.moment - push) / (body.inertia + reach.rate * reach.rate)
-            horizontal = reach.rate * angular + reach.bend * rate * rate
-            supplied -= ground.x * reach.rate * rate
+            push = reach.derivative * (ground.x + reach.second_derivative * rate * rate)
+            angular = (base.moment - push) / (body.inertia + reach.derivative * reach.derivative)
+            horizontal = reach.derivative * angular + reach.second_derivative * rate * rate
+            supplied -= ground.x * reach.derivative * rate
             return Rates(angular, vertical, horizontal, own_rates, base.dissipated, supplied)
         supplied -= ground.x * state.horizontal_velocity
         if not mode.slides:
@@ -198,9 +198,9 @@ class OnBase(NamedTuple):
         end_speed = line.left_speed if left else line.right_speed
         free = (on_left if left else on_right) + self.base.following_rate() * end_speed
         angular = -free / lever
-        hold = -body.inertia * angular / reach.rate
-        lost = hold * (state.horizontal_velocity - reach.rate * rate)
-        dissipated = base.dissipated - lost
+        hold = -body.inertia * angular / reach.derivative
+        hold_power = hold * (state.horizontal_velocity - reach.derivative * rate)
+        dissipated = base.dissipated - hold_power
         return Rates(angular, vertical, hold - ground.x, own_rates, dissipated, supplied)
 
     @inlined
@@ -234,7 +234,7 @@ class OnBase(NamedTuple):
         """
         attitude = self.body.attitude(state.rotation)
         rises = self.body.end_accelerations(attitude, state.angular_velocity, vertical, angular)
-        line = accelerated(self.body.base_line(state, attitude), rises[0], rises[1])
+        line = with_accelerations(self.body.base_line(state, attitude), rises[0], rises[1])
         left = self.end_guards_in(mode, True, line, own)
         right = self.end_guards_in(mode, False, line, own)
         pivot, pivot_rate = self.pivot_guard(mode, state, angular)
@@ -257,23 +257,23 @@ class OnBase(NamedTuple):
         reach = body.reach(body.pin(mode.pivot), body.attitude(state.rotation))
         upwards = 1.0 if rise < 0.0 else -1.0
         hold = -upwards * push / body.gravity
-        if abs(rise) < NO_LEVER:
+        if abs(rise) < NEGLIGIBLE_LIFT:
             # held beneath the centre of mass the body is not lifted by the hold
             return SlidingGuards(hold, -1.0, 0.0)
-        slip = state.horizontal_velocity - reach.rate * rate
-        change = horizontal - reach.rate * angular - reach.bend * rate * rate
+        slip = state.horizontal_velocity - reach.derivative * rate
+        change = horizontal - reach.derivative * angular - reach.second_derivative * rate * rate
         scale = upwards / math.sqrt(body.gravity * body.size())
         return SlidingGuards(hold, scale * slip, scale * change)
 
     @kernel
     def kinetic_energy(self, mode: Mode, state: BodyState) -> float:
         """Return the kinetic energy relative to the ground, :eq:`eq-energy`."""
-        sway = self.sway(mode, state, self.body.attitude(state.rotation))
+        across = self.horizontal_velocity(mode, state, self.body.attitude(state.rotation))
         rate, speed = state.angular_velocity, state.vertical_velocity
-        return 0.5 * (self.body.inertia * rate * rate + speed * speed + sway * sway)
+        return 0.5 * (self.body.inertia * rate * rate + speed * speed + across * across)
 
     @kernel
-    def horizontal_place(
+    def horizontal_position(
         self, mode: Mode, state: BodyState, attitude: Attitude, held_at: float
     ) -> float:
         """Return x of the centre of mass: about the held point, or free [m]."""
@@ -282,7 +282,9 @@ class OnBase(NamedTuple):
         return held_at + self.body.about_pin(self.body.pin(mode.pivot), attitude)
 
     @kernel
-    def end_rises(self, state: BodyState, vertical: float, angular: float) -> tuple[float, float]:
+    def end_accelerations_at(
+        self, state: BodyState, vertical: float, angular: float
+    ) -> tuple[float, float]:
         """Return the upward accelerations of the base's ends, from those of the body."""
         attitude = self.body.attitude(state.rotation)
         return self.body.end_accelerations(attitude, state.angular_velocity, vertical, angular)
@@ -293,7 +295,7 @@ class OnBase(NamedTuple):
         return self.base.energy(self.body.base_line_at(state), own)
 
     @kernel
-    def observed_base(
+    def base_columns(
         self, mode: Mode, state: BodyState, attitude: Attitude, own: Any
     ) -> tuple[float, ...]:
         """Return the base's columns in the results."""
@@ -302,11 +304,11 @@ class OnBase(NamedTuple):
 
     @inlined
     def response_in(
-        self, mode: Mode, attitude: Attitude, press: float, moment: float, slip: float
+        self, mode: Mode, attitude: Attitude, impulse: float, moment: float, slip: float
     ) -> VelocityChange:
         """Return velocity changes by an impulse of the base, or by a hold that stops a slip."""
         if self.is_free(mode):
-            return VelocityChange(moment / self.body.inertia, press, 0.0, ())
-        reach = self.body.reach(self.body.pin(mode.pivot), attitude).rate
+            return VelocityChange(moment / self.body.inertia, impulse, 0.0, ())
+        reach = self.body.reach(self.body.pin(mode.pivot), attitude).derivative
         angular = (moment + reach * slip) / (self.body.inertia + reach * reach)
-        return VelocityChange(angular, press, reach * angular - slip, ())
+        return VelocityChange(angular, impulse, reach * angular - slip, ())

@@ -15,7 +15,7 @@ from rockframe.dynamics.base import (
     EndEvent,
     Guards,
     Variables,
-    height_under,
+    equilibrium_height,
 )
 from rockframe.dynamics.body import BaseLine
 from rockframe.dynamics.events import IMPACT, REENGAGEMENT, SEPARATION, SILENT
@@ -23,16 +23,16 @@ from rockframe.dynamics.point_law import FREE, Point
 
 # contact of a corner; numbers below RELAXING are held, and count as bearing
 TOUCHING: Final = 0
-ENGAGING: Final = 1  # held again, but without force: the pad has not caught up with it yet
+ENGAGING: Final = 1  # held again, but without force: it moves down faster than the unloaded pad
 RELAXING: Final = 2  # lifted off without force, still below the pad's unloaded level
 CLEAR: Final = 3  # lifted off, above that level
-LEAVING: Final = 4  # lifted off, though the change of the held point left its pad pressing
+LEAVING: Final = 4  # lifted off by a change of the held point, while its pad still presses it
 
 # two corners' contacts in one integer: that of the left one in its lowest bits; behind them the
 # states of the laws of both, the left one first
-CORNER_BITS: Final = 7  # mask of one corner
-RIGHT_BIT: Final = 3  # shift to the right corner
-CORNER: Final = 1 << RIGHT_BIT
+CORNER_MASK: Final = 7  # mask of one corner
+RIGHT_SHIFT: Final = 3  # shift to the right corner
+CORNER: Final = 1 << RIGHT_SHIFT
 CONTACTS: Final = CORNER * CORNER
 
 # guards of a corner, before those of its law's state
@@ -52,7 +52,7 @@ ROUNDING: Final = 4.0 * sys.float_info.epsilon
 @inlined
 def corner_contact(contact: int, left: bool) -> int:
     """Return the contact of one corner."""
-    return contact & CORNER_BITS if left else (contact >> RIGHT_BIT) & CORNER_BITS
+    return contact & CORNER_MASK if left else (contact >> RIGHT_SHIFT) & CORNER_MASK
 
 
 class PadNumbers(NamedTuple):
@@ -288,7 +288,7 @@ class Pads(Base, PadNumbers):
         event, crossed = REENGAGEMENT, False
         if corner < RELAXING:
             # in a motion that is symmetric both reactions are the same, on either side of zero;
-            # a corner that has just come down with the first one is on its way into its pad
+            # a corner that has just landed with the first one moves into its pad
             reaction = self.reaction(contact, not left, line, own)
             leaves = reaction <= 0.0 and other_speed >= 0.0
             if other == TOUCHING and (
@@ -316,7 +316,7 @@ class Pads(Base, PadNumbers):
 
     @kernel
     def is_level(self, left: bool, line: BaseLine, own: Any) -> bool:
-        """Whether a relaxing or sliding corner has come to the unloaded level, but for rounding."""
+        """Whether a relaxing or sliding corner is at the unloaded level, but for rounding."""
         return self.level(left, line, own) < SIMULTANEOUS * self.rest
 
     @inlined
@@ -368,9 +368,9 @@ class Pads(Base, PadNumbers):
 
     @kernel
     def engaged(self, contact: int, left: bool, line: BaseLine, own: Any) -> int:
-        """Return the contact after a corner has come back to its pad and its body been held."""
+        """Return the contact after a corner has landed on its pad and its body is held."""
         if self.reaction(contact, left, line, own) < 0.0:
-            # the hold made the corner faster than its pad; released, it would come back endlessly
+            # the hold made the corner faster than its pad; released, it would land again endlessly
             return self.with_corner(contact, left, ENGAGING)
         return contact
 
@@ -405,7 +405,7 @@ class Pads(Base, PadNumbers):
 
     def resting_height(self, left: float, right: float, own: Any) -> float:
         """Return the height at which the pads carry the weight [m], found numerically."""
-        return height_under(self, self.gravity, 2.0 * self.rest, (left, right), own)
+        return equilibrium_height(self, self.gravity, 2.0 * self.rest, (left, right), own)
 
     @kernel
     def observed(self, contact: int, line: BaseLine, own: Any) -> Variables:

@@ -1,6 +1,6 @@
 """Force laws of a point of a base, for pads and springs, and how to write another one.
 
-Two pads, or a bed of many springs, decide when a point touches the base, is followed by it without
+Two pads, or a bed of many springs, determine when a point touches the base, moves with it without
 a force, or is clear of it. A law gives the force on a point that touches. It is a named tuple of
 numbers per unit mass with some of the methods of :class:`PointLaw`; :func:`point_law` gives it the
 others.
@@ -24,7 +24,7 @@ from rockframe.proposals import hinted
 Law = TypeVar("Law")
 FREE: Final = -1
 """In place of the state of a point that does not touch."""
-NEEDED: Final = ("spring", "force_rate", "energy")
+REQUIRED: Final = ("spring", "force_rate", "energy")
 """Methods that a law must give."""
 
 
@@ -178,7 +178,7 @@ class _WithGuard:
 
 
 def methods_of_law(
-    law: type[Law], known: type, needed: Collection[str]
+    law: type[Law], known: type, required: Collection[str]
 ) -> tuple[dict[str, Any], list[str]]:
     """Return a law's own methods, and what is wrong with its class and the names of its fields."""
     if not isinstance(law, type):  # pyright: ignore[reportUnnecessaryIsInstance]
@@ -187,7 +187,7 @@ def methods_of_law(
     own = {name: each for name, each in vars(law).items() if inspect.isfunction(each)}
     fields = getattr(law, "_fields", None)
     faults = [] if fields is not None else [f"{law.__name__} is no NamedTuple"]
-    faults += [f"{law.__name__} has no method {name}" for name in needed if name not in own]
+    faults += [f"{law.__name__} has no method {name}" for name in required if name not in own]
     faults += [
         f"{law.__name__} has a field {name!r}, which is a method of laws; give it another name"
         for name in sorted(set(fields or ()).intersection(vars(known)))
@@ -232,12 +232,12 @@ def point_law(law: type[Law]) -> type[Law]:
     ArgumentError
         It is no named tuple, lacks a method, or a field has the name of a method.
     """
-    own, faults = methods_of_law(law, PointLaw, NEEDED)
+    own, faults = methods_of_law(law, PointLaw, REQUIRED)
     if ("states" in own) != ("guard" in own) or ("variables" in own) != ("rates" in own):
         faults.append(f"{law.__name__} has only one of states and guard, or variables and rates")
     parts = {_WithVariables: "variables" in own, _WithGuard: "guard" in own, PointLaw: True}
-    wanted = (part for part, is_wanted in parts.items() if is_wanted)
-    return complete_law(law, own, faults, lambda name: name != "settle", wanted)
+    mixins = (part for part, is_needed in parts.items() if is_needed)
+    return complete_law(law, own, faults, lambda name: name != "settle", mixins)
 
 
 @point_law

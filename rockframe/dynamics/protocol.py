@@ -2,7 +2,7 @@
 
 The integrator knows nothing of blocks, pads or soil. A system is a named tuple of numbers
 whose methods are second-order equations ``q'' = f(mode, q, q', z, ground)`` with variables of
-first order ``z' = g(...)``, *guards* (functions of the state that stay positive as long as the
+first order ``z' = g(...)``, *guards* (functions of the state that are positive as long as the
 mode lasts), and a *switch* (what happens when a guard falls through zero).
 
 State vector: n coordinates, their n rates, then the variables of first order. All energies
@@ -53,7 +53,7 @@ MEMORY: Final = (
 )  # fmt: skip
 """Names of the numbers that every system remembers, in their order."""
 
-MOST_MODES: Final = 2**63 - 1
+MAX_MODES: Final = 2**63 - 1
 """Modes that a system may have: each is a whole number of 64 bits, one of which is its sign."""
 
 POWERS: Final = 2
@@ -70,7 +70,7 @@ class Energies(NamedTuple):
 
 
 class Guards(NamedTuple):
-    """Functions of the state that stay positive as long as a mode lasts, and their rates."""
+    """Functions of the state that are positive as long as a mode lasts, and their rates."""
 
     values: Numbers
     changes: Numbers
@@ -171,7 +171,7 @@ class EquationsWithPowers(Equations, Protocol):
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
         """Return the power dissipated and the power put in by the ground [m^2 s^-3].
 
-        `slope` is what :meth:`accelerate` has just given for the same place at other rates.
+        `slope` is what :meth:`accelerate` has just returned for the same coordinates, other rates.
         """
         ...
 
@@ -369,10 +369,10 @@ class ContactModel:
 
     def __post_init__(self) -> None:
         count = self.system.modes()
-        if count > MOST_MODES:
+        if count > MAX_MODES:
             msg = (
                 f"the contacts of its bases give the scene {count:.3g} modes, more than the "
-                f"{MOST_MODES:.3g} that can be numbered: give a base of your own fewer contacts"
+                f"{MAX_MODES:.3g} that can be numbered: give a base of your own fewer contacts"
             )
             raise AssemblyError([msg])
 
@@ -403,7 +403,7 @@ def _of_each(function: Callable[[int], int], modes: Integers) -> Integers:
     differs = np.ones(len(modes) + 1, dtype=np.bool_)  # at both ends, too
     np.not_equal(modes[1:], modes[:-1], out=differs[1:-1])
     changes = np.flatnonzero(differs)
-    met = modes[changes[:-1]].tolist()
-    meant = {mode: function(mode) for mode in set(met)}
-    found = np.array([meant[mode] for mode in met], dtype=np.int64)
+    runs = modes[changes[:-1]].tolist()
+    results = {mode: function(mode) for mode in set(runs)}
+    found = np.array([results[mode] for mode in runs], dtype=np.int64)
     return np.repeat(found, changes[1:] - changes[:-1])

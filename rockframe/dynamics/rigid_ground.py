@@ -50,12 +50,12 @@ COLUMNS: Final = (
 
 
 # indices of columns that systems built on this one change
-_NAMES: Final = [one.name for one in COLUMNS]
-BASE_SHEAR: Final = _NAMES.index("base_shear")
-THRUST: Final = _NAMES.index("horizontal_reaction")
-PRESS: Final = _NAMES.index("vertical_reaction")
-LEFT_REACTION: Final = _NAMES.index("left_reaction")
-RIGHT_REACTION: Final = _NAMES.index("right_reaction")
+_COLUMN_NAMES: Final = [one.name for one in COLUMNS]
+BASE_SHEAR: Final = _COLUMN_NAMES.index("base_shear")
+HORIZONTAL_REACTION: Final = _COLUMN_NAMES.index("horizontal_reaction")
+VERTICAL_REACTION: Final = _COLUMN_NAMES.index("vertical_reaction")
+LEFT_REACTION: Final = _COLUMN_NAMES.index("left_reaction")
+RIGHT_REACTION: Final = _COLUMN_NAMES.index("right_reaction")
 
 
 class RockingCorner(NamedTuple):
@@ -76,8 +76,8 @@ class RockingNumbers(NamedTuple):
     gravity: float  # g
     small: bool  # whether sines and cosines are expanded
     wall: float = 0.0  # side of a wall behind the block, -1 left, 1 right; 0 for none
-    rebound: float = 0.0  # ratio of the angular velocities at an impact on base and wall
-    wall_share: float = 0.0  # h over the height at which the block at rest leans on the wall
+    wall_restitution: float = 0.0  # ratio of the angular velocities at an impact on base and wall
+    wall_share: float = 0.0  # h over the height at which the block at rest touches the wall
 
 
 class BlockOnRigidGround(RockingNumbers, OnRigidGround):
@@ -125,7 +125,7 @@ class BlockOnRigidGround(RockingNumbers, OnRigidGround):
         return 1.0 if mode == ON_RIGHT else -1.0
 
     @inlined
-    def lean(self, mode: int, rotation: float) -> tuple[float, float]:
+    def lean_sine_cosine(self, mode: int, rotation: float) -> tuple[float, float]:
         """Return the sine and cosine of theta s - alpha, or their small-rotation forms."""
         angle = self.corner(mode).angle * self.side(mode) - rotation
         if self.small:
@@ -136,7 +136,7 @@ class BlockOnRigidGround(RockingNumbers, OnRigidGround):
     def angular_acceleration(self, mode: int, rotation: float, ground: Ground) -> float:
         """Return the angular acceleration of Housner's block, :eq:`eq-rigid-rocking`."""
         corner = self.corner(mode)
-        sine, cosine = self.lean(mode, rotation)
+        sine, cosine = self.lean_sine_cosine(mode, rotation)
         moment = (self.gravity + ground.y) * sine + ground.x * cosine
         return -corner.radius * moment / corner.inertia
 
@@ -145,7 +145,7 @@ class BlockOnRigidGround(RockingNumbers, OnRigidGround):
         """Return acceleration, dashpot power (none) and input power."""
         if mode == RESTING:
             return 0.0, 0.0, 0.0
-        sine, cosine = self.lean(mode, state[0])
+        sine, cosine = self.lean_sine_cosine(mode, state[0])
         supplied = -self.corner(mode).radius * (ground.x * cosine + ground.y * sine) * state[1]
         return self.angular_acceleration(mode, state[0], ground), 0.0, supplied
 
@@ -170,32 +170,34 @@ class BlockOnRigidGround(RockingNumbers, OnRigidGround):
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
         """Lift off from rest, or rock on the other corner after an impact, or come to rest."""
-        return self.switch_held(mode, guard, state, ground, memory, 0.0)
+        return self.switch_with_restoring(mode, guard, state, ground, memory, 0.0)
 
     @kernel
-    def switch_held(
-        self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector, held: float
+    def switch_with_restoring(
+        self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector, extra: float
     ) -> int:
-        """Carry out :meth:`switch`, with an angular acceleration `held` towards rest besides."""
+        """Carry out :meth:`switch`, with an `extra` angular acceleration towards rest."""
         if mode == RESTING:
             memory[LAST_EVENT] = UPLIFT
             if self.wall != 0.0:
                 return ON_RIGHT if self.wall < 0.0 else ON_LEFT
-            if self.gravity + ground.y <= 0.0:  # no weight left: the ground decides the side
+            if (
+                self.gravity + ground.y <= 0.0
+            ):  # no weight left: the ground acceleration determines the side
                 return ON_LEFT if ground.x > 0.0 else ON_RIGHT
             return ON_RIGHT if guard == UPLIFT_ON_RIGHT else ON_LEFT
         before = state[1]
         new = ON_LEFT if mode == ON_RIGHT else ON_RIGHT
         after = self.corner(new).restitution * before
         if self.wall != 0.0:  # it continues to rock about the same corner, away from the wall
-            new, after = mode, self.rebound * before
+            new, after = mode, self.wall_restitution * before
         state[0] = 0.0
-        restoring = held - self.side(new) * self.angular_acceleration(new, 0.0, ground)
+        restoring = extra - self.side(new) * self.angular_acceleration(new, 0.0, ground)
         rebound = after * after / (2.0 * restoring) if restoring > 0.0 else math.inf
         # no rest where the ground acceleration tips the block back over the corner it has left
-        rests = self.side(mode) * self.angular_acceleration(mode, 0.0, ground) <= held
+        may_rest = self.side(mode) * self.angular_acceleration(mode, 0.0, ground) <= extra
         memory[LAST_EVENT] = IMPACT
-        if rests and rebound < REST_AMPLITUDE * self.corner(new).angle:
+        if may_rest and rebound < REST_AMPLITUDE * self.corner(new).angle:
             memory[LAST_EVENT] = REST
             after, new = 0.0, RESTING
         old, now = self.corner(mode).inertia, self.corner(new).inertia
@@ -204,8 +206,8 @@ class BlockOnRigidGround(RockingNumbers, OnRigidGround):
         return new
 
     @inlined
-    def leaning(self, tilt: float, weight: float, ground: Ground) -> tuple[float, float]:
-        """Return the difference of the corners' reactions, and the base shear, with a wall behind.
+    def wall_reactions(self, tilt: float, weight: float, ground: Ground) -> tuple[float, float]:
+        """Return the difference of the reactions of both corners, and the base shear, at a wall.
 
         A ground acceleration that would tip the block into the wall presses its top against it.
         """
@@ -244,28 +246,28 @@ class BlockOnRigidGround(RockingNumbers, OnRigidGround):
         height = self.centre_rise(mode, rotation)
         if mode == RESTING:
             # moments about the foot of the centre of mass: N_R s_R - N_L s_L = -m h x_g''
-            both = self.left.tangent + self.right.tangent
-            tilt = (2.0 * ground.x + weight * (self.right.tangent - self.left.tangent)) / both
-            tilt, shear = self.leaning(tilt, weight, ground)
+            tangents = self.left.tangent + self.right.tangent
+            tilt = (2.0 * ground.x + weight * (self.right.tangent - self.left.tangent)) / tangents
+            tilt, shear = self.wall_reactions(tilt, weight, ground)
             left, right = 0.5 * (weight + tilt), 0.5 * (weight - tilt)
             rest = (rotation, rate, height, 0.0, 0.0, shear)
             return rest + (0.0, 0.0, 0.0, 0.0, shear, weight, left, right)
         corner = self.corner(mode)
-        sine, cosine = self.lean(mode, rotation)
-        start, _ = sine_cosine(corner.angle)
-        x = corner.radius * (self.side(mode) * start - sine)
-        sway = corner.radius * (cosine * slope[0] + sine * rate * rate)
+        sine, cosine = self.lean_sine_cosine(mode, rotation)
+        initial_sine, _ = sine_cosine(corner.angle)
+        x = corner.radius * (self.side(mode) * initial_sine - sine)
+        horizontal = corner.radius * (cosine * slope[0] + sine * rate * rate)
         if self.small:
-            x, sway = corner.radius * rotation, corner.radius * slope[0]
+            x, horizontal = corner.radius * rotation, corner.radius * slope[0]
         rise = corner.radius * (sine * slope[0] - cosine * rate * rate)
-        bearing, shear = weight + rise, sway + ground.x
-        left, right = (bearing, 0.0) if mode == ON_LEFT else (0.0, bearing)
+        normal, shear = weight + rise, horizontal + ground.x
+        left, right = (normal, 0.0) if mode == ON_LEFT else (0.0, normal)
         across, up = corner.radius * cosine * rate, corner.radius * sine * rate
-        moved = (rotation, rate, height, up, x, shear)
-        return moved + (across, slope[0], sway, rise, shear, bearing, left, right)
+        motion = (rotation, rate, height, up, x, shear)
+        return motion + (across, slope[0], horizontal, rise, shear, normal, left, right)
 
 
-def corner_of(
+def rocking_corner(
     *,
     distance: float,
     height: float,

@@ -15,7 +15,7 @@ from rockframe.dynamics.links import (
 
 
 @link_law
-class OneOfTwo(NamedTuple):
+class EitherLaw(NamedTuple):
     """A law that is one of two, or nested, one of several. Each link follows one of them."""
 
     which: float  # 0 for the first
@@ -91,36 +91,36 @@ class OneOfTwo(NamedTuple):
 
     def with_numbers(self, numbers: Vector) -> Any:
         """Return the law with other numbers, from an array."""
-        behind = 1 + self.first.number_count()
-        return OneOfTwo(
+        second_numbers = 1 + self.first.number_count()
+        return EitherLaw(
             numbers[0],
             self.first.with_numbers(view_from(numbers, 1)),
-            self.second.with_numbers(view_from(numbers, behind)),
+            self.second.with_numbers(view_from(numbers, second_numbers)),
         )
 
 
-def one_of(laws: Sequence[Any], own: Any) -> Any:
+def combined_law(laws: Sequence[Any], own: Any) -> Any:
     """Return a law that may be any of `laws`, of different classes, and here is `own`."""
     first, *others = laws
     if not others:
         return own
     if type(own) is type(first):
-        return OneOfTwo(0.0, own, one_of(others, others[0]))
-    return OneOfTwo(1.0, first, one_of(others, own))
+        return EitherLaw(0.0, own, combined_law(others, others[0]))
+    return EitherLaw(1.0, first, combined_law(others, own))
 
 
-SHIPPED: Final = (Tie(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), Bumper(0.0, 0.0, 0.0), SteadyForce(0.0))
+BUILT_IN: Final = (Tie(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), Bumper(0.0, 0.0, 0.0), SteadyForce(0.0))
 """A law of each class that restrainers, tendons, walls and loads follow."""
 
 
-def kinds_of(laws: Sequence[Any]) -> list[Any]:
+def law_prototypes(laws: Sequence[Any]) -> list[Any]:
     """Return a law of each class that links of these laws may follow.
 
-    If one class of `SHIPPED` is among them all of these are given, so that any mixture of them runs
-    by the same machine code.
+    If one class of `BUILT_IN` is among them all of these are returned, so that any mixture of them
+    runs by the same machine code.
     """
     found = {type(law): law for law in laws}
-    if any(type(law) in found for law in SHIPPED):
-        own = [law for kind, law in found.items() if kind not in map(type, SHIPPED)]
-        return [*SHIPPED, *own]
+    if any(type(law) in found for law in BUILT_IN):
+        own = [law for law_class, law in found.items() if law_class not in map(type, BUILT_IN)]
+        return [*BUILT_IN, *own]
     return list(found.values())

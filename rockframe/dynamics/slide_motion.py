@@ -22,37 +22,37 @@ from rockframe.dynamics.protocol import (
 )
 from rockframe.dynamics.trigonometry import sine_cosine
 
-# what bears: both corners, one, or none; the number of a mode is three times this plus the slip
+# which corners bear: both, one, or none; the number of a mode is three times this plus the slip
 FULL: Final = 0
 ON_RIGHT: Final = 1
 ON_LEFT: Final = 2
-FLIES_RIGHT: Final = 3  # coordinates are those of the right corner
-FLIES_LEFT: Final = 4
+FLIGHT_RIGHT: Final = 3  # coordinates are those of the right corner
+FLIGHT_LEFT: Final = 4
 BEARINGS: Final = 5
 HELD: Final = 0
 TO_RIGHT: Final = 1
 TO_LEFT: Final = 2
-SLIPS: Final = 3
-MODES: Final = BEARINGS * SLIPS
+SLIP_STATES: Final = 3
+MODES: Final = BEARINGS * SLIP_STATES
 
-# the state: rotation [rad], slip and rise of the bearing corner from its place at rest [m]
+# the state: rotation [rad], slip and rise of the bearing corner from its place at rest [m]; rates
 ROTATION: Final = 0
 SLIP: Final = 1
 RISE: Final = 2
-SIZE: Final = 3
+DOF: Final = 3  # coordinates, and the index of the first rate
 
 # guards
 LANDING: Final = 0  # while one corner bears, of the other one; in flight of the mode's own one
 STOPPING: Final = 1  # end of the slip; in flight landing of the other corner
-PRESSING: Final = 2  # force on the corner that bears; on the whole base, tipping to the right
-TIPS_LEFT: Final = 3
-SLIPS_RIGHT: Final = 4
-SLIPS_LEFT: Final = 5
+NORMAL_FORCE: Final = 2  # force on the corner that bears; on the whole base, tipping to the right
+TIPPING_LEFT: Final = 3
+SLIP_RIGHT: Final = 4
+SLIP_LEFT: Final = 5
 GUARDS: Final = 6
 
 PEAK_LEFT: Final = len(MEMORY)
 PEAK_RIGHT: Final = PEAK_LEFT + 1
-REMEMBERED: Final = (*MEMORY, "peak_slip_left", "peak_slip_right")
+SLIDE_MEMORY: Final = (*MEMORY, "peak_slip_left", "peak_slip_right")
 """The memory: that of every system, then the largest slips. A slip reverses at events only."""
 
 ROUNDING: Final = 1e-12
@@ -80,9 +80,9 @@ class Contact(NamedTuple):
 class Loads(NamedTuple):
     """Loads but the ground's reactions, with inertia forces of the ground's motion, over mass."""
 
-    across: float  # load along the ground, as the reaction that balances it [m s^-2]
+    along: float  # load along the ground, as the reaction that balances it [m s^-2]
     weight: float  # load normal to the ground, downwards [m s^-2]
-    turning: float  # moment about the centre of mass [m^2 s^-2]
+    moment: float  # moment about the centre of mass [m^2 s^-2]
 
 
 class SlideNumbers(NamedTuple):
@@ -108,7 +108,7 @@ class SlideMotion(OnRigidGround, SlideNumbers):
     @kernel
     def coordinates(self) -> int:
         """Return 3: rotation, slip, rise."""
-        return SIZE
+        return DOF
 
     @kernel
     def guards(self) -> int:
@@ -123,25 +123,25 @@ class SlideMotion(OnRigidGround, SlideNumbers):
     @inlined
     def moving_in(self, mode: int) -> int:
         """Return the number of coordinates that move: the first of rotation, slip, rise."""
-        bears, slips = self.bears_in(mode), 0 if mode % SLIPS == HELD else 1
-        if bears >= FLIES_RIGHT:
-            return SIZE
-        return 2 * slips if bears == FULL else 1 + slips
+        bearing, slips = self.bearing_in(mode), 0 if mode % SLIP_STATES == HELD else 1
+        if bearing >= FLIGHT_RIGHT:
+            return DOF
+        return 2 * slips if bearing == FULL else 1 + slips
 
     @inlined
     def contact_state_of(self, mode: int, k: int) -> int:
         """Return the contact state: which corner bears, both, or none."""
-        bears = self.bears_in(mode)
-        if bears == FULL:
+        bearing = self.bearing_in(mode)
+        if bearing == FULL:
             return events.FULL
-        if bears >= FLIES_RIGHT:
+        if bearing >= FLIGHT_RIGHT:
             return events.FLIGHT
-        return events.RIGHT if bears == ON_RIGHT else events.LEFT
+        return events.RIGHT if bearing == ON_RIGHT else events.LEFT
 
     @inlined
-    def bears_in(self, mode: int) -> int:
-        """Return what bears in a mode, whose number may include more, such as states of links."""
-        return mode // SLIPS % BEARINGS
+    def bearing_in(self, mode: int) -> int:
+        """Return the bearing corners of a mode, whose number may include states of links."""
+        return mode // SLIP_STATES % BEARINGS
 
     @inlined
     def with_contact(self, mode: int, contact: int) -> int:
@@ -149,14 +149,14 @@ class SlideMotion(OnRigidGround, SlideNumbers):
         return mode - mode % MODES + contact
 
     @inlined
-    def side(self, bears: int) -> float:
+    def side(self, bearing: int) -> float:
         """Return 1 where coordinates are those of the right corner, -1 of the left one."""
-        return -1.0 if bears in (ON_LEFT, FLIES_LEFT) else 1.0
+        return -1.0 if bearing in (ON_LEFT, FLIGHT_LEFT) else 1.0
 
     @inlined
-    def sense(self, mode: int) -> float:
+    def slip_sign(self, mode: int) -> float:
         """Return the sign of the slip, 0 where friction holds."""
-        slip = mode % SLIPS
+        slip = mode % SLIP_STATES
         return 0.0 if slip == HELD else 1.0 if slip == TO_RIGHT else -1.0
 
     @inlined
@@ -165,7 +165,7 @@ class SlideMotion(OnRigidGround, SlideNumbers):
         return self.right if side > 0.0 else self.left
 
     @inlined
-    def reach(self, side: float, rotation: float) -> tuple[float, float]:
+    def centre_from_corner(self, side: float, rotation: float) -> tuple[float, float]:
         """Return the place of the centre of mass to the right of a corner, and above it [m]."""
         sine, cosine = sine_cosine(rotation)
         away = side * self.distance(side)
@@ -182,42 +182,42 @@ class SlideMotion(OnRigidGround, SlideNumbers):
 
         For a corner that slips this is :eq:`eq-slide-rocking`.
         """
-        bears, sense = self.bears_in(mode), self.sense(mode)
-        across, weight, turning = loads
-        if bears == FULL:
-            along = across if sense == 0.0 else -sense * self.kinetic * weight
+        bearing, sign = self.bearing_in(mode), self.slip_sign(mode)
+        across, weight, moment = loads
+        if bearing == FULL:
+            along = across if sign == 0.0 else -sign * self.kinetic * weight
             return Contact(along - across, 0.0, 0.0, along, weight)
-        beside, above = self.reach(self.side(bears), state[ROTATION])
-        square = state[SIZE + ROTATION] * state[SIZE + ROTATION]
-        pressing = weight - above * square
-        if bears >= FLIES_RIGHT:
-            turns = turning / self.inertia
-            slip = beside * square - across - above * turns
-            return Contact(slip, turns, beside * turns - pressing, 0.0, 0.0)
-        if sense == 0.0:
-            inertia = self.inertia + beside * beside + above * above
-            turns = (weight * beside - across * above + turning) / inertia
-            along = across + above * turns - beside * square
-            return Contact(0.0, turns, 0.0, along, pressing - beside * turns)
-        arm = beside + sense * self.kinetic * above
-        turns = (pressing * arm + turning) / (self.inertia + beside * arm)
-        normal = pressing - beside * turns
-        along = -sense * self.kinetic * normal
-        slip = along - across - above * turns + beside * square
-        return Contact(slip, turns, 0.0, along, normal)
+        arm_x, arm_y = self.centre_from_corner(self.side(bearing), state[ROTATION])
+        square = state[DOF + ROTATION] * state[DOF + ROTATION]
+        pressing = weight - arm_y * square
+        if bearing >= FLIGHT_RIGHT:
+            angular = moment / self.inertia
+            slip = arm_x * square - across - arm_y * angular
+            return Contact(slip, angular, arm_x * angular - pressing, 0.0, 0.0)
+        if sign == 0.0:
+            inertia = self.inertia + arm_x * arm_x + arm_y * arm_y
+            angular = (weight * arm_x - across * arm_y + moment) / inertia
+            along = across + arm_y * angular - arm_x * square
+            return Contact(0.0, angular, 0.0, along, pressing - arm_x * angular)
+        arm = arm_x + sign * self.kinetic * arm_y
+        angular = (pressing * arm + moment) / (self.inertia + arm_x * arm)
+        normal = pressing - arm_x * angular
+        along = -sign * self.kinetic * normal
+        slip = along - across - arm_y * angular + arm_x * square
+        return Contact(slip, angular, 0.0, along, normal)
 
     @inlined
-    def free_rise(self, bears: int, state: Vector, loads: Loads) -> float:
+    def free_acceleration(self, bearing: int, state: Vector, loads: Loads) -> float:
         """Return the upward acceleration of a corner if the ground did not act on it."""
-        flies = bears + FLIES_RIGHT - ON_RIGHT
-        return self.contact(SLIPS * flies, state, loads).rise
+        flies = bearing + FLIGHT_RIGHT - ON_RIGHT
+        return self.contact(SLIP_STATES * flies, state, loads).rise
 
     @inlined
-    def speeds(self, mode: int, state: Vector) -> tuple[float, float]:
+    def centre_velocity(self, mode: int, state: Vector) -> tuple[float, float]:
         """Return the velocity of the centre of mass relative to the ground."""
-        beside, above = self.reach(self.side(self.bears_in(mode)), state[ROTATION])
-        rate = state[SIZE + ROTATION]
-        return state[SIZE + SLIP] + above * rate, state[SIZE + RISE] - beside * rate
+        arm_x, arm_y = self.centre_from_corner(self.side(self.bearing_in(mode)), state[ROTATION])
+        rate = state[DOF + ROTATION]
+        return state[DOF + SLIP] + arm_y * rate, state[DOF + RISE] - arm_x * rate
 
     @inlined
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> Numbers:
@@ -230,18 +230,18 @@ class SlideMotion(OnRigidGround, SlideNumbers):
     def accelerations(
         self, mode: int, state: Vector, ground: Ground, loads: Loads
     ) -> tuple[float, float, float, float, float]:
-        """Return what :meth:`accelerate` gives, under given loads."""
+        """Return the values of :meth:`accelerate` under given loads."""
         found = self.contact(mode, state, loads)
-        across, up = self.speeds(mode, state)
+        across, up = self.centre_velocity(mode, state)
         supplied = -ground.x * across - ground.y * up
-        lost = -found.along * state[SIZE + SLIP]
-        return found.rotation, found.slip, found.rise, lost, supplied
+        dissipated = -found.along * state[DOF + SLIP]
+        return found.rotation, found.slip, found.rise, dissipated, supplied
 
     @inlined
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
         """Return the two powers of :meth:`accelerate`; the compiler merges both evaluations."""
         found = self.accelerate(mode, state, ground)
-        return found[SIZE], found[SIZE + 1]
+        return found[DOF], found[DOF + 1]
 
     @inlined
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
@@ -252,40 +252,40 @@ class SlideMotion(OnRigidGround, SlideNumbers):
     def guards_under(self, mode: int, state: Vector, slope: Slope, loads: Loads) -> Guards:
         """Return the guards, :eq:`eq-slide-guards`, under given loads."""
         scale, size = 1.0 / self.gravity, 1.0 / (self.left + self.right)
-        bears, sense, rate = self.bears_in(mode), self.sense(mode), state[SIZE + ROTATION]
-        side = self.side(bears)
+        bearing, sign, rate = self.bearing_in(mode), self.slip_sign(mode), state[DOF + ROTATION]
+        side = self.side(bearing)
         landing = falling = stopping = slowing = pressing = left = to_right = to_left = 1.0
-        if bears >= FLIES_RIGHT:
+        if bearing >= FLIGHT_RIGHT:
             sine, cosine = sine_cosine(state[ROTATION])
-            landing, falling = size * state[RISE], size * state[SIZE + RISE]
+            landing, falling = size * state[RISE], size * state[DOF + RISE]
             stopping, slowing = landing + side * sine, falling + side * cosine * rate
         else:
-            if bears != FULL:
+            if bearing != FULL:
                 landing, falling = side * state[ROTATION], side * rate
             found = self.contact(mode, state, loads)
-            if sense != 0.0:
+            if sign != 0.0:
                 speed = 1.0 / math.sqrt(self.gravity * self.height)
                 # rounding must not stop a slip that starts
-                slowing = speed * (sense * slope[SLIP] + ROUNDING * self.gravity)
-                stopping = speed * sense * state[SIZE + SLIP]
+                slowing = speed * (sign * slope[SLIP] + ROUNDING * self.gravity)
+                stopping = speed * sign * state[DOF + SLIP]
                 pressing = scale * found.normal
             elif self.static < math.inf:
-                most = self.static * found.normal
-                to_right, to_left = scale * (most + found.along), scale * (most - found.along)
-            elif bears != FULL:  # one that would fall back is held, in tension
-                pressing = scale * max(found.normal, -self.free_rise(bears, state, loads))
-            if bears == FULL:
-                tips = found.along - loads.turning / self.height
-                pressing = scale * (self.right / self.height * found.normal + tips)
-                left = scale * (self.left / self.height * found.normal - tips)
+                limit = self.static * found.normal
+                to_right, to_left = scale * (limit + found.along), scale * (limit - found.along)
+            elif bearing != FULL:  # a corner that would fall back is held, in tension
+                pressing = scale * max(found.normal, -self.free_acceleration(bearing, state, loads))
+            if bearing == FULL:
+                tipping = found.along - loads.moment / self.height
+                pressing = scale * (self.right / self.height * found.normal + tipping)
+                left = scale * (self.left / self.height * found.normal - tipping)
         values = landing, stopping, pressing, left, to_right, to_left
         return Guards(values, (falling, slowing, 0.0, 0.0, 0.0, 0.0))
 
     @kernel
     def kinetic_energy(self, mode: int, state: Vector) -> float:
         """Return the kinetic energy relative to the ground."""
-        across, up = self.speeds(mode, state)
-        rate = state[SIZE + ROTATION]
+        across, up = self.centre_velocity(mode, state)
+        rate = state[DOF + ROTATION]
         return 0.5 * (across * across + up * up + self.inertia * rate * rate)
 
     @kernel
@@ -293,7 +293,7 @@ class SlideMotion(OnRigidGround, SlideNumbers):
         """Return the rise of the centre of mass, without cancellation [m]."""
         sine, _ = sine_cosine(state[ROTATION])
         half, _ = sine_cosine(0.5 * state[ROTATION])
-        side = self.side(self.bears_in(mode))
+        side = self.side(self.bearing_in(mode))
         return state[RISE] + side * self.distance(side) * sine - 2.0 * self.height * half * half
 
     @kernel
@@ -317,29 +317,29 @@ class SlideMotion(OnRigidGround, SlideNumbers):
     @inlined
     def centre_acceleration(self, mode: int, state: Vector, slope: Slope) -> tuple[float, float]:
         """Return the acceleration of the centre of mass relative to the ground, from a slope."""
-        beside, above = self.reach(self.side(self.bears_in(mode)), state[ROTATION])
-        square = state[SIZE + ROTATION] * state[SIZE + ROTATION]
-        sway = slope[SLIP] + above * slope[ROTATION] - beside * square
-        return sway, slope[RISE] - beside * slope[ROTATION] - above * square
+        arm_x, arm_y = self.centre_from_corner(self.side(self.bearing_in(mode)), state[ROTATION])
+        square = state[DOF + ROTATION] * state[DOF + ROTATION]
+        horizontal = slope[SLIP] + arm_y * slope[ROTATION] - arm_x * square
+        return horizontal, slope[RISE] - arm_x * slope[ROTATION] - arm_y * square
 
     @kernel
     def columns_under(
         self, mode: int, state: Vector, slope: Slope, loads: Loads
     ) -> tuple[float, ...]:
         """Return the columns of :meth:`observe` under given loads."""
-        bears, rotation, rate = self.bears_in(mode), state[ROTATION], state[SIZE + ROTATION]
-        side = self.side(bears)
-        beside, _ = self.reach(side, rotation)
-        across, up = self.speeds(mode, state)
-        sway, rise = self.centre_acceleration(mode, state, slope)
-        shear, bearing = sway + loads.across, rise + loads.weight
-        left, right = (0.0, bearing) if side > 0.0 else (bearing, 0.0)
-        if bears == FULL:
+        bearing, rotation, rate = self.bearing_in(mode), state[ROTATION], state[DOF + ROTATION]
+        side = self.side(bearing)
+        arm_x, _ = self.centre_from_corner(side, rotation)
+        across, up = self.centre_velocity(mode, state)
+        horizontal, rise = self.centre_acceleration(mode, state, slope)
+        shear, normal = horizontal + loads.along, rise + loads.weight
+        left, right = (0.0, normal) if side > 0.0 else (normal, 0.0)
+        if bearing == FULL:
             width = self.left + self.right
-            tips = self.height * shear - loads.turning
-            left = (self.right * bearing + tips) / width
-            right = (self.left * bearing - tips) / width
-        place = state[SLIP] + (side * self.distance(side) + beside)
+            tipping = self.height * shear - loads.moment
+            left = (self.right * normal + tipping) / width
+            right = (self.left * normal - tipping) / width
+        place = state[SLIP] + (side * self.distance(side) + arm_x)
         lift = self.centre_rise(mode, state)
-        body = rotation, rate, lift, up, place, shear, across, slope[ROTATION], sway, rise
-        return body + (shear, bearing, left, right, state[SLIP], state[SIZE + SLIP])
+        body = rotation, rate, lift, up, place, shear, across, slope[ROTATION], horizontal, rise
+        return body + (shear, normal, left, right, state[SLIP], state[DOF + SLIP])

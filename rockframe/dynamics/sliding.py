@@ -1,11 +1,11 @@
 """Sliding contact: an end that touches its base without a normal force while the body slips.
 
-An end can come down while the horizontal hold that its contact causes would lift it off again.
-Then neither contact nor flight is a solution: a held end leaves, a free one comes back. The
-hold can act only while the end presses, so its impulse ends when the end's speed has come to
-that of the base beneath it, :eq:`eq-partial-hold`. With the rest of its slip the end *slides*:
-it stays at its level with no reaction, and the held point slips against a force that is just
-enough to keep it there, :eq:`eq-sliding-contact`.
+An end can land while the horizontal restraint that its contact causes would lift it off again.
+Then neither contact nor flight is a solution: a held end lifts off, a free one lands again. The
+restraint can act only while the end presses, so its impulse ends when the end's speed equals that
+of the base beneath it, :eq:`eq-partial-hold`. With the rest of its slip the end *slides*: it
+remains at its level with no reaction, and the held point slips against a force that is just large
+enough to keep the end there, :eq:`eq-sliding-contact`.
 """
 
 import sys
@@ -13,31 +13,31 @@ from typing import Final
 
 from rockframe.compiled import inlined
 
-NOISE: Final = 16.0 * sys.float_info.epsilon
+SPEED_ROUNDING: Final = 16.0 * sys.float_info.epsilon
 """Rounding noise of an end's speed, over the sum of the sizes of its two parts [1]."""
-NO_LEVER: Final = 1e-7
-"""Speed at which a hold lifts an end, over that of the slip, that counts as none [1]."""
-DISTURBED: Final = 1e3
-"""Excess speed of a sliding end over its rounding noise above which it flies [1]."""
+NEGLIGIBLE_LIFT: Final = 1e-7
+"""Speed at which a hold lifts an end, over that of the slip, that is negligible [1]."""
+LIFT_OFF_NOISE: Final = 1e3
+"""Excess speed of a sliding end over its rounding noise above which it lifts off [1]."""
 
 
 @inlined
 def speed_noise(speed: float, lever: float, angular_velocity: float) -> float:
     """Return the rounding noise of an end's speed, the sum of two velocities."""
-    return NOISE * (abs(speed) + abs(lever * angular_velocity))
+    return SPEED_ROUNDING * (abs(speed) + abs(lever * angular_velocity))
 
 
 @inlined
 def is_lifted(before: float, after: float, noise: float) -> bool:
     """Whether a hold would stop or lift an end that comes down, by its speeds before and after.
 
-    An end that rises, though by rounding below its level, is about to leave anyway.
+    An end that rises, though by rounding below its level, is about to lift off anyway.
     """
     return before <= noise and after >= -noise
 
 
 @inlined
-def share_until_lifted(before: float, after: float) -> float:
+def share_at_lift_off(before: float, after: float) -> float:
     """Return the share of the hold's impulse that stops a landing end, :eq:`eq-partial-hold`.
 
     `before` and `after` are the end's speeds without the impulse and with all of it.
@@ -54,6 +54,6 @@ def blend(before: float, after: float, share: float) -> float:
 
 
 @inlined
-def share_of_loss(share: float) -> float:
+def loss_share(share: float) -> float:
     """Return the energy loss of a share of a plastic impulse, over that of the whole one [1]."""
     return share * (2.0 - share)

@@ -16,7 +16,7 @@ from rockframe.dynamics.base import (
     EndEvent,
     Guards,
     Variables,
-    height_under,
+    equilibrium_height,
 )
 from rockframe.dynamics.body import BaseLine
 from rockframe.dynamics.events import REENGAGEMENT, SEPARATION, SILENT
@@ -50,8 +50,8 @@ class SpringNumbers(NamedTuple):
     rest_energy: float  # per unit length
     weight: float  # of the body [m s^-2]
     pressure: float  # under the weight, per unit length [s^-2]
-    idle: tuple[float, ...]  # guards of one end, all 1
-    steady: tuple[float, ...]  # rates of all variables, all 0
+    idle_guards: tuple[float, ...]  # guards of one end, all 1
+    zero_rates: tuple[float, ...]  # rates of all variables, all 0
 
 
 class Springs(Base, SpringNumbers):
@@ -67,7 +67,7 @@ class Springs(Base, SpringNumbers):
     @kernel
     def end_guards(self) -> int:
         """Return the number of guards of the springs on one side."""
-        return len(self.idle)
+        return len(self.idle_guards)
 
     @inlined
     def in_flight(self) -> int:
@@ -82,18 +82,18 @@ class Springs(Base, SpringNumbers):
     @inlined
     def variables(self) -> int:
         """Return the number of variables: the springs' contacts, then those of their laws."""
-        return len(self.steady)
+        return len(self.zero_rates)
 
     @inlined
     def read(self, state: Vector, first: int) -> Vector:
         """Read the variables."""
-        return view_of(state, first, len(self.steady))
+        return view_of(state, first, len(self.zero_rates))
 
     @inlined
-    def of_law(self, own: Vector, i: int) -> Any:
+    def law_variables(self, own: Vector, i: int) -> Any:
         """Return the variables of the law of one spring."""
         count = len(self.places)
-        return self.law.of_point(view_of(own, count, len(self.steady) - count), i)
+        return self.law.of_point(view_of(own, count, len(self.zero_rates) - count), i)
 
     @inlined
     def point(self, i: int, line: BaseLine) -> Point:
@@ -120,25 +120,26 @@ class Springs(Base, SpringNumbers):
             return BaseForce(0.0, 0.0, 0.0)
         for i in range(len(self.places)):
             spring, state = int(own[i]) % SPRING, int(own[i]) // SPRING
-            point, mine, length = self.point(i, line), self.of_law(own, i), self.lengths[i]
+            point, variables = self.point(i, line), self.law_variables(own, i)
+            length = self.lengths[i]
             if spring == TOUCHING:
-                force = length * self.law.force(state, point, mine)
+                force = length * self.law.force(state, point, variables)
                 upward += force
                 lever = line.left_lever + point.place * (line.right_lever - line.left_lever)
                 moment += force * lever
-                dissipated += length * self.law.power(state, point, mine)
+                dissipated += length * self.law.power(state, point, variables)
             elif spring == RELAXING:  # the spring relaxes against its dashpot
-                dissipated -= length * self.law.spring(point, mine) * point.speed
+                dissipated -= length * self.law.spring(point, variables) * point.speed
         return BaseForce(upward, moment, dissipated)
 
     @inlined
     def flow(self, contact: int, line: BaseLine, own: Vector) -> Variables:
         """Return the rates of the laws' variables; contacts change at events only."""
-        rates = self.steady
+        rates = self.zero_rates
         each = self.law.variables()
         for i in range(len(self.places)):
             state = int(own[i]) // SPRING if int(own[i]) % SPRING == TOUCHING else FREE
-            found = self.law.rates(state, self.point(i, line), self.of_law(own, i))
+            found = self.law.rates(state, self.point(i, line), self.law_variables(own, i))
             rates = with_numbers(rates, len(self.places) + i * each, found)
         return rates
 
@@ -147,42 +148,42 @@ class Springs(Base, SpringNumbers):
         """Return the energy of all springs, and the energy less that at rest."""
         stored = change = 0.0
         for i in range(len(self.places)):
-            point, mine = self.point(i, line), self.of_law(own, i)
+            point, variables = self.point(i, line), self.law_variables(own, i)
             one, less = 0.0, -self.rest_energy
-            if point.pressed > self.law.sunk(mine):
-                one, less = self.law.energies(point, self.settlement, self.rest_energy, mine)
+            if point.pressed > self.law.sunk(variables):
+                one, less = self.law.energies(point, self.settlement, self.rest_energy, variables)
             stored += self.lengths[i] * one
             change += self.lengths[i] * less
         return stored, change
 
     @inlined
-    def spring_of(self, left: bool, which: int) -> int:
+    def spring_number(self, left: bool, which: int) -> int:
         """Return the number of the spring of a guard; guards of an end count from the outside."""
         return which // GUARDS if left else len(self.places) - 1 - which // GUARDS
 
     @inlined
     def guards_of(self, contact: int, left: bool, line: BaseLine, own: Vector) -> Guards:
         """Return the guards of the springs on one side, and their rates."""
-        values, changes, count = self.idle, constant(0.0, self.idle), len(self.places)
+        values, changes, count = self.idle_guards, constant(0.0, self.idle_guards), len(self.places)
         per_rest, per_force = 1.0 / self.settlement, 1.0 / self.pressure
-        for k in range(len(self.idle) // GUARDS if left else count // 2):
-            i = self.spring_of(left, GUARDS * k)
+        for k in range(len(self.idle_guards) // GUARDS if left else count // 2):
+            i = self.spring_number(left, GUARDS * k)
             spring, state = int(own[i]) % SPRING, int(own[i]) // SPRING
-            point, mine = self.point(i, line), self.of_law(own, i)
-            pressed = (point.pressed - self.law.sunk(mine)) * per_rest
+            point, variables = self.point(i, line), self.law_variables(own, i)
+            pressed = (point.pressed - self.law.sunk(variables)) * per_rest
             value, change = pressed, point.speed * per_rest
             other, other_change = 1.0, 0.0
             if spring == CLEAR:
                 value, change = -value, -change
             else:
-                force = self.law.force(state, point, mine) * per_force
-                rate = self.law.force_rate(state, point, mine) * per_force
+                force = self.law.force(state, point, variables) * per_force
+                rate = self.law.force_rate(state, point, variables) * per_force
                 if spring == RELAXING:
                     other, other_change = -force, -rate
                 else:
                     if self.law.return_rate() > 0.0:
                         value, change = force, rate
-                    other, other_change = self.law.guard(state, point, mine)
+                    other, other_change = self.law.guard(state, point, variables)
             values = with_numbers(values, GUARDS * k, (value, other))
             changes = with_numbers(changes, GUARDS * k, (change, other_change))
         return Guards(values, changes)
@@ -190,14 +191,14 @@ class Springs(Base, SpringNumbers):
     @kernel
     def switch(self, contact: int, left: bool, which: int, line: BaseLine, own: Vector) -> EndEvent:
         """Switch a spring, with all others that make the same switch at the same instant."""
-        i = self.spring_of(left, which)
+        i = self.spring_number(left, which)
         was, here = int(own[i]), self.point(i, line)
         for j in range(len(self.places)):
             there = self.point(j, line)
             near = abs(there.pressed - here.pressed) <= SIMULTANEOUS * self.settlement
             if j == i or (int(own[j]) == was and near and there.speed * here.speed >= 0.0):
-                own[j] = self.after(was, which % GUARDS, there, self.of_law(own, j))
-                self.law.settle(int(own[j]) // SPRING, there, self.of_law(own, j))
+                own[j] = self.spring_after(was, which % GUARDS, there, self.law_variables(own, j))
+                self.law.settle(int(own[j]) // SPRING, there, self.law_variables(own, j))
         new, event = self.contact_of(own), SILENT
         held_left, held_right = self.is_held(new, True), self.is_held(new, False)
         was_left, was_right = self.is_held(contact, True), self.is_held(contact, False)
@@ -209,7 +210,7 @@ class Springs(Base, SpringNumbers):
         return EndEvent(new, event, outermost and event != SILENT)
 
     @kernel
-    def after(self, was: int, guard: int, point: Point, own: Any) -> float:
+    def spring_after(self, was: int, guard: int, point: Point, own: Any) -> float:
         """Return the variable of a spring after one of its guards has fallen."""
         spring, state = was % SPRING, was // SPRING
         if spring == TOUCHING and guard == OTHER:
@@ -223,7 +224,7 @@ class Springs(Base, SpringNumbers):
     def level(self, left: bool, line: BaseLine, own: Vector) -> float:
         """Return how far below its unloaded level the outermost spring on a side is [m]."""
         i = 0 if left else len(self.places) - 1
-        return self.point(i, line).pressed - self.law.sunk(self.of_law(own, i))
+        return self.point(i, line).pressed - self.law.sunk(self.law_variables(own, i))
 
     @kernel
     def released(self, contact: int, left: bool, line: BaseLine, own: Vector) -> int:
@@ -236,20 +237,20 @@ class Springs(Base, SpringNumbers):
     def starting(self, line: BaseLine, own: Vector) -> int:
         """Return the contact at the start of a run; springs pressed too much have yielded."""
         count = len(self.places)
-        self.law.reset(view_of(own, count, len(self.steady) - count))
+        self.law.reset(view_of(own, count, len(self.zero_rates) - count))
         for i in range(count):
-            point, mine = self.point(i, line), self.of_law(own, i)
-            self.law.settle(0, point, mine)
+            point, variables = self.point(i, line), self.law_variables(own, i)
+            self.law.settle(0, point, variables)
             own[i] = float(TOUCHING)
-            if point.pressed <= self.law.sunk(mine):
+            if point.pressed <= self.law.sunk(variables):
                 own[i] = float(CLEAR)
-            elif self.law.return_rate() > 0.0 and self.law.force(0, point, mine) <= 0.0:
+            elif self.law.return_rate() > 0.0 and self.law.force(0, point, variables) <= 0.0:
                 own[i] = float(RELAXING)
         return self.contact_of(own)
 
     def resting_height(self, left: float, right: float, own: Any) -> float:
         """Return the height at which the springs carry the weight [m], found numerically."""
-        return height_under(self, self.weight, 2.0 * self.settlement, (left, right), own)
+        return equilibrium_height(self, self.weight, 2.0 * self.settlement, (left, right), own)
 
     @kernel
     def observed(self, contact: int, line: BaseLine, own: Vector) -> Variables:
@@ -260,12 +261,12 @@ class Springs(Base, SpringNumbers):
             if int(own[i]) % SPRING == TOUCHING:
                 state, point = int(own[i]) // SPRING, self.point(i, line)
                 length += self.lengths[i]
-                greatest = max(greatest, self.law.force(state, point, self.of_law(own, i)))
-        seen = self.seen(0, line, own) + self.seen(last, line, own)
-        return (self.force(contact, line, own).upward, length, greatest) + seen
+                greatest = max(greatest, self.law.force(state, point, self.law_variables(own, i)))
+        law_columns = self.law_columns(0, line, own) + self.law_columns(last, line, own)
+        return (self.force(contact, line, own).upward, length, greatest) + law_columns
 
     @kernel
-    def seen(self, i: int, line: BaseLine, own: Vector) -> Variables:
+    def law_columns(self, i: int, line: BaseLine, own: Vector) -> Variables:
         """Return the columns of the law of one spring."""
         state = int(own[i]) // SPRING if int(own[i]) % SPRING == TOUCHING else FREE
-        return self.law.seen(state, self.point(i, line), self.of_law(own, i))
+        return self.law.seen(state, self.point(i, line), self.law_variables(own, i))

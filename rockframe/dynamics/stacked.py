@@ -8,7 +8,7 @@ from typing import Any, Final, NamedTuple
 
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.base import Guards
-from rockframe.dynamics.bodies import DEGREES, ROTATION, VERTICAL, InState
+from rockframe.dynamics.bodies import BODY_DOF, ROTATION, VERTICAL, StateAccess
 from rockframe.dynamics.body import BodyState
 from rockframe.dynamics.events import (
     PIVOT_CHANGE,
@@ -18,7 +18,7 @@ from rockframe.dynamics.events import (
     SOIL_PIVOT_CHANGE,
     SOIL_SEPARATION,
 )
-from rockframe.dynamics.on_base import SLIDES, Mode, OnBase, SlidingGuards
+from rockframe.dynamics.on_base import SLIDING_BIT, BodyOnBase, Mode, SlidingGuards
 from rockframe.dynamics.protocol import BODY_COLUMNS, LAST_EVENT, Column, Slope
 
 UPPER: Final = 0
@@ -30,7 +30,7 @@ LOWER_ROTATION: Final = 2
 LOWER_VERTICAL: Final = 3
 HORIZONTAL: Final = 4
 LOWER_HORIZONTAL: Final = 5
-COORDINATES: Final = 2 * DEGREES
+COORDINATES: Final = 2 * BODY_DOF
 
 COLUMNS: Final = (
     *BODY_COLUMNS,
@@ -61,12 +61,12 @@ class States(NamedTuple):
     lower: BodyState
 
 
-class Stacked(InState):
+class Stacked(StateAccess):
     """Access to modes, states and guards of two bodies. A mixin of named tuples with both."""
 
     __slots__ = ()
-    upper: OnBase
-    lower: OnBase
+    upper: BodyOnBase
+    lower: BodyOnBase
 
     @inlined
     def bodies(self) -> int:
@@ -93,12 +93,12 @@ class Stacked(InState):
         """Return the contact state of a body."""
         modes = self.modes_in(mode)
         if k == UPPER:
-            return self.upper.shown_contact(modes.upper)
-        return self.lower.shown_contact(modes.lower)
+            return self.upper.contact_state(modes.upper)
+        return self.lower.contact_state(modes.lower)
 
     @inlined
     def relaxation_in(self, mode: int) -> float:
-        """Return the rate at which a sliding end follows its base, of the faster base [s^-1]."""
+        """Return the rate at which a sliding end follows its base, the larger of both [s^-1]."""
         modes = self.modes_in(mode)
         return max(self.upper.relaxation_in(modes.upper), self.lower.relaxation_in(modes.lower))
 
@@ -114,28 +114,28 @@ class Stacked(InState):
         return States(self.state_of(UPPER, state), self.state_of(LOWER, state))
 
     @inlined
-    def own_place(self, k: int) -> int:
+    def base_variable_index(self, k: int) -> int:
         """Return the index in the state of a base's own variables."""
         return 2 * COORDINATES + (0 if k == UPPER else self.upper.base.variables())
 
     @inlined
     def upper_own(self, state: Vector) -> Any:
         """Read the variables of the upper base."""
-        return self.upper.base.read(state, self.own_place(UPPER))
+        return self.upper.base.read(state, self.base_variable_index(UPPER))
 
     @inlined
     def lower_own(self, state: Vector) -> Any:
         """Read the variables of the lower base."""
-        return self.lower.base.read(state, self.own_place(LOWER))
+        return self.lower.base.read(state, self.base_variable_index(LOWER))
 
     @kernel
-    def part_mode(self, mode: int, k: int) -> Mode:
+    def body_mode(self, mode: int, k: int) -> Mode:
         """Return contact, held point and sliding of a body in a mode."""
         modes = self.modes_in(mode)
         return modes.upper if k == UPPER else modes.lower
 
     @kernel
-    def with_part(self, mode: int, k: int, part: Mode) -> int:
+    def with_body_mode(self, mode: int, k: int, part: Mode) -> int:
         """Return the mode of both bodies with another mode of one."""
         count = self.upper.modes()
         if k == UPPER:
@@ -158,7 +158,7 @@ class Stacked(InState):
     def without_sliding(self, mode: int) -> int:
         """Return a mode without the sliding of either body."""
         count = self.upper.modes()
-        return (mode % count & ~SLIDES) + count * (mode // count & ~SLIDES)
+        return (mode % count & ~SLIDING_BIT) + count * (mode // count & ~SLIDING_BIT)
 
     @inlined
     def guards_of_both(
@@ -181,13 +181,13 @@ class Stacked(InState):
         return Guards(above.values + below.values, above.changes + below.changes)
 
     @kernel
-    def bases_observed(self, mode: int, state: Vector) -> tuple[float, ...]:
+    def columns_of_bases(self, mode: int, state: Vector) -> tuple[float, ...]:
         """Return the columns of both bases."""
         modes, states = self.modes_in(mode), self.states_in(state)
-        return self.upper.observed_base(
+        return self.upper.base_columns(
             modes.upper, states.upper, self.upper.body.attitude(states.upper.rotation),
             self.upper_own(state),
-        ) + self.lower.observed_base(
+        ) + self.lower.base_columns(
             modes.lower, states.lower, self.lower.body.attitude(states.lower.rotation),
             self.lower_own(state),
         )  # fmt: skip

@@ -13,8 +13,8 @@ from rockframe.dynamics.body import (
     PIVOT_LEFT,
     PIVOT_RIGHT,
     BodyState,
-    accelerated,
     leading_pivot,
+    with_accelerations,
 )
 from rockframe.dynamics.events import (
     IMPACT,
@@ -23,7 +23,7 @@ from rockframe.dynamics.events import (
     SEPARATION,
     SILENT,
 )
-from rockframe.dynamics.on_base import HOLD, PIVOT, SLIP, Mode, OnBase
+from rockframe.dynamics.on_base import HOLD, PIVOT, SLIP, BodyOnBase, Mode
 from rockframe.dynamics.protocol import (
     HELD_PLACE,
     IMPACT_LOSS,
@@ -32,17 +32,17 @@ from rockframe.dynamics.protocol import (
     Ground,
 )
 from rockframe.dynamics.sliding import (
-    DISTURBED,
+    LIFT_OFF_NOISE,
     blend,
     is_lifted,
-    share_of_loss,
-    share_until_lifted,
+    loss_share,
+    share_at_lift_off,
     speed_noise,
 )
 
 
 @kernel
-def has_same_hold(part: OnBase, one: Mode, other: Mode) -> bool:
+def has_same_hold(part: BodyOnBase, one: Mode, other: Mode) -> bool:
     """Whether two modes hold a body at the same point, or both at none."""
     if part.is_free(one) or part.is_free(other):
         return part.is_free(one) and part.is_free(other)
@@ -50,7 +50,7 @@ def has_same_hold(part: OnBase, one: Mode, other: Mode) -> bool:
 
 
 @kernel
-def end_speed(part: OnBase, left: bool, state: BodyState) -> tuple[float, float]:
+def end_speed(part: BodyOnBase, left: bool, state: BodyState) -> tuple[float, float]:
     """Return the speed of an end of the base, and its rounding noise."""
     line = part.body.base_line_at(state)
     lever = line.left_lever if left else line.right_lever
@@ -60,41 +60,43 @@ def end_speed(part: OnBase, left: bool, state: BodyState) -> tuple[float, float]
 
 @kernel
 def set_end_speed(
-    system: Bodies, part: OnBase, k: int, left: bool, speed: float, direction: float, state: Vector
-) -> None:
-    """Set the speed of an end, beside `speed` by rounding noise in the sense of `direction`."""
+    system: Bodies, part: BodyOnBase, k: int, left: bool, speed: float, direction: float,
+    state: Vector,
+) -> None:  # fmt: skip
+    """Set the speed of an end to `speed`, shifted by its rounding noise in a direction."""
     now, noise = end_speed(part, left, system.state_of(k, state))
-    beside = direction * max(noise, part.base.least_landing())
-    system.change(k, 0.0, speed + beside - now, state)
+    shift = direction * max(noise, part.base.least_landing())
+    system.shift_vertical(k, 0.0, speed + shift - now, state)
 
 
 @kernel
-def following_speed(system: Bodies, part: OnBase, k: int, left: bool, state: Vector) -> float:
+def following_speed(system: Bodies, part: BodyOnBase, k: int, left: bool, state: Vector) -> float:
     """Return the upward speed of an end that moves with its base without a force [m s^-1]."""
     line = part.body.base_line_at(system.state_of(k, state))
-    return part.base.following_speed(left, line, part.base.read(state, system.own_place(k)))
+    own = part.base.read(state, system.base_variable_index(k))
+    return part.base.following_speed(left, line, own)
 
 
 @kernel
 def repin(
-    system: Bodies, part: OnBase, k: int, old: int, new: int, state: Vector, memory: Vector
+    system: Bodies, part: BodyOnBase, k: int, old: int, new: int, state: Vector, memory: Vector
 ) -> float:
     """Project the momentum on the horizontal restraint of a new mode, :eq:`eq-repinning`.
 
-    Gives the impulse of the restraint. The energy lost is half its product with the slip that it
+    Return the impulse of the restraint; the energy lost is half its product with the slip that it
     stops.
     """
     body = system.state_of(k, state)
     attitude = part.body.attitude(body.rotation)
-    place = system.place(k, old, state, memory)
-    sway = part.sway(system.part_mode(old, k), body, attitude)
-    mode = system.part_mode(new, k)
+    place = system.centre_position(k, old, state, memory)
+    velocity = part.horizontal_velocity(system.body_mode(old, k), body, attitude)
+    mode = system.body_mode(new, k)
     if part.is_free(mode):
-        system.set_sway(k, place, sway, state)
+        system.set_horizontal(k, place, velocity, state)
         return 0.0
     pin = part.body.pin(mode.pivot)
     memory[HELD_PLACE + k] = place - part.body.about_pin(pin, attitude)
-    slip = sway - part.body.reach(pin, attitude).rate * body.angular_velocity
+    slip = velocity - part.body.reach(pin, attitude).derivative * body.angular_velocity
     response = system.response(k, new, 0.0, 0.0, slip, state)
     system.respond(k, new, response, state)
     memory[REPINNING_LOSS] -= 0.5 * response.restraint * slip
@@ -102,10 +104,10 @@ def repin(
 
 
 @kernel
-def lift_by_slip(system: Bodies, part: OnBase, k: int, mode: int, state: Vector) -> float:
+def lift_per_slip(system: Bodies, part: BodyOnBase, k: int, mode: int, state: Vector) -> float:
     """Return the upward speed of a sliding end by a hold's impulse that adds a slip of 1 [1]."""
-    was = system.part_mode(mode, k)
-    held = system.with_part(mode, k, Mode(was.contact, was.pivot, False))
+    was = system.body_mode(mode, k)
+    held = system.with_body_mode(mode, k, Mode(was.contact, was.pivot, False))
     line = part.body.base_line_at(system.state_of(k, state))
     left = part.base.is_held(was.contact, True)
     response = system.response(k, held, 0.0, 0.0, -1.0, state)
@@ -114,8 +116,8 @@ def lift_by_slip(system: Bodies, part: OnBase, k: int, mode: int, state: Vector)
 
 
 @kernel
-def strike(
-    system: Bodies, part: OnBase, k: int, mode: int, left: bool, right: bool, state: Vector,
+def apply_impact(
+    system: Bodies, part: BodyOnBase, k: int, mode: int, left: bool, right: bool, state: Vector,
     memory: Vector,
 ) -> None:  # fmt: skip
     """Reduce the speeds of the landing ends by the factors eps, :eq:`eq-impact`."""
@@ -140,7 +142,7 @@ def strike(
     moment = on_left * line.left_lever + on_right * line.right_lever
     response = system.response(k, mode, on_left + on_right, moment, 0.0, state)
     system.respond(k, mode, response, state)
-    system.note_blow(k, on_left + on_right, moment, 0.0)
+    system.record_impulse(k, on_left + on_right, moment, 0.0)
     # work of the impulses, at the mean of each end's speeds before and after
     after = part.body.base_line_at(system.state_of(k, state))
     memory[IMPACT_LOSS] -= 0.5 * (
@@ -150,8 +152,8 @@ def strike(
 
 
 @kernel
-def repin_landing(
-    system: Bodies, part: OnBase, k: int, old: int, new: int, left: bool, target: float,
+def repin_at_landing(
+    system: Bodies, part: BodyOnBase, k: int, old: int, new: int, left: bool, target: float,
     state: Vector, memory: Vector,
 ) -> bool:  # fmt: skip
     """Hold a body that lands on one end after flight; return whether it slides.
@@ -162,7 +164,7 @@ def repin_landing(
     speed, _ = end_speed(part, left, system.state_of(k, state))
     before = system.velocities(state)
     lost, place = memory[REPINNING_LOSS], memory[HELD_PLACE + k]
-    was_at = system.state_of(k, state).horizontal
+    old_horizontal = system.state_of(k, state).horizontal
     hold = repin(system, part, k, old, new, state, memory)
     body = system.state_of(k, state)
     held_speed, noise = end_speed(part, left, body)
@@ -171,61 +173,61 @@ def repin_landing(
     idle = target > 0.0 and after - speed <= noise  # no slip to stop: forces decide
     if idle or not is_lifted(speed, after, noise):
         return False
-    share = share_until_lifted(speed, after)
+    share = share_at_lift_off(speed, after)
     attitude = part.body.attitude(body.rotation)
-    held = part.sway(system.part_mode(new, k), body, attitude)
-    system.set_sway(k, was_at, held, state)
+    held = part.horizontal_velocity(system.body_mode(new, k), body, attitude)
+    system.set_horizontal(k, old_horizontal, held, state)
     system.blend_velocities(before, share, state)
-    system.note_blow(k, 0.0, 0.0, share * hold)
+    system.record_impulse(k, 0.0, 0.0, share * hold)
     memory[HELD_PLACE + k] = place
-    memory[REPINNING_LOSS] = blend(lost, memory[REPINNING_LOSS], share_of_loss(share))
+    memory[REPINNING_LOSS] = blend(lost, memory[REPINNING_LOSS], loss_share(share))
     now, _ = end_speed(part, left, system.state_of(k, state))
-    system.change(k, 0.0, target - now, state)
+    system.shift_vertical(k, 0.0, target - now, state)
     return True
 
 
 @kernel
-def comes_back(
-    system: Bodies, part: OnBase, k: int, left: bool, speed: float, mode: int, state: Vector,
+def rebounds_negligibly(
+    system: Bodies, part: BodyOnBase, k: int, left: bool, speed: float, mode: int, state: Vector,
     ground: Ground,
 ) -> bool:  # fmt: skip
-    """Whether an end with this upward speed comes back after a negligible rise."""
+    """Whether an end with this upward speed falls back after a negligible rise."""
     rises = system.end_accelerations(k, mode, state, ground)
     return part.body.returns_at_once(speed, -(rises[0] if left else rises[1]))
 
 
 @kernel
-def stay_if_small(
-    system: Bodies, part: OnBase, k: int, left: bool, mode: int, state: Vector, ground: Ground,
+def stop_negligible_rebound(
+    system: Bodies, part: BodyOnBase, k: int, left: bool, mode: int, state: Vector, ground: Ground,
     memory: Vector,
 ) -> None:  # fmt: skip
-    """Stop an end that has landed and whose rebound is negligible, by an impulse."""
+    """Stop an end whose rebound after landing is negligible, by an impulse."""
     line = part.body.base_line_at(system.state_of(k, state))
     speed, lever = line.left_speed, line.left_lever
     if not left:
         speed, lever = line.right_speed, line.right_lever
-    if speed <= 0.0 or not comes_back(system, part, k, left, speed, mode, state, ground):
+    if speed <= 0.0 or not rebounds_negligibly(system, part, k, left, speed, mode, state, ground):
         return
-    answer = system.response(k, mode, 1.0, lever, 0.0, state)
-    impulse = -speed / (answer.vertical + lever * answer.rotation)
-    answer = system.response(k, mode, impulse, impulse * lever, 0.0, state)
-    system.respond(k, mode, answer, state)
+    response = system.response(k, mode, 1.0, lever, 0.0, state)
+    impulse = -speed / (response.vertical + lever * response.rotation)
+    response = system.response(k, mode, impulse, impulse * lever, 0.0, state)
+    system.respond(k, mode, response, state)
     memory[IMPACT_LOSS] -= 0.5 * impulse * speed
 
 
 @kernel
-def after_separation(
-    system: Bodies, part: OnBase, k: int, left: bool, mode: int, new: int, state: Vector,
+def mode_after_separation(
+    system: Bodies, part: BodyOnBase, k: int, left: bool, mode: int, new: int, state: Vector,
     ground: Ground, memory: Vector,
 ) -> int:  # fmt: skip
     """Return the mode after an end has lifted off, with its new held point.
 
     An end that its base would press again in flight slides, :eq:`eq-leaving-into-flight`. If the
     impulse of the new held point leaves it pressed, it lifts off once its base has lost its force.
-    If this impulse would end its rise it would be held again at the same instant, endlessly: it
-    stays held, without a force, if its base presses, and else rises with the old held point.
+    If this impulse would end its rise, the end would be held again at the same instant, endlessly:
+    then it stays held without a force if its base presses, or else rises with the old held point.
     """
-    was, now = system.part_mode(mode, k), system.part_mode(new, k)
+    was, now = system.body_mode(mode, k), system.body_mode(new, k)
     repins = not has_same_hold(part, was, now)
     before = system.velocities(state)
     lost, place = memory[REPINNING_LOSS], memory[HELD_PLACE + k]
@@ -233,125 +235,126 @@ def after_separation(
         repin(system, part, k, mode, new, state, memory)
     flies = part.flies(now.contact)
     line = part.body.base_line_at(system.state_of(k, state))
-    own = part.base.read(state, system.own_place(k))
+    own = part.base.read(state, system.base_variable_index(k))
     presses = part.base.presses(now.contact, left, line, own)
     speed, noise = end_speed(part, left, system.state_of(k, state))
     rises = not repins or flies or speed > noise
     if rises and repins and not flies:
-        rises = not comes_back(system, part, k, left, speed, new, state, ground)
+        rises = not rebounds_negligibly(system, part, k, left, speed, new, state, ground)
     if not rises:
         system.blend_velocities(before, 0.0, state)
         memory[REPINNING_LOSS], memory[HELD_PLACE + k] = lost, place
         if not presses:
-            return system.with_part(new, k, Mode(now.contact, was.pivot, was.slides))
+            return system.with_body_mode(new, k, Mode(now.contact, was.pivot, was.slides))
         memory[LAST_EVENT] = SILENT
         speed = following_speed(system, part, k, left, state)
         set_end_speed(system, part, k, left, speed, 1.0, state)
         contact = part.base.unpressed(was.contact, left)
-        return system.with_part(mode, k, Mode(contact, was.pivot, was.slides))
+        return system.with_body_mode(mode, k, Mode(contact, was.pivot, was.slides))
     if presses and flies and not part.base.touches(was.contact, not left):
         rises = system.end_accelerations(k, new, state, ground)
-        if part.base.will_press(left, accelerated(line, rises[0], rises[1]), own):
+        if part.base.will_press(left, with_accelerations(line, rises[0], rises[1]), own):
             contact = part.base.held(now.contact, left)
-            return system.with_part(new, k, Mode(contact, was.pivot, True))
+            return system.with_body_mode(new, k, Mode(contact, was.pivot, True))
     elif presses and repins and not flies:
-        waits = part.base.waiting(now.contact, left)
-        return system.with_part(new, k, Mode(waits, now.pivot, False))
+        waiting = part.base.waiting(now.contact, left)
+        return system.with_body_mode(new, k, Mode(waiting, now.pivot, False))
     return new
 
 
 @kernel
 def switch_end(
-    system: Bodies, part: OnBase, k: int, left: bool, which: int, mode: int, state: Vector,
+    system: Bodies, part: BodyOnBase, k: int, left: bool, which: int, mode: int, state: Vector,
     ground: Ground, memory: Vector,
 ) -> int:  # fmt: skip
     """Carry out the switch of an end's contact with its base; return the new mode."""
-    was = system.part_mode(mode, k)
+    was = system.body_mode(mode, k)
     line = part.body.base_line_at(system.state_of(k, state))
-    own = part.base.read(state, system.own_place(k))
+    own = part.base.read(state, system.base_variable_index(k))
     found = part.base.switch(was.contact, left, which, line, own)
     memory[LAST_EVENT] = found.event
     if found.crossed:
         # the crossed level is set exactly, so that rounding cannot undo the switch
-        system.change(k, part.base.level(left, line, own), 0.0, state)
+        system.shift_vertical(k, part.base.level(left, line, own), 0.0, state)
     if found.event == SILENT:
-        return system.with_part(mode, k, Mode(found.contact, was.pivot, was.slides))
-    now = part.standing(found.contact, system.state_of(k, state))
-    new = system.with_part(mode, k, now)
+        return system.with_body_mode(mode, k, Mode(found.contact, was.pivot, was.slides))
+    now = part.mode_for_contact(found.contact, system.state_of(k, state))
+    new = system.with_body_mode(mode, k, now)
     if found.event == SEPARATION:
-        return after_separation(system, part, k, left, mode, new, state, ground, memory)
+        return mode_after_separation(system, part, k, left, mode, new, state, ground, memory)
     flies = part.flies(was.contact)
     both = flies and part.base.is_held(now.contact, not left)
     if flies and not both:
         target = 0.0
         if found.event == REENGAGEMENT:
             target = following_speed(system, part, k, left, state)
-        if repin_landing(system, part, k, mode, new, left, target, state, memory):
-            return system.with_part(new, k, Mode(now.contact, now.pivot, True))
+        if repin_at_landing(system, part, k, mode, new, left, target, state, memory):
+            return system.with_body_mode(new, k, Mode(now.contact, now.pivot, True))
     elif not has_same_hold(part, was, now):
         repin(system, part, k, mode, new, state, memory)
     if found.event == REENGAGEMENT:
         line = part.body.base_line_at(system.state_of(k, state))
         contact = part.base.engaged(now.contact, left, line, own)
-        return system.with_part(new, k, Mode(contact, now.pivot, False))
+        return system.with_body_mode(new, k, Mode(contact, now.pivot, False))
     if found.event == IMPACT:
-        strike(system, part, k, new, left or both, both or not left, state, memory)
-        stay_if_small(system, part, k, left, new, state, ground, memory)
+        apply_impact(system, part, k, new, left or both, both or not left, state, memory)
+        stop_negligible_rebound(system, part, k, left, new, state, ground, memory)
     return new
 
 
 @kernel
 def next_pivot(
-    system: Bodies, part: OnBase, k: int, mode: int, state: Vector, ground: Ground
+    system: Bodies, part: BodyOnBase, k: int, mode: int, state: Vector, ground: Ground
 ) -> int:
     """Return the next leading corner, to which the body leans or, from upright rest, will lean."""
-    was = system.part_mode(mode, k)
+    was = system.body_mode(mode, k)
     if was.pivot != PIVOT_CENTRE:
         return PIVOT_LEFT if was.pivot == PIVOT_RIGHT else PIVOT_RIGHT
     body = system.state_of(k, state)
-    tendency = body.angular_velocity
-    if tendency == 0.0 and part.body.left != part.body.right:
+    direction = body.angular_velocity
+    if direction == 0.0 and part.body.left != part.body.right:
         # its own weight rotates a body whose centre of mass is to the side
         rises = system.end_accelerations(k, mode, state, ground)
-        tendency = rises[0] - rises[1]
-    elif tendency == 0.0:
-        tendency = system.tendency(k, mode, state, ground)
-    return leading_pivot(body.rotation, tendency)
+        direction = rises[0] - rises[1]
+    elif direction == 0.0:
+        direction = system.incipient_rotation(k, mode, state, ground)
+    return leading_pivot(body.rotation, direction)
 
 
 @kernel
 def change_pivot(
-    system: Bodies, part: OnBase, k: int, mode: int, state: Vector, ground: Ground, memory: Vector
-) -> int:
+    system: Bodies, part: BodyOnBase, k: int, mode: int, state: Vector, ground: Ground,
+    memory: Vector,
+) -> int:  # fmt: skip
     """Change the leading corner, and with it the held point; return the new mode."""
-    was, pivot = system.part_mode(mode, k), next_pivot(system, part, k, mode, state, ground)
+    was, pivot = system.body_mode(mode, k), next_pivot(system, part, k, mode, state, ground)
     memory[LAST_EVENT] = SILENT
     if was.pivot != PIVOT_CENTRE:
         memory[LAST_EVENT] = PIVOT_CHANGE
-        system.stand_upright(k, state)
-    new = system.with_part(mode, k, Mode(was.contact, pivot, was.slides))
+        system.set_upright(k, state)
+    new = system.with_body_mode(mode, k, Mode(was.contact, pivot, was.slides))
     if not was.slides:
         repin(system, part, k, mode, new, state, memory)
     return new
 
 
 @kernel
-def end_sliding(
-    system: Bodies, part: OnBase, k: int, flies: bool, mode: int, state: Vector, memory: Vector
+def stop_sliding(
+    system: Bodies, part: BodyOnBase, k: int, lifts: bool, mode: int, state: Vector, memory: Vector
 ) -> int:
-    """Let a sliding end lift off, or hold it as its slip has come to zero; return the new mode."""
-    was = system.part_mode(mode, k)
+    """Let a sliding end lift off, or hold it when its slip is zero; return the new mode."""
+    was = system.body_mode(mode, k)
     left = part.base.is_held(was.contact, True)
     line = part.body.base_line_at(system.state_of(k, state))
-    own = part.base.read(state, system.own_place(k))
+    own = part.base.read(state, system.base_variable_index(k))
     if part.base.is_level(left, line, own):
-        system.change(k, part.base.level(left, line, own), 0.0, state)
+        system.shift_vertical(k, part.base.level(left, line, own), 0.0, state)
     speed = following_speed(system, part, k, left, state)
-    if flies:
+    if lifts:
         set_end_speed(system, part, k, left, speed, 1.0, state)
         memory[LAST_EVENT] = SEPARATION
-        return fly(system, part, k, mode, state)
-    new = system.with_part(mode, k, Mode(was.contact, was.pivot, False))
+        return lift_off(system, part, k, mode, state)
+    new = system.with_body_mode(mode, k, Mode(was.contact, was.pivot, False))
     repin(system, part, k, mode, new, state, memory)
     set_end_speed(system, part, k, left, speed, -1.0, state)
     memory[LAST_EVENT] = PIVOT_CHANGE
@@ -359,48 +362,50 @@ def end_sliding(
 
 
 @kernel
-def fly(system: Bodies, part: OnBase, k: int, mode: int, state: Vector) -> int:
+def lift_off(system: Bodies, part: BodyOnBase, k: int, mode: int, state: Vector) -> int:
     """Return the mode after a sliding end has lifted off."""
-    was = system.part_mode(mode, k)
+    was = system.body_mode(mode, k)
     left = part.base.is_held(was.contact, True)
     line = part.body.base_line_at(system.state_of(k, state))
     contact = part.base.released(
-        was.contact, left, line, part.base.read(state, system.own_place(k))
+        was.contact, left, line, part.base.read(state, system.base_variable_index(k))
     )
-    return system.with_part(mode, k, Mode(contact, PIVOT_CENTRE, False))
+    return system.with_body_mode(mode, k, Mode(contact, PIVOT_CENTRE, False))
 
 
 @kernel
-def checked_sliding(system: Bodies, part: OnBase, k: int, mode: int, state: Vector) -> int:
+def recheck_sliding(system: Bodies, part: BodyOnBase, k: int, mode: int, state: Vector) -> int:
     """Return the mode after an event that may have changed the speed of a sliding end.
 
-    If it differs from that of its base the end flies; it lands again at once if it moves down.
+    An end whose speed differs from that of its base lifts off; if it moves down it lands at once.
     """
-    was = system.part_mode(mode, k)
+    was = system.body_mode(mode, k)
     if not was.slides:
         return mode
     left = part.base.is_held(was.contact, True)
     speed, noise = end_speed(part, left, system.state_of(k, state))
     target = following_speed(system, part, k, left, state)
-    if abs(speed - target) <= DISTURBED * max(noise, part.base.least_landing()):
-        system.change(k, 0.0, target - speed, state)
+    if abs(speed - target) <= LIFT_OFF_NOISE * max(noise, part.base.least_landing()):
+        system.shift_vertical(k, 0.0, target - speed, state)
         return mode
-    return fly(system, part, k, mode, state)
+    return lift_off(system, part, k, mode, state)
 
 
 @kernel
-def disturbed(system: Bodies, part: OnBase, k: int, mode: int, state: Vector) -> int:
+def mode_after_disturbance(
+    system: Bodies, part: BodyOnBase, k: int, mode: int, state: Vector
+) -> int:
     """Return the mode after an event of another body has changed the speeds of this one."""
-    was = system.part_mode(mode, k)
+    was = system.body_mode(mode, k)
     if was.slides:
-        return checked_sliding(system, part, k, mode, state)
+        return recheck_sliding(system, part, k, mode, state)
     contact = part.base.disturbed(was.contact)
-    return system.with_part(mode, k, Mode(contact, was.pivot, False))
+    return system.with_body_mode(mode, k, Mode(contact, was.pivot, False))
 
 
 @kernel
-def switch_part(
-    system: Bodies, part: OnBase, k: int, which: int, mode: int, state: Vector, ground: Ground,
+def switch_mode(
+    system: Bodies, part: BodyOnBase, k: int, which: int, mode: int, state: Vector, ground: Ground,
     memory: Vector,
 ) -> int:  # fmt: skip
     """Carry out the switch that a guard of a body calls for; return the new mode."""
@@ -408,12 +413,12 @@ def switch_part(
     if which == 2 * count + PIVOT:
         new = change_pivot(system, part, k, mode, state, ground, memory)
     elif which == 2 * count + HOLD:
-        new = end_sliding(system, part, k, True, mode, state, memory)
+        new = stop_sliding(system, part, k, True, mode, state, memory)
     elif which == 2 * count + SLIP:
-        new = end_sliding(system, part, k, False, mode, state, memory)
+        new = stop_sliding(system, part, k, False, mode, state, memory)
     else:
         left = which < count
         new = switch_end(
             system, part, k, left, which if left else which - count, mode, state, ground, memory
         )
-    return checked_sliding(system, part, k, new, state)
+    return recheck_sliding(system, part, k, new, state)

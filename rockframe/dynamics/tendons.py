@@ -1,7 +1,7 @@
 """Columns under a beam with tendons along their axes, :eq:`eq-rocking-frame-tendon`.
 
-The columns rock as without tendons. The gaps below and above each column together stretch its
-tendons, which pull it upright. All per unit mass of columns and beam.
+The columns rock as without tendons. The gaps below and above each column elongate its tendons,
+which pull it upright. All per unit mass of columns and beam.
 """
 
 import math
@@ -12,7 +12,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from rockframe.compiled import Vector, inlined, kernel, numbers_in, put, view_from, view_of
-from rockframe.dynamics import rigid_ground as bare
+from rockframe.dynamics import rigid_ground as frame
 from rockframe.dynamics.links import GUARDS, LinkNumbers, Stretch
 from rockframe.dynamics.pads import ROUNDING
 from rockframe.dynamics.protocol import (
@@ -33,20 +33,20 @@ from rockframe.dynamics.protocol import (
 from rockframe.dynamics.trigonometry import sine_cosine
 
 # columns of the row of a tendon
-STORED: Final = 0  # elastic energy at rest [m^2 s^-2]
+REST_ENERGY: Final = 0  # elastic energy at rest [m^2 s^-2]
 PLACE_VALUE: Final = 1  # factor of its state in the number of the mode
-NUMBERS: Final = 2  # first of the numbers of its law
+FIRST_NUMBER: Final = 2  # first of the numbers of its law
 LINK_COLUMNS: Final = ("restrainer_force", "restrainer_elongation", "restrainer_state")
-OWN_COLUMNS: Final = len(bare.COLUMNS)
-EACH_COLUMNS: Final = len(LINK_COLUMNS)
+FRAME_COLUMNS: Final = len(frame.COLUMNS)
+COLUMNS_PER_TENDON: Final = len(LINK_COLUMNS)
 LINK_PLACE: Final = len(MEMORY)
 """Index into the memory: the tendon of the last event, counted from 1; 0 for none."""
 
 
-class FrameNumbers(NamedTuple):
+class FrameTendonNumbers(NamedTuple):
     """The numbers of columns under a beam with tendons."""
 
-    rocking: bare.BlockOnRigidGround
+    rocking: frame.BlockOnRigidGround
     half_width: float  # b, of a column [m]
     columns: float  # number of columns; each has all tendons
     law: Any  # of the class of all tendons
@@ -54,7 +54,7 @@ class FrameNumbers(NamedTuple):
     rows: Vector  # rows of the tendons, then the workspace
 
 
-class TiedFrame(FrameNumbers, OnRigidGround):
+class FrameWithTendons(FrameTendonNumbers, OnRigidGround):
     """Columns under a beam with tendons: a system."""
 
     __slots__ = ()
@@ -72,57 +72,57 @@ class TiedFrame(FrameNumbers, OnRigidGround):
     @kernel
     def guards(self) -> int:
         """Return the number of guards, of the columns and then of each tendon in turn."""
-        return bare.GUARDS + GUARDS * self.link_count
+        return frame.GUARDS + GUARDS * self.link_count
 
     @kernel
     def modes(self) -> int:
         """Return the number of modes."""
-        return bare.MODES * int(self.law.states() ** self.link_count)
+        return frame.MODES * int(self.law.states() ** self.link_count)
 
     @inlined
     def moving_in(self, mode: int) -> int:
         """Return 1 while the columns rock, 0 at rest."""
-        return self.rocking.moving_in(mode % bare.MODES)
+        return self.rocking.moving_in(mode % frame.MODES)
 
     @inlined
     def contact_state_of(self, mode: int, k: int) -> int:
         """Return the contact state: which corner bears, or both."""
-        return self.rocking.contact_state_of(mode % bare.MODES, k)
+        return self.rocking.contact_state_of(mode % frame.MODES, k)
 
     @inlined
     def row_of_link(self, i: int) -> Vector:
         """Return the row of a tendon."""
-        width = NUMBERS + self.law.number_count()
+        width = FIRST_NUMBER + self.law.number_count()
         return view_of(self.rows, i * width, width)
 
     @inlined
     def law_of(self, row: Vector) -> Any:
         """Return the law of a tendon, by its row."""
-        return self.law.with_numbers(view_from(row, NUMBERS))
+        return self.law.with_numbers(view_from(row, FIRST_NUMBER))
 
     @inlined
-    def room(self, first: int, count: int) -> Vector:
+    def workspace(self, first: int, count: int) -> Vector:
         """Return a part of the workspace behind the rows."""
         return view_of(
-            self.rows, self.link_count * (NUMBERS + self.law.number_count()) + first, count
+            self.rows, self.link_count * (FIRST_NUMBER + self.law.number_count()) + first, count
         )
 
     @inlined
     def slopes(self) -> Vector:
-        """Return the room for accelerations, rates of variables, and powers."""
-        return self.room(0, 1 + self.variables() + POWERS)
+        """Return the workspace for accelerations, rates of variables, and powers."""
+        return self.workspace(0, 1 + self.variables() + POWERS)
 
     @inlined
-    def guard_room(self, which: int) -> Vector:
-        """Return the room for guards (0) or their rates (1)."""
+    def guard_workspace(self, which: int) -> Vector:
+        """Return the workspace for guards (0) or their rates (1)."""
         first = 1 + self.variables() + POWERS + which * self.guards()
-        return self.room(first, self.guards())
+        return self.workspace(first, self.guards())
 
     @inlined
-    def column_room(self) -> Vector:
-        """Return the room for columns."""
+    def column_workspace(self) -> Vector:
+        """Return the workspace for columns."""
         first = 1 + self.variables() + POWERS + 2 * self.guards()
-        return self.room(first, OWN_COLUMNS + EACH_COLUMNS * self.link_count)
+        return self.workspace(first, FRAME_COLUMNS + COLUMNS_PER_TENDON * self.link_count)
 
     @inlined
     def link_state(self, mode: int, row: Vector) -> int:
@@ -141,21 +141,21 @@ class TiedFrame(FrameNumbers, OnRigidGround):
         return 2.0 * self.half_width * sine_cosine(0.5 * rotation)[1]
 
     @inlined
-    def stretched(self, mode: int, state: Vector, turning: float) -> Stretch:
+    def tendon_stretch(self, mode: int, state: Vector, angular_acceleration: float) -> Stretch:
         """Return the elongation 4 b sin(|a|/2) of the tendons, and its rates."""
-        side, rate = self.rocking.side(mode % bare.MODES), state[1]
+        side, rate = self.rocking.side(mode % frame.MODES), state[1]
         half = sine_cosine(0.5 * state[0])[0]
         length, lever = 4.0 * self.half_width, self.lever(state[0])
-        bend = 0.25 * length * half * rate * rate
+        centripetal = 0.25 * length * half * rate * rate
         return Stretch(
-            side * length * half, side * lever * rate, side * (lever * turning - bend), 0.0,
-            ROUNDING * length,
+            side * length * half, side * lever * rate,
+            side * (lever * angular_acceleration - centripetal), 0.0, ROUNDING * length,
         )  # fmt: skip
 
     @kernel
     def pull(self, mode: int, state: Vector) -> float:
         """Return the force of all tendons of all columns together."""
-        link, force = self.stretched(mode, state, 0.0), 0.0
+        link, force = self.tendon_stretch(mode, state, 0.0), 0.0
         for i in range(self.link_count):
             row = self.row_of_link(i)
             law = self.law_of(row)
@@ -165,92 +165,97 @@ class TiedFrame(FrameNumbers, OnRigidGround):
     @kernel
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> Vector:
         """Return the acceleration, rates of variables, dashpot power and input power."""
-        out, rocks = self.slopes(), mode % bare.MODES
-        found = self.rocking.accelerate(rocks, state, ground)
+        out, rocking_mode = self.slopes(), mode % frame.MODES
+        found = self.rocking.accelerate(rocking_mode, state, ground)
         for i in range(len(out)):
             out[i] = 0.0
-        if rocks == bare.RESTING:
+        if rocking_mode == frame.RESTING:
             return out
-        resisting = self.pull(mode, state) * self.lever(state[0])
-        inertia = self.rocking.corner(rocks).inertia
-        link, lost = self.stretched(mode, state, 0.0), 0.0
+        restoring = self.pull(mode, state) * self.lever(state[0])
+        inertia = self.rocking.corner(rocking_mode).inertia
+        link, dissipated = self.tendon_stretch(mode, state, 0.0), 0.0
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.of_link(i, state)
             law, each = self.law_of(row), self.law.variables()
-            standing = self.link_state(mode, row)
-            lost += law.power(standing, link, own)
-            law.rates(standing, link, own, view_of(out, 1 + i * each, each))
-        out[0] = found[0] - self.rocking.side(rocks) * resisting / inertia
-        out[1 + self.variables()] = self.columns * lost
+            link_state = self.link_state(mode, row)
+            dissipated += law.power(link_state, link, own)
+            law.rates(link_state, link, own, view_of(out, 1 + i * each, each))
+        out[0] = found[0] - self.rocking.side(rocking_mode) * restoring / inertia
+        out[1 + self.variables()] = self.columns * dissipated
         out[2 + self.variables()] = found[2]
         return out
 
     @kernel
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
         """Return the two powers of :meth:`accelerate`."""
-        rocks = mode % bare.MODES
-        if rocks == bare.RESTING:
+        rocking_mode = mode % frame.MODES
+        if rocking_mode == frame.RESTING:
             return 0.0, 0.0
-        link, lost = self.stretched(mode, state, 0.0), 0.0
+        link, dissipated = self.tendon_stretch(mode, state, 0.0), 0.0
         for i in range(self.link_count):
             row = self.row_of_link(i)
             law = self.law_of(row)
-            lost += law.power(self.link_state(mode, row), link, self.of_link(i, state))
-        return self.columns * lost, self.rocking.powers(rocks, state, slope, ground)[1]
+            dissipated += law.power(self.link_state(mode, row), link, self.of_link(i, state))
+        return self.columns * dissipated, self.rocking.powers(rocking_mode, state, slope, ground)[1]
 
     @kernel
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
         """Return the guards of impact and uplift, then those of each tendon."""
-        values, changes, rocks = self.guard_room(0), self.guard_room(1), mode % bare.MODES
-        found = self.rocking.guards_in(rocks, state, slope, ground)
+        values, changes = self.guard_workspace(0), self.guard_workspace(1)
+        rocking_mode = mode % frame.MODES
+        found = self.rocking.guards_in(rocking_mode, state, slope, ground)
         put(found.values, 0, values)
         put(found.changes, 0, changes)
-        if rocks == bare.RESTING:
+        if rocking_mode == frame.RESTING:
             right = self.rocking.right
             height = right.radius * sine_cosine(right.angle)[1]
-            held = self.pull(mode, state) * self.lever(0.0) / (height * self.rocking.gravity)
-            values[bare.UPLIFT_ON_RIGHT] += held
-            values[bare.UPLIFT_ON_LEFT] += held
-        link = self.stretched(mode, state, slope[0])
+            restoring = self.pull(mode, state) * self.lever(0.0) / (height * self.rocking.gravity)
+            values[frame.UPLIFT_ON_RIGHT] += restoring
+            values[frame.UPLIFT_ON_LEFT] += restoring
+        link = self.tendon_stretch(mode, state, slope[0])
         for i in range(self.link_count):
             row = self.row_of_link(i)
-            law, standing = self.law_of(row), self.link_state(mode, row)
+            law, link_state = self.law_of(row), self.link_state(mode, row)
             for which in range(GUARDS):
-                j = bare.GUARDS + GUARDS * i + which
+                j = frame.GUARDS + GUARDS * i + which
                 values[j], changes[j] = 1.0, 0.0
-                if rocks != bare.RESTING:
-                    values[j], changes[j] = law.guard(which, standing, link, self.of_link(i, state))
+                if rocking_mode != frame.RESTING:
+                    values[j], changes[j] = law.guard(
+                        which, link_state, link, self.of_link(i, state)
+                    )
         return Guards(values, changes)
 
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
         """Let columns lift off or land, or change the state of a tendon; return the new mode."""
-        rocks = mode % bare.MODES
+        rocking_mode = mode % frame.MODES
         memory[LINK_PLACE] = 0.0
-        if guard < bare.GUARDS:
-            resisting = self.pull(mode, state) * self.lever(0.0) / self.rocking.right.inertia
-            new = self.rocking.switch_held(rocks, guard, state, ground, memory, resisting)
-            return mode - rocks + new
-        i = (guard - bare.GUARDS) // GUARDS
-        row, link = self.row_of_link(i), self.stretched(mode, state, 0.0)
-        standing, law = self.link_state(mode, row), self.law_of(row)
-        which = guard - bare.GUARDS - GUARDS * i
-        found = law.switch(which, standing, link, self.of_link(i, state))
+        if guard < frame.GUARDS:
+            restoring = self.pull(mode, state) * self.lever(0.0) / self.rocking.right.inertia
+            new = self.rocking.switch_with_restoring(
+                rocking_mode, guard, state, ground, memory, restoring
+            )
+            return mode - rocking_mode + new
+        i = (guard - frame.GUARDS) // GUARDS
+        row, link = self.row_of_link(i), self.tendon_stretch(mode, state, 0.0)
+        link_state, law = self.link_state(mode, row), self.law_of(row)
+        which = guard - frame.GUARDS - GUARDS * i
+        found = law.switch(which, link_state, link, self.of_link(i, state))
         memory[LAST_EVENT] = found.event
         memory[LINK_LOSS] += self.columns * found.lost
         memory[LINK_PLACE] = i + 1.0
-        return mode + int(row[PLACE_VALUE]) * (found.state - standing)
+        return mode + int(row[PLACE_VALUE]) * (found.state - link_state)
 
     @kernel
     def energies(self, mode: int, state: Vector) -> Energies:
         """Return the energies of columns, beam and tendons."""
-        found = self.rocking.energies(mode % bare.MODES, state)
-        link, stored, at_rest = self.stretched(mode, state, 0.0), 0.0, 0.0
+        found = self.rocking.energies(mode % frame.MODES, state)
+        link, stored, at_rest = self.tendon_stretch(mode, state, 0.0), 0.0, 0.0
         for i in range(self.link_count):
             row = self.row_of_link(i)
             law = self.law_of(row)
             stored += law.energy(self.link_state(mode, row), link, self.of_link(i, state))
-            at_rest += row[STORED]
+            at_rest += row[REST_ENERGY]
         elastic = self.columns * stored
         return Energies(found.kinetic, found.gravity, elastic, elastic - self.columns * at_rest)
 
@@ -259,73 +264,75 @@ class TiedFrame(FrameNumbers, OnRigidGround):
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> Vector:
         """Return the columns without tendons, then force, elongation and state of each tendon."""
-        out, rocks = self.column_room(), mode % bare.MODES
-        put(self.rocking.observe(rocks, state, slope, ground, memory), 0, out)
+        out, rocking_mode = self.column_workspace(), mode % frame.MODES
+        put(self.rocking.observe(rocking_mode, state, slope, ground, memory), 0, out)
         # the tendons pull the ground up, and the columns press it down by as much
         sine, cosine = sine_cosine(0.5 * state[0])
         pull = self.pull(mode, state)
-        out[bare.BASE_SHEAR] += pull * sine
-        out[bare.THRUST] += pull * sine
-        out[bare.PRESS] += pull * cosine
-        if rocks == bare.ON_LEFT:
-            out[bare.LEFT_REACTION] += pull * cosine
-        elif rocks == bare.ON_RIGHT:
-            out[bare.RIGHT_REACTION] += pull * cosine
+        out[frame.BASE_SHEAR] += pull * sine
+        out[frame.HORIZONTAL_REACTION] += pull * sine
+        out[frame.VERTICAL_REACTION] += pull * cosine
+        if rocking_mode == frame.ON_LEFT:
+            out[frame.LEFT_REACTION] += pull * cosine
+        elif rocking_mode == frame.ON_RIGHT:
+            out[frame.RIGHT_REACTION] += pull * cosine
         else:
             # reactions differ as the moment does, over the one at which rocking starts with tendons
-            left, right = out[bare.LEFT_REACTION], out[bare.RIGHT_REACTION]
+            left, right = out[frame.LEFT_REACTION], out[frame.RIGHT_REACTION]
             corner = self.rocking.right
             half = corner.radius * sine_cosine(corner.angle)[0]
             limit, share = half * (left + right) + self.lever(0.0) * pull, 0.0
             if limit > 0.0:
                 share = half * (left - right) / limit
-            out[bare.LEFT_REACTION] = 0.5 * (1.0 + share) * out[bare.PRESS]
-            out[bare.RIGHT_REACTION] = 0.5 * (1.0 - share) * out[bare.PRESS]
-        link = self.stretched(mode, state, 0.0)
+            out[frame.LEFT_REACTION] = 0.5 * (1.0 + share) * out[frame.VERTICAL_REACTION]
+            out[frame.RIGHT_REACTION] = 0.5 * (1.0 - share) * out[frame.VERTICAL_REACTION]
+        link = self.tendon_stretch(mode, state, 0.0)
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.of_link(i, state)
-            law, standing = self.law_of(row), self.link_state(mode, row)
-            j = OWN_COLUMNS + EACH_COLUMNS * i
-            out[j], out[j + 1] = law.force(standing, link, own), link.elongation
-            out[j + 2] = law.shown(standing)
+            law, link_state = self.law_of(row), self.link_state(mode, row)
+            j = FRAME_COLUMNS + COLUMNS_PER_TENDON * i
+            out[j], out[j + 1] = law.force(link_state, link, own), link.elongation
+            out[j + 2] = law.shown(link_state)
         return out
 
 
-def tied_frame(
+def frame_with_tendons(
     model: ContactModel, links: Sequence[LinkNumbers], *, half_width: float, columns: int
 ) -> ContactModel:
     """Return the model of a frame with tendons from the model without them."""
-    rows, value = list[Vector](), bare.MODES
+    rows, value = list[Vector](), frame.MODES
     for one in links:
         rows.append(np.array([0.0, value, *numbers_in(one.law)]))
         value *= one.law.states()
     law, count = links[0].law, len(links)
     variables = count * law.variables()
-    room = 1 + variables + POWERS + 2 * (bare.GUARDS + GUARDS * count)
-    room += OWN_COLUMNS + EACH_COLUMNS * count
+    size = 1 + variables + POWERS + 2 * (frame.GUARDS + GUARDS * count)
+    size += FRAME_COLUMNS + COLUMNS_PER_TENDON * count
     rocking: Any = model.system
-    numbers = np.concatenate([*rows, np.zeros(room)])
-    system = TiedFrame(rocking, half_width, float(columns), law, count, numbers)
+    numbers = np.concatenate([*rows, np.zeros(size)])
+    system = FrameWithTendons(rocking, half_width, float(columns), law, count, numbers)
     stiffness = columns * sum(one.stiffness for one in links) * (2.0 * half_width) ** 2
     fastest = math.sqrt(model.fastest_frequency**2 + stiffness / rocking.right.inertia)
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:
         mode, state, memory = model.initial(start)
         state = np.concatenate([state, np.zeros(variables)])
-        link = system.stretched(mode, state, 0.0)
+        link = system.tendon_stretch(mode, state, 0.0)
         for i in range(count):
             row = system.row_of_link(i)
-            found = law.with_numbers(row[NUMBERS:]).starting(link, system.of_link(i, state))
+            found = law.with_numbers(row[FIRST_NUMBER:]).starting(link, system.of_link(i, state))
             mode += int(row[PLACE_VALUE]) * found
         return mode, state, np.append(memory, 0.0)
 
     mode, state, _ = initial(Start())
-    link = system.stretched(mode, state, 0.0)
+    link = system.tendon_stretch(mode, state, 0.0)
     for i in range(count):
         row = system.row_of_link(i)
-        standing = system.link_state(mode, row)
-        stored = law.with_numbers(row[NUMBERS:]).energy(standing, link, system.of_link(i, state))
-        row[STORED] = stored
+        link_state = system.link_state(mode, row)
+        stored = law.with_numbers(row[FIRST_NUMBER:]).energy(
+            link_state, link, system.of_link(i, state)
+        )
+        row[REST_ENERGY] = stored
     return replace(
         model,
         name="rocking frame with tendons",

@@ -34,24 +34,24 @@ from rockframe.dynamics.chain.rows import BODY_STRIDE
 from rockframe.dynamics.protocol import ContactModel, Energies, Ground, Guards, Slope, Start
 from rockframe.dynamics.slide_motion import (
     COLUMNS,
+    DOF,
     GUARDS,
     HELD,
     MODES,
-    PRESSING,
-    REMEMBERED,
+    NORMAL_FORCE,
     RISE,
     ROTATION,
-    SIZE,
+    SLIDE_MEMORY,
     SLIP,
     Loads,
 )
 from rockframe.dynamics.slide_rock import SlideRock, SlideSwitches, slide_rock
 from rockframe.dynamics.trigonometry import sine_cosine, versine
-from rockframe.dynamics.vibrations import greatest_share
+from rockframe.dynamics.vibrations import greatest_eigenvalue
 
-OWN_COLUMNS: Final = len(COLUMNS)
+BLOCK_COLUMNS: Final = len(COLUMNS)
 SLIP_COLUMNS: Final = ("slip", "slip_velocity")
-LINK_PLACE: Final = len(REMEMBERED)
+LINK_PLACE: Final = len(SLIDE_MEMORY)
 """Index into the memory: the link of the last event, counted from 1; 0 for none."""
 
 
@@ -82,7 +82,7 @@ class TiedSlideRock(TiedNumbers, LinkMechanics, SlideSwitches):  # pyright: igno
 
     @inlined
     def workspace(self) -> Vector:
-        """Return the workspace for speeds, loads and accelerations of the block."""
+        """Return the workspace for velocities, loads and accelerations of the block."""
         return view_of(self.rows, 0, BODY_STRIDE)
 
     @inlined
@@ -98,7 +98,7 @@ class TiedSlideRock(TiedNumbers, LinkMechanics, SlideSwitches):  # pyright: igno
     @inlined
     def body_column_count(self) -> int:
         """Return the number of columns of the block."""
-        return OWN_COLUMNS
+        return BLOCK_COLUMNS
 
     @inlined
     def link_event_index(self) -> int:
@@ -111,21 +111,21 @@ class TiedSlideRock(TiedNumbers, LinkMechanics, SlideSwitches):  # pyright: igno
 
     @inlined
     def all_idle(self, mode: int) -> bool:
-        """Whether it is known, without asking each link, that none acts in a mode."""
+        """Whether no link has a force in a mode, where this is known without their laws."""
         return mode < MODES and self.begins_idle != 0.0
 
     @kernel
     def write_poses(self, mode: int, state: Vector, work: Vector) -> None:
         """Write displacement, rotation and velocity of the block."""
-        poses, side = self.poses(), self.side(self.bears_in(mode))
+        poses, side = self.poses(), self.side(self.bearing_in(mode))
         sine, cosine = sine_cosine(state[ROTATION])
         lacks = versine(sine, cosine)
         away = side * self.distance(side)
         poses[DISPLACEMENT_X] = state[SLIP] + self.height * sine + away * lacks
         poses[DISPLACEMENT_Y] = state[RISE] + away * sine - self.height * lacks
         poses[BODY_SINE], poses[BODY_VERSINE] = sine, lacks
-        poses[BODY_ROTATION_RATE] = state[SIZE + ROTATION]
-        work[at.SPEED_X], work[at.SPEED_Y] = self.speeds(mode, state)
+        poses[BODY_ROTATION_RATE] = state[DOF + ROTATION]
+        work[at.SPEED_X], work[at.SPEED_Y] = self.centre_velocity(mode, state)
 
     @inlined
     def write_kinematics_and_poses(self, mode: int, state: Vector, work: Vector) -> None:
@@ -133,20 +133,21 @@ class TiedSlideRock(TiedNumbers, LinkMechanics, SlideSwitches):  # pyright: igno
         self.write_poses(mode, state, work)
 
     @inlined
-    def pulled(self, mode: int, state: Vector, ground: Ground) -> tuple[Loads, float]:
+    def loads_and_link_power(self, mode: int, state: Vector, ground: Ground) -> tuple[Loads, float]:
         """Return loads on the block, :eq:`eq-slide-tied`, and the power that links dissipate."""
         if self.all_idle(mode):
             return Loads(ground.x, self.gravity + ground.y, 0.0), 0.0
         work = self.workspace()
         work[at.LOAD_X] = work[at.LOAD_Y] = work[at.LOAD_MOMENT] = 0.0
-        lost = self.apply_link_forces(mode, state, work)
-        across, weight = ground.x - work[at.LOAD_X], self.gravity + ground.y - work[at.LOAD_Y]
-        return Loads(across, weight, work[at.LOAD_MOMENT]), lost
+        dissipated = self.apply_link_forces(mode, state, work)
+        along = ground.x - work[at.LOAD_X]
+        weight = self.gravity + ground.y - work[at.LOAD_Y]
+        return Loads(along, weight, work[at.LOAD_MOMENT]), dissipated
 
     @kernel
     def loads(self, mode: int, state: Vector, ground: Ground) -> Loads:
         """Return the loads on the block: weight, inertia, and the forces of links."""
-        return self.pulled(mode, state, ground)[0]
+        return self.loads_and_link_power(mode, state, ground)[0]
 
     @kernel
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> Vector:
@@ -157,18 +158,18 @@ class TiedSlideRock(TiedNumbers, LinkMechanics, SlideSwitches):  # pyright: igno
                 out[i] = 0.0
             if mode == HELD:
                 return out
-        loads, lost = self.pulled(mode, state, ground)
+        loads, dissipated = self.loads_and_link_power(mode, state, ground)
         found = self.accelerations(mode, state, ground, loads)
         out[SLIP], out[ROTATION], out[RISE] = found[SLIP], found[ROTATION], found[RISE]
-        powers = SIZE + self.variables()
-        out[powers], out[powers + 1] = found[SIZE] + lost, found[SIZE + 1]
+        powers = DOF + self.variables()
+        out[powers], out[powers + 1] = found[DOF] + dissipated, found[DOF + 1]
         return out
 
     @kernel
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
         """Return power dissipated, of the slope, and that of the ground at the state's rates."""
-        across, up = self.speeds(mode, state)
-        return slope[SIZE + self.variables()], -ground.x * across - ground.y * up
+        across, up = self.centre_velocity(mode, state)
+        return slope[DOF + self.variables()], -ground.x * across - ground.y * up
 
     @kernel
     def guards_of_bodies(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
@@ -184,8 +185,8 @@ class TiedSlideRock(TiedNumbers, LinkMechanics, SlideSwitches):  # pyright: igno
         """Write the acceleration of the block, from a slope."""
         work = self.workspace()
         self.write_poses(mode, state, work)
-        sway, rise = self.centre_acceleration(mode, state, slope)
-        work[at.ACCELERATION_X], work[at.ACCELERATION_Y] = sway, rise
+        horizontal, rise = self.centre_acceleration(mode, state, slope)
+        work[at.ACCELERATION_X], work[at.ACCELERATION_Y] = horizontal, rise
         work[at.ANGULAR_ACCELERATION] = slope[ROTATION]
 
     @inlined
@@ -205,68 +206,67 @@ class TiedSlideRock(TiedNumbers, LinkMechanics, SlideSwitches):  # pyright: igno
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> Vector:
         """Write motion, reactions and slip of the block, and its displacement for links."""
-        # links without force are observed, too
+        # links without a force have columns, too
         self.write_kinematics_and_poses(mode, state, self.workspace())
         out = self.column_workspace()
         put(self.columns_under(mode, state, slope, self.loads(mode, state, ground)), 0, out)
         return out
 
 
-def tied_slide_rock(bare: SlideRock, ties: Sequence[ChainLink], *, mass: float) -> ContactModel:
+def tied_slide_rock(block: SlideRock, ties: Sequence[ChainLink], *, mass: float) -> ContactModel:
     """Assemble the model of a block that slides and rocks with links, from its mass [kg]."""
-    alone = slide_rock(bare, mass=mass)
+    untied = slide_rock(block, mass=mass)
     law, rows = link_law_and_rows(ties, MODES, 1)
     filled = np.concatenate([np.zeros(BODY_STRIDE), *rows])
     system: TiedSlideRock = with_workspace(
-        TiedSlideRock(*bare, 1, len(ties), 0.0, law, filled), filled
+        TiedSlideRock(*block, 1, len(ties), 0.0, law, filled), filled
     )
     each = [system.law_of(system.row_of_link(i)) for i in range(len(ties))]
     system = system._replace(begins_idle=float(all(one.idles(0) for one in each)))
-    upright, at_rest, _ = alone.initial(Start())
-    none = np.zeros(system.variables())
-    system.store_rest_energies(
-        system.start_links(upright, state := np.append(at_rest, none)), state
-    )
+    upright, at_rest, _ = untied.initial(Start())
+    link_variables = np.zeros(system.variables())
+    state_at_rest = np.append(at_rest, link_variables)
+    system.store_rest_energies(system.start_links(upright, state_at_rest), state_at_rest)
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:
-        mode, state, memory = alone.initial(start)
-        state = np.append(state, none)
+        mode, state, memory = untied.initial(start)
+        state = np.append(state, link_variables)
         return system.start_links(mode, state), state, np.append(memory, 0.0)
 
-    frequency, damping = fastest_pull(bare, ties)
-    own_tolerance = alone.guard_tolerance.copy()
-    forces = own_tolerance[PRESSING:]
-    own_tolerance[PRESSING:] = np.maximum(forces, link_force_rounding(ties) / bare.gravity)
-    tied, own = visible_links(ties), alone.columns
-    if bare.static == math.inf:  # no columns of slip where there cannot be any
+    frequency, damping = link_bounds(block, ties)
+    block_tolerance = untied.guard_tolerance.copy()
+    forces = block_tolerance[NORMAL_FORCE:]
+    block_tolerance[NORMAL_FORCE:] = np.maximum(forces, link_force_rounding(ties) / block.gravity)
+    shown, own = visible_links(ties), untied.columns
+    if block.static == math.inf:  # no columns of slip where there cannot be any
         own = tuple(
             replace(one, name=f"unused_{one.name}") if one.name in SLIP_COLUMNS else one
             for one in own
         )
     return replace(
-        alone,
+        untied,
         system=system,
-        scales=np.append(alone.scales, link_scales(system, ties)),
-        guard_tolerance=np.concatenate([own_tolerance, *map(link_guard_tolerance, ties)]),
-        columns=(*own, *link_columns(len(ties), tied)),
-        memory=(*alone.memory, "link_of_event"),
-        links=tied,
+        scales=np.append(untied.scales, link_scales(system, ties)),
+        guard_tolerance=np.concatenate([block_tolerance, *map(link_guard_tolerance, ties)]),
+        columns=(*own, *link_columns(len(ties), shown)),
+        memory=(*untied.memory, "link_of_event"),
+        links=shown,
         selects=True,
-        fastest_frequency=math.hypot(alone.fastest_frequency, frequency),
+        fastest_frequency=math.hypot(untied.fastest_frequency, frequency),
         damping_rate=damping,
         initial=initial,
     )
 
 
-def fastest_pull(bare: SlideRock, ties: Sequence[ChainLink]) -> tuple[float, float]:
+def link_bounds(block: SlideRock, ties: Sequence[ChainLink]) -> tuple[float, float]:
     """Return bounds of angular frequency and damping rate of a block that links alone hold."""
     stiffness, damping = np.zeros((3, 3)), np.zeros((3, 3))
     for tie in ties:
         sign = 1.0 if tie.on == 0 else -1.0
         x, y = tie.on_point if tie.on == 0 else tie.to_point
-        way = sign * np.array([[1.0, 0.0, y], [0.0, 1.0, -x]])
-        stiffness += tie.numbers.stiffness * way.T @ way
-        damping += tie.numbers.damping * way.T @ way
-    root = np.diag([1.0, 1.0, math.sqrt(bare.inertia)])
-    most, slowed = (greatest_share(one, root) for one in (stiffness, damping))
-    return math.sqrt(max(most, 0.0)), max(slowed, 0.0)
+        jacobian = sign * np.array([[1.0, 0.0, y], [0.0, 1.0, -x]])
+        stiffness += tie.numbers.stiffness * jacobian.T @ jacobian
+        damping += tie.numbers.damping * jacobian.T @ jacobian
+    root = np.diag([1.0, 1.0, math.sqrt(block.inertia)])
+    fastest, damped = (greatest_eigenvalue(one, root) for one in (stiffness, damping))
+    return math.sqrt(max(fastest, 0.0)), max(damped, 0.0)

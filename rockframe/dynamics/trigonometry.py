@@ -15,11 +15,11 @@ S1, S2, S3, S4, S5, S6, S7, S8, S9 = _SINE[1:]
 C1, C2, C3, C4, C5, C6, C7, C8, C9, C10 = _COSINE[1:]
 
 QUARTER_TURN: Final = 0.5 * math.pi
-PER_HALF_TURN: Final = 1.0 / math.pi
+HALF_TURNS_PER_RADIAN: Final = 1.0 / math.pi
 HALF_TURN: Final = math.pi
-REST_OF_HALF_TURN: Final = 1.2246467991473532e-16  # pi less its double, sin(math.pi)
-TO_WHOLE: Final = 6755399441055744.0
-"""1.5 * 2^52: adding and subtracting it rounds a number to an integer."""
+PI_REMAINDER: Final = 1.2246467991473532e-16  # pi less its double, sin(math.pi)
+INTEGER_SHIFT: Final = 6755399441055744.0
+"""1.5 * 2^52: adding and then subtracting it rounds a number to an integer."""
 
 
 @inlined
@@ -30,10 +30,10 @@ def sine_cosine(angle: float) -> tuple[float, float]:
     """
     sign, x = 1.0, angle
     if abs(angle) > QUARTER_TURN:
-        turns = (angle * PER_HALF_TURN + TO_WHOLE) - TO_WHOLE
-        half = (0.5 * turns + TO_WHOLE) - TO_WHOLE
-        sign = 1.0 - 2.0 * abs(turns - 2.0 * half)
-        x = (angle - turns * HALF_TURN) - turns * REST_OF_HALF_TURN
+        half_turns = (angle * HALF_TURNS_PER_RADIAN + INTEGER_SHIFT) - INTEGER_SHIFT
+        whole_turns = (0.5 * half_turns + INTEGER_SHIFT) - INTEGER_SHIFT
+        sign = 1.0 - 2.0 * abs(half_turns - 2.0 * whole_turns)
+        x = (angle - half_turns * HALF_TURN) - half_turns * PI_REMAINDER
     z = x * x
     w = z * z
     v = w * w

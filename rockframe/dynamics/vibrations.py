@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from rockframe.compiled import Matrix
-from rockframe.dynamics.alone import rocking_rate
 from rockframe.dynamics.base_numbers import BaseNumbers
 from rockframe.dynamics.bed import Rigid
 from rockframe.dynamics.body import Body
+from rockframe.dynamics.single_body import rocking_rate
 
 if TYPE_CHECKING:
     from rockframe.dynamics.chain.link_rows import ChainLink
@@ -23,7 +23,7 @@ class ChainBody(NamedTuple):
     base: BaseNumbers
     mass: float  # over the reference mass [1]
     top: float  # height of the body's top above its centre of mass [m]
-    beside: float  # its centre of mass to the right of that of the body below, upright [m]
+    offset: float  # its centre of mass to the right of that of the body below, upright [m]
 
 
 def is_rigid(base: BaseNumbers) -> bool:
@@ -31,52 +31,52 @@ def is_rigid(base: BaseNumbers) -> bool:
     return isinstance(base.law, Rigid)
 
 
-def per_own_mass(link: ChainBody) -> Body:
+def per_own_mass(one: ChainBody) -> Body:
     """Return the body per unit of its own mass."""
-    return link.body._replace(inertia=link.body.inertia / link.mass)
+    return one.body._replace(inertia=one.body.inertia / one.mass)
 
 
 def fastest_vibration(
-    links: Sequence[ChainBody], ties: Sequence["ChainLink"] = ()
+    bodies: Sequence[ChainBody], ties: Sequence["ChainLink"] = ()
 ) -> tuple[float, float]:
     """Return upper bounds of angular frequency and damping rate, whichever bodies fly [s^-1].
 
     Neither gravity nor a loss of contact makes a vibration faster.
     """
     fastest = damping = 0.0
-    for first in range(len(links)):
-        some = links[first:]
-        pulled, slowed = _of_ties(some, ties, first)
-        root, stiffness, damped = small_motion_matrices(some)
-        fastest = max(fastest, greatest_share(stiffness + pulled, root))
-        damping = max(damping, greatest_share(damped + slowed, root))
+    for first in range(len(bodies)):
+        moving = bodies[first:]
+        link_stiffness, link_damping = _link_matrices(moving, ties, first)
+        root, stiffness, base_damping = upright_matrices(moving)
+        fastest = max(fastest, greatest_eigenvalue(stiffness + link_stiffness, root))
+        damping = max(damping, greatest_eigenvalue(base_damping + link_damping, root))
     # a body at rest on a rigid base makes no vibration faster; a rocking one has a rate of its own
-    rocking = sum(rocking_rate(per_own_mass(one)) ** 2 for one in links if is_rigid(one.base))
+    rocking = sum(rocking_rate(per_own_mass(one)) ** 2 for one in bodies if is_rigid(one.base))
     return math.sqrt(max(fastest, rocking)), damping
 
 
-def _of_ties(
-    links: Sequence[ChainBody], ties: Sequence["ChainLink"], first: int
+def _link_matrices(
+    bodies: Sequence[ChainBody], ties: Sequence["ChainLink"], first: int
 ) -> tuple[Matrix, Matrix]:
     """Return bounds of the stiffness and damping of links, whatever their directions.
 
     Bodies before number `first` do not move.
     """
-    size = 2 * len(links)
+    size = 2 * len(bodies)
     stiffness, damping = np.zeros((size, size)), np.zeros((size, size))
-    x, y, turn = small_ways(links)
+    x, y, rotation = upright_jacobians(bodies)
     for tie in ties:
-        way = np.zeros((2, size))
+        jacobian = np.zeros((2, size))
         for k, point, sign in ((tie.on, tie.on_point, 1.0), (tie.to, tie.to_point, -1.0)):
             if k >= first:
-                way[0] += sign * (x[k - first] + point[1] * turn[k - first])
-                way[1] += sign * (y[k - first] - point[0] * turn[k - first])
-        stiffness += tie.numbers.stiffness * way.T @ way
-        damping += tie.numbers.damping * way.T @ way
+                jacobian[0] += sign * (x[k - first] + point[1] * rotation[k - first])
+                jacobian[1] += sign * (y[k - first] - point[0] * rotation[k - first])
+        stiffness += tie.numbers.stiffness * jacobian.T @ jacobian
+        damping += tie.numbers.damping * jacobian.T @ jacobian
     return stiffness, damping
 
 
-def greatest_share(matrix: Matrix, root: Matrix) -> float:
+def greatest_eigenvalue(matrix: Matrix, root: Matrix) -> float:
     """Return the greatest eigenvalue of a matrix relative to the mass matrix R^T R, R the `root`.
 
     With very unlike masses the mass matrix may be singular within rounding; its root is not.
@@ -85,38 +85,38 @@ def greatest_share(matrix: Matrix, root: Matrix) -> float:
     return float(np.linalg.eigvalsh(inverse.T @ matrix @ inverse).max())
 
 
-def small_motion_matrices(links: Sequence[ChainBody]) -> tuple[Matrix, Matrix, Matrix]:
+def upright_matrices(bodies: Sequence[ChainBody]) -> tuple[Matrix, Matrix, Matrix]:
     """Return root of the masses, stiffness of the bases and damping of small motion, upright.
 
     In the order of rotation and height of each body relative to what it stands on, from the top
     down.
     """
-    x, y, turn = small_ways(links)
-    root = np.sqrt([one.mass for one in links])[:, None]
-    gyration = np.sqrt([one.body.inertia for one in links])[:, None]
+    x, y, rotation = upright_jacobians(bodies)
+    root = np.sqrt([one.mass for one in bodies])[:, None]
+    gyration = np.sqrt([one.body.inertia for one in bodies])[:, None]
     springs = np.array([
-        each for one in links
+        each for one in bodies
         for each in (one.base.rotational_stiffness, one.base.vertical_stiffness)
     ])  # fmt: skip
-    times = np.repeat([one.base.damping_time for one in links], 2)
-    rows = np.concatenate([root * x, root * y, gyration * turn])
+    times = np.repeat([one.base.damping_time for one in bodies], 2)
+    rows = np.concatenate([root * x, root * y, gyration * rotation])
     return np.linalg.qr(rows).R, np.diag(springs), np.diag(springs * times)
 
 
-def small_ways(links: Sequence[ChainBody]) -> tuple[Matrix, Matrix, Matrix]:
+def upright_jacobians(bodies: Sequence[ChainBody]) -> tuple[Matrix, Matrix, Matrix]:
     """Return derivatives of x, y and rotation of each body by all coordinates, upright."""
-    count = len(links)
-    x, y, turn = (np.zeros((count, 2 * count)) for _ in range(3))
-    below_x, below_y, below_turn = (np.zeros(2 * count) for _ in range(3))
+    count = len(bodies)
+    x, y, rotation = (np.zeros((count, 2 * count)) for _ in range(3))
+    below_x, below_y, below_rotation = (np.zeros(2 * count) for _ in range(3))
     deck = 0.0
     for k in range(count - 1, -1, -1):
-        one = links[k]
+        one = bodies[k]
         arm = 0.0 if k == count - 1 else deck + one.body.height
-        beside = 0.0 if k == count - 1 else one.beside
+        offset = 0.0 if k == count - 1 else one.offset
         own, up = np.zeros(2 * count), np.zeros(2 * count)
         own[2 * k], up[2 * k + 1] = 1.0, 1.0
-        x[k] = below_x + arm * below_turn + one.body.height * own
-        y[k] = below_y - beside * below_turn + up
-        turn[k] = below_turn + own
-        below_x, below_y, below_turn, deck = x[k], y[k], turn[k], one.top
-    return x, y, turn
+        x[k] = below_x + arm * below_rotation + one.body.height * own
+        y[k] = below_y - offset * below_rotation + up
+        rotation[k] = below_rotation + own
+        below_x, below_y, below_rotation, deck = x[k], y[k], rotation[k], one.top
+    return x, y, rotation

@@ -6,11 +6,11 @@ from typing import Any, Final
 
 from rockframe.arguments import whole_number
 from rockframe.components import InitialState
-from rockframe.dynamics.alone import Alone
 from rockframe.dynamics.body import LEADING_CORNER
 from rockframe.dynamics.pads import ElasticPads
 from rockframe.dynamics.protocol import Ending
 from rockframe.dynamics.rigid_ground import BlockOnRigidGround
+from rockframe.dynamics.single_body import SingleBody
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
 from rockframe.proof.verdict import EXACT, Proof, Tolerances
@@ -255,7 +255,7 @@ def proof_of(
         faults.append("proofs are of reaching the overturning angle; leave out overturning")
     if motion is None:
         faults.append("there is no motion")
-    if isinstance(model.system, Alone) and (within.scale or within.angle):
+    if isinstance(model.system, SingleBody) and (within.scale or within.angle):
         faults.append("proofs on pads are of exact scales and angles")
     if not within.scale < scale:
         faults.append(f"scale_tolerance must be below the scale, {scale:g}, got {within.scale:g}")
@@ -275,7 +275,7 @@ def proof_of(
         "gravity": system.options.gravity,
         "start": _start_in_words(plan.initial),
     }
-    if isinstance(law, Alone):
+    if isinstance(law, SingleBody):
         from rockframe.proof.pads.verdict import prove_pads
 
         found = prove_pads(law, mode, state, motion.si, slope, limits, scale=scale, within=within)
@@ -310,7 +310,7 @@ def _faults(system: Assembly) -> list[str]:
         if law.wall != 0.0:
             faults.append("proofs are of a Block that rocks to both sides, without a RearWall")
         return faults
-    if not isinstance(law, Alone) or not isinstance(law.part.base, ElasticPads):
+    if not isinstance(law, SingleBody) or not isinstance(law.part.base, ElasticPads):
         return [
             "proofs are of a Block on rigid ground, or on a TwoSpringSupport without friction, "
             "with nothing tied to it"

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from rockframe.dynamics.alone import alone
 from rockframe.dynamics.protocol import ContactModel, Ending
+from rockframe.dynamics.single_body import single_body
 from rockframe.errors import AssemblyError
 from rockframe.many import isnan
 from rockframe.system.fitting import BaseFriction
@@ -46,7 +46,7 @@ class AloneSetting(Setting):
     def contact_model(self) -> ContactModel:
         """Return the equations of a body on its base."""
         body, base = self.load.rigid_body, self.support.base_numbers
-        return alone(self.model, body, base, self.body.mass, self.rest_rotation)
+        return single_body(self.model, body, base, self.body.mass, self.rest_rotation)
 
     @cached_property
     def rest_rotation(self) -> float:

@@ -10,9 +10,9 @@ import numpy as np
 from rockframe.components import Component
 from rockframe.components.bases import CushionCapSI
 from rockframe.components.block_numbers import BlockSI, BodyGeometry, greatest_restitutions
-from rockframe.dynamics.alone import rigid_body
 from rockframe.dynamics.body import Body
 from rockframe.dynamics.chain.link_rows import LINK_MOMENT
+from rockframe.dynamics.single_body import rigid_body
 from rockframe.many import Many, atan2, tan
 from rockframe.signals.arrays import Array
 from rockframe.system.options import RESTRAINT_CODES, Options

@@ -91,7 +91,7 @@ class RearWallSetting(RigidGroundSetting):
         model = super().contact_model()
         share = self.body.centre_height / self.height
         system = model.system._replace(  # type: ignore[attr-defined]
-            wall=-self.direction, rebound=self.rebound, wall_share=share
+            wall=-self.direction, wall_restitution=self.rebound, wall_share=share
         )
         return replace(model, system=system)
 

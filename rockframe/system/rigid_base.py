@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 
 from rockframe.dynamics.base_numbers import BaseNumbers, rigid_numbers
 from rockframe.dynamics.body import Body
-from rockframe.dynamics.equilibrium import Balance, Path
-from rockframe.dynamics.standing import Stand
-from rockframe.dynamics.tied import Tied, at_rest, rocked
+from rockframe.dynamics.body_statics import Pose
+from rockframe.dynamics.equilibrium import ChainEquilibrium, EquilibriumPath
+from rockframe.dynamics.link_statics import LinkForce, links_at_rest, links_of_rocking_bodies
 from rockframe.system.statics import Statics, work_against
 from rockframe.system.support import BaseWords, StandingBodies, Support
 from rockframe.system.words import uplift_words
@@ -77,7 +77,7 @@ class Pressed(NamedTuple):
         return -self.to_left <= couple <= self.to_right
 
 
-def pressed(setting: "StackSetting", k: int, tied: Sequence[Tied]) -> Pressed:
+def pressed(setting: "StackSetting", k: int, tied: Sequence[LinkForce]) -> Pressed:
     """Return the load on the rigid base under body `k`, :eq:`eq-link-rest`.
 
     It carries all bodies above it, and the forces of links on them in the upright position.
@@ -111,7 +111,7 @@ class Lifting(NamedTuple):
         return f"{left} to the right, which tips it to the left, or {right} to the left"
 
 
-def lifting(setting: "StackSetting", k: int, tied: Sequence[Tied]) -> Lifting:
+def lifting(setting: "StackSetting", k: int, tied: Sequence[LinkForce]) -> Lifting:
     """Return what lifts a corner of the rigid base under body `k`, with link forces at rest.
 
     Without links it is :eq:`eq-rigid-together`, and the friction b/h.
@@ -122,7 +122,9 @@ def lifting(setting: "StackSetting", k: int, tied: Sequence[Tied]) -> Lifting:
     return Lifting(shears[0] / body.mass, shears[1] / body.mass, needed / carried.force)
 
 
-def rocking_moment(setting: "StackSetting", k: int, rotation: float) -> tuple[float, list[Tied]]:
+def rocking_moment(
+    setting: "StackSetting", k: int, rotation: float
+) -> tuple[float, list[LinkForce]]:
     """Return the restoring moment [N m] of all above base `k`, rotated as one, and its ties."""
     load, (middle, foot) = setting.bases[k].load, setting.base_of(k)
     side, half = (1.0, load.body.right) if rotation > 0.0 else (-1.0, load.body.left)
@@ -130,7 +132,7 @@ def rocking_moment(setting: "StackSetting", k: int, rotation: float) -> tuple[fl
     arm = half * (1.0 - versine) - load.body.centre_height * sine
     ends = [one.ends for one in setting.ties]
     pivot = (middle + side * load.body.half_width, foot)
-    tied = rocked(setting.chain_ties, ends, k, pivot, rotation)
+    tied = links_of_rocking_bodies(setting.chain_ties, ends, k, pivot, rotation)
     pull = sum(float(one.loads[0]) for one in tied)
     return side * load.weight * arm - setting.body.mass * pull, tied
 
@@ -148,7 +150,7 @@ def rocked_statics(setting: "StackSetting", rotation: float) -> Statics:
     """Return the equilibrium on rigid bases only: everything above the weakest one rocks."""
     right, mass = rotation > 0.0, setting.body.mass
     side = 1.0 if right else -1.0
-    tied = at_rest(setting.chain_ties)
+    tied = links_at_rest(setting.chain_ties)
     capacities = [
         of.to_right if right else of.to_left
         for of in (pressed(setting, j, tied) for j in range(len(setting.bases)))
@@ -174,7 +176,7 @@ def rocked_statics(setting: "StackSetting", rotation: float) -> Statics:
     for one, pull in zip(setting.ties, tied, strict=True):  # ties to the ground act from outside
         if one.to < 0:
             x, y = -mass * pull.force * pull.direction
-            across, up = one.ends[0] + pull.moved
+            across, up = one.ends[0] + pull.displacement
             base_moment += x * up - y * across
             down -= y
     alone = len(setting.bodies) == 1
@@ -206,11 +208,11 @@ def beyond_lift(
                 if lifted is None:
                     before, found[i] = rotations[i], closed[i]
                     continue
-                path = Path(lifted.rotation, lifted.place)
+                path = EquilibriumPath(lifted.rotation, lifted.place)
             if path is None:
                 break
-            path, stands = lifted.bodies.chain.held(path, rotations[i])
-            found[i] = None if stands is None else lifted.bodies.statics_of(stands)
+            path, poses = lifted.bodies.chain.held_at(path, rotations[i])
+            found[i] = None if poses is None else lifted.bodies.statics_of(poses)
     return found
 
 
@@ -219,7 +221,7 @@ class _Lift(NamedTuple):
 
     bodies: StandingBodies  # all bodies, those above the base on its other corner
     rotation: float  # rotation of the highest body [rad]
-    place: Balance  # equilibrium of the bodies
+    place: ChainEquilibrium  # equilibrium of the bodies
 
 
 def _first_lift(joints: "Sequence[_Joint]", before: float, rotation: float) -> _Lift | None:
@@ -253,24 +255,24 @@ class _Joint:
         self.bodies = setting.standing_in(whole, k, side)
         self.side = side
 
-    def rotations(self, stands: Sequence[Stand]) -> list[float]:
+    def rotations(self, poses: Sequence[Pose]) -> list[float]:
         """Return the rotations of all bodies on their bases; 0 for the body on this base."""
-        found = [one.state.rotation for one in stands]
+        found = [one.state.rotation for one in poses]
         return [*found[: self.place], 0.0, *found[self.place :]]
 
-    def lifted_from(self, rotation: float) -> Balance:
+    def lifted_from(self, rotation: float) -> ChainEquilibrium:
         """Return the equilibrium in which the corner lifts."""
-        chain, (stands,) = self.bodies.chain, self.closed.curve([rotation])
-        found = chain.settled(self.rotations(stands or [])) or []
-        return Balance.of(chain, found)
+        chain, (poses,) = self.bodies.chain, self.closed.curve([rotation])
+        found = chain.poses_at(self.rotations(poses or [])) or []
+        return ChainEquilibrium.from_poses(chain, found)
 
     def spare(self, rotation: float) -> float:
         """Return how much the couple that holds the highest body lacks to lift a corner."""
-        (stands,) = self.closed.curve([rotation])
-        if stands is None:
+        (poses,) = self.closed.curve([rotation])
+        if poses is None:
             return math.inf  # there is no equilibrium with this joint closed
-        here = self.bodies.chain.settled(self.rotations(stands))
+        here = self.bodies.chain.poses_at(self.rotations(poses))
         if here is None:
             return math.inf
         lifts = self.bodies.chain.moments(here)[self.place]
-        return self.side * (self.closed.moments(stands)[0] - lifts)
+        return self.side * (self.closed.moments(poses)[0] - lifts)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from rockframe.dynamics.protocol import ContactModel
-from rockframe.dynamics.rigid_ground import corner_of, rigid_ground
+from rockframe.dynamics.rigid_ground import rigid_ground, rocking_corner
 from rockframe.errors import AssemblyError
 from rockframe.many import atan, cos, hypot, sin, sqrt, tan
 from rockframe.system.bodies import ROUNDING, Restitutions, restitution_cautions
@@ -98,7 +98,7 @@ class RigidGroundSetting(Setting):
         """Return Housner's equations."""
         body, small = self.body, self.options.small
         left, right = (
-            corner_of(
+            rocking_corner(
                 distance=distance,
                 height=body.centre_height,
                 inertia=body.gyration_square_about(distance),

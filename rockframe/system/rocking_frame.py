@@ -147,10 +147,12 @@ class TiedFrameSetting(RockingFrameSetting):
 
     def contact_model(self) -> ContactModel:
         """Return the equations of the columns and their tendons."""
-        from rockframe.dynamics.tendons import tied_frame
+        from rockframe.dynamics.tendons import frame_with_tendons
 
         half, columns = self.frame.column.half_width, self.frame.columns
-        return tied_frame(super().contact_model(), self.laws, half_width=half, columns=columns)
+        return frame_with_tendons(
+            super().contact_model(), self.laws, half_width=half, columns=columns
+        )
 
     def forces(self, rotation: float) -> list[float]:
         """Return the force of each tendon, :eq:`eq-rocking-frame-tendon` [N]."""

@@ -151,16 +151,16 @@ def slips_on_ground(ending: Ending) -> SlipRange:
     """Return how far a block slipped on rigid ground."""
     from rockframe.dynamics.slide_motion import (
         BEARINGS,
-        FLIES_RIGHT,
+        FLIGHT_RIGHT,
         PEAK_LEFT,
         PEAK_RIGHT,
         SLIP,
-        SLIPS,
+        SLIP_STATES,
     )
 
     residual = python_number(ending.state[SLIP])
     left, right = python_number(ending.memory[PEAK_LEFT]), python_number(ending.memory[PEAK_RIGHT])
-    if ending.mode // SLIPS % BEARINGS < FLIES_RIGHT:
+    if ending.mode // SLIP_STATES % BEARINGS < FLIGHT_RIGHT:
         left, right = largest(left, -residual), largest(right, residual)
     return SlipRange(residual, left, right)
 

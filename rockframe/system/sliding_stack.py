@@ -6,7 +6,7 @@ from typing import Any, Final
 
 from rockframe.components import Component, RigidGround, Tendon, TwoSpringSupport
 from rockframe.components.bases import Impact
-from rockframe.dynamics.protocol import MOST_MODES, ContactModel, Ending
+from rockframe.dynamics.protocol import MAX_MODES, ContactModel, Ending
 from rockframe.errors import AssemblyError
 from rockframe.system.fitting import HELD, SMALL_SLIDING, BaseFriction, friction_under
 from rockframe.system.options import Sliding
@@ -126,10 +126,10 @@ def _refuse_many_modes(bases: Sequence[Component], slips: bool) -> None:
         else:
             modes = PAD_MODES if isinstance(base, TwoSpringSupport) else BED_MODES
         count *= 2 * modes if slips else modes
-    if count > MOST_MODES:
+    if count > MAX_MODES:
         raise AssemblyError([
             f"the contacts of {len(bases)} bodies on these bases have {count:.2g} combinations, "
-            f"more than the {MOST_MODES:.2g} that can be numbered: give fewer bodies, or rigid "
+            f"more than the {MAX_MODES:.2g} that can be numbered: give fewer bodies, or rigid "
             "joints"
         ])  # fmt: skip
 

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any, Final
 from rockframe.components import Component, Link, Load, Tendon
 from rockframe.components.block_numbers import BlockSI
 from rockframe.dynamics.base_numbers import BaseNumbers
+from rockframe.dynamics.body_statics import Pose, StandingBody, standing_body
 from rockframe.dynamics.chain.link_rows import ChainLink
-from rockframe.dynamics.on_base import OnBase
+from rockframe.dynamics.link_statics import LinkForce, links_at_rest
+from rockframe.dynamics.on_base import BodyOnBase
 from rockframe.dynamics.protocol import ContactModel
-from rockframe.dynamics.standing import Stand, StandingBody, standing_body
 from rockframe.dynamics.statics import StandingChain
-from rockframe.dynamics.tied import Tied, at_rest
 from rockframe.dynamics.vibrations import ChainBody
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import (
@@ -233,7 +233,7 @@ class StackSetting(Setting):
             law = BaseLoad(body, self.options).law(mass)
             carried = math.fsum(one.mass for one in self.bodies[: lowest + 1])
             numbers.append(self.bases[lowest].law(law, mass, carried))
-            part = OnBase(law, numbers[-1].law)
+            part = BodyOnBase(law, numbers[-1].law)
             link = standing_body(part, body.mass / mass, height - body.centre_height, beside)
             if lowest == lifted:
                 small = min(one.settlement for one in self.standing.chain.bodies)
@@ -271,7 +271,7 @@ class StackSetting(Setting):
         )
 
     @cached_property
-    def _rest(self) -> list[Stand]:
+    def _rest(self) -> list[Pose]:
         found = self.standing.rest if self.groups else []
         if found is None:
             raise AssemblyError([NO_REST + (PULLED if self.ties else "")])
@@ -291,12 +291,12 @@ class StackSetting(Setting):
         from rockframe.dynamics.chain.model import AtRest
 
         placed = [AtRest(0.0, 0.0) for _ in self.bodies]
-        for some, stand in zip(self.groups, self._rest, strict=True):
-            lowest, rotation, vertical = some[-1], stand.state.rotation, stand.state.vertical
+        for some, pose in zip(self.groups, self._rest, strict=True):
+            lowest, rotation, vertical = some[-1], pose.state.rotation, pose.state.vertical
             if len(some) > 1:  # from the joined body's centre of mass to that of the lowest one
                 body = self.links[lowest].body
                 attitude = body.attitude(rotation)
-                vertical = stand.line.left - attitude.rise - body.left * attitude.sine
+                vertical = pose.line.left - attitude.rise - body.left * attitude.sine
             placed[lowest] = AtRest(rotation, vertical)
         return placed
 
@@ -383,11 +383,11 @@ class StackSetting(Setting):
         }
 
     @cached_property
-    def _tied_at_rest(self) -> list[Tied]:
+    def _tied_at_rest(self) -> list[LinkForce]:
         """Elongations and forces of the ties at rest."""
         if not self.groups:
-            return at_rest(self.chain_ties)
-        return self.standing.chain.tied(self.standing.rest or [])
+            return links_at_rest(self.chain_ties)
+        return self.standing.chain.link_forces(self.standing.rest or [])
 
     def contact_model(self) -> ContactModel:
         """Return the equations of stacked bodies."""
@@ -403,10 +403,10 @@ class StackSetting(Setting):
 
     def _held_height(self, rotation: float) -> float:
         """Return the height at which a single body with ties starts at a rotation [m]."""
-        stands = self.standing.chain.settled([rotation])
-        if stands is None:
+        poses = self.standing.chain.poses_at([rotation])
+        if poses is None:
             raise AssemblyError([NO_REST + PULLED])
-        return stands[0].state.vertical
+        return poses[0].state.vertical
 
 
 def combined_body(

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from rockframe.dynamics.alone import eccentricity_of
-from rockframe.dynamics.on_base import OnBase
+from rockframe.dynamics.body_statics import Pose, standing_body
+from rockframe.dynamics.on_base import BodyOnBase
 from rockframe.dynamics.protocol import ContactModel, Ending
-from rockframe.dynamics.standing import Stand, standing_body
+from rockframe.dynamics.single_body import eccentricity_of
 from rockframe.dynamics.statics import StandingChain
 from rockframe.dynamics.vibrations import ChainBody
 from rockframe.errors import AssemblyError
@@ -84,7 +84,7 @@ class StackedSetting(Setting):
         return SmallMotion(names, *(to_own.T @ matrix @ to_own for matrix in matrices))
 
     @property
-    def _rest(self) -> list[Stand]:
+    def _rest(self) -> list[Pose]:
         """Equilibrium of block and cap at rest; AssemblyError if there is none."""
         found = self._moving.rest
         if found is None:
@@ -98,7 +98,7 @@ class StackedSetting(Setting):
 
         if not self.leans:
             return UPRIGHT
-        block, cap = (stand.state for stand in self._rest)
+        block, cap = (pose.state for pose in self._rest)
         return StackRest(block.rotation, block.vertical, cap.rotation, cap.vertical)
 
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
@@ -119,7 +119,7 @@ class StackedSetting(Setting):
     def _standing(self, cap_mass: float, cap_inertia: float) -> StandingBodies:
         both = self._stack(cap_mass, cap_inertia)
         links = tuple(
-            standing_body(OnBase(one.body, one.base.law), one.mass, one.top, one.beside)
+            standing_body(BodyOnBase(one.body, one.base.law), one.mass, one.top, one.offset)
             for one in both
         )
         chain = StandingChain(links, self.slope.along_gravity)
@@ -280,7 +280,7 @@ class CascadeSetting(StackedSetting):
             self.upper.compile(),
             top=centre + self.cap.half_height,
             cap_centre=centre,
-            beside=body.eccentricity,
+            offset=body.eccentricity,
             rest_rotation=self.lower.rest_rotation,
         )
 

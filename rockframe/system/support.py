@@ -12,11 +12,11 @@ from typing import ClassVar, Final
 
 from rockframe.components import TwoSpringSupport, WinklerSoil
 from rockframe.components.bases import Separation
-from rockframe.dynamics.alone import eccentricity_of
 from rockframe.dynamics.base_numbers import BaseNumbers, bed_numbers, pads_numbers
 from rockframe.dynamics.body import Body
-from rockframe.dynamics.on_base import OnBase
-from rockframe.dynamics.standing import Stand, of_base, standing_body, uplift_rotation
+from rockframe.dynamics.body_statics import Pose, base_derivatives, standing_body, uplift_rotation
+from rockframe.dynamics.on_base import BodyOnBase
+from rockframe.dynamics.single_body import eccentricity_of
 from rockframe.dynamics.statics import StandingChain
 from rockframe.many import sqrt
 from rockframe.signals.arrays import Array
@@ -45,20 +45,20 @@ class StandingBodies:
     bases: tuple[BaseNumbers, ...]  # bases of the bodies, from the top down
 
     @cached_property
-    def rest(self) -> list[Stand] | None:
+    def rest(self) -> list[Pose] | None:
         """Equilibrium of the bodies under their weight; None if there is none."""
         return self.chain.rest()
 
     @cached_property
-    def upright(self) -> list[Stand]:
+    def upright(self) -> list[Pose]:
         """Equilibrium with all bodies held upright."""
-        return self.chain.settled([0.0] * len(self.bases)) or []
+        return self.chain.poses_at([0.0] * len(self.bases)) or []
 
     def held(self, rotations: Sequence[float]) -> list[Statics | None]:
         """Return states with the highest body held at rotations [rad]; None where none exists."""
         curve = self.chain.curve(rotations)
-        found = [None if stands is None else self.statics_of(stands) for stands in curve]
-        least = LEAST * self.chain.bodies[0].allowed_rotation if self.chain.upright else 0.0
+        found = [None if poses is None else self.statics_of(poses) for poses in curve]
+        least = LEAST * self.chain.bodies[0].allowed_rotation if self.chain.rests_upright else 0.0
         for i, (rotation, state) in enumerate(zip(rotations, found, strict=True)):
             if state is not None and abs(rotation) < least:
                 found[i] = self._near_upright(rotation, state)
@@ -75,41 +75,41 @@ class StandingBodies:
             restoring_moment=share * (8.0 * near.restoring_moment - far.restoring_moment),
         )
 
-    def statics_of(self, stands: list[Stand]) -> Statics:
+    def statics_of(self, poses: list[Pose]) -> Statics:
         """Return the quasi-static state of bodies from their equilibrium."""
-        (part, *_), lowest = self.chain.bodies[0], stands[-1]
+        (part, *_), lowest = self.chain.bodies[0], poses[-1]
         body = self.chain.bodies[-1].part.body
         attitude = body.attitude(lowest.state.rotation)
         arm = body.height * attitude.sine + 0.5 * (body.left - body.right) * attitude.cosine
-        held = [part.base.is_held(stands[0].mode.contact, left) for left in (True, False)]
+        held = [part.base.is_held(poses[0].mode.contact, left) for left in (True, False)]
         bears = "full" if all(held) else "left" if held[0] else "right"
         return Statics(
-            vertical_displacement=self.chain.rise(stands),
-            base_moment=self.mass * (lowest.press * arm - lowest.force.moment),
-            restoring_moment=-self.mass * self.chain.moments(stands)[0],
-            contact_state=bears if stands[0].press > 0.0 else "flight",
-            reactions=self.reactions(stands),
+            vertical_displacement=self.chain.rise(poses),
+            base_moment=self.mass * (lowest.normal_force * arm - lowest.force.moment),
+            restoring_moment=-self.mass * self.chain.moments(poses)[0],
+            contact_state=bears if poses[0].normal_force > 0.0 else "flight",
+            reactions=self.reactions(poses),
         )
 
-    def reactions(self, stands: list[Stand]) -> dict[str, float]:
+    def reactions(self, poses: list[Pose]) -> dict[str, float]:
         """Return the columns of the bases in an equilibrium, by the names of the schema."""
         found = dict[str, float]()
-        for standing, stand, numbers in zip(self.chain.bodies, stands, self.bases, strict=True):
+        for standing, pose, numbers in zip(self.chain.bodies, poses, self.bases, strict=True):
             if standing.corner:
                 continue
             base = standing.part.base
-            shown = base.observed(stand.mode.contact, stand.line, stand.own)
+            shown = base.observed(pose.mode.contact, pose.line, pose.own)
             for column, value in zip(numbers.columns, shown, strict=True):
                 found[column.name] = (self.mass if column.per_mass else 1.0) * value
-        if len(stands) > 1:
-            found["cap_rotation"] = stands[-1].state.rotation
+        if len(poses) > 1:
+            found["cap_rotation"] = poses[-1].state.rotation
         return found
 
-    def small_motion(self, stands: list[Stand]) -> tuple[Array, Array, Array]:
+    def small_motion(self, poses: list[Pose]) -> tuple[Array, Array, Array]:
         """Return mass, damping and stiffness matrix about rest, for rotation and height of each."""
-        from rockframe.dynamics.linear import linear
+        from rockframe.dynamics.linearization import linearized_chain
 
-        mass, damping, stiffness = linear(self.chain, stands)
+        mass, damping, stiffness = linearized_chain(self.chain, poses)
         return self.mass * mass, self.mass * damping, self.mass * stiffness
 
 
@@ -220,7 +220,7 @@ class Support(ABC):
     def standing(self) -> StandingBodies:
         """Its body alone on it, by the law."""
         body, numbers = self.load.rigid_body, self.base_numbers
-        link = standing_body(OnBase(body, numbers.law), beside=eccentricity_of(body))
+        link = standing_body(BodyOnBase(body, numbers.law), offset=eccentricity_of(body))
         chain = StandingChain((link,), self.load.options.slope.along_gravity)
         return StandingBodies(chain, self.load.body.mass, (numbers,))
 
@@ -242,7 +242,7 @@ class Support(ABC):
 
     def _slopes(self, name: str) -> tuple[float, float]:
         """Return moment and force against a unit of a coordinate or rate, of the upright body."""
-        return of_base(self.standing.chain.bodies[0], self.standing.upright[0], name)
+        return base_derivatives(self.standing.chain.bodies[0], self.standing.upright[0], name)
 
     def vibrations(self, vertical: str, rocking: str) -> list[tuple[str, str]]:
         """Describe vertical vibration and, on a base stiff enough, rocking, by these titles."""

@@ -6,11 +6,11 @@ import math
 import numpy as np
 import pytest
 
-from rockframe.dynamics.alone import alone, rigid_body
 from rockframe.dynamics.base_numbers import bed_numbers
-from rockframe.dynamics.bed import Bed, Ends, both_contacts, end_of
-from rockframe.dynamics.body import CENTRE, BaseLine, accelerated
+from rockframe.dynamics.bed import Bed, Ends, both_contacts, contact_of_end
+from rockframe.dynamics.body import CENTRE, BaseLine, with_accelerations
 from rockframe.dynamics.protocol import Ground, Start
+from rockframe.dynamics.single_body import rigid_body, single_body
 
 pytestmark = pytest.mark.analytical
 
@@ -44,7 +44,7 @@ def states(count, seed):
 
 def modes(ends):
     """Return the states of the ends that belong to a state of the base."""
-    return end_of(ends.u_left), end_of(ends.u_right)
+    return contact_of_end(ends.u_left), contact_of_end(ends.u_right)
 
 
 def contact_of(ends):
@@ -182,7 +182,7 @@ def body(alpha, y, spin, speed, *, small, damping=45.0, by_pressure=False):
     """Return a model, its state and the mode that belongs to it."""
     block = shape(small=small)
     bed = bed_numbers(block, stiffness=STIFFNESS, damping=damping, by_pressure=by_pressure)
-    model = alone("Winkler", block, bed, mass=1.0)
+    model = single_body("Winkler", block, bed, mass=1.0)
     mode, state, _ = model.initial(Start(alpha, spin, y, speed))
     return model, mode, state
 
@@ -332,7 +332,7 @@ def test_guards_change_as_their_rates_say():
         for left in (True, False):
             now, ahead, behind = (
                 bed.guards_of(
-                    contact, left, accelerated(line_of(moved(t), bed), *accelerations), ()
+                    contact, left, with_accelerations(line_of(moved(t), bed), *accelerations), ()
                 )
                 for t in (0.0, step, -step)
             )

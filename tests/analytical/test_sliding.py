@@ -10,17 +10,17 @@ import rockframe as rf
 from rockframe.dynamics.events import EventKind
 from rockframe.dynamics.protocol import IMPACT_LOSS, LAST_EVENT, Ground
 from rockframe.dynamics.slide_motion import (
-    FLIES_RIGHT,
+    DOF,
+    FLIGHT_RIGHT,
     HELD,
+    NORMAL_FORCE,
     ON_LEFT,
     ON_RIGHT,
-    PRESSING,
-    REMEMBERED,
     ROTATION,
-    SIZE,
+    SLIDE_MEMORY,
     SLIP,
-    SLIPS,
-    TIPS_LEFT,
+    SLIP_STATES,
+    TIPPING_LEFT,
     TO_LEFT,
     TO_RIGHT,
     Loads,
@@ -170,11 +170,11 @@ def test_impacts_after_rocking_about_a_held_corner(slenderness, share, side):
     friction = share * 3.0 * t / (4.0 + t * t)
     block = rf.Block(width="1 m", height=f"{slenderness} m", mass="1 t")
     system = standing(block, friction).assembly.model.system
-    state, memory = np.zeros(2 * SIZE), np.zeros(len(REMEMBERED))
-    state[SIZE + ROTATION] = -0.3 * side
+    state, memory = np.zeros(2 * DOF), np.zeros(len(SLIDE_MEMORY))
+    state[DOF + ROTATION] = -0.3 * side
     corner, other = (1, 2) if side > 0.0 else (2, 1)
-    mode = system.roll_over(SLIPS * corner, state, Ground(0.0, 0.0), memory)
-    rate, slip = state[SIZE + ROTATION], state[SIZE + SLIP]
+    mode = system.rock_over(SLIP_STATES * corner, state, Ground(0.0, 0.0), memory)
+    rate, slip = state[DOF + ROTATION], state[DOF + SLIP]
     if share > 1.0:
         assert rate == pytest.approx(-0.3 * side * block.maximum_restitution, rel=1e-12)
         assert slip == 0.0
@@ -184,7 +184,7 @@ def test_impacts_after_rocking_about_a_held_corner(slenderness, share, side):
         slips = 2.0 * t * (3.0 * t - 4.0 * friction - friction * t * t) / under
         assert rate == pytest.approx(-0.3 * side * after, rel=1e-12)
         assert slip == pytest.approx(-0.3 * side * slips * 0.5 * slenderness, rel=1e-9)
-    assert mode // SLIPS == other
+    assert mode // SLIP_STATES == other
     assert memory[IMPACT_LOSS] > 0.0
 
 
@@ -197,7 +197,7 @@ def test_a_slip_that_ends_within_an_impact_turns_round_or_sticks():
         friction, slip, sinking = rng.uniform(0.02, 0.5), rng.uniform(-0.3, 0.3), -rng.uniform(0, 1)
         one = system._replace(impulsive=friction)
         beside, above = rng.choice([-0.5, 0.5]), 2.0
-        along, normal = one.strike(beside, above, 1.0, slip, sinking)
+        along, normal = one.impact_impulses(beside, above, 1.0, slip, sinking)
         u, n, x, y, start = slip, sinking, 0.0, 0.0, math.copysign(1.0, slip)
         part = normal / 20000.0
         while n < 0.0:
@@ -215,10 +215,10 @@ def test_a_slip_that_ends_within_an_impact_turns_round_or_sticks():
 def test_impacts_that_stick_are_housners_whatever_the_friction():
     ground = rf.RigidGround(friction=0.05, impact="stick")
     system = rf.System(SLENDER, ground).assembly.model.system
-    state, memory = np.zeros(2 * SIZE), np.zeros(len(REMEMBERED))
-    state[SIZE + ROTATION] = -0.3
-    system.roll_over(SLIPS, state, Ground(0.0, 0.0), memory)
-    assert state[SIZE + ROTATION] == pytest.approx(-0.3 * SLENDER.maximum_restitution, rel=1e-12)
+    state, memory = np.zeros(2 * DOF), np.zeros(len(SLIDE_MEMORY))
+    state[DOF + ROTATION] = -0.3
+    system.rock_over(SLIP_STATES, state, Ground(0.0, 0.0), memory)
+    assert state[DOF + ROTATION] == pytest.approx(-0.3 * SLENDER.maximum_restitution, rel=1e-12)
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
@@ -226,11 +226,13 @@ def test_a_slip_tips_where_its_guard_says_so_though_rounding_says_no(side):
     """Of kinetic friction b/h the centre of pressure is on the corner, to rounding."""
     system = standing(SLENDER, 0.9, 0.25).assembly.model.system
     system = system._replace(kinetic=system.kinetic * (1.0 - 1e-15))
-    state, memory = np.zeros(2 * SIZE), np.zeros(len(REMEMBERED))
-    state[SIZE + SLIP] = 0.1 * side
+    state, memory = np.zeros(2 * DOF), np.zeros(len(SLIDE_MEMORY))
+    state[DOF + SLIP] = 0.1 * side
     slips = TO_RIGHT if side > 0.0 else TO_LEFT
-    guard, corner = (PRESSING, ON_RIGHT) if side > 0.0 else (TIPS_LEFT, ON_LEFT)
-    assert system.switch(slips, guard, state, Ground(0.0, 0.0), memory) == SLIPS * corner + slips
+    guard, corner = (NORMAL_FORCE, ON_RIGHT) if side > 0.0 else (TIPPING_LEFT, ON_LEFT)
+    assert (
+        system.switch(slips, guard, state, Ground(0.0, 0.0), memory) == SLIP_STATES * corner + slips
+    )
 
 
 @pytest.mark.parametrize("slips", [HELD, TO_RIGHT, TO_LEFT])
@@ -239,17 +241,17 @@ def test_a_corner_parts_whatever_rounding_leaves_of_its_force(slips):
     friction = math.inf if slips == HELD else 0.3
     system = standing(SLENDER, 0.3).assembly.model.system
     system = system._replace(static=friction)
-    state, memory = np.zeros(2 * SIZE), np.zeros(len(REMEMBERED))
-    state[ROTATION], state[SIZE + ROTATION] = 0.02, 0.5
-    state[SIZE + SLIP] = {HELD: 0.0, TO_RIGHT: 0.1, TO_LEFT: -0.1}[slips]
-    mode, across = SLIPS * ON_RIGHT + slips, 5.0
+    state, memory = np.zeros(2 * DOF), np.zeros(len(SLIDE_MEMORY))
+    state[ROTATION], state[DOF + ROTATION] = 0.02, 0.5
+    state[DOF + SLIP] = {HELD: 0.0, TO_RIGHT: 0.1, TO_LEFT: -0.1}[slips]
+    mode, across = SLIP_STATES * ON_RIGHT + slips, 5.0
     forces = [
         system.contact(mode, state, Loads(across, weight, 0.0)).normal for weight in (0.0, 1.0)
     ]
     weight = -forces[0] / (forces[1] - forces[0]) + 1e-9
     ground = Ground(across, weight - system.gravity)
     assert 0.0 < system.contact(mode, state, system.loads(mode, state, ground)).normal < 1e-8
-    assert system.switch(mode, PRESSING, state, ground, memory) == SLIPS * FLIES_RIGHT
+    assert system.switch(mode, NORMAL_FORCE, state, ground, memory) == SLIP_STATES * FLIGHT_RIGHT
     assert memory[LAST_EVENT] == EventKind.SEPARATION
 
 

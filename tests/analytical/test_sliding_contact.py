@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from rockframe.dynamics.alone import alone, rigid_body
 from rockframe.dynamics.base_numbers import bed_numbers, pads_numbers
 from rockframe.dynamics.body import CENTRE
 from rockframe.dynamics.events import EventKind
 from rockframe.dynamics.protocol import Start
+from rockframe.dynamics.single_body import rigid_body, single_body
 from rockframe.dynamics.sliding import is_lifted, speed_noise
 from rockframe.signals import Motion
 from rockframe.solve.accuracy import accuracy_of
@@ -52,7 +52,7 @@ def block(half_width, height, restraint):
 
 def on_pads(body, stiffness, damping):
     base = pads_numbers(body, stiffness=stiffness, damping=damping, restitution=(0.9, 0.9))
-    return alone("two-spring", body, base, mass=1.0)
+    return single_body("two-spring", body, base, mass=1.0)
 
 
 def pads(restraint=0):
@@ -62,7 +62,7 @@ def pads(restraint=0):
 def bed(restraint=0):
     body = block(B, H, restraint)
     base = bed_numbers(body, stiffness=K / B, damping=C / B, by_pressure=False)
-    return alone("Winkler", body, base, mass=1.0)
+    return single_body("Winkler", body, base, mass=1.0)
 
 
 def slides(model, modes):

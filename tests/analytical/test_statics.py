@@ -248,9 +248,11 @@ class Held:
         whole = self.state.held_contact_length.item() >= 2.0 * self.setting.cap.half_width
         ends = [int(not whole and self.phi > 0.0), int(not whole and self.phi < 0.0)]
         states = system.states_in(x)
-        block = system.upper.standing(CLEAR * free[0] + CORNER * CLEAR * free[1], states.upper)
-        cap = system.lower.standing(both_contacts(*ends), states.lower)
-        return model, system.with_part(system.upper.number_of(block), LOWER, cap), x
+        block = system.upper.mode_for_contact(
+            CLEAR * free[0] + CORNER * CLEAR * free[1], states.upper
+        )
+        cap = system.lower.mode_for_contact(both_contacts(*ends), states.lower)
+        return model, system.with_body_mode(system.upper.number_of(block), LOWER, cap), x
 
 
 @pytest.mark.parametrize("rule", RULES)

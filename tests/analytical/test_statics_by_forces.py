@@ -10,16 +10,21 @@ from scipy.optimize import minimize
 
 import rockframe as rf
 from rockframe import extension as ext
-from rockframe.dynamics.alone import eccentricity_of, rigid_body, starting_state
 from rockframe.dynamics.base_numbers import bed_numbers, pads_numbers
 from rockframe.dynamics.body import CENTRE, BodyState
+from rockframe.dynamics.body_statics import (
+    DISPLACEMENTS,
+    RATES,
+    base_derivatives,
+    standing_body,
+)
 from rockframe.dynamics.coupled.model import state_at
 from rockframe.dynamics.coupled.model import system_of as coupled_of
-from rockframe.dynamics.linear import linear
-from rockframe.dynamics.on_base import OnBase
+from rockframe.dynamics.linearization import linearized_chain
+from rockframe.dynamics.on_base import BodyOnBase
 from rockframe.dynamics.pads import ElasticPads
 from rockframe.dynamics.protocol import Ground, Start
-from rockframe.dynamics.standing import PLACES, RATES, of_base, standing_body
+from rockframe.dynamics.single_body import eccentricity_of, rigid_body, starting_state
 from rockframe.dynamics.statics import StandingChain
 from rockframe.system.statics import stored_energy
 
@@ -109,8 +114,8 @@ def test_slopes_of_the_forces_are_the_stiffnesses_that_bases_declare(block, base
     """Sizes and steps of runs are measured by these."""
     support = rf.System(BLOCKS[block], BASES[base], rotation=rotation).setting.support
     numbers, standing = support.base_numbers, support.standing
-    link, stand = standing.chain.bodies[0], standing.upright[0]
-    slopes = np.array([of_base(link, stand, name) for name in (*PLACES, *RATES)])
+    link, pose = standing.chain.bodies[0], standing.upright[0]
+    slopes = np.array([base_derivatives(link, pose, name) for name in (*DISPLACEMENTS, *RATES)])
     h, g = support.load.body.centre_height, support.load.options.slope.normal_gravity
     vertical, turning = numbers.vertical_stiffness, numbers.rotational_stiffness
     damping = numbers.damping_time
@@ -151,7 +156,7 @@ def test_small_motion_of_a_stack_has_the_printed_matrices(rotation):
     setting = rf.System(BLOCKS["slender"], BASES["pads"], CAP, BASES["bed"], rotation=rotation)
     setting = setting.setting
     order = [3, 2, 1, 0]
-    found = linear(setting._moving.chain, setting._rest)
+    found = linearized_chain(setting._moving.chain, setting._rest)
     mass, damping, stiffness = printed_matrices(*setting.bodies())
     for matrix, printed in zip(found, (mass, damping, stiffness), strict=True):
         size = np.abs(printed).max()
@@ -185,7 +190,7 @@ def test_work_on_a_held_body_is_its_energy(block, base):
     body, law = link.part
     for share in (0.1, 0.3):
         angle = share * setting.overturning_angle
-        ends = (setting.support.standing.chain.settled([each])[0] for each in (0.0, angle))
+        ends = (setting.support.standing.chain.poses_at([each])[0] for each in (0.0, angle))
         low, high = (law.energy(e.line, ())[0] + body.gravity * e.state.vertical for e in ends)
         work = setting.body.mass * (high - low)
         assert stored_energy(setting, angle) == pytest.approx(work, rel=5e-3)
@@ -216,7 +221,7 @@ def bodies(beside=0.0, along=0.0):
                 body, stiffness=(900.0, 1500.0)[k], damping=1.0, restitution=(1, 1), load=above
             )
         links.append(
-            standing_body(OnBase(body, base.law), MASSES[k], TOPS[k], eccentricity_of(body))
+            standing_body(BodyOnBase(body, base.law), MASSES[k], TOPS[k], eccentricity_of(body))
         )
     return StandingChain(tuple(links), along)
 
@@ -261,19 +266,19 @@ def least(chain, rotation=None):
     return places(start), potential(chain, places(start))
 
 
-def placed(stands):
-    return np.array([[stand.state.rotation, stand.state.vertical] for stand in stands])
+def placed(poses):
+    return np.array([[pose.state.rotation, pose.state.vertical] for pose in poses])
 
 
 @pytest.mark.parametrize(("beside", "along"), [(0.0, 0.0), (1.0, 0.0), (0.0, 0.15), (1.0, -0.1)])
 def test_three_bodies_rest_where_their_energy_is_least(beside, along):
     chain = bodies(beside, along)
-    stands = chain.rest()
+    poses = chain.rest()
     found, energy = least(chain)
-    assert placed(stands) == pytest.approx(found, rel=1e-4, abs=1e-6)
-    assert potential(chain, placed(stands)) <= energy + 1e-12
-    assert chain.moments(stands) == pytest.approx([0.0] * 3, abs=1e-11)
-    stiffness = linear(chain, stands).stiffness
+    assert placed(poses) == pytest.approx(found, rel=1e-4, abs=1e-6)
+    assert potential(chain, placed(poses)) <= energy + 1e-12
+    assert chain.moments(poses) == pytest.approx([0.0] * 3, abs=1e-11)
+    stiffness = linearized_chain(chain, poses).stiffness
     assert stiffness == pytest.approx(stiffness.T, abs=1e-6 * np.abs(stiffness).max())
     assert np.linalg.eigvalsh(stiffness).min() > 0.0
 
@@ -283,23 +288,23 @@ def test_three_bodies_are_held_where_their_energy_is_least(beside, along):
     chain = bodies(beside, along)
     rotations = (0.004, 0.03, 0.08, -0.02, -0.1)
     contacts = set()
-    for rotation, stands in zip(rotations, chain.curve(rotations), strict=True):
+    for rotation, poses in zip(rotations, chain.curve(rotations), strict=True):
         found, energy = least(chain, rotation)
-        assert placed(stands)[:, 0].sum() == pytest.approx(rotation, rel=1e-13)
-        assert placed(stands) == pytest.approx(found, rel=1e-4, abs=1e-6)
-        assert potential(chain, placed(stands)) <= energy + 1e-12
-        moments = chain.moments(stands)
+        assert placed(poses)[:, 0].sum() == pytest.approx(rotation, rel=1e-13)
+        assert placed(poses) == pytest.approx(found, rel=1e-4, abs=1e-6)
+        assert potential(chain, placed(poses)) <= energy + 1e-12
+        moments = chain.moments(poses)
         assert moments == pytest.approx([moments[0]] * 3, abs=1e-11)
-        contacts.add(tuple(stand.mode.contact for stand in stands))
+        contacts.add(tuple(pose.mode.contact for pose in poses))
     assert len(contacts) > 2
 
 
 def test_the_couple_on_three_bodies_is_the_slope_of_their_energy():
     chain = bodies(1.0, -0.1)
     rotations = np.linspace(0.0, 0.05, 401)
-    stands = chain.curve(rotations)
-    energies = [potential(chain, placed(each)) for each in stands]
-    couples = [-chain.moments(each)[0] for each in stands]
+    poses = chain.curve(rotations)
+    energies = [potential(chain, placed(each)) for each in poses]
+    couples = [-chain.moments(each)[0] for each in poses]
     for (low, high), (before, behind) in zip(pairwise(energies), pairwise(couples), strict=True):
         work = 0.5 * (before + behind) * (rotations[1] - rotations[0])
         assert high - low == pytest.approx(work, rel=1e-3, abs=1e-6)
@@ -348,13 +353,13 @@ def test_a_law_that_pushes_is_in_equilibrium_at_rest_and_at_the_start_of_a_run()
     body = rigid_body(left=0.5, right=0.5, height=2.0, inertia=1.5, restraint=CENTRE,
                    small_rotation=False, gravity=G)  # fmt: skip
     pads = pads_numbers(body, stiffness=2000.0, damping=3.0, restitution=(0.9, 0.9)).law
-    part = OnBase(body, ProppedPads(*pads))
+    part = BodyOnBase(body, ProppedPads(*pads))
     for rotation in (0.0, 0.001, -0.02):
         state, mode = starting_state(part, Start(rotation), ())
         force = part.base.force(mode.contact, body.base_line_at(state), ())
         assert force.upward == pytest.approx(G, rel=1e-12)
-    (stand,) = StandingChain((standing_body(part),)).rest()
-    assert stand.state.vertical == pytest.approx(PROP * 0.01 / 4500.0, rel=1e-12)
+    (pose,) = StandingChain((standing_body(part),)).rest()
+    assert pose.state.vertical == pytest.approx(PROP * 0.01 / 4500.0, rel=1e-12)
 
 
 def test_dashpots_of_ties_damp_small_motion():

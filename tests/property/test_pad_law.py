@@ -62,7 +62,7 @@ def free_forces(kind, model, run):
     gravity = 9.80665
     free = {}  # modes of the run, and the free corners in each
     for mode in np.unique(run.mode):
-        contact = system.part_mode(int(mode), 0).contact
+        contact = system.body_mode(int(mode), 0).contact
         free[mode] = [left for left in (True, False) if corner_contact(contact, left) == RELAXING]
     found = []
     for mode, state in zip(run.mode, run.state, strict=True):

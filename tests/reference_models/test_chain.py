@@ -56,9 +56,9 @@ def states(pair):
     for _ in range(STATES):
         upper = standing(rng, by_hand.upper.base, 5, CORNER)
         lower = standing(rng, by_hand.lower.base, 2, 2)
-        mode = by_hand.with_part(by_hand.with_part(0, 0, upper), 1, lower)
-        ours = chain.with_part(chain.with_part(0, 0, upper), 1, lower)
-        assert (chain.part_mode(ours, 0), chain.part_mode(ours, 1)) == (upper, lower)
+        mode = by_hand.with_body_mode(by_hand.with_body_mode(0, 0, upper), 1, lower)
+        ours = chain.with_body_mode(chain.with_body_mode(0, 0, upper), 1, lower)
+        assert (chain.body_mode(ours, 0), chain.body_mode(ours, 1)) == (upper, lower)
         ground = Ground(*rng.normal(size=2) * 3.0)
         yield rng.normal(size=12) * OF_UPPER, mode, ours, ground
 
@@ -89,7 +89,7 @@ def test_velocities_answer_impulses_as_solved_by_hand(pair):
     rng = np.random.default_rng(4)
     for state, mode, ours, _ in states(pair):
         for k in (0, 1):
-            if k == 1 and by_hand.lower.is_free(by_hand.part_mode(mode, 1)):
+            if k == 1 and by_hand.lower.is_free(by_hand.body_mode(mode, 1)):
                 continue  # there are no impulses of a base that does not touch
             given = rng.normal(size=3)
             one, other = state.copy(), state.copy()

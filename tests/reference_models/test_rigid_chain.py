@@ -9,7 +9,6 @@ from reference_models.rigid_pair.count_impacts import KINDS, draw_impact
 from reference_models.rigid_pair.pair import Body, Pair, Pattern, Phase
 
 import rockframe as rf
-from rockframe.dynamics.alone import rigid_body
 from rockframe.dynamics.base_numbers import rigid_numbers
 from rockframe.dynamics.bodies import ROTATION
 from rockframe.dynamics.chain import rows as at
@@ -25,6 +24,7 @@ from rockframe.dynamics.chain.motion import (
 from rockframe.dynamics.chain.rigid import ADMISSIBLE_COUNT, CHOSEN_CORNERS
 from rockframe.dynamics.chain.rows import BODY_STRIDE
 from rockframe.dynamics.protocol import HELD_PLACE, IMPACT_LOSS, Ground, Start
+from rockframe.dynamics.single_body import rigid_body
 from rockframe.dynamics.vibrations import ChainBody
 from rockframe.solve.accuracy import accuracy_of
 from rockframe.solve.integrate import integrate
@@ -226,7 +226,7 @@ def test_forces_stand_for_the_mode_state_and_ground_that_they_were_solved_for_al
     ground = Ground(0.5, 0.1)
     system.find_forces(standing, state, ground)
     assert system.forces_are_valid(standing, state, ground)
-    slips = system.with_part(standing, 0, system.part_mode(standing, 0)._replace(slides=True))
+    slips = system.with_body_mode(standing, 0, system.body_mode(standing, 0)._replace(slides=True))
     moved = state.copy()
     moved[-1] = 1e-12
     assert not system.forces_are_valid(slips, state, ground)

@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 from plainly import plainly
 
-from rockframe.dynamics.alone import rigid_body
 from rockframe.dynamics.base_numbers import BaseNumbers, pads_numbers, pads_over
 from rockframe.dynamics.body import LEADING_CORNER
 from rockframe.dynamics.coupled.model import StackRest, coupled
 from rockframe.dynamics.point_law import Viscoelastic, point_law
 from rockframe.dynamics.protocol import Column, Start
+from rockframe.dynamics.single_body import rigid_body
 from rockframe.dynamics.vibrations import ChainBody
 from rockframe.signals import Motion
 from rockframe.solve.accuracy import accuracy_of

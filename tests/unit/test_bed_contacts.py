@@ -32,10 +32,10 @@ def test_what_the_bed_says_of_a_contact(left, right):
 
 def test_modes_are_numbered_one_to_one():
     from rockframe.dynamics.body import Body
-    from rockframe.dynamics.on_base import Mode, OnBase
+    from rockframe.dynamics.on_base import BodyOnBase, Mode
 
     body = Body(1.0, 0.5, 0.5, 0.4, 9.81, 0.46, 0, False)
-    part = OnBase(body, BED)
+    part = BodyOnBase(body, BED)
     seen = set()
     for contact, pivot, slides in itertools.product(range(4), range(3), (False, True)):
         mode = Mode(contact, pivot, slides)

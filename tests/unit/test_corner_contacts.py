@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from rockframe.dynamics.alone import alone, rigid_body
 from rockframe.dynamics.base_numbers import pads_numbers
-from rockframe.dynamics.bodies import DEGREES, ROTATION, VERTICAL
+from rockframe.dynamics.bodies import BODY_DOF, ROTATION, VERTICAL
 from rockframe.dynamics.body import BY_CONTACT, PIVOT_RIGHT
 from rockframe.dynamics.on_base import Mode
 from rockframe.dynamics.pads import (
@@ -20,14 +19,15 @@ from rockframe.dynamics.pads import (
     corner_contact,
 )
 from rockframe.dynamics.protocol import MEMORY, Ground
-from rockframe.dynamics.switching import disturbed
+from rockframe.dynamics.single_body import rigid_body, single_body
+from rockframe.dynamics.switching import mode_after_disturbance
 
 G = 9.81
 BODY = rigid_body(
     left=0.5, right=0.5, height=2.0, inertia=4.25 / 3.0, restraint=BY_CONTACT, small_rotation=False,
     gravity=G,
 )  # fmt: skip
-SYSTEM = alone(
+SYSTEM = single_body(
     "two-spring",
     BODY,
     pads_numbers(BODY, stiffness=4e3, damping=60.0, restitution=(0.9, 0.9)),
@@ -39,13 +39,13 @@ LEFT_GUARDS, RIGHT_GUARDS = 0, CORNER_GUARDS
 
 def state_with(*, right_force):
     """Return a state with the left corner up, and the right one at a force of its pad's law."""
-    state = np.zeros(2 * DEGREES)
+    state = np.zeros(2 * BODY_DOF)
     state[ROTATION] = 0.001
     level = BODY.base_line_at(SYSTEM.state_of(0, state)).right
     state[VERTICAL] = 0.5 * PADS.rest - level
     # the force by the speed alone, without rotation
     speed = (PADS.law.stiffness * 0.5 * PADS.rest - right_force) / PADS.law.damping
-    state[DEGREES + VERTICAL] = speed
+    state[BODY_DOF + VERTICAL] = speed
     return state
 
 
@@ -89,6 +89,6 @@ def test_a_leaving_corner_that_its_pad_lets_go_is_relaxing():
 
 def test_a_jolt_of_the_ground_makes_a_leaving_corner_relax():
     state = state_with(right_force=G)
-    new = disturbed(SYSTEM, SYSTEM.part, 0, mode_of(LEAVING, TOUCHING), state)
+    new = mode_after_disturbance(SYSTEM, SYSTEM.part, 0, mode_of(LEAVING, TOUCHING), state)
     assert corners_in(new) == (RELAXING, TOUCHING)
     assert pivot_in(new) == PIVOT_RIGHT

@@ -463,7 +463,7 @@ def test_ends_that_land_beneath_a_body_that_slips_keep_what_their_restitution_le
     system, events = sliding_upon_a_landing_body(restitution)
     base, landings = system.on_base(1), 0
     for i in np.flatnonzero(events.kind == IMPACT):
-        contact = system.part_mode(int(events.mode_before[i]), 1).contact
+        contact = system.body_mode(int(events.mode_before[i]), 1).contact
         before, after = (
             system.state_of(1, one[i]) for one in (events.state_before, events.state_after)
         )
@@ -515,6 +515,6 @@ def test_a_short_slip_ends_without_energy_of_what_slips_above(sense, above):
     state[system.coordinates() + system.horizontal_of(0)], state[rate] = above, 1e-6 * sense
     had = system.energies(mode, state).kinetic
     new = system.end_short_slip(1, mode, state, Ground(0.0, 0.0), memory)
-    assert not system.part_mode(new, 1).slides
+    assert not system.body_mode(new, 1).slides
     assert had - system.energies(new, state).kinetic == pytest.approx(memory[IMPACT_LOSS], rel=1e-3)
     assert 0.0 < memory[IMPACT_LOSS] < 1e-12

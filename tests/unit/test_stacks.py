@@ -10,7 +10,7 @@ import rockframe as rf
 from rockframe.components import stack
 from rockframe.dynamics.chain import rows
 from rockframe.dynamics.events import ContactState
-from rockframe.dynamics.protocol import MOST_MODES
+from rockframe.dynamics.protocol import MAX_MODES
 from rockframe.errors import AssemblyError, ComponentError, UnitsError
 from rockframe.simulation.certify.perturbations import parameters
 from rockframe.system.assembly import assemble
@@ -101,13 +101,13 @@ def test_the_number_of_a_mode_tells_how_each_body_stands(slips):
     system = assemble((three, ground)).model.system
     rng = np.random.default_rng(3)
     for mode in rng.integers(0, system.modes(), 500).tolist():
-        parts = [system.part_mode(mode, k) for k in range(3)]
+        parts = [system.body_mode(mode, k) for k in range(3)]
         for k, part in enumerate(parts):
-            other = system.with_part(mode, k, system.part_mode(int(rng.integers(mode + 1)), k))
-            assert [system.part_mode(other, j) for j in range(3) if j != k] == [
+            other = system.with_body_mode(mode, k, system.body_mode(int(rng.integers(mode + 1)), k))
+            assert [system.body_mode(other, j) for j in range(3) if j != k] == [
                 one for j, one in enumerate(parts) if j != k
             ]
-            assert system.with_part(other, k, part) == mode
+            assert system.with_body_mode(other, k, part) == mode
 
 
 @pytest.mark.long
@@ -125,7 +125,7 @@ def test_twelve_drums_rock(slips):
 
 
 def test_modes_of_twelve_drums_can_be_told_apart():
-    assert (2 * rows.RIGID_MODES) ** stack.MOST_BODIES <= MOST_MODES
+    assert (2 * rows.RIGID_MODES) ** stack.MOST_BODIES <= MAX_MODES
 
 
 def test_no_slope_under_a_stack():

@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 
 from rockframe.compiled import Vector
-from rockframe.dynamics.alone import Alone
 from rockframe.dynamics.cascade.system import COLUMNS, Cascade
-from rockframe.dynamics.on_base import OnBase
+from rockframe.dynamics.on_base import BodyOnBase
 from rockframe.dynamics.protocol import BODY_COLUMNS, HELD_PLACE, MEMORY, ContactModel, Start
+from rockframe.dynamics.single_body import SingleBody
 from rockframe.dynamics.stacked import CONTACTS
 
 
@@ -19,7 +19,7 @@ def cascade(
     *,
     top: float,
     cap_centre: float,
-    beside: float,
+    offset: float,
     rest_rotation: float,
 ) -> ContactModel:
     """Assemble the model of a block on the cap of a body on a base.
@@ -27,35 +27,36 @@ def cascade(
     Parameters
     ----------
     first : ContactModel
-        Block and cap as one body on the soil, of :func:`rockframe.dynamics.alone.alone`.
+        Block and cap as one body on the soil, by
+        :func:`rockframe.dynamics.single_body.single_body`.
     second : ContactModel
         The block on its base, of the same function.
     top, cap_centre : float
         Heights of the cap's top and of its centre above the first body's centre of mass [m].
-    beside : float
+    offset : float
         Distance of this centre of mass to the right of the middle of the cap [m].
     rest_rotation : float
         Rotation of the first body at rest [rad].
     """
     ratio = first.mass / second.mass
-    system = Cascade(_part_of(second), _part_of(first), ratio, top, cap_centre, beside)
+    system = Cascade(_part_of(second), _part_of(first), ratio, top, cap_centre, offset)
     shown = len(BODY_COLUMNS)
     under = tuple(replace(column, mass_ratio=ratio) for column in first.columns[shown:])
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:
         lower, below, memory = first.initial(Start())
-        given = start.rotation
-        on_cap = start if given is None else replace(start, rotation=given - rest_rotation)
-        upper, above, kept = second.initial(on_cap)
+        rotation = start.rotation
+        on_cap = start if rotation is None else replace(start, rotation=rotation - rest_rotation)
+        upper, above, upper_memory = second.initial(on_cap)
         mode = upper + system.upper.modes() * lower
-        return mode, _in_turn(above, below), np.append(kept, memory[HELD_PLACE])
+        return mode, _interleaved(above, below), np.append(upper_memory, memory[HELD_PLACE])
 
     return ContactModel(
         name="cascade",
         system=system,
         rotation_limits=second.rotation_limits,
         rotation_weights=np.array([1.0, 0.0, 1.0, 0.0, 0.0, 0.0]),
-        scales=_in_turn(second.scales, first.scales),
+        scales=_interleaved(second.scales, first.scales),
         guard_tolerance=np.concatenate([second.guard_tolerance, first.guard_tolerance]),
         columns=(*COLUMNS, *second.columns[shown:], *under),
         selects=True,
@@ -70,14 +71,14 @@ def cascade(
     )
 
 
-def _part_of(model: ContactModel) -> OnBase:
-    if not isinstance(model.system, Alone):
+def _part_of(model: ContactModel) -> BodyOnBase:
+    if not isinstance(model.system, SingleBody):
         msg = f"a cascade is made of two models of one body on a base, got {model.name!r}"
         raise TypeError(msg)
     return model.system.part
 
 
-def _in_turn(second: Vector, first: Vector) -> Vector:
+def _interleaved(second: Vector, first: Vector) -> Vector:
     """Join arrays of both bodies in the order of the state of the cascade."""
     coordinates = (second[0], second[1], first[0], first[1], second[2], first[2])
     rates = (second[3], second[4], first[3], first[4], second[5], first[5])
@@ -90,6 +91,6 @@ def _rounding(first: ContactModel, second: ContactModel) -> Callable[[float], Ve
         return None
 
     def noise(rotation: float) -> Vector:
-        return _in_turn(above(rotation), below(0.0))
+        return _interleaved(above(rotation), below(0.0))
 
     return noise

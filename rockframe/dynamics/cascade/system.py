@@ -11,7 +11,7 @@ from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.base import Guards
 from rockframe.dynamics.bodies import ROTATION, VERTICAL
 from rockframe.dynamics.body import BodyState
-from rockframe.dynamics.on_base import IDLE, Mode, OnBase, Rates, VelocityChange
+from rockframe.dynamics.on_base import IDLE_GUARDS, BodyOnBase, Mode, Rates, VelocityChange
 from rockframe.dynamics.protocol import (
     HELD_PLACE,
     IMPACT_LOSS,
@@ -33,7 +33,7 @@ from rockframe.dynamics.stacked import (
     Stacked,
     name_soil_event,
 )
-from rockframe.dynamics.switching import disturbed, lift_by_slip, switch_part
+from rockframe.dynamics.switching import lift_per_slip, mode_after_disturbance, switch_mode
 
 COLUMNS: Final = (
     *STACK_COLUMNS,
@@ -58,12 +58,12 @@ class PointMotion(NamedTuple):
 class Stages(NamedTuple):
     """The two bodies of a cascade, each on its base, and the geometry of the cap."""
 
-    upper: OnBase  # per unit of its own mass, that of the block
-    lower: OnBase  # block and cap as one, per unit of its own mass
+    upper: BodyOnBase  # per unit of its own mass, that of the block
+    lower: BodyOnBase  # block and cap as one, per unit of its own mass
     mass_ratio: float  # mass of the lower body over that of the block
     top: float  # height of the cap's top above the centre of mass of the lower body [m]
     cap_centre: float  # height of the cap's centre above it [m]
-    beside: float  # distance of it to the right of the middle of the cap [m]
+    offset: float  # distance of it to the right of the middle of the cap [m]
 
 
 class Cascade(Stacked, Stages):
@@ -79,7 +79,7 @@ class Cascade(Stacked, Stages):
         return COORDINATES if free else HORIZONTAL
 
     @inlined
-    def carried(
+    def cap_top_motion(
         self, mode: Mode, state: BodyState, angular: float, vertical: float, horizontal: float
     ) -> PointMotion:
         """Return the motion of the middle of the cap's top, :eq:`eq-carried`.
@@ -87,26 +87,26 @@ class Cascade(Stacked, Stages):
         `angular`, `vertical` and `horizontal` are the accelerations of the lower body.
         """
         attitude, rate = self.lower.body.attitude(state.rotation), state.angular_velocity
-        sway = self.lower.sway(mode, state, attitude)
-        arch = 0.0 if self.lower.body.small else attitude.sine
+        centre_velocity = self.lower.horizontal_velocity(mode, state, attitude)
+        exact_sine = 0.0 if self.lower.body.small else attitude.sine
         sine, cosine = attitude.sine, attitude.cosine
-        bend = 0.0 if self.lower.body.small else cosine
+        exact_cosine = 0.0 if self.lower.body.small else cosine
         return PointMotion(
-            sway + self.top * cosine * rate + self.beside * arch * rate,
-            state.vertical_velocity - self.top * sine * rate + self.beside * cosine * rate,
+            centre_velocity + self.top * cosine * rate + self.offset * exact_sine * rate,
+            state.vertical_velocity - self.top * sine * rate + self.offset * cosine * rate,
             horizontal
-            + self.top * (cosine * angular - arch * rate * rate)
-            + self.beside * (arch * angular + bend * rate * rate),
+            + self.top * (cosine * angular - exact_sine * rate * rate)
+            + self.offset * (exact_sine * angular + exact_cosine * rate * rate),
             vertical
             - self.top * (sine * angular + cosine * rate * rate)
-            + self.beside * (cosine * angular - arch * rate * rate),
+            + self.offset * (cosine * angular - exact_sine * rate * rate),
         )
 
     @inlined
     def lower_rates(self, mode: int, state: Vector, ground: Ground) -> Rates:
         """Return the accelerations and powers of the lower body."""
-        standing, body = self.modes_in(mode).lower, self.state_of(LOWER, state)
-        return self.lower.rates_in(standing, body, self.lower_own(state), ground)
+        own_mode, body = self.modes_in(mode).lower, self.state_of(LOWER, state)
+        return self.lower.rates_in(own_mode, body, self.lower_own(state), ground)
 
     @inlined
     def ground_of_upper(self, mode: int, state: Vector, below: Rates, ground: Ground) -> Ground:
@@ -117,7 +117,7 @@ class Cascade(Stacked, Stages):
     @inlined
     def top_motion(self, mode: int, state: Vector, below: Rates) -> PointMotion:
         """Return the motion of the middle of the cap's top from the rates of the lower body."""
-        return self.carried(
+        return self.cap_top_motion(
             self.modes_in(mode).lower, self.state_of(LOWER, state), below.rotation, below.vertical,
             below.horizontal,
         )  # fmt: skip
@@ -130,10 +130,10 @@ class Cascade(Stacked, Stages):
         on_top = self.ground_of_upper(mode, state, below, ground)
         above = self.upper.rates_in(modes.upper, states.upper, self.upper_own(state), on_top)
         # the horizontal coordinate of a held body stays constant while that of the other moves
-        sway = above.horizontal if self.upper.is_free(modes.upper) else 0.0
-        lower_sway = below.horizontal if self.lower.is_free(modes.lower) else 0.0
+        along = above.horizontal if self.upper.is_free(modes.upper) else 0.0
+        lower_along = below.horizontal if self.lower.is_free(modes.lower) else 0.0
         return (
-            (above.rotation, above.vertical, below.rotation, below.vertical, sway, lower_sway)
+            (above.rotation, above.vertical, below.rotation, below.vertical, along, lower_along)
             + above.own_rates
             + below.own_rates
             + (
@@ -146,19 +146,19 @@ class Cascade(Stacked, Stages):
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
         """Return the guards of the block on its pads, then of the lower body."""
         modes, states = self.modes_in(mode), self.states_in(state)
-        of_upper, of_lower = IDLE, IDLE
+        of_upper, of_lower = IDLE_GUARDS, IDLE_GUARDS
         if modes.upper.slides:
             below = self.lower_rates(mode, state, ground)
             push = slope[HORIZONTAL] + self.ground_of_upper(mode, state, below, ground).x
             of_upper = self.upper.sliding_guards(
                 modes.upper, states.upper, slope[ROTATION], slope[HORIZONTAL], push,
-                lift_by_slip(self, self.upper, UPPER, mode, state),
+                lift_per_slip(self, self.upper, UPPER, mode, state),
             )  # fmt: skip
         if modes.lower.slides:
             push = slope[LOWER_HORIZONTAL] + ground.x
             of_lower = self.lower.sliding_guards(
                 modes.lower, states.lower, slope[LOWER_ROTATION], slope[LOWER_HORIZONTAL], push,
-                lift_by_slip(self, self.lower, LOWER, mode, state),
+                lift_per_slip(self, self.lower, LOWER, mode, state),
             )  # fmt: skip
         return self.guards_of_both(modes, state, slope, of_upper, of_lower)
 
@@ -169,7 +169,7 @@ class Cascade(Stacked, Stages):
         if guard < count:
             below = self.lower_rates(mode, state, ground)
             on_top = self.ground_of_upper(mode, state, below, ground)
-            new = switch_part(self, self.upper, UPPER, guard, mode, state, on_top, memory)
+            new = switch_mode(self, self.upper, UPPER, guard, mode, state, on_top, memory)
         else:
             new = self.switch_lower(mode, guard - count, state, ground, memory)
         if not self.lower.is_free(self.modes_in(new).lower):
@@ -184,17 +184,21 @@ class Cascade(Stacked, Stages):
     ) -> int:
         """Carry out a switch of the lower body, and apply its velocity jump to the upper one."""
         lost, struck = memory[REPINNING_LOSS], memory[IMPACT_LOSS]
-        before = self.carried(self.modes_in(mode).lower, self.state_of(LOWER, state), 0.0, 0.0, 0.0)
-        new = switch_part(self, self.lower, LOWER, which, mode, state, ground, memory)
+        before = self.cap_top_motion(
+            self.modes_in(mode).lower, self.state_of(LOWER, state), 0.0, 0.0, 0.0
+        )
+        new = switch_mode(self, self.lower, LOWER, which, mode, state, ground, memory)
         memory[REPINNING_LOSS] = lost + self.mass_ratio * (memory[REPINNING_LOSS] - lost)
         memory[IMPACT_LOSS] = struck + self.mass_ratio * (memory[IMPACT_LOSS] - struck)
         name_soil_event(memory)
-        after = self.carried(self.modes_in(new).lower, self.state_of(LOWER, state), 0.0, 0.0, 0.0)
+        after = self.cap_top_motion(
+            self.modes_in(new).lower, self.state_of(LOWER, state), 0.0, 0.0, 0.0
+        )
         self.apply_velocity_jump(
             new, after.velocity_x - before.velocity_x, after.velocity_y - before.velocity_y, state,
             memory,
         )  # fmt: skip
-        return disturbed(self, self.upper, UPPER, new, state)
+        return mode_after_disturbance(self, self.upper, UPPER, new, state)
 
     @kernel
     def apply_velocity_jump(
@@ -204,19 +208,20 @@ class Cascade(Stacked, Stages):
 
         `jump_x` and `jump_y` are the components of the jump [m s^-1].
         """
-        standing, body = self.modes_in(mode).upper, self.state_of(UPPER, state)
+        own_mode, body = self.modes_in(mode).upper, self.state_of(UPPER, state)
         attitude = self.upper.body.attitude(body.rotation)
-        sway = self.upper.sway(standing, body, attitude)
+        old_velocity = self.upper.horizontal_velocity(own_mode, body, attitude)
         state[COORDINATES + VERTICAL] -= jump_y
-        if self.upper.is_free(standing):
+        if self.upper.is_free(own_mode):
             state[COORDINATES + HORIZONTAL] -= jump_x
         else:
-            response = self.upper.response_in(standing, attitude, 0.0, 0.0, -jump_x)
+            response = self.upper.response_in(own_mode, attitude, 0.0, 0.0, -jump_x)
             state[COORDINATES + ROTATION] += response.rotation
         after = self.state_of(UPPER, state)
-        swayed = self.upper.sway(standing, after, attitude)
+        new_velocity = self.upper.horizontal_velocity(own_mode, after, attitude)
         memory[IMPULSIVE_INPUT] -= 0.5 * (
-            jump_x * (sway + swayed) + jump_y * (body.vertical_velocity + after.vertical_velocity)
+            jump_x * (old_velocity + new_velocity)
+            + jump_y * (body.vertical_velocity + after.vertical_velocity)
         )
 
     @kernel
@@ -244,19 +249,21 @@ class Cascade(Stacked, Stages):
         top = self.top_motion(mode, state, rates)
         on_top = Ground(ground.x + top.acceleration_x, ground.y + top.acceleration_y)
         above = self.upper.rates_in(modes.upper, upper, self.upper_own(state), on_top)
-        sway = self.upper.sway(modes.upper, upper, self.upper.body.attitude(upper.rotation))
+        on_cap = self.upper.body.attitude(upper.rotation)
+        velocity = self.upper.horizontal_velocity(modes.upper, upper, on_cap)
         # a point at a height z above the centre of mass sinks by z (1 - cos) relative to it
         attitude = self.lower.body.attitude(lower.rotation)
         versine = attitude.rise / self.lower.body.height
-        swaying = sway + self.lower.sway(modes.lower, lower, attitude)
+        total_velocity = velocity + self.lower.horizontal_velocity(modes.lower, lower, attitude)
         return (
             upper.rotation + lower.rotation,
             upper.angular_velocity + lower.angular_velocity,
             upper.vertical + lower.vertical,
             upper.vertical_velocity + lower.vertical_velocity,
-            self.place(UPPER, mode, state, memory) + self.place(LOWER, mode, state, memory),
+            self.centre_position(UPPER, mode, state, memory)
+            + self.centre_position(LOWER, mode, state, memory),
             self.mass_ratio * (rates.horizontal + ground.x),
-            swaying,
+            total_velocity,
             above.rotation + rates.rotation,
             above.horizontal + rates.horizontal,
             above.vertical + rates.vertical,
@@ -264,21 +271,21 @@ class Cascade(Stacked, Stages):
             above.vertical + self.upper.body.gravity + on_top.y,
             lower.rotation,
             lower.angular_velocity,
-            lower.vertical - self.cap_centre * versine + self.beside * attitude.sine,
+            lower.vertical - self.cap_centre * versine + self.offset * attitude.sine,
             lower.vertical_velocity
-            + (self.beside * attitude.cosine - self.cap_centre * attitude.sine)
+            + (self.offset * attitude.cosine - self.cap_centre * attitude.sine)
             * lower.angular_velocity,
             upper.rotation,
             upper.vertical,
             on_top.x,
             on_top.y,
             above.rotation,
-            sway + top.velocity_x,
+            velocity + top.velocity_x,
             upper.vertical_velocity + top.velocity_y,
-        ) + self.bases_observed(mode, state)
+        ) + self.columns_of_bases(mode, state)
 
     @kernel
-    def place(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
+    def centre_position(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
         """Return the horizontal displacement of a centre of mass [m].
 
         It follows from the rotation about the held point, or is a coordinate where none is held.
@@ -286,22 +293,22 @@ class Cascade(Stacked, Stages):
         modes, body = self.modes_in(mode), self.state_of(k, state)
         if k == UPPER:
             attitude = self.upper.body.attitude(body.rotation)
-            return self.upper.horizontal_place(modes.upper, body, attitude, memory[HELD_PLACE])
+            return self.upper.horizontal_position(modes.upper, body, attitude, memory[HELD_PLACE])
         attitude = self.lower.body.attitude(body.rotation)
         held_at = memory[HELD_PLACE + LOWER]
-        return self.lower.horizontal_place(modes.lower, body, attitude, held_at)
+        return self.lower.horizontal_position(modes.lower, body, attitude, held_at)
 
     @kernel
     def response(
-        self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
+        self, k: int, mode: int, impulse: float, moment: float, slip: float, state: Vector
     ) -> VelocityChange:
         """Return the change of a body's velocities by an impulse, or by the restraint of a slip."""
         modes, rotation = self.modes_in(mode), self.state_of(k, state).rotation
         if k == UPPER:
             attitude = self.upper.body.attitude(rotation)
-            return self.upper.response_in(modes.upper, attitude, press, moment, slip)
+            return self.upper.response_in(modes.upper, attitude, impulse, moment, slip)
         attitude = self.lower.body.attitude(rotation)
-        return self.lower.response_in(modes.lower, attitude, press, moment, slip)
+        return self.lower.response_in(modes.lower, attitude, impulse, moment, slip)
 
     @kernel
     def end_accelerations(
@@ -311,12 +318,12 @@ class Cascade(Stacked, Stages):
         modes, body = self.modes_in(mode), self.state_of(k, state)
         if k == UPPER:
             rates = self.upper.rates_in(modes.upper, body, self.upper_own(state), ground)
-            return self.upper.end_rises(body, rates.vertical, rates.rotation)
+            return self.upper.end_accelerations_at(body, rates.vertical, rates.rotation)
         rates = self.lower_rates(mode, state, ground)
-        return self.lower.end_rises(body, rates.vertical, rates.rotation)
+        return self.lower.end_accelerations_at(body, rates.vertical, rates.rotation)
 
     @kernel
-    def tendency(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
+    def incipient_rotation(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
         """Return the sign of the rotation that the ground under a body, or its contact, begins."""
         if ground.x != 0.0:
             return -ground.x

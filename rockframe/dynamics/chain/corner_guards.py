@@ -38,13 +38,13 @@ class CornerGuards(RigidCorners):
         self.find_corner_forces(mode, state, ground)
         for k in range(self.body_count):
             if self.is_rigid(k):
-                self.write_corner_guards(k, self.part_mode(mode, k), state, values, changes)
+                self.write_corner_guards(k, self.body_mode(mode, k), state, values, changes)
                 self.write_slip_guards(k, mode, state, values, changes)
             elif self.is_slippery(k):
                 self.write_inactive_guards(k, values, changes)
                 self.write_slip_guards(k, mode, state, values, changes)
         for k in range(self.body_count):
-            body_mode = self.part_mode(mode, k)
+            body_mode = self.body_mode(mode, k)
             if self.is_rigid(k) and body_mode.contact & IN_TENSION != 0:
                 left = self.on_base(k).base.is_held(body_mode.contact, True)
                 i = GUARDS * k + (0 if left else CORNER_GUARDS)
@@ -65,7 +65,7 @@ class CornerGuards(RigidCorners):
         """Return largest tension in a corner that bears in the last solution, over FORCE_SCALE."""
         most = -math.inf
         for k in range(self.body_count):
-            if self.is_rigid(k) and self.part_mode(mode, k).contact & IN_TENSION == 0:
+            if self.is_rigid(k) and self.body_mode(mode, k).contact & IN_TENSION == 0:
                 for side in range(2):
                     if (
                         self.workspace()[k * BODY_STRIDE + at.LEFT_CONSTRAINT + side]
@@ -88,7 +88,7 @@ class CornerGuards(RigidCorners):
         held, still = state[x], state[self.coordinates() + x]
         if k == lowest:
             self.write_lowest_position(mode, state)
-        free = self.with_part(mode, k, Mode(both_contacts(RAISED, RAISED), 0, False))
+        free = self.with_body_mode(mode, k, Mode(both_contacts(RAISED, RAISED), 0, False))
         free = self.with_overcome_friction(free, state, ground)
         for other in range(self.body_count):
             if self.is_rigid(other):
@@ -97,13 +97,13 @@ class CornerGuards(RigidCorners):
                     released = other == k and left == (side == 0)
                     if released or self.is_closing(other, side == 0, -rises[side], free, state):
                         most = max(most, -rises[side] / self.row_value(other, at.GRAVITY))
-        self.set_sway(lowest, held, still, state)
+        self.set_horizontal(lowest, held, still, state)
         return most
 
     @kernel
     def is_closing(self, k: int, left: bool, fall: float, mode: int, state: Vector) -> bool:
         """Whether a corner that does not bear is practically at its base and falls onto it."""
-        part, body_mode = self.on_base(k), self.part_mode(mode, k)
+        part, body_mode = self.on_base(k), self.body_mode(mode, k)
         line = part.body.base_line_at(self.constrained_state(k, body_mode, state))
         level, speed = line.left, line.left_speed
         if not left:
@@ -115,7 +115,7 @@ class CornerGuards(RigidCorners):
     def has_sinking_corner(self, mode: int, state: Vector) -> bool:
         """Whether a corner that is at its rigid base, but does not bear, moves down."""
         for k in range(self.body_count):
-            part, body_mode = self.on_base(k), self.part_mode(mode, k)
+            part, body_mode = self.on_base(k), self.body_mode(mode, k)
             line = part.body.base_line_at(self.constrained_state(k, body_mode, state))
             for side in range(2):
                 gap, speed = line.left, line.left_speed
@@ -130,10 +130,10 @@ class CornerGuards(RigidCorners):
     def write_lowest_position(self, mode: int, state: Vector) -> None:
         """Write place and rate of the lowest body; while held, its state has the held point's."""
         k, x = self.body_count - 1, self.horizontal_of(self.body_count - 1)
-        body_mode = self.part_mode(mode, k)
+        body_mode = self.body_mode(mode, k)
         if not self.on_base(k).is_free(body_mode):
             place, rate = self.position_from_pin(k, body_mode, state[x], state)
-            self.set_sway(k, place, rate, state)
+            self.set_horizontal(k, place, rate, state)
 
     @inlined
     def with_overcome_friction(self, mode: int, state: Vector, ground: Ground) -> int:

@@ -55,7 +55,7 @@ class RigidCorners(Chain):
         found = 0
         for k in range(self.body_count):
             if self.is_rigid(k):
-                part, contact = self.on_base(k), self.part_mode(mode, k).contact
+                part, contact = self.on_base(k), self.body_mode(mode, k).contact
                 found |= (1 if part.base.is_held(contact, True) else 0) << 2 * k
                 found |= (2 if part.base.is_held(contact, False) else 0) << 2 * k
         return found
@@ -65,7 +65,7 @@ class RigidCorners(Chain):
         """Return the set of corners that are held in a mode though they do not press."""
         found, bearing = 0, self.bearing_corners(mode)
         for k in range(self.body_count):
-            if self.is_rigid(k) and self.part_mode(mode, k).contact & IN_TENSION != 0:
+            if self.is_rigid(k) and self.body_mode(mode, k).contact & IN_TENSION != 0:
                 found |= bearing & BOTH << 2 * k
         return found
 
@@ -91,7 +91,7 @@ class RigidCorners(Chain):
                     pivot = PIVOT_LEFT
                 elif bears == RIGHT_ONLY:
                     pivot = PIVOT_RIGHT
-                new = self.with_part(new, k, Mode(contact, pivot, False))
+                new = self.with_body_mode(new, k, Mode(contact, pivot, False))
                 new = self.with_rigid_slip(k, bears, new)
         return new
 
@@ -120,7 +120,7 @@ class RigidCorners(Chain):
         self, k: int, count: int, mode: int, state: Vector, moves: bool, work: Vector, rows: Vector
     ) -> int:
         """Add the constraints of corners that bear on a rigid base, :eq:`eq-rigid-corner`."""
-        i, part, body_mode = k * BODY_STRIDE, self.on_base(k), self.part_mode(mode, k)
+        i, part, body_mode = k * BODY_STRIDE, self.on_base(k), self.body_mode(mode, k)
         work[i + at.LEFT_CONSTRAINT] = work[i + at.RIGHT_CONSTRAINT] = NO_CONSTRAINT
         if not self.is_rigid(k) or part.flies(body_mode.contact):
             return count
@@ -267,7 +267,7 @@ class RigidCorners(Chain):
         """Return how many bodies, from the top, may move: those below rest on the ground."""
         moving, bearing = self.body_count, self.bearing_corners(mode)
         for k in range(self.body_count - 1, -1, -1):
-            if bearing >> 2 * k & BOTH != BOTH or self.part_mode(mode, k).slides:
+            if bearing >> 2 * k & BOTH != BOTH or self.body_mode(mode, k).slides:
                 break
             moving = k
         return moving
@@ -288,7 +288,7 @@ class RigidCorners(Chain):
         pin, attitude = part.body.pin(body_mode.pivot), part.body.attitude(body.rotation)
         reach = part.body.reach(pin, attitude)
         place = held + part.body.about_pin(pin, attitude)
-        return place, reach.rate * body.angular_velocity
+        return place, reach.derivative * body.angular_velocity
 
     @kernel
     def resting_corners(self, mode: int, state: Vector) -> int:
@@ -296,7 +296,7 @@ class RigidCorners(Chain):
         found = 0
         for k in range(self.body_count):
             if self.is_rigid(k):
-                body = self.constrained_state(k, self.part_mode(mode, k), state)
+                body = self.constrained_state(k, self.body_mode(mode, k), state)
                 found |= self.level_corners(k, body) << 2 * k
         return found
 
@@ -335,7 +335,7 @@ class RigidCorners(Chain):
         """Write to the state the coordinates and rates that contacts with rigid bases prescribe."""
         n = self.coordinates()
         for k in range(self.body_count):
-            part, body_mode = self.on_base(k), self.part_mode(mode, k)
+            part, body_mode = self.on_base(k), self.body_mode(mode, k)
             if self.is_rigid(k) and not part.flies(body_mode.contact):
                 body = self.constrained_state(k, body_mode, state)
                 first = BEFORE_HORIZONTAL * k
@@ -346,13 +346,13 @@ class RigidCorners(Chain):
                     place, rate = self.position_from_pin(
                         k, body_mode, memory[HELD_PLACE + k], state
                     )
-                    self.set_sway(k, place, rate, state)
+                    self.set_horizontal(k, place, rate, state)
 
     @kernel
     def fix_held_points(self, mode: int, state: Vector, memory: Vector) -> None:
         """Store the present places of the held points of a mode, with consistent velocities."""
         for k in range(self.body_count):
-            part, body_mode = self.on_base(k), self.part_mode(mode, k)
+            part, body_mode = self.on_base(k), self.body_mode(mode, k)
             if self.is_rigid(k) and not part.is_free(body_mode):
                 pin, place = part.body.pin(body_mode.pivot), state[self.horizontal_of(k)]
                 attitude = part.body.attitude(self.constrained_state(k, body_mode, state).rotation)

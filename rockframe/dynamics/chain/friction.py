@@ -11,10 +11,10 @@ from rockframe.dynamics.chain.rows import BODY_STRIDE, GUARDS
 from rockframe.dynamics.chain.slippery import SlipperyBases
 from rockframe.dynamics.chain.slips import KINETIC, MAX_SLIP_CHANGES, OFFSET, STATIC
 from rockframe.dynamics.events import IMPACT, SILENT
-from rockframe.dynamics.on_base import HOLD, IDLE, SLIP, Mode
+from rockframe.dynamics.on_base import HOLD, IDLE_GUARDS, SLIP, Mode
 from rockframe.dynamics.pads import CORNER_GUARDS
 from rockframe.dynamics.protocol import HELD_PLACE, LAST_EVENT, Ground, Slope
-from rockframe.dynamics.switching import stay_if_small
+from rockframe.dynamics.switching import stop_negligible_rebound
 
 
 class SlippingChain(SlipperyBases):
@@ -32,8 +32,12 @@ class SlippingChain(SlipperyBases):
         self, k: int, slides: bool, mode: int, state: Vector, slope: Slope, ground: Ground
     ) -> Guards:
         """Return the guards of a body: of contacts, of the friction that holds it, of its slip."""
-        part, body_mode, body = self.on_base(k), self.part_mode(mode, k), self.state_of(k, state)
-        first, press, sliding = BEFORE_HORIZONTAL * k, k * BODY_STRIDE + at.NORMAL_FORCE, IDLE
+        part, body_mode, body = self.on_base(k), self.body_mode(mode, k), self.state_of(k, state)
+        first, press, sliding = (
+            BEFORE_HORIZONTAL * k,
+            k * BODY_STRIDE + at.NORMAL_FORCE,
+            IDLE_GUARDS,
+        )
         if k == 0:
             self.forces_from_slope(mode, state, slope, ground)
         if not part.flies(body_mode.contact):
@@ -74,7 +78,7 @@ class SlippingChain(SlipperyBases):
         elif which < 2 * CORNER_GUARDS:
             left = which < CORNER_GUARDS
             if memory[LAST_EVENT] == IMPACT:
-                stay_if_small(self, self.on_base(k), k, left, new, state, ground, memory)
+                stop_negligible_rebound(self, self.on_base(k), k, left, new, state, ground, memory)
             if self.reverses_immediately(k, left, new, state, ground, memory):
                 new = self.end_short_slips(new, state, ground, memory)
             new = self.with_intermediate_contact(k, left, new, state, ground, memory)
@@ -119,7 +123,7 @@ class SlippingChain(SlipperyBases):
         """Return a body that friction cannot hold, or -1, and the force that would hold it."""
         work = self.workspace()
         for j in range(self.body_count):
-            if not self.on_base(j).is_free(self.part_mode(mode, j)):
+            if not self.on_base(j).is_free(self.body_mode(mode, j)):
                 i, friction = j * BODY_STRIDE, self.friction_coefficient(j, coefficient)
                 thrust = work[i + at.TANGENTIAL_FORCE]
                 most = friction * max(work[i + at.NORMAL_FORCE], 0.0)
@@ -134,7 +138,7 @@ class SlippingChain(SlipperyBases):
         Accelerations up to `near` times gravity do not count.
         """
         for j in range(self.body_count):
-            part, body_mode = self.on_base(j), self.part_mode(mode, j)
+            part, body_mode = self.on_base(j), self.body_mode(mode, j)
             if body_mode.slides and not part.flies(body_mode.contact):
                 rate, noise = self.slip_rate(j, mode, state)
                 least = near * math.sqrt(part.body.gravity / part.body.size())

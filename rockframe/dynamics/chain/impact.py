@@ -157,7 +157,7 @@ def solve_trial(
     count, start, same = 0, 0, True
     # from the bottom up: successive candidates differ in the highest bodies
     for k in range(system.body_count - 1, -1, -1):
-        i, body_mode = k * BODY_STRIDE, system.part_mode(mode, k)
+        i, body_mode = k * BODY_STRIDE, system.body_mode(mode, k)
         bears, touches = subset >> 2 * k & BOTH, closed >> 2 * k & BOTH
         held = touches | bears if sticks else bears
         sense = 0.0 if sticks else system.trial_sense(k)
@@ -209,12 +209,12 @@ def write_trial_data(system: Any, impulsive: bool, state: Vector) -> None:
             for side in range(2):
                 pin = part.body.pin(PIVOT_LEFT if side == 0 else PIVOT_RIGHT)
                 reach = part.body.reach(pin, attitude)
-                work[i + at.CORNER_ARMS + side] = reach.rate
+                work[i + at.CORNER_ARMS + side] = reach.derivative
                 work[i + at.TANGENTIAL_PRESCRIBED + side] = (
-                    reach.rate * rate - body.horizontal_velocity
+                    reach.derivative * rate - body.horizontal_velocity
                 )
                 if not impulsive:
-                    along = tangential_coriolis(i, work) + reach.bend * rate * rate
+                    along = tangential_coriolis(i, work) + reach.second_derivative * rate * rate
                     work[i + at.TANGENTIAL_PRESCRIBED + side] = along
                     work[i + at.NORMAL_PRESCRIBED + side] = -normal_coriolis(i, work) - bends[side]
 

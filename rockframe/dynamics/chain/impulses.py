@@ -122,10 +122,10 @@ class RigidImpulses(CornerGuards):
         self.add_velocity_changes(state)
 
     @inlined
-    def note_blow(self, k: int, press: float, moment: float, along: float) -> None:
+    def record_impulse(self, k: int, normal: float, moment: float, along: float) -> None:
         """Add to the impulses of a deformable base on its body as an end lands."""
         work, i = self.workspace(), k * BODY_STRIDE
-        work[i + at.LANDING_NORMAL] += press
+        work[i + at.LANDING_NORMAL] += normal
         work[i + at.LANDING_MOMENT] += moment
         work[i + at.LANDING_TANGENTIAL] += along
 
@@ -136,8 +136,8 @@ class RigidImpulses(CornerGuards):
         Both ends of a body that flew may have landed together.
         """
         part = self.on_base(k)
-        both = part.flies(self.part_mode(mode, k).contact)
-        both &= part.base.is_held(self.part_mode(new, k).contact, not left)
+        both = part.flies(self.body_mode(mode, k).contact)
+        both &= part.base.is_held(self.body_mode(new, k).contact, not left)
         return BOTH if both else LEFT_ONLY if left else RIGHT_ONLY
 
     @kernel
@@ -247,9 +247,9 @@ class RigidImpulses(CornerGuards):
     def slip_along_friction(self, k: int, mode: int, state: Vector) -> float:
         """Return the velocity of slip, positive in the sense of the friction of the landing."""
         part, body = self.on_base(k), self.state_of(k, state)
-        pin = part.body.pin(self.part_mode(mode, k).pivot)
+        pin = part.body.pin(self.body_mode(mode, k).pivot)
         reach = part.body.reach(pin, part.body.attitude(body.rotation))
-        about, sway = reach.rate * body.angular_velocity, body.horizontal_velocity
+        about, sway = reach.derivative * body.angular_velocity, body.horizontal_velocity
         slip, along = sway - about, self.workspace()[k * BODY_STRIDE + at.LANDING_TANGENTIAL]
         if along == 0.0 or abs(slip) <= SLIP_TOLERANCE * (abs(sway) + abs(about)):
             return 0.0

@@ -33,13 +33,13 @@ from rockframe.dynamics.links import GUARDS
 from rockframe.dynamics.protocol import (
     LAST_EVENT,
     LINK_LOSS,
-    MOST_MODES,
+    MAX_MODES,
     Energies,
     Ground,
     Guards,
     Slope,
 )
-from rockframe.dynamics.several_laws import kinds_of, one_of
+from rockframe.dynamics.several_laws import combined_law, law_prototypes
 from rockframe.errors import AssemblyError
 
 
@@ -232,13 +232,13 @@ def link_law_and_rows(
     `modes` is the number of modes of the bodies without links.
     """
     laws = [one.numbers.law for one in links]
-    kinds = kinds_of(laws)
-    own = [one_of(kinds, law) for law in laws]
+    kinds = law_prototypes(laws)
+    own = [combined_law(kinds, law) for law in laws]
     rows, value = list[Vector](), modes
     for one, each in zip(links, own, strict=True):
         rows.append(link_row(one, each, value))
         value *= padded_state_count(one.numbers.law.states())
-    if value > MOST_MODES:
+    if value > MAX_MODES:
         msg = f"{len(links)} links are more than {bodies} bodies can have"
         raise AssemblyError([msg])
     return own[0].with_numbers(numbers_in(own[0]).tolist()), rows

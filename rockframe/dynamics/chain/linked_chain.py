@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from rockframe.compiled import Vector, inlined, kernel
-from rockframe.dynamics.bodies import DEGREES
+from rockframe.dynamics.bodies import BODY_DOF
 from rockframe.dynamics.body import BodyState
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.friction import SlippingChain
@@ -61,7 +61,7 @@ class LinkedBodies(LinkMechanics, Chain):
     @kernel
     def moving_in(self, mode: int) -> int:
         """Return the number of coordinates that move in a mode: all."""
-        return DEGREES * self.body_count
+        return BODY_DOF * self.body_count
 
     @inlined
     def lowest_position(self, mode: int, body: BodyState, state: Vector) -> float:
@@ -74,7 +74,7 @@ class LinkedBodies(LinkMechanics, Chain):
         poses, x, y, rate, angle = self.poses(), 0.0, 0.0, 0.0, 0.0
         for k in range(self.body_count - 1, -1, -1):
             i, j = k * BODY_STRIDE, k * POSE_STRIDE
-            body = self.constrained_state(k, self.part_mode(mode, k), state)
+            body = self.constrained_state(k, self.body_mode(mode, k), state)
             sine, cosine = work[i + at.SINE], work[i + at.COSINE]
             y = self.rise_of(k, y, body.vertical, work)
             if k + 1 < self.body_count:
@@ -119,12 +119,12 @@ class LinkedBodiesOnGround(LinkedBodies):
     def lowest_is_held(self, mode: int) -> bool:
         """Whether rigid ground holds the lowest body."""
         k = self.body_count - 1
-        return self.is_rigid(k) and not self.on_base(k).is_free(self.part_mode(mode, k))
+        return self.is_rigid(k) and not self.on_base(k).is_free(self.body_mode(mode, k))
 
     @kernel
     def moving_in(self, mode: int) -> int:
         """Return the number of coordinates that move: all but one of a lowest body that is held."""
-        return DEGREES * self.body_count - (1 if self.lowest_is_held(mode) else 0)
+        return BODY_DOF * self.body_count - (1 if self.lowest_is_held(mode) else 0)
 
     @inlined
     def lowest_position(self, mode: int, body: BodyState, state: Vector) -> float:
@@ -133,7 +133,7 @@ class LinkedBodiesOnGround(LinkedBodies):
             return body.horizontal
         k = self.body_count - 1
         part = self.on_base(k)
-        pin = part.body.pin(self.part_mode(mode, k).pivot)
+        pin = part.body.pin(self.body_mode(mode, k).pivot)
         attitude = part.body.attitude(body.rotation)
         return float(body.horizontal + part.body.about_pin(pin, attitude))
 
@@ -142,7 +142,7 @@ class LinkedBodiesOnGround(LinkedBodies):
         """Write the place of the lowest body's held point to the state, if the ground holds it."""
         if self.lowest_is_held(mode):
             k = self.body_count - 1
-            self.set_sway(k, memory[HELD_PLACE + k], 0.0, state)
+            self.set_horizontal(k, memory[HELD_PLACE + k], 0.0, state)
 
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:

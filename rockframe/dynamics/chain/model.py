@@ -7,15 +7,9 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from rockframe.compiled import Vector
-from rockframe.dynamics.alone import (
-    part_tolerance,
-    radius_of,
-    rocking_rate,
-    rounding_at,
-)
 from rockframe.dynamics.base_numbers import BaseNumbers
 from rockframe.dynamics.bed import both_contacts
-from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, DEGREES, ROTATION, VERTICAL
+from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, BODY_DOF, ROTATION, VERTICAL
 from rockframe.dynamics.body import BodyState
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.friction import SlippingChain
@@ -29,7 +23,7 @@ from rockframe.dynamics.chain.slips import SlippingBodies, friction_numbers
 from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.links import GUARDS as GUARDS_OF_LINK
 from rockframe.dynamics.links import SteadyForce
-from rockframe.dynamics.on_base import Mode, OnBase
+from rockframe.dynamics.on_base import BodyOnBase, Mode
 from rockframe.dynamics.pads import CORNER_GUARDS, ROUNDING
 from rockframe.dynamics.protocol import (
     BODY_COLUMNS,
@@ -39,6 +33,12 @@ from rockframe.dynamics.protocol import (
     ContactModel,
     Start,
     column_of,
+)
+from rockframe.dynamics.single_body import (
+    guard_tolerances,
+    radius_of,
+    rocking_rate,
+    rounding_estimate,
 )
 from rockframe.dynamics.vibrations import ChainBody, fastest_vibration, is_rigid, per_own_mass
 
@@ -56,7 +56,7 @@ class AtRest(NamedTuple):
 def bare_chain(bodies: Sequence[ChainBody], ties: Sequence[ChainLink] = ()) -> Chain:
     """Return the system of stacked bodies, from the top down, without their ties."""
     kind = RigidChain if any(is_rigid(one.base) for one in bodies) else Chain
-    rows = [body_row(one.body, one.base, one.mass, one.top, one.beside) for one in bodies]
+    rows = [body_row(one.body, one.base, one.mass, one.top, one.offset) for one in bodies]
     for row in rows:
         row[at.FORCE_SCALE] = max(
             row[at.FORCE_SCALE], link_force_rounding(ties) / ROUNDING_OF_FORCES
@@ -155,7 +155,7 @@ def chain_model(
             one.mass * one.body.gravity * radius_of(one.body) * one.body.angle for one in bodies
         ),
         initial=lambda start: _initial(system, starts, start),
-        rounding=None if all(is_rigid(one.base) for one in bodies) else rounding_at(
+        rounding=None if all(is_rigid(one.base) for one in bodies) else rounding_estimate(
             sum(radius_of(one.body) for one in bodies),
             sum(one.base.settlement for one in bodies),
             _unit_responses(bodies), fastest, len(scales),
@@ -168,7 +168,7 @@ def chain_model(
 
 def _weights(count: int, k: int) -> Vector:
     """Return weights of the coordinates in the rotation of body `k`: its own and those below."""
-    weights = np.zeros(DEGREES * count)
+    weights = np.zeros(BODY_DOF * count)
     first = BEFORE_HORIZONTAL * k + ROTATION
     weights[first : BEFORE_HORIZONTAL * count : BEFORE_HORIZONTAL] = 1.0
     return weights
@@ -178,7 +178,7 @@ def _tolerance(base: BaseNumbers, carried: float) -> Vector:
     """Return the rounding noise of a body's guards; each end of a bed uses one guard."""
     if is_rigid(base):
         return np.full(GUARDS, ROUNDING_OF_FORCES * carried)
-    found = part_tolerance(base)
+    found = guard_tolerances(base)
     ends = len(base.end_tolerance)
     if ends == CORNER_GUARDS:
         return found
@@ -264,7 +264,7 @@ class StartConditions(NamedTuple):
     start_height: Callable[[float], float] | None
 
 
-def _initial_placements(highest: OnBase, starts: StartConditions, start: Start) -> list[AtRest]:
+def _initial_placements(highest: BodyOnBase, starts: StartConditions, start: Start) -> list[AtRest]:
     """Return rotations and heights of all bodies: at rest, but of the highest as `start` says."""
     placements = list(starts.rest or [AtRest(0.0, 0.0)] * len(starts.bodies))
     if start.rotation is None and start.vertical_displacement is None:
@@ -283,7 +283,7 @@ def _initial_placements(highest: OnBase, starts: StartConditions, start: Start) 
     return [AtRest(rotation, height), *placements[1:]]
 
 
-def _starting_contact(part: OnBase, base: BaseNumbers, body: BodyState) -> int:
+def _starting_contact(part: BodyOnBase, base: BaseNumbers, body: BodyState) -> int:
     if not is_rigid(base):
         return part.base.starting(part.body.base_line_at(body), ())
     side = body.rotation or body.angular_velocity
@@ -296,7 +296,7 @@ def _write_start(
 ) -> None:  # fmt: skip
     """Write place, velocities and held point of body `k` to state and memory."""
     part, count = system.on_base(k), system.bodies()
-    n, i, x = DEGREES * count, BEFORE_HORIZONTAL * k, system.horizontal_of(k)
+    n, i, x = BODY_DOF * count, BEFORE_HORIZONTAL * k, system.horizontal_of(k)
     offset = system.row_value(k, at.UPRIGHT_OFFSET) if k + 1 < count else 0.0
     state[i + ROTATION], state[i + VERTICAL] = body.rotation, body.vertical
     state[n + i + ROTATION] = body.angular_velocity
@@ -309,13 +309,13 @@ def _write_start(
         state[x] = pin + offset + part.body.about_pin(pin, attitude)
     if moves and not free:
         reach = part.body.reach(pin, attitude)
-        state[n + x] = reach.rate * body.angular_velocity
+        state[n + x] = reach.derivative * body.angular_velocity
 
 
 def _initial(system: Chain, starts: StartConditions, start: Start) -> tuple[int, Vector, Vector]:
     """Return mode, state and memory at the start: all at rest but body 0, as `start` says."""
     count = len(starts.bodies)
-    state = np.zeros(2 * DEGREES * count + system.variables())
+    state = np.zeros(2 * BODY_DOF * count + system.variables())
     memory = np.zeros(len(MEMORY) + count)
     placements, mode = _initial_placements(system.on_base(0), starts, start), 0
     for k, one in enumerate(placements):
@@ -329,13 +329,13 @@ def _initial(system: Chain, starts: StartConditions, start: Start) -> tuple[int,
         if body.rotation == 0.0 and k > 0:
             leaning_body = body._replace(rotation=placements[k - 1].rotation)
         part = system.on_base(k)
-        body_mode = part.standing(
+        body_mode = part.mode_for_contact(
             _starting_contact(part, starts.bodies[k].base, body), leaning_body
         )
         _write_start(
-            system, k, body_mode, part.starting_pin(body_mode, leaning_body), body, state, memory
+            system, k, body_mode, part.initial_pin(body_mode, leaning_body), body, state, memory
         )
-        mode = system.with_part(mode, k, body_mode)
+        mode = system.with_body_mode(mode, k, body_mode)
     if isinstance(system, RigidChain):
         memory = np.concatenate([memory, [1.0, 0.0, 0.0]])
         system.project_onto_contacts(mode, state, memory)

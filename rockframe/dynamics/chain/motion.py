@@ -42,14 +42,14 @@ def write_kinematics(system: ChainArray, mode: int, state: Vector, work: Vector)
     sine, cosine = 0.0, 1.0
     for k in range(count - 1, -1, -1):
         i = k * BODY_STRIDE
-        part, body_mode = system.on_base(k), system.part_mode(mode, k)
+        part, body_mode = system.on_base(k), system.body_mode(mode, k)
         body = system.constrained_state(k, body_mode, state)
         attitude = part.body.attitude(body.rotation)
         reach = part.body.reach(part.body.pin(body_mode.pivot), attitude)
         free = part.is_free(body_mode)
         work[i + at.ATTITUDE], work[i + at.ATTITUDE + 1] = attitude.sine, attitude.cosine
         work[i + at.ATTITUDE + 2] = attitude.rise
-        sway = body.horizontal_velocity if free else reach.rate * body.angular_velocity
+        sway = body.horizontal_velocity if free else reach.derivative * body.angular_velocity
         lowest = k == count - 1
         across = 0.0 if lowest else body.horizontal
         arm = 0.0 if lowest else below + part.body.height + body.vertical
@@ -59,10 +59,12 @@ def write_kinematics(system: ChainArray, mode: int, state: Vector, work: Vector)
         work[i + at.SINE], work[i + at.COSINE] = sine, cosine
         work[i + at.TANGENTIAL], work[i + at.NORMAL] = across, arm
         work[i + at.TANGENTIAL_RATE], work[i + at.NORMAL_RATE] = sway, body.vertical_velocity
-        work[i + at.PIVOT_ARM] = reach.rate
+        work[i + at.PIVOT_ARM] = reach.derivative
         work[i + at.FRAME_ROTATION_RATE], work[i + at.ROTATION_RATE] = rate, body.angular_velocity
         work[i + at.HOLD_STATE] = FREE if free else HELD
-        work[i + at.PIVOT_CENTRIPETAL] = reach.bend * body.angular_velocity * body.angular_velocity
+        work[i + at.PIVOT_CENTRIPETAL] = (
+            reach.second_derivative * body.angular_velocity * body.angular_velocity
+        )
         work[i + at.SPEED_X], work[i + at.SPEED_Y] = speed_x, speed_y
         angle += body.rotation
         if lowest and not part.body.small:

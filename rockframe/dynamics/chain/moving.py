@@ -4,7 +4,7 @@ Equations :eq:`eq-chain`; forces and energies are per unit of the reference mass
 """
 
 from rockframe.compiled import Vector, inlined, kernel
-from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, DEGREES, ROTATION, VERTICAL
+from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, BODY_DOF, ROTATION, VERTICAL
 from rockframe.dynamics.body import Attitude
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.motion import (
@@ -49,8 +49,8 @@ class MovingBodies(ChainArray):
         if self.moving_body_count(mode) == 0:
             return 0
         lowest = self.body_count - 1
-        free = self.on_base(lowest).is_free(self.part_mode(mode, lowest))
-        return DEGREES * self.body_count - (0 if free else 1)
+        free = self.on_base(lowest).is_free(self.body_mode(mode, lowest))
+        return BODY_DOF * self.body_count - (0 if free else 1)
 
     @inlined
     def moving_body_count(self, mode: int) -> int:
@@ -63,20 +63,20 @@ class MovingBodies(ChainArray):
         fastest = 0.0
         for k in range(self.body_count):
             if not self.is_slippery(k):
-                fastest = max(fastest, self.on_base(k).relaxation_in(self.part_mode(mode, k)))
+                fastest = max(fastest, self.on_base(k).relaxation_in(self.body_mode(mode, k)))
         return fastest
 
     @inlined
-    def own_place(self, k: int) -> int:
+    def base_variable_index(self, k: int) -> int:
         """Return the index in the state of the own variables of bases, which have none here."""
-        return 2 * DEGREES * self.body_count
+        return 2 * BODY_DOF * self.body_count
 
     @kernel
     def write_constraints(self, moving: int, mode: int, state: Vector, work: Vector) -> int:
         """Write the constraints of the first `moving` bodies in a mode; return their number."""
         count, rows = 0, self.constraints()
         for k in range(moving):
-            body_mode = self.part_mode(mode, k)
+            body_mode = self.body_mode(mode, k)
             count = self.add_corner_constraints(k, count, mode, state, True, work, rows)
             count = self.add_hold_or_slide(k, count, body_mode, state, work, rows)
         return count
@@ -214,24 +214,24 @@ class MovingBodies(ChainArray):
         self.solve(moving, self.write_constraints(moving, mode, state, work), work)
         for k in range(self.body_count):
             i = k * BODY_STRIDE
-            if self.part_mode(mode, k).slides:
+            if self.body_mode(mode, k).slides:
                 about = work[i + at.PIVOT_ARM] * work[i + at.ROTATION_RATE]
                 slip = work[i + at.TANGENTIAL_RATE] - about
                 dissipated -= work[i + at.TANGENTIAL_FORCE] * slip
-        powers = DEGREES * self.body_count + self.variables()
+        powers = BODY_DOF * self.body_count + self.variables()
         out[powers], out[powers + 1] = dissipated, supplied
         return out
 
     @kernel
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
         """Return power dissipated, of the slope, and that of the ground at the state's rates."""
-        dissipated = slope[DEGREES * self.body_count + self.variables()]
+        dissipated = slope[BODY_DOF * self.body_count + self.variables()]
         return dissipated, input_power(self, state, ground, self.workspace())
 
     @inlined
     def contact_with_force(self, k: int, mode: int) -> int:
         """Return the contact by which the force of a body's base is computed."""
-        body_mode = self.part_mode(mode, k)
+        body_mode = self.body_mode(mode, k)
         if self.is_slippery(k):  # its base presses whether the body slips or not
             return body_mode.contact
         return self.on_base(k).contact_with_force(body_mode)
@@ -300,7 +300,7 @@ class MovingBodies(ChainArray):
         kinetic = gravity = elastic = change = rise = rate = 0.0
         for k in range(self.body_count - 1, -1, -1):
             i, mass = k * BODY_STRIDE, self.row_value(k, at.MASS)
-            body = self.constrained_state(k, self.part_mode(mode, k), state)
+            body = self.constrained_state(k, self.body_mode(mode, k), state)
             x, y = work[i + at.SPEED_X], work[i + at.SPEED_Y]
             rate += body.angular_velocity
             kinetic += 0.5 * (mass * (x * x + y * y) + self.row_value(k, at.INERTIA) * rate * rate)
@@ -325,19 +325,19 @@ class MovingBodies(ChainArray):
         )
 
     @kernel
-    def place(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
+    def centre_position(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
         """Return the place of a body's centre of mass along the body below, or along the ground."""
         if k + 1 < self.body_count:
             return state[self.horizontal_of(k)]
         part, body = self.on_base(k), self.state_of(k, state)
         attitude = part.body.attitude(body.rotation)
-        return part.horizontal_place(
-            self.part_mode(mode, k), body, attitude, memory[HELD_PLACE + k]
+        return part.horizontal_position(
+            self.body_mode(mode, k), body, attitude, memory[HELD_PLACE + k]
         )
 
     @kernel
     def response(
-        self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
+        self, k: int, mode: int, impulse: float, moment: float, slip: float, state: Vector
     ) -> VelocityChange:
         """Return the changes of velocities by an impulse of a base, or by a hold that stops a slip.
 
@@ -346,7 +346,7 @@ class MovingBodies(ChainArray):
         work, out = self.workspace(), self.slopes()
         write_kinematics(self, mode, state, work)
         set_inertia_loads(self, 0.0, 0.0, work)
-        add_base_load(self, k, press, moment, work)
+        add_base_load(self, k, impulse, moment, work)
         self.solve_response(k, mode, slip, state)
         first = BEFORE_HORIZONTAL * k
         thrust = work[k * BODY_STRIDE + at.TANGENTIAL_FORCE]
@@ -407,15 +407,17 @@ class MovingBodies(ChainArray):
         """Return the accelerations of the left and right end away from the body below."""
         slope, first = self.find_forces(mode, state, ground), BEFORE_HORIZONTAL * k
         body = self.state_of(k, state)
-        return self.on_base(k).end_rises(body, slope[first + VERTICAL], slope[first + ROTATION])
+        return self.on_base(k).end_accelerations_at(
+            body, slope[first + VERTICAL], slope[first + ROTATION]
+        )
 
     @kernel
-    def tendency(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
+    def incipient_rotation(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
         """Return the sign of the rotation that will follow; at rest it is a guess."""
         if ground.x != 0.0:
             return -ground.x
         if self.body_count == 1:
-            return self.on_base(k).base.tilt(self.part_mode(mode, k).contact)
+            return self.on_base(k).base.tilt(self.body_mode(mode, k).contact)
         other = state[BEFORE_HORIZONTAL * (k - 1) + ROTATION] if k > 0 else 0.0
         if k == 0:
             other = -state[self.coordinates() + BEFORE_HORIZONTAL + ROTATION]

@@ -26,14 +26,13 @@ from rockframe.dynamics.chain.rows import GUARDS
 from rockframe.dynamics.events import FULL, IMPACT, REST, SEPARATION, SILENT, UPLIFT
 from rockframe.dynamics.on_base import Mode
 from rockframe.dynamics.pads import CORNER_GUARDS, REENGAGE
-from rockframe.dynamics.protocol import (
-    HELD_PLACE,
-    IMPACT_LOSS,
-    LAST_EVENT,
-    REPINNING_LOSS,
-    Ground,
+from rockframe.dynamics.protocol import HELD_PLACE, IMPACT_LOSS, LAST_EVENT, REPINNING_LOSS, Ground
+from rockframe.dynamics.switching import (
+    end_speed,
+    lift_per_slip,
+    rebounds_negligibly,
+    stop_negligible_rebound,
 )
-from rockframe.dynamics.switching import comes_back, end_speed, lift_by_slip, stay_if_small
 
 # memory, behind the held places and the body of the last event
 ADMISSIBLE_COUNT: Final = 1  # number of admissible sets, or of slips, in the last event
@@ -73,7 +72,7 @@ class RigidChain(RigidImpulses):
     ) -> int:
         """Carry out a change of contact, at a corner on a rigid base or on a deformable base."""
         k, count = guard // GUARDS, self.body_count
-        contact, which = self.part_mode(mode, k).contact, guard - k * GUARDS
+        contact, which = self.body_mode(mode, k).contact, guard - k * GUARDS
         left = which < CORNER_GUARDS
         pulls = contact & IN_TENSION != 0 and self.on_base(k).base.is_held(contact, left)
         if self.is_rigid(k) and pulls:
@@ -98,7 +97,7 @@ class RigidChain(RigidImpulses):
                 return new
             ends = self.landed_ends(k, left, mode, new)
             new = self.find_new_impulses(k, ends, closed, new, state, ground, memory)
-            stay_if_small(self, self.on_base(k), k, left, new, state, ground, memory)
+            stop_negligible_rebound(self, self.on_base(k), k, left, new, state, ground, memory)
             # the impulse of the hold is a part of the landing impulse, and has been scaled with it
             memory[IMPACT_LOSS] += memory[REPINNING_LOSS] - pinned
             memory[REPINNING_LOSS] = pinned
@@ -114,7 +113,7 @@ class RigidChain(RigidImpulses):
         self, k: int, left: bool, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
         """Let a corner lift off from a rigid base, or land on it; return the new mode."""
-        part, body_mode = self.on_base(k), self.part_mode(mode, k)
+        part, body_mode = self.on_base(k), self.body_mode(mode, k)
         was_bearing = part.base.is_held(body_mode.contact, left)
         self.project_onto_contacts(mode, state, memory)
         before, landed = self.bearing_corners(mode), 0
@@ -126,8 +125,8 @@ class RigidChain(RigidImpulses):
             new = self.choose_bearing_corners(mode, closed, before, leaving, state, ground, memory)
             if self.bearing_corners(new) == before & ~leaving and self.bears_alone(before, leaving):
                 new = self.hold_jammed_corner(k, left, mode, new, state, ground, memory)
-            flies = part.flies(self.part_mode(new, k).contact)
-            both = part.shown_contact(body_mode) == FULL
+            flies = part.flies(self.body_mode(new, k).contact)
+            both = part.contact_state(body_mode) == FULL
             memory[LAST_EVENT] = UPLIFT if both and not flies else SEPARATION
             if self.tension_corners(new) & leaving != 0:
                 memory[LAST_EVENT] = SILENT
@@ -148,7 +147,7 @@ class RigidChain(RigidImpulses):
         its rigid base, the end is not held: it is marked as one that lifts off while pressed.
         """
         k, left = guard // GUARDS, guard % GUARDS < CORNER_GUARDS
-        part, was = self.on_base(k), self.part_mode(mode, k)
+        part, was = self.on_base(k), self.body_mode(mode, k)
         waits = part.base.waiting(was.contact, left)
         holds = part.flies(was.contact) or waits == was.contact
         if holds or not self.has_falling_force(k, left, mode, state, ground):
@@ -157,13 +156,13 @@ class RigidChain(RigidImpulses):
         before = self.velocities(state)
         lost, place = memory[REPINNING_LOSS], memory[HELD_PLACE + k]
         new = self.switch_on_base(mode, guard, state, ground, memory)
-        contact = self.part_mode(new, k).contact
+        contact = self.body_mode(new, k).contact
         if contact != part.base.unpressed(contact, left) or not self.has_sinking_corner(new, state):
             return new
         self.blend_velocities(before, 0.0, state)
         memory[REPINNING_LOSS], memory[HELD_PLACE + k] = lost, place
         memory[LAST_EVENT] = SILENT
-        return self.with_part(mode, k, Mode(waits, was.pivot, was.slides))
+        return self.with_body_mode(mode, k, Mode(waits, was.pivot, was.slides))
 
     @kernel
     def release_tension_corners(
@@ -174,12 +173,12 @@ class RigidChain(RigidImpulses):
         The solution lets corners that bear react to the impulse of the hold in tension. They are
         released if without them this impulse presses the end on its pad instead of lifting it.
         """
-        part, was, body = self.on_base(k), self.part_mode(mode, k), self.state_of(k, state)
+        part, was, body = self.on_base(k), self.body_mode(mode, k), self.state_of(k, state)
         if not part.flies(was.contact):
             return mode
-        now = part.standing(part.base.held(was.contact, left), body)
+        now = part.mode_for_contact(part.base.held(was.contact, left), body)
         now = Mode(now.contact, now.pivot, True)
-        self.find_forces(self.with_part(mode, k, now), state, ground)
+        self.find_forces(self.with_body_mode(mode, k, now), state, ground)
         corners = self.bearing_corners(mode)
         for corner in range(2 * self.body_count):
             least = NEARLY_ZERO * self.row_value(corner // 2, at.FORCE_SCALE)
@@ -189,8 +188,8 @@ class RigidChain(RigidImpulses):
             return mode
         parted = self.with_bearing_corners(mode, corners, self.tension_corners(mode) & corners)
         reach = part.body.reach(part.body.pin(now.pivot), part.body.attitude(body.rotation))
-        slip = body.horizontal_velocity - reach.rate * body.angular_velocity
-        if slip * lift_by_slip(self, part, k, self.with_part(parted, k, now), state) <= 0.0:
+        slip = body.horizontal_velocity - reach.derivative * body.angular_velocity
+        if slip * lift_per_slip(self, part, k, self.with_body_mode(parted, k, now), state) <= 0.0:
             return mode
         self.project_onto_contacts(mode, state, memory)
         self.fix_held_points(parted, state, memory)
@@ -213,10 +212,10 @@ class RigidChain(RigidImpulses):
     ) -> int:
         """Hold a corner of a body in flight if its rebound is negligible; return the mode."""
         part, corner = self.on_base(k), (LEFT_ONLY if left else RIGHT_ONLY) << 2 * k
-        if not part.flies(self.part_mode(mode, k).contact):
+        if not part.flies(self.body_mode(mode, k).contact):
             return mode
         speed, _ = end_speed(part, left, self.state_of(k, state))
-        if not comes_back(self, part, k, left, speed, mode, state, ground):
+        if not rebounds_negligibly(self, part, k, left, speed, mode, state, ground):
             return mode
         closed, in_tension = self.bearing_corners(mode) | corner, self.tension_corners(mode)
         held = self.stand_on_corners(closed, in_tension, mode, state, memory)

@@ -8,7 +8,7 @@ import math
 from typing import Final
 
 from rockframe.compiled import Vector, inlined, kernel
-from rockframe.dynamics.body import accelerated
+from rockframe.dynamics.body import with_accelerations
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.corners import IN_TENSION
 from rockframe.dynamics.chain.impact import JAMMED, BearingCorners, find_bearing_corners
@@ -21,7 +21,7 @@ from rockframe.dynamics.events import IMPACT, REST, SILENT, STICK
 from rockframe.dynamics.on_base import HOLD, SLIP, Mode
 from rockframe.dynamics.pads import CORNER_GUARDS
 from rockframe.dynamics.protocol import HELD_PLACE, IMPACT_LOSS, LAST_EVENT, Ground
-from rockframe.dynamics.switching import stay_if_small
+from rockframe.dynamics.switching import stop_negligible_rebound
 
 FRICTION_CHANGED: Final = -1
 """In place of the leaving corner: only friction has changed."""
@@ -37,7 +37,7 @@ class SlippingRigidChain(SlipTrials):
         self, k: int, mode: int, state: Vector, values: Vector, changes: Vector
     ) -> None:
         """Write the guards of the friction that holds a body, and of its slip."""
-        body_mode, i = self.part_mode(mode, k), GUARDS * k + 2 * CORNER_GUARDS
+        body_mode, i = self.body_mode(mode, k), GUARDS * k + 2 * CORNER_GUARDS
         size = self.row_value(k, at.FORCE_SCALE if self.is_rigid(k) else at.GRAVITY)
         held = self.friction_coefficient(k, STATIC) == math.inf and not body_mode.slides
         if self.on_base(k).flies(body_mode.contact) or held:
@@ -95,17 +95,17 @@ class SlippingRigidChain(SlipTrials):
         As an end lifts off the held point changes, and with it the slips and the corners that bear.
         """
         for k in range(self.body_count):
-            part, now = self.on_base(k), self.part_mode(mode, k)
+            part, now = self.on_base(k), self.body_mode(mode, k)
             line, contact = part.body.base_line_at(self.state_of(k, state)), now.contact
             waits = self.is_slippery(k) and not part.flies(contact)
             for side in range(2):
                 left = side == 0
                 if waits and part.base.presses(contact, left, line, ()):
                     rises = self.end_accelerations(k, mode, state, ground)
-                    line = accelerated(line, rises[0], rises[1])
+                    line = with_accelerations(line, rises[0], rises[1])
                     if part.base.will_press(left, line, ()):
                         contact = part.base.waiting(contact, left)
-            mode = self.with_part(mode, k, Mode(contact, now.pivot, now.slides))
+            mode = self.with_body_mode(mode, k, Mode(contact, now.pivot, now.slides))
         return mode
 
     @kernel
@@ -118,7 +118,7 @@ class SlippingRigidChain(SlipTrials):
         """
         new = mode
         for k in range(self.body_count):
-            if self.is_slippery(k) and not self.part_mode(before, k).slides:
+            if self.is_slippery(k) and not self.body_mode(before, k).slides:
                 new = self.stop_short_slip(k, new, state, ground, memory)
         return new if new == mode else self.rest_repeatedly(new, state, ground, memory)
 
@@ -151,7 +151,7 @@ class SlippingRigidChain(SlipTrials):
                 part, left = self.on_base(k), which < CORNER_GUARDS
                 ends = self.landed_ends(k, left, mode, new)
                 new = self.find_new_impulses(k, ends, closed, new, state, ground, memory)
-                stay_if_small(self, part, k, left, new, state, ground, memory)
+                stop_negligible_rebound(self, part, k, left, new, state, ground, memory)
             for other in range(self.body_count):
                 if not self.is_slippery(other):
                     new = self.disturbed_mode(other, new, state)
@@ -203,7 +203,7 @@ class SlippingRigidChain(SlipTrials):
     @kernel
     def violates_friction(self, k: int, mode: int, state: Vector) -> bool:
         """Whether friction cannot hold a held body, or acts in the sense of the slip."""
-        part, body_mode = self.on_base(k), self.part_mode(mode, k)
+        part, body_mode = self.on_base(k), self.body_mode(mode, k)
         friction, work = self.friction_coefficient(k, STATIC), self.workspace()
         if part.flies(body_mode.contact) or friction == math.inf:
             return False
@@ -226,7 +226,7 @@ class SlippingRigidChain(SlipTrials):
         for _ in range(self.body_count):
             self.find_forces(mode, state, ground)
             for k in range(self.body_count):
-                if not self.part_mode(mode, k).slides and self.violates_friction(k, mode, state):
+                if not self.body_mode(mode, k).slides and self.violates_friction(k, mode, state):
                     if k == self.body_count - 1:
                         self.write_lowest_position(mode, state)
                     sense = float(work[k * BODY_STRIDE + at.STARTING_SENSE])

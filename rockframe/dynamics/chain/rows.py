@@ -13,10 +13,10 @@ import numpy as np
 from rockframe.compiled import Vector, inlined, kernel, numbers_in, view_from, view_of
 from rockframe.dynamics.base_numbers import BaseNumbers
 from rockframe.dynamics.bed import Bed, Rigid
-from rockframe.dynamics.bodies import DEGREES, InState
+from rockframe.dynamics.bodies import BODY_DOF, StateAccess
 from rockframe.dynamics.body import BY_CONTACT, Body, BodyState
 from rockframe.dynamics.chain.any_base import MAX_LAW_NUMBERS, ON_BED, ON_PADS, ON_RIGID, AnyBase
-from rockframe.dynamics.on_base import BODY_GUARDS, Mode, OnBase
+from rockframe.dynamics.on_base import BODY_GUARDS, BodyOnBase, Mode
 from rockframe.dynamics.pads import CORNER, CORNER_GUARDS, ElasticPads
 from rockframe.dynamics.point_law import Viscoelastic
 from rockframe.dynamics.protocol import POWERS, CalledBySteps
@@ -96,7 +96,7 @@ TANGENTIAL_PRESCRIBED: Final = 42
 # the body's part of the mode that was unpacked last, and that mode, its bits in two halves
 CONTACT: Final = 44
 PIVOT: Final = 45
-SLIDES: Final = 46
+SLIDING_BIT: Final = 46
 HIGH_BITS: Final = 47
 LOW_BITS: Final = 48
 ATTITUDE: Final = 49  # sine and cosine of the rotation on the base, and h(1 - cos a) [m]
@@ -144,7 +144,7 @@ INPUTS_BEFORE_STATE: Final = 4
 @kernel
 def workspace_length(count: int) -> int:
     """Return the length of the workspace behind the rows, for a number of bodies."""
-    each = BODY_STRIDE + MAX_CONSTRAINTS * CONSTRAINT_STRIDE + 4 * DEGREES + 2 * GUARDS + COLUMNS
+    each = BODY_STRIDE + MAX_CONSTRAINTS * CONSTRAINT_STRIDE + 4 * BODY_DOF + 2 * GUARDS + COLUMNS
     return count * each + POWERS + (MAX_CONSTRAINTS * count) ** 2 + INPUTS_BEFORE_STATE
 
 
@@ -155,7 +155,7 @@ class ChainNumbers(NamedTuple):
     rows: Vector  # the rows of all bodies, then the workspace
 
 
-class ChainArray(InState, CalledBySteps, ChainNumbers):
+class ChainArray(StateAccess, CalledBySteps, ChainNumbers):
     """Access to the rows and the workspace of a chain. A mixin of systems."""
 
     __slots__ = ()
@@ -186,7 +186,7 @@ class ChainArray(InState, CalledBySteps, ChainNumbers):
     @inlined
     def slopes(self) -> Vector:
         """Return the workspace for accelerations and powers."""
-        return view_of(self.rows, self.constraints_end(), DEGREES * self.body_count + POWERS)
+        return view_of(self.rows, self.constraints_end(), BODY_DOF * self.body_count + POWERS)
 
     @inlined
     def constraints_end(self) -> int:
@@ -196,32 +196,32 @@ class ChainArray(InState, CalledBySteps, ChainNumbers):
     @inlined
     def guard_workspace(self, which: int) -> Vector:
         """Return the workspace for guards (0) or their rates (1)."""
-        first = self.constraints_end() + self.body_count * (DEGREES + which * GUARDS) + POWERS
+        first = self.constraints_end() + self.body_count * (BODY_DOF + which * GUARDS) + POWERS
         return view_of(self.rows, first, GUARDS * self.body_count)
 
     @inlined
     def velocity_workspace(self) -> Vector:
         """Return the workspace for velocities."""
-        first = self.constraints_end() + self.body_count * (DEGREES + 2 * GUARDS) + POWERS
-        return view_of(self.rows, first, DEGREES * self.body_count)
+        first = self.constraints_end() + self.body_count * (BODY_DOF + 2 * GUARDS) + POWERS
+        return view_of(self.rows, first, BODY_DOF * self.body_count)
 
     @inlined
     def column_workspace(self) -> Vector:
         """Return the workspace for columns."""
-        first = self.constraints_end() + self.body_count * (2 * DEGREES + 2 * GUARDS) + POWERS
+        first = self.constraints_end() + self.body_count * (2 * BODY_DOF + 2 * GUARDS) + POWERS
         return view_of(self.rows, first, COLUMNS * self.body_count)
 
     @inlined
     def constraint_matrix(self) -> Vector:
         """Return the matrix of the constraints: responses of each to the forces of the others."""
-        each = 2 * DEGREES + 2 * GUARDS + COLUMNS
+        each = 2 * BODY_DOF + 2 * GUARDS + COLUMNS
         first = self.constraints_end() + self.body_count * each + POWERS
         return view_of(self.rows, first, (MAX_CONSTRAINTS * self.body_count) ** 2)
 
     @inlined
     def solved_inputs(self) -> Vector:
         """Return the mode, ground acceleration and state of the last solution for forces."""
-        first = self.chain_end() - INPUTS_BEFORE_STATE - 2 * DEGREES * self.body_count
+        first = self.chain_end() - INPUTS_BEFORE_STATE - 2 * BODY_DOF * self.body_count
         return view_from(self.rows, first)
 
     @inlined
@@ -230,7 +230,7 @@ class ChainArray(InState, CalledBySteps, ChainNumbers):
         return self.body_count * ROW_STRIDE + workspace_length(self.body_count)
 
     @inlined
-    def on_base(self, k: int) -> OnBase:
+    def on_base(self, k: int) -> BodyOnBase:
         """Return a body on its base."""
         r = view_from(self.rows, k * ROW_STRIDE)
         body = Body(r[0], r[1], r[2], r[3], r[4], r[5], int(r[6]), r[7] != 0.0)
@@ -238,7 +238,7 @@ class ChainArray(InState, CalledBySteps, ChainNumbers):
         base = AnyBase(
             int(r[LAW]), n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10], n[11],
         )  # fmt: skip
-        return OnBase(body, base)
+        return BodyOnBase(body, base)
 
     @inlined
     def constrained_state(self, k: int, body_mode: Mode, state: Vector) -> BodyState:
@@ -252,16 +252,16 @@ class ChainArray(InState, CalledBySteps, ChainNumbers):
         return int(self.row_value(k, PLACE_VALUE)) * int(self.row_value(k, MODE_COUNT))
 
     @inlined
-    def part_mode(self, mode: int, k: int) -> Mode:
+    def body_mode(self, mode: int, k: int) -> Mode:
         """Return the mode of a body; as divisions are slow, the one unpacked last is remembered."""
         work, i, high = self.workspace(), k * BODY_STRIDE, mode >> HALF_OF_BITS
         low = mode - (high << HALF_OF_BITS)
         if work[i + HIGH_BITS] != high or work[i + LOW_BITS] != low:
             found = self.unpack_mode(mode, k)
             work[i + CONTACT], work[i + PIVOT] = found.contact, found.pivot
-            work[i + SLIDES] = 1.0 if found.slides else 0.0
+            work[i + SLIDING_BIT] = 1.0 if found.slides else 0.0
             work[i + HIGH_BITS], work[i + LOW_BITS] = high, low
-        return Mode(int(work[i + CONTACT]), int(work[i + PIVOT]), work[i + SLIDES] != 0.0)
+        return Mode(int(work[i + CONTACT]), int(work[i + PIVOT]), work[i + SLIDING_BIT] != 0.0)
 
     @kernel
     def unpack_mode(self, mode: int, k: int) -> Mode:
@@ -275,7 +275,7 @@ class ChainArray(InState, CalledBySteps, ChainNumbers):
         return Mode(contact, body_mode % PIVOT_COUNT, body_mode >= PIVOT_COUNT)
 
     @kernel
-    def with_part(self, mode: int, k: int, part: Mode) -> int:
+    def with_body_mode(self, mode: int, k: int, part: Mode) -> int:
         """Return the chain's mode with another mode of a body."""
         value, modes = int(self.row_value(k, PLACE_VALUE)), int(self.row_value(k, MODE_COUNT))
         low, high = part.contact % CORNER, part.contact // CORNER

@@ -15,14 +15,7 @@ from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION, VERTICAL
 from rockframe.dynamics.body import PIVOT_LEFT, PIVOT_RIGHT
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.corners import NO_CONSTRAINT
-from rockframe.dynamics.chain.impact import (
-    BOTH,
-    LEFT_ONLY,
-    NOISE,
-    Trial,
-    bit_count,
-    solve_trial,
-)
+from rockframe.dynamics.chain.impact import BOTH, LEFT_ONLY, NOISE, Trial, bit_count, solve_trial
 from rockframe.dynamics.chain.motion import (
     FREE,
     add_constraint,
@@ -35,7 +28,7 @@ from rockframe.dynamics.chain.rows import BODY_STRIDE, CONSTRAINT_STRIDE, MAX_CO
 from rockframe.dynamics.chain.slippery import SlipperyBases
 from rockframe.dynamics.chain.slips import IMPULSIVE, KINETIC, MAX_SLIP_CHANGES, ROUNDING, STATIC
 from rockframe.dynamics.on_base import Mode
-from rockframe.dynamics.sliding import NOISE as NOISE_OF_SLIP
+from rockframe.dynamics.sliding import SPEED_ROUNDING
 
 NO_PIVOT: Final = -1
 """In place of a pivot, where a body neither slips nor is held by friction."""
@@ -58,7 +51,7 @@ class SlipTrials(SlipperyBases, RigidChain):
     @inlined
     def sense_or_zero(self, mode: int, k: int) -> float:
         """Return the sense of slip of a body on its base in a mode; 0 if it does not slip."""
-        if (self.is_rigid(k) or self.is_slippery(k)) and self.part_mode(mode, k).slides:
+        if (self.is_rigid(k) or self.is_slippery(k)) and self.body_mode(mode, k).slides:
             return self.sense(mode, k)
         return 0.0
 
@@ -90,7 +83,7 @@ class SlipTrials(SlipperyBases, RigidChain):
     def with_deformable_slips(self, mode: int, state: Vector, memory: Vector) -> int:
         """Return the mode with the slips on deformable bases of the last trial."""
         for k in range(self.body_count):
-            if self.is_slippery(k) and not self.on_base(k).flies(self.part_mode(mode, k).contact):
+            if self.is_slippery(k) and not self.on_base(k).flies(self.body_mode(mode, k).contact):
                 mode = self.with_slip(k, self.trial_sense(k), mode, state, memory)
         return mode
 
@@ -329,7 +322,7 @@ class SlipTrials(SlipperyBases, RigidChain):
                     pivot = self.trial_pivot(k, mode, corners, True)
                     rate, least = self.pivot_slip_rate(k, pivot, state)
                     after = self.slip_acceleration(k, pivot, True, state) + rate
-                    if sense * after < -abs(sense) * (least + NOISE_OF_SLIP * abs(after)):
+                    if sense * after < -abs(sense) * (least + SPEED_ROUNDING * abs(after)):
                         work[k * BODY_STRIDE + at.SLIP_SENSE] = 0.0
                         changed = True
                     elif abs(sense) == 1.0 and self.normal_force(k) < 0.0:
@@ -373,7 +366,7 @@ class SlipTrials(SlipperyBases, RigidChain):
 
         On a deformable base friction has no part in impacts.
         """
-        bears, body_mode = subset >> 2 * k & BOTH, self.part_mode(mode, k)
+        bears, body_mode = subset >> 2 * k & BOTH, self.body_mode(mode, k)
         if self.is_rigid(k):
             return NO_PIVOT if bears == 0 else self.bearing_pivot(bears)
         idle = impulsive or self.on_base(k).flies(body_mode.contact)
@@ -384,7 +377,7 @@ class SlipTrials(SlipperyBases, RigidChain):
         self, k: int, pivot: int, mode: int, state: Vector
     ) -> tuple[float, float]:
         """Return the velocity of slip before a trial of corners, and its rounding noise."""
-        if not self.is_rigid(k) and not self.part_mode(mode, k).slides:
+        if not self.is_rigid(k) and not self.body_mode(mode, k).slides:
             return 0.0, 0.0  # held: the state need not have its velocity
         return self.pivot_slip_rate(k, pivot, state)
 
@@ -415,7 +408,7 @@ class SlipTrials(SlipperyBases, RigidChain):
                 if impulsive or abs(rate) <= least:
                     after = self.slip_acceleration(k, pivot, impulsive, state)
                     if impulsive:
-                        after, least = after + rate, least + NOISE_OF_SLIP * abs(after)
+                        after, least = after + rate, least + SPEED_ROUNDING * abs(after)
                     else:  # as it starts to slip, friction is what holds it
                         least = noise
                     if sense * after < -least:
@@ -448,8 +441,8 @@ class SlipTrials(SlipperyBases, RigidChain):
         reach = part.body.reach(part.body.pin(pivot), part.body.attitude(body.rotation))
         spare = MAX_CONSTRAINTS * self.body_count - 1  # a slipping body has no hold: free
         jacobian = spare * CONSTRAINT_STRIDE + at.JACOBIAN
-        write_jacobian(self, k, 1.0, 0.0, -reach.rate, jacobian, work, rows)
+        write_jacobian(self, k, 1.0, 0.0, -reach.derivative, jacobian, work, rows)
         found = combined_acceleration(self.body_count, k, jacobian, work, rows)
         if impulsive:
             return found
-        return found - tangential_coriolis(i, work) - reach.bend * rate * rate
+        return found - tangential_coriolis(i, work) - reach.second_derivative * rate * rate

@@ -9,7 +9,7 @@ import math
 
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION, VERTICAL
-from rockframe.dynamics.body import REST_AMPLITUDE, accelerated
+from rockframe.dynamics.body import REST_AMPLITUDE, with_accelerations
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.impact import LEFT_ONLY, RIGHT_ONLY
 from rockframe.dynamics.chain.motion import (
@@ -25,7 +25,7 @@ from rockframe.dynamics.events import IMPACT, PIVOT_CHANGE, REENGAGEMENT, SEPARA
 from rockframe.dynamics.on_base import Mode
 from rockframe.dynamics.pads import CORNER_GUARDS
 from rockframe.dynamics.protocol import IMPACT_LOSS, LAST_EVENT, Ground
-from rockframe.dynamics.sliding import NOISE
+from rockframe.dynamics.sliding import SPEED_ROUNDING
 from rockframe.dynamics.switching import end_speed, next_pivot
 
 
@@ -45,30 +45,30 @@ class SlipperyBases(SlippingBodies):
         if which < 2 * CORNER_GUARDS:
             left = which < CORNER_GUARDS
             return self.switch_end(k, left, which % CORNER_GUARDS, mode, state, memory)
-        part, was = self.on_base(k), self.part_mode(mode, k)
+        part, was = self.on_base(k), self.body_mode(mode, k)
         pivot = next_pivot(self, part, k, mode, state, ground)
         memory[LAST_EVENT] = SILENT if was.pivot == 0 else PIVOT_CHANGE
         new = self.release(k, mode, state, memory)
-        self.stand_upright(k, state)
-        return self.with_part(new, k, Mode(was.contact, pivot, True))
+        self.set_upright(k, state)
+        return self.with_body_mode(new, k, Mode(was.contact, pivot, True))
 
     @kernel
     def switch_end(
         self, k: int, left: bool, which: int, mode: int, state: Vector, memory: Vector
     ) -> int:
         """Carry out the switch of an end's contact; return the mode, with the body released."""
-        part, was = self.on_base(k), self.part_mode(mode, k)
+        part, was = self.on_base(k), self.body_mode(mode, k)
         line = part.body.base_line_at(self.state_of(k, state))
         found = part.base.switch(was.contact, left, which, line, ())
         memory[LAST_EVENT] = found.event
         if found.crossed:
             # the crossed level is set exactly, so that rounding cannot undo the switch
-            self.change(k, part.base.level(left, line, ()), 0.0, state)
+            self.shift_vertical(k, part.base.level(left, line, ()), 0.0, state)
         if found.event == SILENT:
-            return self.with_part(mode, k, Mode(found.contact, was.pivot, was.slides))
+            return self.with_body_mode(mode, k, Mode(found.contact, was.pivot, was.slides))
         new = self.release(k, mode, state, memory)
-        now = part.standing(found.contact, self.state_of(k, state))
-        new = self.with_part(new, k, Mode(now.contact, now.pivot, not part.flies(now.contact)))
+        now = part.mode_for_contact(found.contact, self.state_of(k, state))
+        new = self.with_body_mode(new, k, Mode(now.contact, now.pivot, not part.flies(now.contact)))
         if found.event == IMPACT and part.base.rebound(left) < 1.0:
             both = part.flies(was.contact) and part.base.is_held(now.contact, not left)
             new = self.strike(k, left, both, new, state, memory)
@@ -175,9 +175,9 @@ class SlipperyBases(SlippingBodies):
         """Change the velocities by the impulses of a base; a slip that they end becomes zero."""
         self.impulse_response(k, press, moment, along, mode, state)
         self.apply_response(state)
-        self.note_blow(k, press, moment, along)
+        self.record_impulse(k, press, moment, along)
         after, noise = self.slip_rate(k, mode, state)
-        if abs(after) <= noise + 2.0 * NOISE * abs(slip):
+        if abs(after) <= noise + 2.0 * SPEED_ROUNDING * abs(slip):
             self.stop_slip(k, mode, state)
 
     @inlined
@@ -225,7 +225,7 @@ class SlipperyBases(SlippingBodies):
         The rest of its slip is added to its position at once, and its velocity is set to zero.
         """
         body = self.on_base(k).body
-        if not self.part_mode(mode, k).slides:
+        if not self.body_mode(mode, k).slides:
             return mode
         rate, noise = self.slip_rate(k, mode, state)
         # an impact may have reversed the slip since
@@ -254,15 +254,17 @@ class SlipperyBases(SlippingBodies):
         If the new forces would reverse the switch immediately, the end gets the contact state
         between the two.
         """
-        part, now, event = self.on_base(k), self.part_mode(mode, k), memory[LAST_EVENT]
+        part, now, event = self.on_base(k), self.body_mode(mode, k), memory[LAST_EVENT]
         if event not in (SEPARATION, REENGAGEMENT) or part.flies(now.contact):
             return mode
         rises = self.end_accelerations(k, mode, state, ground)
-        line = accelerated(part.body.base_line_at(self.state_of(k, state)), rises[0], rises[1])
+        line = with_accelerations(
+            part.body.base_line_at(self.state_of(k, state)), rises[0], rises[1]
+        )
         grows = part.base.will_press(left, line, ())
         contact = now.contact
         if event == SEPARATION and grows and part.base.presses(contact, left, line, ()):
             contact = part.base.waiting(contact, left)
         elif event == REENGAGEMENT and not grows:
             contact = part.base.unpressed(contact, left)
-        return self.with_part(mode, k, Mode(contact, now.pivot, now.slides))
+        return self.with_body_mode(mode, k, Mode(contact, now.pivot, now.slides))

@@ -20,7 +20,7 @@ from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.events import SILENT
 from rockframe.dynamics.on_base import Mode, SlidingGuards
 from rockframe.dynamics.protocol import HELD_PLACE, Ending, Slope
-from rockframe.dynamics.sliding import NOISE
+from rockframe.dynamics.sliding import SPEED_ROUNDING
 
 # coefficients of friction [1]
 STATIC: Final = 0
@@ -77,32 +77,35 @@ class SlippingBodies(Chain):
     @inlined
     def with_slip_sense(self, mode: int, k: int, sense: float) -> int:
         """Return the mode in which a body slips to the right (1) or left (-1)."""
-        was, value = self.part_mode(mode, k), self.body_mode_count() * 2**k
-        new = self.with_part(mode, k, Mode(was.contact, was.pivot, True))
+        was, value = self.body_mode(mode, k), self.body_mode_count() * 2**k
+        new = self.with_body_mode(mode, k, Mode(was.contact, was.pivot, True))
         new -= new // value % 2 * value
         return new + value if sense < 0.0 else new
 
     @inlined
     def slip_rate(self, k: int, mode: int, state: Vector) -> tuple[float, float]:
         """Return the velocity of slip of the point named by the mode, and its rounding noise."""
-        return self.pivot_slip_rate(k, self.part_mode(mode, k).pivot, state)
+        return self.pivot_slip_rate(k, self.body_mode(mode, k).pivot, state)
 
     @kernel
     def pivot_slip_rate(self, k: int, pivot: int, state: Vector) -> tuple[float, float]:
         """Return the velocity of slip of a point of a base, and its rounding noise."""
         part, body = self.on_base(k), self.state_of(k, state)
         pin = part.body.pin(pivot)
-        about = part.body.reach(pin, part.body.attitude(body.rotation)).rate * body.angular_velocity
+        about = (
+            part.body.reach(pin, part.body.attitude(body.rotation)).derivative
+            * body.angular_velocity
+        )
         sway = body.horizontal_velocity
-        return sway - about, NOISE * (abs(sway) + abs(about))
+        return sway - about, SPEED_ROUNDING * (abs(sway) + abs(about))
 
     @inlined
     def contact_point(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
         """Return the place along the base of the point that is held, or slips."""
         part, body = self.on_base(k), self.state_of(k, state)
-        pin = part.body.pin(self.part_mode(mode, k).pivot)
+        pin = part.body.pin(self.body_mode(mode, k).pivot)
         attitude = part.body.attitude(body.rotation)
-        return self.place(k, mode, state, memory) - part.body.about_pin(pin, attitude)
+        return self.centre_position(k, mode, state, memory) - part.body.about_pin(pin, attitude)
 
     @inlined
     def slip_memory(self, k: int) -> int:
@@ -118,7 +121,7 @@ class SlippingBodies(Chain):
     def update_peak_slips(self, mode: int, state: Vector, memory: Vector) -> None:
         """Update the largest slips of all bodies in contact."""
         for k in range(self.body_count):
-            if self.on_base(k).flies(self.part_mode(mode, k).contact):
+            if self.on_base(k).flies(self.body_mode(mode, k).contact):
                 continue
             slip, first = self.slip_of(k, mode, state, memory), self.slip_memory(k)
             memory[first + PEAK_LEFT] = max(memory[first + PEAK_LEFT], -slip)
@@ -133,7 +136,7 @@ class SlippingBodies(Chain):
     @inlined
     def slip_event(self, k: int, old: int, new: int) -> int:
         """Return the kind of event by which a body starts, stops or reverses its slip."""
-        slipped, slips = self.part_mode(old, k).slides, self.part_mode(new, k).slides
+        slipped, slips = self.body_mode(old, k).slides, self.body_mode(new, k).slides
         if not slips:
             return events.STICK if slipped else SILENT
         if not slipped:
@@ -148,7 +151,7 @@ class SlippingBodies(Chain):
     @inlined
     def apply_friction_load(self, k: int, mode: int, work: Vector) -> None:
         """Load a body that slips on a deformable base by its friction."""
-        if self.is_slippery(k) and self.part_mode(mode, k).slides:
+        if self.is_slippery(k) and self.body_mode(mode, k).slides:
             self.set_friction_load(k, self.sense(mode, k), work)
 
     @kernel
@@ -167,7 +170,7 @@ class SlippingBodies(Chain):
         self, k: int, mode: int, state: Vector, slope: Slope, press: float, size: float
     ) -> SlidingGuards:
         """Return the guards of a body's friction, over the force `size`, and of its slip."""
-        body_mode, body = self.part_mode(mode, k), self.state_of(k, state)
+        body_mode, body = self.body_mode(mode, k), self.state_of(k, state)
         if not body_mode.slides:
             hold = self.friction_coefficient(k, STATIC) * max(press, 0.0)
             hold -= abs(self.workspace()[k * BODY_STRIDE + at.TANGENTIAL_FORCE])
@@ -175,11 +178,11 @@ class SlippingBodies(Chain):
         law, sense, rate = self.on_base(k).body, self.sense(mode, k), body.angular_velocity
         reach = law.reach(law.pin(body_mode.pivot), law.attitude(body.rotation))
         scale = 1.0 / math.sqrt(law.gravity * law.size())
-        change = slope[self.horizontal_of(k)] - reach.bend * rate * rate
-        change -= reach.rate * slope[BEFORE_HORIZONTAL * k + ROTATION]
-        sway, rotating = body.horizontal_velocity, reach.rate * rate
+        change = slope[self.horizontal_of(k)] - reach.second_derivative * rate * rate
+        change -= reach.derivative * slope[BEFORE_HORIZONTAL * k + ROTATION]
+        sway, rotating = body.horizontal_velocity, reach.derivative * rate
         # rounding must not stop a slip that starts or is very slow
-        slip = scale * (sense * (sway - rotating) + NOISE * (abs(sway) + abs(rotating)))
+        slip = scale * (sense * (sway - rotating) + SPEED_ROUNDING * (abs(sway) + abs(rotating)))
         noise = self.friction_noise(k, self.friction_coefficient(k, KINETIC))
         least = noise / self.row_value(k, at.MASS)
         return SlidingGuards(1.0, slip, scale * (sense * change + least))
@@ -195,7 +198,7 @@ class SlippingBodies(Chain):
             mass += self.row_value(j, at.MASS)
         thrust = abs(self.workspace()[k * BODY_STRIDE + at.TANGENTIAL_FORCE])
         weight = mass * self.row_value(k, at.GRAVITY)
-        return ROUNDING * thrust + (ROUNDING + NOISE * friction) * weight
+        return ROUNDING * thrust + (ROUNDING + SPEED_ROUNDING * friction) * weight
 
     @kernel
     def resume_slips(self, mode: int, state: Vector, memory: Vector) -> int:
@@ -204,7 +207,7 @@ class SlippingBodies(Chain):
         Those without velocity of slip are held; the bound of friction is not checked here.
         """
         for k in range(self.body_count):
-            if self.is_slippery(k) and self.part_mode(mode, k).slides:
+            if self.is_slippery(k) and self.body_mode(mode, k).slides:
                 rate, noise = self.slip_rate(k, mode, state)
                 sense = math.copysign(1.0, rate) if abs(rate) > noise else 0.0
                 mode = self.with_slip(k, sense, mode, state, memory)
@@ -213,13 +216,13 @@ class SlippingBodies(Chain):
     @kernel
     def with_slip(self, k: int, sense: float, mode: int, state: Vector, memory: Vector) -> int:
         """Return the mode in which a body slips in a sense, or is held if the sense is 0."""
-        body_mode = self.part_mode(mode, k)
+        body_mode = self.body_mode(mode, k)
         if sense != 0.0:
             return self.with_slip_sense(self.release(k, mode, state, memory), k, sense)
         if body_mode.slides:
             self.stop_slip(k, mode, state)
             point = self.contact_point(k, mode, state, memory)
-            mode = self.with_part(mode, k, Mode(body_mode.contact, body_mode.pivot, False))
+            mode = self.with_body_mode(mode, k, Mode(body_mode.contact, body_mode.pivot, False))
             memory[HELD_PLACE + k] = point
         return mode
 
@@ -237,12 +240,14 @@ class SlippingBodies(Chain):
     @kernel
     def release(self, k: int, mode: int, state: Vector, memory: Vector) -> int:
         """Release a held body along its base; return the mode in which it may move."""
-        part, was = self.on_base(k), self.part_mode(mode, k)
+        part, was = self.on_base(k), self.body_mode(mode, k)
         if part.is_free(was):
             return mode
-        place, body = self.place(k, mode, state, memory), self.state_of(k, state)
-        self.set_sway(k, place, part.sway(was, body, part.body.attitude(body.rotation)), state)
-        return self.with_part(mode, k, Mode(was.contact, was.pivot, True))
+        place, body = self.centre_position(k, mode, state, memory), self.state_of(k, state)
+        self.set_horizontal(
+            k, place, part.horizontal_velocity(was, body, part.body.attitude(body.rotation)), state
+        )
+        return self.with_body_mode(mode, k, Mode(was.contact, was.pivot, True))
 
     @kernel
     def stop_slip(self, k: int, mode: int, state: Vector) -> None:
@@ -257,7 +262,7 @@ class SlippingBodies(Chain):
         """Write slip and rate of slip of a body, behind the columns of all bodies."""
         j = COLUMNS * self.body_count + SLIP_COLUMNS * k
         out[j] = self.slip_of(k, mode, state, memory)
-        moves = self.on_base(k).is_free(self.part_mode(mode, k))
+        moves = self.on_base(k).is_free(self.body_mode(mode, k))
         out[j + 1] = self.slip_rate(k, mode, state)[0] if moves else 0.0
 
     def slip_range(self, k: int, ending: Ending) -> tuple[float, float, float]:

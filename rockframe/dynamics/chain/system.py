@@ -3,15 +3,20 @@
 from rockframe.compiled import Vector, inlined, kernel, put
 from rockframe.dynamics.base import Guards, Variables
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION, VERTICAL
-from rockframe.dynamics.body import BodyState, accelerated
+from rockframe.dynamics.body import BodyState, with_accelerations
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.moving import MovingBodies
 from rockframe.dynamics.chain.rows import BASE_COLUMNS, BODY_STRIDE, COLUMNS, GUARDS
 from rockframe.dynamics.events import IMPACT
-from rockframe.dynamics.on_base import HOLD, IDLE, SLIP, Mode, SlidingGuards
+from rockframe.dynamics.on_base import HOLD, IDLE_GUARDS, SLIP, Mode, SlidingGuards
 from rockframe.dynamics.pads import CORNER_GUARDS, LEAVING, corner_contact
 from rockframe.dynamics.protocol import HELD_PLACE, LAST_EVENT, Ground, Slope
-from rockframe.dynamics.switching import checked_sliding, disturbed, lift_by_slip, switch_part
+from rockframe.dynamics.switching import (
+    lift_per_slip,
+    mode_after_disturbance,
+    recheck_sliding,
+    switch_mode,
+)
 
 
 class Chain(MovingBodies):
@@ -32,14 +37,14 @@ class Chain(MovingBodies):
     @kernel
     def contact_state_of(self, mode: int, k: int) -> int:
         """Return the contact state of a body."""
-        return self.on_base(k).shown_contact(self.part_mode(mode, k))
+        return self.on_base(k).contact_state(self.body_mode(mode, k))
 
     @kernel
     def some_end_slides(self, mode: int) -> bool:
         """Whether an end of some body is in sliding contact."""
         found = False
         for k in range(self.body_count):
-            found |= self.part_mode(mode, k).slides and not self.is_slippery(k)
+            found |= self.body_mode(mode, k).slides and not self.is_slippery(k)
         return found
 
     @kernel
@@ -68,8 +73,8 @@ class Chain(MovingBodies):
         self, k: int, slides: bool, mode: int, state: Vector, slope: Slope, ground: Ground
     ) -> Guards:
         """Return the guards of a body on a deformable base, and their rates."""
-        part, body_mode, body = self.on_base(k), self.part_mode(mode, k), self.state_of(k, state)
-        first, sliding = BEFORE_HORIZONTAL * k, IDLE
+        part, body_mode, body = self.on_base(k), self.body_mode(mode, k), self.state_of(k, state)
+        first, sliding = BEFORE_HORIZONTAL * k, IDLE_GUARDS
         vertical, angular = slope[first + VERTICAL], slope[first + ROTATION]
         if self.is_slippery(k):  # these guards have been written before
             values, changes = self.guard_workspace(0), self.guard_workspace(1)
@@ -77,7 +82,7 @@ class Chain(MovingBodies):
             sliding = SlidingGuards(values[i + HOLD], values[i + SLIP], changes[i + SLIP])
             body_mode = Mode(body_mode.contact, body_mode.pivot, False)
         elif slides and body_mode.slides:
-            rise = lift_by_slip(self, part, k, mode, state)
+            rise = lift_per_slip(self, part, k, mode, state)
             self.forces_from_slope(mode, state, slope, ground)
             push = self.workspace()[k * BODY_STRIDE + at.TANGENTIAL_FORCE]
             horizontal = slope[self.horizontal_of(k)]
@@ -117,7 +122,7 @@ class Chain(MovingBodies):
     ) -> int:
         """Carry out the switch of a body on a deformable base."""
         k = guard // GUARDS
-        new = switch_part(self, self.on_base(k), k, guard - k * GUARDS, mode, state, ground, memory)
+        new = switch_mode(self, self.on_base(k), k, guard - k * GUARDS, mode, state, ground, memory)
         for above in range(k):
             if memory[LAST_EVENT] == IMPACT or not self.keeps_leaving_contact(
                 above, new, state, ground
@@ -125,7 +130,7 @@ class Chain(MovingBodies):
                 new = self.disturbed_mode(above, new, state)
         for below in range(k + 1, self.body_count):
             if not self.is_rigid(below) and not self.is_slippery(below):
-                new = checked_sliding(self, self.on_base(below), below, new, state)
+                new = recheck_sliding(self, self.on_base(below), below, new, state)
         memory[HELD_PLACE + self.body_count] = k + 1.0
         return new
 
@@ -135,7 +140,7 @@ class Chain(MovingBodies):
 
         It does as long as the force of its pad decreases, unless the event is an impact.
         """
-        contact = self.part_mode(mode, k).contact
+        contact = self.body_mode(mode, k).contact
         for side in range(2):
             if not self.is_rigid(k) and corner_contact(contact, side == 0) == LEAVING:
                 return self.has_falling_force(k, side == 0, mode, state, ground)
@@ -148,18 +153,18 @@ class Chain(MovingBodies):
         """Whether the force of a deformable base on an end does not rise."""
         part, rises = self.on_base(k), self.end_accelerations(k, mode, state, ground)
         line = part.body.base_line_at(self.state_of(k, state))
-        return not part.base.will_press(left, accelerated(line, rises[0], rises[1]), ())
+        return not part.base.will_press(left, with_accelerations(line, rises[0], rises[1]), ())
 
     @kernel
     def disturbed_mode(self, k: int, mode: int, state: Vector) -> int:
         """Return the mode after an event of another body has changed the speeds of this one."""
         if self.is_rigid(k):
             return mode
-        part, was = self.on_base(k), self.part_mode(mode, k)
+        part, was = self.on_base(k), self.body_mode(mode, k)
         if self.is_slippery(k):
             contact = part.base.disturbed(was.contact)
-            return self.with_part(mode, k, Mode(contact, was.pivot, was.slides))
-        return disturbed(self, part, k, mode, state)
+            return self.with_body_mode(mode, k, Mode(contact, was.pivot, was.slides))
+        return mode_after_disturbance(self, part, k, mode, state)
 
     @kernel
     def observe(
@@ -180,7 +185,7 @@ class Chain(MovingBodies):
         shear = work[(self.body_count - 1) * BODY_STRIDE + at.TANGENTIAL_FORCE]
         rotation = rate = rise = x = 0.0
         for k in range(self.body_count - 1, -1, -1):
-            i, j, body_mode = k * BODY_STRIDE, COLUMNS * k, self.part_mode(mode, k)
+            i, j, body_mode = k * BODY_STRIDE, COLUMNS * k, self.body_mode(mode, k)
             body = self.constrained_state(k, body_mode, state)
             rotation += body.rotation
             rate += body.angular_velocity
@@ -190,7 +195,7 @@ class Chain(MovingBodies):
                 x += work[i + at.NORMAL] * sine + work[i + at.TANGENTIAL] * cosine
                 x -= self.row_value(k, at.UPRIGHT_OFFSET)
             else:
-                x = self.place(k, mode, state, memory)
+                x = self.centre_position(k, mode, state, memory)
             out[j], out[j + 1], out[j + 2], out[j + 3] = rotation, rate, rise, work[i + at.SPEED_Y]
             out[j + 4], out[j + 5], out[j + 6] = x, shear, work[i + at.SPEED_X]
             out[j + 7] = work[i + at.ANGULAR_ACCELERATION]
@@ -222,4 +227,4 @@ class Chain(MovingBodies):
         part = self.on_base(k)
         if self.is_slippery(k):
             return part.base.observed(body_mode.contact, part.body.base_line_at(body), ())
-        return part.observed_base(body_mode, body, part.body.attitude(body.rotation), ())
+        return part.base_columns(body_mode, body, part.body.attitude(body.rotation), ())

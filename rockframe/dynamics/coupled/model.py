@@ -7,18 +7,18 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from rockframe.compiled import Vector
-from rockframe.dynamics.alone import (
-    part_tolerance,
-    radius_of,
-    rocking_rate,
-    rounding_at,
-    starting_state,
-)
 from rockframe.dynamics.bodies import ROTATION, VERTICAL
 from rockframe.dynamics.body import BodyState
 from rockframe.dynamics.coupled.system import Coupled
-from rockframe.dynamics.on_base import OnBase
+from rockframe.dynamics.on_base import BodyOnBase
 from rockframe.dynamics.protocol import HELD_PLACE, MEMORY, ContactModel, Start
+from rockframe.dynamics.single_body import (
+    guard_tolerances,
+    radius_of,
+    rocking_rate,
+    rounding_estimate,
+    starting_state,
+)
 from rockframe.dynamics.stacked import (
     COLUMNS,
     CONTACTS,
@@ -50,8 +50,8 @@ UPRIGHT: Final = StackRest(0.0, 0.0, 0.0, 0.0)
 def system_of(block: ChainBody, cap: ChainBody) -> Coupled:
     """Return the system of a block on a cap."""
     return Coupled(
-        OnBase(block.body, block.base.law), OnBase(cap.body, cap.base.law), cap.mass, cap.top,
-        block.beside,
+        BodyOnBase(block.body, block.base.law), BodyOnBase(cap.body, cap.base.law), cap.mass,
+        cap.top, block.offset,
     )  # fmt: skip
 
 
@@ -78,7 +78,7 @@ def coupled(block: ChainBody, cap: ChainBody, mass: float, rest: StackRest) -> C
         ),
         rotation_weights=np.array([1.0, 0.0, 1.0, 0.0, 0.0, 0.0]),
         scales=_scales(block, cap),
-        guard_tolerance=np.concatenate([part_tolerance(block.base), part_tolerance(cap.base)]),
+        guard_tolerance=np.concatenate([guard_tolerances(block.base), guard_tolerances(cap.base)]),
         columns=(*COLUMNS, *block.base.columns, *cap.base.columns),
         contacts=CONTACTS,
         memory=(*MEMORY, "held_place_of_cap"),
@@ -93,28 +93,32 @@ def coupled(block: ChainBody, cap: ChainBody, mass: float, rest: StackRest) -> C
 
 def _scales(block: ChainBody, cap: ChainBody) -> Vector:
     body, pads, soil = block.body, block.base, cap.base
-    sway, rocking = radius_of(body) * body.angle, rocking_rate(body)
+    horizontal, rocking = radius_of(body) * body.angle, rocking_rate(body)
     on_pads = sqrt(pads.vertical_stiffness)
     on_soil = sqrt(soil.vertical_stiffness / (1.0 + cap.mass))
-    sizes = np.array([body.angle, pads.settlement, body.angle, soil.settlement, sway, sway])
+    sizes = np.array(
+        [body.angle, pads.settlement, body.angle, soil.settlement, horizontal, horizontal]
+    )
     rates = np.array([rocking, on_pads, rocking, on_soil, rocking, rocking])
     return np.concatenate([sizes, sizes * rates, pads.variable_scales, soil.variable_scales])
 
 
 def _rounding(block: ChainBody, cap: ChainBody, fastest: float) -> Callable[[float], Vector]:
-    """Estimate the rounding noise of each state variable, as :func:`rounding_at` does."""
+    """Estimate the rounding noise of each state variable, as :func:`rounding_estimate` does."""
     body, pads, soil = block.body, block.base, cap.base
     rotating = 0.5 * (body.left + body.right) / (body.inertia + body.height**2)
     sizes = radius_of(body), radius_of(cap.body)
-    answers = np.array([rotating, 1.0, 1.0 / sizes[1], 1.0, 1.0, 1.0])
+    sensitivities = np.array([rotating, 1.0, 1.0 / sizes[1], 1.0, 1.0, 1.0])
     variables = len(pads.variable_scales) + len(soil.variable_scales)
-    return rounding_at(sum(sizes), pads.settlement + soil.settlement, answers, fastest, variables)
+    return rounding_estimate(
+        sum(sizes), pads.settlement + soil.settlement, sensitivities, fastest, variables
+    )
 
 
 def state_at(
     system: Coupled, place: StackRest, rate: float = 0.0, vertical_velocity: float = 0.0
 ) -> tuple[int, Vector, Vector]:
-    """Return mode, state and memory of a block on a cap at given places, the cap at rest.
+    """Return mode, state and memory of a block on a cap at a placement, the cap at rest.
 
     `rate` and `vertical_velocity` are those of the block.
     """
@@ -125,42 +129,41 @@ def state_at(
     cap = BodyState(place.cap_rotation, place.cap_vertical, 0.0, 0.0, 0.0, 0.0)
     contact = upper.base.starting(upper.body.base_line_at(block), system.upper_own(state))
     under = lower.base.starting(lower.body.base_line_at(cap), system.lower_own(state))
-    standing = upper.standing(contact, block)
+    block_mode = upper.mode_for_contact(contact, block)
     # a cap at rest upright has no side yet: it takes that of the block
     leaning = cap if cap.rotation != 0.0 else block
-    of_cap = lower.standing(under, leaning)
-    pin, beside = upper.starting_pin(standing, block), system.beside
+    cap_mode = lower.mode_for_contact(under, leaning)
+    pin, offset = upper.initial_pin(block_mode, block), system.offset
     attitude = upper.body.attitude(block.rotation)
     state[ROTATION], state[VERTICAL] = block.rotation, block.vertical
     state[LOWER_ROTATION], state[LOWER_VERTICAL] = cap.rotation, cap.vertical
     state[COORDINATES + ROTATION] = block.angular_velocity
     state[COORDINATES + VERTICAL] = block.vertical_velocity
-    state[HORIZONTAL] = pin + beside + upper.body.about_pin(pin, attitude)
-    if not upper.is_free(standing):
+    state[HORIZONTAL] = pin + offset + upper.body.about_pin(pin, attitude)
+    if not upper.is_free(block_mode):
         reach = upper.body.reach(pin, attitude)
-        state[COORDINATES + HORIZONTAL] = reach.rate * block.angular_velocity
-    memory[HELD_PLACE + UPPER] = pin + beside
-    cap_pin = lower.starting_pin(of_cap, leaning)
+        state[COORDINATES + HORIZONTAL] = reach.derivative * block.angular_velocity
+    memory[HELD_PLACE + UPPER] = pin + offset
+    cap_pin = lower.initial_pin(cap_mode, leaning)
     memory[HELD_PLACE + LOWER] = cap_pin
-    if lower.is_free(of_cap):
+    if lower.is_free(cap_mode):
         leant = lower.body.attitude(cap.rotation)
         state[LOWER_HORIZONTAL] = cap_pin + lower.body.about_pin(cap_pin, leant)
-    return system.with_part(upper.number_of(standing), LOWER, of_cap), state, memory
+    return system.with_body_mode(upper.number_of(block_mode), LOWER, cap_mode), state, memory
 
 
 def _starting(system: Coupled, rest: StackRest) -> Callable[[Start], tuple[int, Vector, Vector]]:
-    """Return the function that makes the initial state: the cap at rest, the block as given."""
+    """Return the function of the initial state: the cap at rest, the block as the start states."""
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:
         place = rest
         is_stated = start.rotation is not None or start.vertical_displacement is not None
         if is_stated or rest == UPRIGHT:
-            turned = rest.rotation
+            rotation = rest.rotation
             if start.rotation is not None:
-                turned = start.rotation - rest.cap_rotation
+                rotation = start.rotation - rest.cap_rotation
             own = system.upper.base.read(np.zeros(system.variables()), 0)
-            there = replace(start, rotation=turned)
-            block, _ = starting_state(system.upper, there, own)
+            block, _ = starting_state(system.upper, replace(start, rotation=rotation), own)
             place = rest._replace(rotation=block.rotation, vertical=block.vertical)
         return state_at(system, place, start.angular_velocity, start.vertical_velocity)
 

@@ -15,16 +15,16 @@ from rockframe.dynamics.coupled.motion import (
     Forces,
     KnownTerms,
     Pair,
-    along_rate,
-    block_height,
+    block_rise,
     block_velocity,
-    cap_sway,
+    cap_horizontal_velocity,
     configuration,
     normal_change,
     solve_motion,
+    velocity_along_cap,
 )
-from rockframe.dynamics.coupled.sliding import slide_both, sliding_end
-from rockframe.dynamics.on_base import IDLE, VelocityChange
+from rockframe.dynamics.coupled.sliding import sliding_end, slip_accelerations
+from rockframe.dynamics.on_base import IDLE_GUARDS, VelocityChange
 from rockframe.dynamics.protocol import HELD_PLACE, Energies, Ground, Slope
 from rockframe.dynamics.stacked import (
     COORDINATES,
@@ -38,15 +38,20 @@ from rockframe.dynamics.stacked import (
     States,
     name_soil_event,
 )
-from rockframe.dynamics.switching import checked_sliding, disturbed, lift_by_slip, switch_part
+from rockframe.dynamics.switching import (
+    lift_per_slip,
+    mode_after_disturbance,
+    recheck_sliding,
+    switch_mode,
+)
 
 
-class Holding(NamedTuple):
+class ContactForces(NamedTuple):
     """Forces on the bodies of a stack, per unit mass of the block."""
 
     thrust: float  # of the cap on the block, along the cap
-    press: float  # of the cap on the block, along the cap's normal
-    push: float  # of the ground on the cap, horizontally
+    normal: float  # of the cap on the block, along the cap's normal
+    base_shear: float  # of the ground on the cap, horizontally
 
 
 class Coupled(Stacked, Pair):
@@ -66,7 +71,7 @@ class Coupled(Stacked, Pair):
         return upper, self.lower.body.attitude(states.lower.rotation)
 
     @kernel
-    def place_in(self, mode: int, states: States) -> Configuration:
+    def geometry_of(self, mode: int, states: States) -> Configuration:
         """Return the geometry of states, with the held points of a mode."""
         modes, (upper, lower) = self.modes_in(mode), self.attitudes(states)
         return configuration(
@@ -88,48 +93,55 @@ class Coupled(Stacked, Pair):
         on_cap = self.lower.base.force(cap_contact, cap_line, cap_own)
         forces = Forces(on_block.upward, on_block.moment, on_cap.upward, on_cap.moment)
         dissipated = on_block.dissipated + on_cap.dissipated
-        place = configuration(
+        geometry = configuration(
             self, modes, states, upper, lower,
             self.upper.is_free(modes.upper), self.lower.is_free(modes.lower),
         )  # fmt: skip
-        free = place
+        free = geometry
         block_rate, cap_rate = states.upper.angular_velocity, states.lower.angular_velocity
-        s, c = place.sine, place.cosine
+        s, c = geometry.sine, geometry.cosine
         load_y = self.upper.body.gravity + ground.y
         load_along = ground.x * c - load_y * s
         load_normal = ground.x * s + load_y * c
-        slip = along_rate(place, states)
+        slip = velocity_along_cap(geometry, states)
         coriolis = (
-            2.0 * states.upper.vertical_velocity * cap_rate - place.across * cap_rate * cap_rate
+            2.0 * states.upper.vertical_velocity * cap_rate - geometry.across * cap_rate * cap_rate
         )
-        normal = (2.0 * slip + place.arm * cap_rate) * cap_rate - load_normal
-        swing = place.cap_reach.bend * cap_rate * cap_rate
-        drift = place.block_reach.bend * block_rate * block_rate
+        normal = (2.0 * slip + geometry.arm * cap_rate) * cap_rate - load_normal
+        known_cap = geometry.cap_reach.second_derivative * cap_rate * cap_rate
+        known_block = geometry.block_reach.second_derivative * block_rate * block_rate
         if modes.upper.slides or modes.lower.slides:
-            place = configuration(
+            geometry = configuration(
                 self, modes, states, upper, lower,
-                place.block_free and not modes.upper.slides,
-                place.cap_free and not modes.lower.slides,
+                geometry.block_free and not modes.upper.slides,
+                geometry.cap_free and not modes.lower.slides,
             )  # fmt: skip
-            slips = slide_both(
-                self, modes, states, place,
+            slips = slip_accelerations(
+                self, modes, states, geometry,
                 sliding_end(self.upper, modes.upper, upper, block_line),
                 sliding_end(self.lower, modes.lower, lower, cap_line),
-                forces, KnownTerms(swing, drift + coriolis + load_along, ground.x, load_y), normal,
+                forces,
+                KnownTerms(known_cap, known_block + coriolis + load_along, ground.x, load_y),
+                normal,
             )  # fmt: skip
-            swing += slips.swing
-            drift += slips.drift
+            known_cap += slips.cap_horizontal
+            known_block += slips.block_along
             dissipated -= slips.power
         motion = solve_motion(
-            self, place, forces, KnownTerms(swing, drift + coriolis + load_along, ground.x, load_y)
+            self,
+            geometry,
+            forces,
+            KnownTerms(known_cap, known_block + coriolis + load_along, ground.x, load_y),
         )
         cap_along = c * motion.cap_horizontal - s * motion.cap_vertical
-        lift = forces.press + normal + normal_change(place, motion)
-        along = place.block_reach.rate * motion.angular + drift
-        if place.block_free:
-            along = -load_along - cap_along - place.arm * motion.cap_angular - coriolis
+        lift = forces.normal + normal + normal_change(geometry, motion)
+        along = geometry.block_reach.derivative * motion.angular + known_block
+        if geometry.block_free:
+            along = -load_along - cap_along - geometry.arm * motion.cap_angular - coriolis
         across_speed, up_speed = block_velocity(free, states)
-        supplied = -ground.x * (across_speed + self.cap_mass * cap_sway(free, states))
+        supplied = -ground.x * (
+            across_speed + self.cap_mass * cap_horizontal_velocity(free, states)
+        )
         supplied -= ground.y * (up_speed + self.cap_mass * states.lower.vertical_velocity)
         angular, cap_angular = motion.angular, motion.cap_angular
         return (
@@ -143,76 +155,80 @@ class Coupled(Stacked, Pair):
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
         """Return the guards of the block, then of the cap, and their rates."""
         modes, states = self.modes_in(mode), self.states_in(state)
-        of_block, of_cap = IDLE, IDLE
+        of_block, of_cap = IDLE_GUARDS, IDLE_GUARDS
         if modes.upper.slides or modes.lower.slides:
-            holding = self.holds(mode, states, slope, ground)
-            thrust, push = holding.thrust, holding.push
+            forces = self.contact_forces(mode, states, slope, ground)
+            thrust, base_shear = forces.thrust, forces.base_shear
             if modes.upper.slides:
                 of_block = self.upper.sliding_guards(
                     modes.upper, states.upper, slope[ROTATION], slope[HORIZONTAL], thrust,
-                    lift_by_slip(self, self.upper, UPPER, mode, state),
+                    lift_per_slip(self, self.upper, UPPER, mode, state),
                 )  # fmt: skip
             if modes.lower.slides:
                 of_cap = self.lower.sliding_guards(
-                    modes.lower, states.lower, slope[LOWER_ROTATION], slope[LOWER_HORIZONTAL], push,
-                    lift_by_slip(self, self.lower, LOWER, mode, state),
+                    modes.lower, states.lower, slope[LOWER_ROTATION], slope[LOWER_HORIZONTAL],
+                    base_shear, lift_per_slip(self, self.lower, LOWER, mode, state),
                 )  # fmt: skip
         return self.guards_of_both(modes, state, slope, of_block, of_cap)
 
     @kernel
-    def holds(self, mode: int, states: States, slope: Slope, ground: Ground) -> Holding:
+    def contact_forces(
+        self, mode: int, states: States, slope: Slope, ground: Ground
+    ) -> ContactForces:
         """Return the forces between ground, cap and block, from the accelerations.
 
         Equation :eq:`eq-coupled`.
         """
-        place = self.place_in(mode, states)
-        s, c, cap_rate = place.sine, place.cosine, states.lower.angular_velocity
-        sway = slope[LOWER_HORIZONTAL]
-        if not place.cap_free:  # the slope has no acceleration of a coordinate that is held
-            sway = (
-                place.cap_reach.rate * slope[LOWER_ROTATION]
-                + place.cap_reach.bend * cap_rate * cap_rate
+        geometry = self.geometry_of(mode, states)
+        s, c, cap_rate = geometry.sine, geometry.cosine, states.lower.angular_velocity
+        cap_x = slope[LOWER_HORIZONTAL]
+        if not geometry.cap_free:  # the slope has no acceleration of a coordinate that is held
+            cap_x = (
+                geometry.cap_reach.derivative * slope[LOWER_ROTATION]
+                + geometry.cap_reach.second_derivative * cap_rate * cap_rate
             )
-        x = sway + ground.x
+        x = cap_x + ground.x
         y = slope[LOWER_VERTICAL] + self.upper.body.gravity + ground.y
         thrust = (
-            c * x - s * y + slope[HORIZONTAL] + place.arm * slope[LOWER_ROTATION]
-            + 2.0 * states.upper.vertical_velocity * cap_rate - place.across * cap_rate * cap_rate
+            c * x - s * y + slope[HORIZONTAL] + geometry.arm * slope[LOWER_ROTATION]
+            + 2.0 * states.upper.vertical_velocity * cap_rate
+            - geometry.across * cap_rate * cap_rate
         )  # fmt: skip
-        press = (
-            s * x + c * y + slope[VERTICAL] - place.across * slope[LOWER_ROTATION]
-            - 2.0 * along_rate(place, states) * cap_rate - place.arm * cap_rate * cap_rate
+        normal = (
+            s * x + c * y + slope[VERTICAL] - geometry.across * slope[LOWER_ROTATION]
+            - 2.0 * velocity_along_cap(geometry, states) * cap_rate
+            - geometry.arm * cap_rate * cap_rate
         )  # fmt: skip
-        return Holding(thrust, press, self.cap_mass * x + c * thrust + s * press)
+        return ContactForces(thrust, normal, self.cap_mass * x + c * thrust + s * normal)
 
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
         """Carry out the switch that a guard calls for; return the new mode."""
         count = self.upper.guards()
         if guard < count:
-            new = switch_part(self, self.upper, UPPER, guard, mode, state, ground, memory)
-            return checked_sliding(self, self.lower, LOWER, new, state)
-        new = switch_part(self, self.lower, LOWER, guard - count, mode, state, ground, memory)
+            new = switch_mode(self, self.upper, UPPER, guard, mode, state, ground, memory)
+            return recheck_sliding(self, self.lower, LOWER, new, state)
+        new = switch_mode(self, self.lower, LOWER, guard - count, mode, state, ground, memory)
         name_soil_event(memory)
-        return disturbed(self, self.upper, UPPER, new, state)
+        return mode_after_disturbance(self, self.upper, UPPER, new, state)
 
     @kernel
     def energies(self, mode: int, state: Vector) -> Energies:
         """Return the energies, :eq:`eq-coupled-energy`."""
         states = self.states_in(state)
-        place = self.place_in(mode, states)
-        across, up = block_velocity(place, states)
-        sway, lift = cap_sway(place, states), states.lower.vertical_velocity
+        geometry = self.geometry_of(mode, states)
+        across, up = block_velocity(geometry, states)
+        cap_x, cap_y = cap_horizontal_velocity(geometry, states), states.lower.vertical_velocity
         cap_rate = states.lower.angular_velocity
         block_rate = cap_rate + states.upper.angular_velocity
         kinetic = 0.5 * (
             across * across
             + up * up
             + self.upper.body.inertia * block_rate * block_rate
-            + self.cap_mass * (sway * sway + lift * lift)
+            + self.cap_mass * (cap_x * cap_x + cap_y * cap_y)
             + self.lower.body.inertia * cap_rate * cap_rate
         )
-        height = block_height(place, states) + self.cap_mass * states.lower.vertical
+        height = block_rise(geometry, states) + self.cap_mass * states.lower.vertical
         by_upper, upper_change = self.upper.elastic_energy(states.upper, self.upper_own(state))
         by_lower, lower_change = self.lower.elastic_energy(states.lower, self.lower_own(state))
         return Energies(
@@ -226,68 +242,70 @@ class Coupled(Stacked, Pair):
     ) -> tuple[float, ...]:
         """Return motion of block and cap, reactions, and the columns of both bases."""
         states = self.states_in(state)
-        place = self.place_in(mode, states)
-        across, up = block_velocity(place, states)
-        along = place.arm * place.sine + states.upper.horizontal * place.cosine - self.beside
-        thrust, press, push = self.holds(mode, states, slope, ground)
+        geometry = self.geometry_of(mode, states)
+        across, up = block_velocity(geometry, states)
+        along = (
+            geometry.arm * geometry.sine + states.upper.horizontal * geometry.cosine - self.offset
+        )
+        thrust, normal, base_shear = self.contact_forces(mode, states, slope, ground)
         return (
             states.upper.rotation + states.lower.rotation,
             states.upper.angular_velocity + states.lower.angular_velocity,
-            block_height(place, states),
+            block_rise(geometry, states),
             up,
-            self.place(LOWER, mode, state, memory) + along,
-            push,
+            self.centre_position(LOWER, mode, state, memory) + along,
+            base_shear,
             across,
             slope[ROTATION] + slope[LOWER_ROTATION],
-            place.cosine * thrust + place.sine * press - ground.x,
-            place.cosine * press - place.sine * thrust - self.upper.body.gravity - ground.y,
+            geometry.cosine * thrust + geometry.sine * normal - ground.x,
+            geometry.cosine * normal - geometry.sine * thrust - self.upper.body.gravity - ground.y,
             thrust,
-            press,
+            normal,
             states.lower.rotation,
             states.lower.angular_velocity,
             states.lower.vertical,
             states.lower.vertical_velocity,
             states.upper.rotation,
             states.upper.vertical,
-        ) + self.bases_observed(mode, state)
+        ) + self.columns_of_bases(mode, state)
 
     @kernel
-    def place(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
+    def centre_position(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
         """Return the place of a centre of mass: a block's along the cap, a cap's on the ground."""
         if k == UPPER:
             return state[HORIZONTAL]
-        standing, body = self.modes_in(mode).lower, self.state_of(LOWER, state)
+        own_mode, body = self.modes_in(mode).lower, self.state_of(LOWER, state)
         attitude = self.lower.body.attitude(body.rotation)
-        return self.lower.horizontal_place(standing, body, attitude, memory[HELD_PLACE + LOWER])
+        return self.lower.horizontal_position(own_mode, body, attitude, memory[HELD_PLACE + LOWER])
 
     @kernel
     def response(
-        self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
+        self, k: int, mode: int, impulse: float, moment: float, slip: float, state: Vector
     ) -> VelocityChange:
         """Return the changes of velocities by an impulse, or by a hold that stops a slip."""
         states = self.states_in(state)
-        place = self.place_in(mode, states)
+        geometry = self.geometry_of(mode, states)
         if k == UPPER:
-            forces, known = Forces(press, moment, 0.0, 0.0), KnownTerms(0.0, -slip, 0.0, 0.0)
+            forces, known = Forces(impulse, moment, 0.0, 0.0), KnownTerms(0.0, -slip, 0.0, 0.0)
         else:
-            forces, known = Forces(0.0, 0.0, press, moment), KnownTerms(-slip, 0.0, 0.0, 0.0)
-        motion = solve_motion(self, place, forces, known)
-        s, c = place.sine, place.cosine
-        normal = forces.press + normal_change(place, motion)
-        along = place.block_reach.rate * motion.angular
-        if place.block_free:
+            forces, known = Forces(0.0, 0.0, impulse, moment), KnownTerms(-slip, 0.0, 0.0, 0.0)
+        motion = solve_motion(self, geometry, forces, known)
+        s, c = geometry.sine, geometry.cosine
+        normal = forces.normal + normal_change(geometry, motion)
+        along = geometry.block_reach.derivative * motion.angular
+        if geometry.block_free:
             cap_along = c * motion.cap_horizontal - s * motion.cap_vertical
-            along = -cap_along - place.arm * motion.cap_angular
+            along = -cap_along - geometry.arm * motion.cap_angular
         elif k == UPPER:
             along -= slip
         restraint = motion.thrust
         cap_rate, lift = motion.angular, normal
         if k == LOWER:
-            restraint = c * motion.thrust + s * forces.press
+            restraint = c * motion.thrust + s * forces.normal
             restraint += self.cap_mass * motion.cap_horizontal
             cap_rate, lift = motion.cap_angular, motion.cap_vertical
-        sway = motion.cap_horizontal if place.cap_free else 0.0
-        others = (motion.angular, normal, motion.cap_angular, motion.cap_vertical, along, sway)
+        cap_along = motion.cap_horizontal if geometry.cap_free else 0.0
+        others = (motion.angular, normal, motion.cap_angular, motion.cap_vertical, along, cap_along)
         return VelocityChange(cap_rate, lift, restraint, others)
 
     @kernel
@@ -295,9 +313,9 @@ class Coupled(Stacked, Pair):
         """Change the velocities of both bodies by a response."""
         for i in range(COORDINATES):
             state[COORDINATES + i] += response.others[i]
-        place = self.place_in(mode, self.states_in(state))
-        if not place.block_free:
-            held = place.block_reach.rate * state[COORDINATES + ROTATION]
+        geometry = self.geometry_of(mode, self.states_in(state))
+        if not geometry.block_free:
+            held = geometry.block_reach.derivative * state[COORDINATES + ROTATION]
             state[COORDINATES + HORIZONTAL] = held
 
     @kernel
@@ -307,11 +325,13 @@ class Coupled(Stacked, Pair):
         """Return the accelerations of the left and right end away from the surface beneath them."""
         slope, states = self.accelerate(mode, state, ground), self.states_in(state)
         if k == UPPER:
-            return self.upper.end_rises(states.upper, slope[VERTICAL], slope[ROTATION])
-        return self.lower.end_rises(states.lower, slope[LOWER_VERTICAL], slope[LOWER_ROTATION])
+            return self.upper.end_accelerations_at(states.upper, slope[VERTICAL], slope[ROTATION])
+        return self.lower.end_accelerations_at(
+            states.lower, slope[LOWER_VERTICAL], slope[LOWER_ROTATION]
+        )
 
     @kernel
-    def tendency(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
+    def incipient_rotation(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
         """Return the sign of the rotation that will follow; at rest it is a guess."""
         if ground.x != 0.0:
             return -ground.x

@@ -6,10 +6,10 @@ from typing import Final
 import numpy as np
 
 from rockframe.compiled import Vector
-from rockframe.dynamics.alone import Alone
 from rockframe.dynamics.body import PIVOT_CENTRE
-from rockframe.dynamics.on_base import OnBase
+from rockframe.dynamics.on_base import BodyOnBase
 from rockframe.dynamics.pads import corner_contact
+from rockframe.dynamics.single_body import SingleBody
 from rockframe.proof.balls import ball
 from rockframe.proof.pads.flow import point
 from rockframe.proof.pads.law import PadBalls, Standing
@@ -26,7 +26,7 @@ _REACH: Final = 1.6
 """Length of a step, over the inverse of the fastest angular frequency."""
 
 
-def pad_numbers(part: OnBase, limits: OverturningAngles, inputs: Deviations) -> PadBalls:
+def pad_numbers(part: BodyOnBase, limits: OverturningAngles, inputs: Deviations) -> PadBalls:
     """Return a block on elastic pads in balls."""
     body, base = part.body, part.base
     return PadBalls(
@@ -41,7 +41,7 @@ def pad_numbers(part: OnBase, limits: OverturningAngles, inputs: Deviations) -> 
 
 
 def way_of(
-    law: Alone,
+    law: SingleBody,
     mode: int,
     state: Vector,
     motion: Motion,
@@ -73,7 +73,7 @@ def way_of(
 
 
 def prove_pads(
-    law: Alone,
+    law: SingleBody,
     mode: int,
     state: Vector,
     motion: Motion,

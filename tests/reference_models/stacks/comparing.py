@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 from reference_models.maximal.motions import both
 
-from rockframe.dynamics.alone import rigid_body
 from rockframe.dynamics.base_numbers import bed_numbers, pads_numbers
 from rockframe.dynamics.body import BY_CONTACT, CENTRE, LEADING_CORNER
 from rockframe.dynamics.chain.link_rows import GROUND, ChainLink
@@ -14,6 +13,7 @@ from rockframe.dynamics.chain.model import chain_model
 from rockframe.dynamics.links import LinkNumbers
 from rockframe.dynamics.links import Tie as LawOfTie
 from rockframe.dynamics.protocol import ContactModel, Start, column_of
+from rockframe.dynamics.single_body import rigid_body
 from rockframe.dynamics.vibrations import ChainBody
 from rockframe.signals import Motion
 from rockframe.solve.accuracy import accuracy_of

@@ -285,7 +285,7 @@ def test_methods_belong_to_their_classes(fallbacks):
         return int(one.state(10.0) + one.size + other.size() + other.state + derived.size())
 
     importlib.import_module("rockframe.solve.workspace")
-    importlib.import_module("rockframe.dynamics.alone")
+    importlib.import_module("rockframe.dynamics.single_body")
     assert of_all(One(1.0), Other(100.0), Derived(1000.0)) == 10 + 1 + 200 + 100 + 3000
 
 

@@ -216,7 +216,12 @@ def some_function():
 
 def test_every_state_of_the_sources_has_a_folder_of_its_own(own, tmp_path, monkeypatch):
     package = tmp_path / "package"
-    for name in ("constants.py", "compiled/language.py", "dynamics/alone.py", "dynamics/a/b.py"):
+    for name in (
+        "constants.py",
+        "compiled/language.py",
+        "dynamics/single_body.py",
+        "dynamics/a/b.py",
+    ):
         (package / name).parent.mkdir(parents=True, exist_ok=True)
         (package / name).write_text("A = 1\n")
     monkeypatch.setattr(store, "PACKAGE", package)

@@ -8,11 +8,19 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from rockframe.compiled import Vector, inlined, kernel
-from rockframe.dynamics.base import Guards
+from rockframe.dynamics.base import Guards, Variables
 from rockframe.dynamics.base_numbers import BaseNumbers
-from rockframe.dynamics.bodies import DEGREES, ROTATION, VERTICAL, InState
+from rockframe.dynamics.bodies import BODY_DOF, ROTATION, VERTICAL, StateAccess
 from rockframe.dynamics.body import CENTRE, Body, BodyState
-from rockframe.dynamics.on_base import BODY_GUARDS, IDLE, SLIDES, Mode, OnBase, VelocityChange
+from rockframe.dynamics.body_statics import equilibrium_pose, standing_body
+from rockframe.dynamics.on_base import (
+    BODY_GUARDS,
+    IDLE_GUARDS,
+    SLIDING_BIT,
+    BodyOnBase,
+    Mode,
+    VelocityChange,
+)
 from rockframe.dynamics.pads import ROUNDING
 from rockframe.dynamics.protocol import (
     BODY_COLUMNS,
@@ -24,22 +32,21 @@ from rockframe.dynamics.protocol import (
     Slope,
     Start,
 )
-from rockframe.dynamics.standing import settled, standing_body
-from rockframe.dynamics.switching import lift_by_slip, switch_part
+from rockframe.dynamics.switching import lift_per_slip, switch_mode
 from rockframe.many import atan2, hypot, sqrt
 
 HORIZONTAL: Final = 2
-OWN: Final = 2 * DEGREES
-"""Indices in the state, see :mod:`rockframe.dynamics.bodies`; from OWN on variables of the base."""
+BASE_VARIABLES: Final = 2 * BODY_DOF
+"""Indices in the state, see :mod:`rockframe.dynamics.bodies`; the base's own variables follow."""
 
 
-class OnePart(NamedTuple):
+class SingleBodyNumbers(NamedTuple):
     """The data of a system of one body: the body on its base."""
 
-    part: OnBase
+    part: BodyOnBase
 
 
-class Alone(InState, OnePart):
+class SingleBody(StateAccess, SingleBodyNumbers):
     """One body on a base, per unit mass: a system."""
 
     __slots__ = ()
@@ -67,12 +74,12 @@ class Alone(InState, OnePart):
     @inlined
     def moving_in(self, mode: int) -> int:
         """Return the number of coordinates that move: all, or all but a held horizontal one."""
-        return DEGREES if self.part.is_free(self.part.mode_of(mode)) else HORIZONTAL
+        return BODY_DOF if self.part.is_free(self.part.mode_of(mode)) else HORIZONTAL
 
     @inlined
     def contact_state_of(self, mode: int, k: int) -> int:
         """Return the contact state."""
-        return self.part.shown_contact(self.part.mode_of(mode))
+        return self.part.contact_state(self.part.mode_of(mode))
 
     @inlined
     def relaxation_in(self, mode: int) -> float:
@@ -80,16 +87,16 @@ class Alone(InState, OnePart):
         return self.part.relaxation_in(self.part.mode_of(mode))
 
     @inlined
-    def own_place(self, k: int) -> int:
+    def base_variable_index(self, k: int) -> int:
         """Return the index in the state of the base's own variables."""
-        return OWN
+        return BASE_VARIABLES
 
     @inlined
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> tuple[float, ...]:
         """Return accelerations, rates of the base's own variables, and powers."""
-        standing = self.part.mode_of(mode)
-        body, own = self.state_of(0, state), self.part.base.read(state, OWN)
-        rates = self.part.rates_in(standing, body, own, ground)
+        own_mode = self.part.mode_of(mode)
+        body, own = self.state_of(0, state), self.part.base.read(state, BASE_VARIABLES)
+        rates = self.part.rates_in(own_mode, body, own, ground)
         accelerations = (rates.rotation, rates.vertical, rates.horizontal)
         return accelerations + rates.own_rates + (rates.dissipated, rates.supplied)
 
@@ -101,32 +108,32 @@ class Alone(InState, OnePart):
     @inlined
     def without_sliding(self, mode: int) -> int:
         """Return a mode without its sliding."""
-        return mode & ~SLIDES
+        return mode & ~SLIDING_BIT
 
     @inlined
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
         """Return all guards, and their rates, :eq:`eq-guards`."""
-        standing, body = self.part.mode_of(mode), self.state_of(0, state)
-        sliding = IDLE
-        if standing.slides:
+        own_mode, body = self.part.mode_of(mode), self.state_of(0, state)
+        sliding = IDLE_GUARDS
+        if own_mode.slides:
             push = slope[HORIZONTAL] + ground.x
             sliding = self.part.sliding_guards(
-                standing, body, slope[ROTATION], slope[HORIZONTAL], push,
-                lift_by_slip(self, self.part, 0, mode, state),
+                own_mode, body, slope[ROTATION], slope[HORIZONTAL], push,
+                lift_per_slip(self, self.part, 0, mode, state),
             )  # fmt: skip
-        own = self.part.base.read(state, OWN)
-        return self.part.guards_with(standing, body, own, slope[VERTICAL], slope[ROTATION], sliding)
+        own = self.part.base.read(state, BASE_VARIABLES)
+        return self.part.guards_with(own_mode, body, own, slope[VERTICAL], slope[ROTATION], sliding)
 
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
         """Carry out the switch that a guard calls for; return the new mode."""
-        return switch_part(self, self.part, 0, guard, mode, state, ground, memory)
+        return switch_mode(self, self.part, 0, guard, mode, state, ground, memory)
 
     @kernel
     def energies(self, mode: int, state: Vector) -> Energies:
         """Return kinetic, gravity and elastic energy, and the elastic energy less that at rest."""
         body = self.state_of(0, state)
-        elastic, change = self.part.elastic_energy(body, self.part.base.read(state, OWN))
+        elastic, change = self.part.elastic_energy(body, self.part.base.read(state, BASE_VARIABLES))
         kinetic = self.part.kinetic_energy(self.part.mode_of(mode), body)
         return Energies(kinetic, self.part.body.gravity * body.vertical, elastic, change)
 
@@ -135,7 +142,7 @@ class Alone(InState, OnePart):
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> tuple[float, ...]:
         """Return motion and reactions, :eq:`eq-reactions`, and the base's columns."""
-        standing, body = self.part.mode_of(mode), self.state_of(0, state)
+        own_mode, body = self.part.mode_of(mode), self.state_of(0, state)
         attitude = self.part.body.attitude(body.rotation)
         shear = slope[HORIZONTAL] + ground.x
         return (
@@ -143,57 +150,59 @@ class Alone(InState, OnePart):
             body.angular_velocity,
             body.vertical,
             body.vertical_velocity,
-            self.part.horizontal_place(standing, body, attitude, memory[HELD_PLACE]),
+            self.part.horizontal_position(own_mode, body, attitude, memory[HELD_PLACE]),
             shear,
-            self.part.sway(standing, body, attitude),
+            self.part.horizontal_velocity(own_mode, body, attitude),
             slope[ROTATION],
             slope[HORIZONTAL],
             slope[VERTICAL],
             shear,
             slope[VERTICAL] + self.part.body.gravity + ground.y,
-        ) + self.part.observed_base(standing, body, attitude, self.part.base.read(state, OWN))
+        ) + self.part.base_columns(
+            own_mode, body, attitude, self.part.base.read(state, BASE_VARIABLES)
+        )
 
     @kernel
-    def part_mode(self, mode: int, k: int) -> Mode:
+    def body_mode(self, mode: int, k: int) -> Mode:
         """Return contact, held point and sliding of the body in a mode."""
         return self.part.mode_of(mode)
 
     @kernel
-    def with_part(self, mode: int, k: int, part: Mode) -> int:
+    def with_body_mode(self, mode: int, k: int, part: Mode) -> int:
         """Return the number of a mode of the body."""
         return self.part.number_of(part)
 
     @kernel
-    def place(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
+    def centre_position(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
         """Return x of the centre of mass: about the held point, or free."""
-        standing, body = self.part.mode_of(mode), self.state_of(k, state)
+        own_mode, body = self.part.mode_of(mode), self.state_of(k, state)
         attitude = self.part.body.attitude(body.rotation)
-        return self.part.horizontal_place(standing, body, attitude, memory[HELD_PLACE])
+        return self.part.horizontal_position(own_mode, body, attitude, memory[HELD_PLACE])
 
     @kernel
     def response(
-        self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
+        self, k: int, mode: int, impulse: float, moment: float, slip: float, state: Vector
     ) -> VelocityChange:
         """Return the changes of velocities by an impulse, or by a hold that stops a slip."""
         attitude = self.part.body.attitude(state[ROTATION])
-        return self.part.response_in(self.part.mode_of(mode), attitude, press, moment, slip)
+        return self.part.response_in(self.part.mode_of(mode), attitude, impulse, moment, slip)
 
     @kernel
     def velocities(self, state: Vector) -> tuple[float, ...]:
         """Return all velocities."""
-        return state[DEGREES], state[DEGREES + 1], state[DEGREES + 2]
+        return state[BODY_DOF], state[BODY_DOF + 1], state[BODY_DOF + 2]
 
     @kernel
     def end_accelerations(
         self, k: int, mode: int, state: Vector, ground: Ground
     ) -> tuple[float, float]:
         """Return the upward accelerations of the left and right end of the base in a mode."""
-        body, own = self.state_of(0, state), self.part.base.read(state, OWN)
+        body, own = self.state_of(0, state), self.part.base.read(state, BASE_VARIABLES)
         rates = self.part.rates_in(self.part.mode_of(mode), body, own, ground)
-        return self.part.end_rises(body, rates.vertical, rates.rotation)
+        return self.part.end_accelerations_at(body, rates.vertical, rates.rotation)
 
     @kernel
-    def tendency(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
+    def incipient_rotation(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
         """Return the sign of the rotation that the ground, or else the contact, will cause."""
         if ground.x != 0.0:
             return -ground.x
@@ -239,7 +248,7 @@ def rigid_body(
     )
 
 
-def alone(
+def single_body(
     name: str, body: Body, base: BaseNumbers, mass: float, rest_rotation: float = 0.0
 ) -> ContactModel:
     """Assemble the model of a body on a base.
@@ -257,7 +266,7 @@ def alone(
     rest_rotation : float
         Rotation of the body at rest, :meth:`rockframe.dynamics.statics.StandingChain.rest` [rad].
     """
-    part = OnBase(body, base.law)
+    part = BodyOnBase(body, base.law)
     vertical = sqrt(base.vertical_stiffness)
     rocking = sqrt(base.rotational_stiffness / (body.inertia + body.height**2))
     fastest = max(vertical, rocking)
@@ -265,16 +274,16 @@ def alone(
     sizes = np.array([body.angle, base.settlement, size * body.angle])
     # changes of the coordinates by the rounding of a height
     width = 0.5 * (body.left + body.right)
-    answers = np.array([width / (body.inertia + body.height**2), 1.0, 1.0])
+    sensitivities = np.array([width / (body.inertia + body.height**2), 1.0, 1.0])
     return ContactModel(
         name=name,
-        system=Alone(part),
+        system=SingleBody(part),
         rotation_limits=(atan2(body.left, body.height), atan2(body.right, body.height)),
         rotation_weights=np.array([1.0, 0.0, 0.0]),
         scales=np.concatenate([
             sizes, sizes * np.array([rate, vertical, rate]), base.variable_scales,
         ]),
-        guard_tolerance=part_tolerance(base),
+        guard_tolerance=guard_tolerances(base),
         columns=(*BODY_COLUMNS, *base.columns),
         memory=MEMORY,
         mass=mass,
@@ -282,7 +291,9 @@ def alone(
         damping_rate=base.damping_time * fastest**2,
         energy_scale=body.gravity * size * body.angle,
         initial=partial(_initial, part, rest_rotation),
-        rounding=rounding_at(size, base.settlement, answers, fastest, len(base.variable_scales)),
+        rounding=rounding_estimate(
+            size, base.settlement, sensitivities, fastest, len(base.variable_scales)
+        ),
     )  # fmt: skip
 
 
@@ -302,48 +313,49 @@ def rocking_rate(body: Body) -> float:
     return sqrt(body.gravity * radius / (radius**2 + body.inertia))
 
 
-def part_tolerance(base: BaseNumbers) -> Vector:
+def guard_tolerances(base: BaseNumbers) -> Vector:
     """Return the rounding noise of the guards of a body: those of both ends, then its own."""
     return np.concatenate([base.end_tolerance, base.end_tolerance, np.full(BODY_GUARDS, ROUNDING)])
 
 
-def rounding_at(
-    size: float, settlement: float, answers: Vector, fastest: float, variables: int
+def rounding_estimate(
+    size: float, settlement: float, sensitivities: Vector, fastest: float, variables: int
 ) -> Callable[[float], Vector]:
     """Return a function of the rotation that estimates the rounding noise of each state variable.
 
     The heights of the base's ends are differences of terms as large as the settlement and the
     tilt. The base reacts to their rounding, so that the body moves by as much.
     """
-    all_answers = np.concatenate([answers, fastest * answers, np.zeros(variables)])
+    factors = np.concatenate([sensitivities, fastest * sensitivities, np.zeros(variables)])
 
     def noise(rotation: float) -> Vector:
         # an error estimate is a small part of the terms that it is computed from
-        return 0.02 * ROUNDING * (settlement + size * abs(rotation)) * all_answers
+        return 0.02 * ROUNDING * (settlement + size * abs(rotation)) * factors
 
     return noise
 
 
-def starting_state(part: OnBase, start: Start, own: tuple[float, ...]) -> tuple[BodyState, Mode]:
+def starting_state(part: BodyOnBase, start: Start, own: Variables) -> tuple[BodyState, Mode]:
     """Return placement, rates and mode of a body at the start of a run, whose rotation is known.
 
-    Unless the start says otherwise it is in vertical equilibrium.
+    It is in vertical equilibrium unless the start specifies its height.
     """
     body, base, rotation = part.body, part.base, start.rotation or 0.0
     height = start.vertical_displacement
     if height is None:
-        height = settled(standing_body(part, own=own), rotation, body.gravity).state.vertical
+        pose = equilibrium_pose(standing_body(part, own=own), rotation, body.gravity)
+        height = pose.state.vertical
     state = BodyState(rotation, height, 0.0, start.angular_velocity, start.vertical_velocity, 0.0)
-    return state, part.standing(base.starting(body.base_line_at(state), own), state)
+    return state, part.mode_for_contact(base.starting(body.base_line_at(state), own), state)
 
 
-def _initial(part: OnBase, rest_rotation: float, given: Start) -> tuple[int, Vector, Vector]:
-    """Return mode, state and memory at the start of a run; at rest unless it says otherwise."""
-    start = given if given.rotation is not None else replace(given, rotation=rest_rotation)
+def _initial(part: BodyOnBase, rest_rotation: float, stated: Start) -> tuple[int, Vector, Vector]:
+    """Return mode, state and memory at the start of a run; at rest unless stated otherwise."""
+    start = stated if stated.rotation is not None else replace(stated, rotation=rest_rotation)
     own = np.zeros(part.base.variables())
     body, mode = starting_state(part, start, part.base.read(own, 0))
     # the held point starts where it is when the body rests, so that x = 0 there
-    pin = part.starting_pin(mode, body)
+    pin = part.initial_pin(mode, body)
     x = 0.0
     if part.is_free(mode):
         x = pin + part.body.about_pin(pin, part.body.attitude(body.rotation))
