@@ -52,7 +52,7 @@ Values = Mapping[str, "Generic | float | int | bool"]
 def peak_share(run: Summary, angles: OverturningAngles) -> float:
     """Return the largest ratio of a peak rotation to the overturning angle of its side and body."""
     own = largest(run.peak_right / angles.right, run.peak_left / angles.left)
-    return largest(own, run.other_share)
+    return largest(own, run.other_rotation_ratio)
 
 
 def columns_of(name: str, count: int) -> tuple[str, ...]:
@@ -279,8 +279,8 @@ def verdict(run: Summary, setting: Setting, model: ContactModel) -> str:
     peak = f"peak rotation {rotation:.4g} rad, {100.0 * share:.3g} % of the overturning angle{of}"
     if setting.leans and rotation > 0.0:
         peak += f" to the {side.name.lower()}"
-    if run.other_share > (1.0 + SAME) * share:
-        peak += f", a lower body {100.0 * run.other_share:.3g} % of its own"
+    if run.other_rotation_ratio > (1.0 + SAME) * share:
+        peak += f", a lower body {100.0 * run.other_rotation_ratio:.3g} % of its own"
     if run.passed:
         text = f"{_overturned(run, setting, model)}, after {impacts}"
     elif not run.status.finished:

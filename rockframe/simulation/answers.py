@@ -207,7 +207,7 @@ class _Observed:
         def inside(which: Integers) -> dict[str, Generic]:
             places, length = len(FRACTIONS), steps.length[which]
             time = (steps.time[which] - length)[:, None] + length[:, None] * FRACTIONS
-            time, states = time.ravel(), steps.inside(which, self.system.model, FRACTIONS)
+            time, states = time.ravel(), steps.states_inside(which, self.system.model, FRACTIONS)
             ground = ground_at(self.plan.motion, time)
             moved, resolved = ground_on_slope(ground, slope)
             modes, rows = (np.repeat(of[which], places) for of in (steps.mode, steps.memory_row))
