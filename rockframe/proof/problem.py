@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from rockframe.dynamics.rigid_ground import BlockOnRigidGround, RockingCorner
 from rockframe.proof.balls import ONE, ZERO, Ball, Row, ball, magnitude, taylor_shift
-from rockframe.signals.motion import Motion, Slope
+from rockframe.signals.motion import Incline, Motion
 from rockframe.system.bodies import OverturningAngles
 
 
@@ -147,7 +147,7 @@ class PiecewiseGround:
 
     motion: Motion
     scale: Ball
-    slope: Slope
+    slope: Incline
     still_step: float  # length of the intervals of still ground after the motion [s]
     _known: dict[int, GroundPiece] = field(default_factory=dict[int, GroundPiece], kw_only=True)
 
@@ -213,7 +213,7 @@ class Problem(PiecewiseGround):
         cls,
         block: BlockOnRigidGround,
         motion: Motion,
-        slope: Slope,
+        slope: Incline,
         limits: OverturningAngles,
         scale: float,
         inputs: Deviations,

@@ -24,7 +24,7 @@ from rockframe.proof.states import SetOfStates
 from rockframe.proof.uplift import find_uplift
 from rockframe.proof.verdict import EXACT, Proof, Tolerances
 from rockframe.signals import Motion
-from rockframe.signals.motion import Slope
+from rockframe.signals.motion import Incline
 from rockframe.system.bodies import OverturningAngles
 
 SHORTEST_STEP: Final = 2.0**-30
@@ -380,7 +380,7 @@ def _potential(rotation: Ball, corner: CornerNumbers, still: GroundPiece) -> Bal
 def prove_block(
     block: BlockOnRigidGround,
     motion: Motion,
-    slope: Slope,
+    slope: Incline,
     limits: OverturningAngles,
     start: tuple[float, float],
     *,

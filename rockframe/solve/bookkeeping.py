@@ -31,7 +31,7 @@ from rockframe.solve.workspace import (
     UnpackedMode,
     Work,
     Workspace,
-    ground_at,
+    ground_in_step,
 )
 
 ROUNDING: Final = 4.0 * sys.float_info.epsilon
@@ -88,7 +88,7 @@ def work_between(
     for i in range(len(GAUSS_POINTS)):
         fraction = start + GAUSS_POINTS[i] * (end - start)
         interpolate(equations, unpacked.moving, fraction, span.h, w)
-        ground = ground_at(fraction, span, w.ground)
+        ground = ground_in_step(fraction, span, w.ground)
         equations.slope.call(
             unpacked.mode, w.inner_state, ground.x, ground.y, w.inner_powers, equations.numbers
         )

@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 from rockframe.compiled import Vector, kernel
 from rockframe.solve.equations import BoundEquations
 from rockframe.solve.march import DIP_MARGIN, may_dip
-from rockframe.solve.workspace import Span, UnpackedMode, Workspace, ground_at
+from rockframe.solve.workspace import Span, UnpackedMode, Workspace, ground_in_step
 
 
 class Crossing(NamedTuple):
@@ -202,7 +202,7 @@ def _guard_inside(
 ) -> float:  # fmt: skip
     """Return a guard's value at a fraction of the step, from the dense solution."""
     interpolate(equations, unpacked.moving, fraction, span.h, w)
-    ground = ground_at(fraction, span, w.ground)
+    ground = ground_in_step(fraction, span, w.ground)
     equations.guards.call(
         unpacked.mode, w.inner_state, w.inner_slope, ground.x, ground.y, w.limits, w.inner_guards,
         equations.numbers,

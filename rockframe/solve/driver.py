@@ -46,7 +46,7 @@ from rockframe.solve.workspace import (
     Work,
     Workspace,
     append_row,
-    ground_at,
+    ground_in_step,
     is_full,
     load_interval,
     with_ends_swapped,
@@ -81,7 +81,7 @@ def reevaluate(
     A rising guard may be negative by its change within the rounding error of time.
     """
     clock, guards = progress.clock, len(tolerance)
-    ground = ground_at(0.0, span_of(0.0, progress), w.ground)
+    ground = ground_in_step(0.0, span_of(0.0, progress), w.ground)
     clock[at.GROUND_X], clock[at.GROUND_Y] = ground.x, ground.y
     equations.slope.call(mode, w.state, ground.x, ground.y, w.slope, equations.numbers)
     equations.guards.call(
@@ -258,7 +258,7 @@ def accept_step(
         whole, planned = clock[at.STEP], clock[at.NEXT_STEP]
         clock[at.NEXT_STEP] = adapted_step(whole, planned, clock[at.ERROR_NORM], controls)
     span = span_of(h, progress)
-    work, ground = Work(w.works[0], w.works[1]), ground_at(1.0, span, w.ground)
+    work, ground = Work(w.works[0], w.works[1]), ground_in_step(1.0, span, w.ground)
     clock[at.INTO_INTERVAL] += h
     store_outputs(equations, current_time(progress), span, unpacked, work, progress, output, w)
     if h > 0.0:

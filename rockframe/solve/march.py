@@ -36,7 +36,7 @@ from rockframe.solve.workspace import (
     StepTable,
     UnpackedMode,
     append_row,
-    ground_at,
+    ground_in_step,
     ground_may_peak,
     is_full,
     load_interval,
@@ -252,7 +252,7 @@ def march(
         finite = scheme.make_step(
             system, mode, count, span, ground, state, slope, new_state, new_slope, stages, works
         )
-        ground_now = ground_at(1.0, span, ground)
+        ground_now = ground_in_step(1.0, span, ground)
         system.write_guards(mode, new_state, new_slope, ground_now, limits, new_guards)
         if trial > 0.0:
             return TRIAL_MADE

@@ -10,7 +10,7 @@ from typing import Final, NamedTuple, Protocol, TypeAlias
 from rockframe.compiled import Vector, inlined, kernel, table
 from rockframe.dynamics.protocol import POWERS, Ground, Slope
 from rockframe.solve import workspace as at
-from rockframe.solve.workspace import STATE_ERRORS, Span, ground_at
+from rockframe.solve.workspace import STATE_ERRORS, Span, ground_in_step
 
 ORDER: Final = 5
 STAGES: Final = 7
@@ -298,7 +298,7 @@ class FixedSteps(NamedTuple):
         works: Vector,
     ) -> bool:  # fmt: skip
         """Make a step; return whether its end is finite."""
-        in_middle, at_end = ground_at(0.5, span, ground), ground_at(1.0, span, ground)
+        in_middle, at_end = ground_in_step(0.5, span, ground), ground_in_step(1.0, span, ground)
         return make_fixed_step(
             self, system, mode, count, span.h, in_middle, at_end, state, slope, new_state,
             new_slope, stages, works,
@@ -369,7 +369,7 @@ class StepsByTolerance(NamedTuple):
             weights = STAGE_WEIGHTS[before : before + s]
             write_stage_coordinates(system, count, span.h, weights, state, stages, new_state)
             write_stage_rates(system, count, span.h, weights, state, stages, new_state)
-            ground_now = ground_at(NODES[s], span, ground)
+            ground_now = ground_in_step(NODES[s], span, ground)
             system.write_slope(mode, new_state, ground_now, STAGES * size + s * slope_size, stages)
         # at rest the stages between are those of an earlier step: none of them counts
         write_works(system, 0.0 if at_rest else span.h, stages, new_slope, works)

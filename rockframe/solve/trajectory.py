@@ -137,7 +137,7 @@ class Summary:
         return largest(self.peak_left, self.peak_right)
 
     @property
-    def passed(self) -> bool:
+    def reached_limit(self) -> bool:
         """Whether the rotation reached the overturning angle."""
         return not isnan(self.overturning_time)
 

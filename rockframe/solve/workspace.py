@@ -338,7 +338,7 @@ def ground_may_peak(degree_x: int, degree_y: int, coefficients: Vector) -> bool:
 
 
 @inlined
-def ground_at(fraction: float, span: Span, coefficients: Vector) -> Ground:
+def ground_in_step(fraction: float, span: Span, coefficients: Vector) -> Ground:
     """Return the ground acceleration at a fraction of a step."""
     u = span.u + fraction * span.du
     return Ground(

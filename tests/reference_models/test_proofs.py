@@ -17,7 +17,7 @@ from rockframe.proof.balls import ball, magnitude, working_precision
 from rockframe.proof.problem import Deviations, Problem, Undecided
 from rockframe.proof.rocking import RockingProver
 from rockframe.proof.states import SetOfStates
-from rockframe.signals.motion import Slope
+from rockframe.signals.motion import Incline
 from rockframe.system.bodies import OverturningAngles
 
 STEP = 0.0625
@@ -66,7 +66,7 @@ def enclosures(name, *, change=lambda block: block, **tolerances):
     with working_precision(BITS):
         block = change(numbers(block))
         inputs = Deviations.within(*(tolerances.get(one, 0.0) for one in SETS))
-        problem = Problem.of(block, motion.si, Slope(0.0, 9.81), far, 1.0, inputs, 0.05)
+        problem = Problem.of(block, motion.si, Incline(0.0, 9.81), far, 1.0, inputs, 0.05)
         prover = RockingProver(problem, callback, [] if inputs.exact else inputs.centred())
         while prover.interval < KNOTS:
             prover._follow_rest() if prover.sign == 0 else prover._follow_rocking()

@@ -18,7 +18,7 @@ from rockframe.proof.problem import Deviations, PiecewiseGround
 from rockframe.proof.sets import prove_for_set, prove_verdict
 from rockframe.proof.verdict import EXACT, Proof, Tolerances
 from rockframe.signals import Motion
-from rockframe.signals.motion import Slope
+from rockframe.signals.motion import Incline
 from rockframe.system.bodies import OverturningAngles
 
 LAW: Final = "the law of two pads"
@@ -45,7 +45,7 @@ def pad_prover(
     mode: int,
     state: Vector,
     motion: Motion,
-    slope: Slope,
+    slope: Incline,
     limits: OverturningAngles,
     *,
     scale: float = 1.0,
@@ -79,7 +79,7 @@ def prove_pads(
     mode: int,
     state: Vector,
     motion: Motion,
-    slope: Slope,
+    slope: Incline,
     limits: OverturningAngles,
     *,
     scale: float = 1.0,

@@ -300,7 +300,7 @@ def test_a_run_that_comes_back_now_and_then_is_the_same_run(monkeypatch, accurac
         counts.append(advance(*arguments))
         return counts[-1]
 
-    monkeypatch.setattr(integrate, "_steps_at_once", lambda equations: 7)
+    monkeypatch.setattr(integrate, "_steps_to_pause", lambda equations: 7)
     monkeypatch.setattr(integrate, "advance", counted)
     pieces = system.simulate(motion, accuracy=accuracy, outputs=["energy"], duration="9 s")
     assert len(counts) > 20
@@ -314,7 +314,7 @@ def test_the_limit_of_steps_ends_a_run_that_comes_back_too(monkeypatch):
     accuracy = rf.Accuracy(rtol=1e-9, max_steps=100)
     with pytest.warns(SolverWarning, match="limit of steps"):
         whole = system.simulate(motion, accuracy=accuracy)
-    monkeypatch.setattr(integrate, "_steps_at_once", lambda equations: 7)
+    monkeypatch.setattr(integrate, "_steps_to_pause", lambda equations: 7)
     with pytest.warns(SolverWarning, match="limit of steps"):
         run = system.simulate(motion, accuracy=accuracy)
     assert run.drop_attrs().identical(whole.drop_attrs())

@@ -88,7 +88,7 @@ def test_only_entries_become_machine_code(made):
     from rockframe.compiled import linking
 
     if not linking.IS_SUPPORTED:
-        pytest.skip(f"this numba is none of {linking.TRIED}")
+        pytest.skip(f"this numba is none of {linking.TESTED}")
     values = np.array([9.0, 16.0])
     both(values)
     assert values.tolist() == [13.0, 17.0]

@@ -18,10 +18,10 @@ AT_ONCE = 5.0
 KEEP = """
 import sys, time
 from pathlib import Path
-from rockframe.compiled.store import compiling
+from rockframe.compiled.store import lock_while_compiling
 
 module = Path(sys.argv[1])
-with compiling(module, lambda: True):
+with lock_while_compiling(module, lambda: True):
     print("begun", flush=True)
     time.sleep(float(sys.argv[2]))
     module.with_suffix(".nbc").touch()
@@ -112,7 +112,7 @@ def test_such_a_file_counts_no_longer_than_one_would_wait(module):
     mark = module.with_suffix(".lock")
     mark.touch()
     assert store.is_compiled_elsewhere(module)
-    old = time.time() - 2.0 * store.LONGEST
+    old = time.time() - 2.0 * store.LOCK_TIMEOUT
     os.utime(mark, (old, old))
     assert seconds_until_compiled(module) < AT_ONCE
     assert not mark.exists()
