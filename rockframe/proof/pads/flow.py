@@ -28,7 +28,7 @@ _ROTATION, _RATE, _HEIGHT, _SPEED = range(4)
 class Curve:
     """A function of the share of a step, from 0 to 1: a polynomial with a bound of its error."""
 
-    __slots__ = ("error", "of", "size")
+    __slots__ = ("coefficients", "error", "size")
 
     def __init__(self, coefficients: Array, error: float) -> None:
         self.coefficients, self.error = coefficients, error
