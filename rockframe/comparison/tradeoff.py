@@ -25,9 +25,9 @@ from rockframe.simulation.run_arguments import ComparedArguments
 from rockframe.simulation.system import System, check_system
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
 from rockframe.solve.equations import (
-    call_nothing_back,
+    compile_in_next_run,
     equations_of,
-    has_machine_code,
+    is_fully_compiled,
     runs_as_python,
 )
 from rockframe.system.options import AccuracyLike
@@ -260,9 +260,9 @@ def _run_until_compiled(scene: System, plan: Plan) -> None:
         system, fixed_steps=plan.accuracy.rtol is None, with_work=bool(plan.energies),
         compiled_in=True,
     )  # fmt: skip
-    call_nothing_back(equations)
+    compile_in_next_run(equations)
     deadline = time.perf_counter() + _PATIENCE
-    while not (has_machine_code(equations) or runs_as_python(equations)):
+    while not (is_fully_compiled(equations) or runs_as_python(equations)):
         if time.perf_counter() > deadline:
             return
         respond(scene.assembly, plan)

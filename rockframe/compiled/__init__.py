@@ -6,18 +6,18 @@ the environment turns compilation off; ``ROCKFRAME_CACHE_DIR`` names another fol
 machine code.
 """
 
-from rockframe.compiled.bound import Bound as Bound
-from rockframe.compiled.bound import bound as bound
-from rockframe.compiled.bound import bound_in_lanes as bound_in_lanes
+from rockframe.compiled.bound import BoundFunction as BoundFunction
+from rockframe.compiled.bound import bind as bind
+from rockframe.compiled.bound import bind_in_lanes as bind_in_lanes
 from rockframe.compiled.bound import numbers_in as numbers_in
 from rockframe.compiled.entries import COMPILED as COMPILED
+from rockframe.compiled.entries import background_entry as background_entry
 from rockframe.compiled.entries import compiled_within as compiled_within
 from rockframe.compiled.entries import compiling_for as compiling_for
 from rockframe.compiled.entries import entry as entry
-from rockframe.compiled.entries import entry_at_once as entry_at_once
+from rockframe.compiled.entries import expecting_remaining as expecting_remaining
 from rockframe.compiled.entries import is_worth_calling as is_worth_calling
-from rockframe.compiled.entries import seconds_as_python as seconds_as_python
-from rockframe.compiled.entries import still_taking as still_taking
+from rockframe.compiled.entries import python_seconds as python_seconds
 from rockframe.compiled.entries import table as table
 from rockframe.compiled.entries import warn_of_slow_run as warn_of_slow_run
 from rockframe.compiled.language import LANES as LANES

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rockframe.compiled.called_back import CalledBack
+from rockframe.compiled.callbacks import PythonCallback
 from rockframe.compiled.language import Vector, tuple_from
 
 if TYPE_CHECKING:
@@ -59,23 +59,27 @@ class Signature:
 _shared = cache(Signature)
 
 
-class Source:
+class BoundSource:
     """A function and the structure of the tuples that it is bound to: what is compiled once.
 
-    A function that is called seldom may run as plain Python until it pays to compile it.
+    A function that is rarely called may run as plain Python until it pays to compile it.
     """
 
     def __init__(
-        self, function: Callable[..., Any], structure: tuple[Any, ...], in_lanes: bool, seldom: bool
+        self,
+        function: Callable[..., Any],
+        structure: tuple[Any, ...],
+        in_lanes: bool,
+        rarely_called: bool,
     ) -> None:
         self.function = function
         self.structure = structure
         self.in_lanes = in_lanes
-        self.is_seldom_called = seldom
+        self.is_rarely_called = rarely_called
         self.code: Any = None  # the compiled function, or None
         self.address = 0  # its address, or 0
         self.failed = False  # whether it could not be compiled
-        self.seconds_without = 0.0  # time spent in what stands in for its machine code [s]
+        self.fallback_seconds = 0.0  # time spent in what stands in for its machine code [s]
 
     @cached_property
     def job(self) -> "Job":
@@ -85,9 +89,9 @@ class Source:
         return Job(self.function, self.structure, True, self.in_lanes)
 
     @cached_property
-    def called_back(self) -> CalledBack:
+    def callback(self) -> PythonCallback:
         """The Python function that machine code calls as long as this is not compiled."""
-        return CalledBack(self)
+        return PythonCallback(self)
 
     @cached_property
     def signature(self) -> Signature:
@@ -97,47 +101,51 @@ class Source:
         return _shared(signature_of(self.function))
 
 
-_source = cache(Source)
+_bound_source = cache(BoundSource)
 
 
-class Bound:
+class BoundFunction:
     """A function bound to a tuple: called in plain Python, or by entries as machine code.
 
     It may stand in for another one until it pays to compile that.
     """
 
-    __slots__ = ("_bundle", "source", "stands_for")
+    __slots__ = ("_bundle", "fallback_for", "source")
 
-    def __init__(self, source: Source, bundle: Any, stands_for: "Bound | None" = None) -> None:
+    def __init__(
+        self, source: BoundSource, bundle: Any, fallback_for: "BoundFunction | None" = None
+    ) -> None:
         self.source = source
         self._bundle = bundle
-        self.stands_for = stands_for
+        self.fallback_for = fallback_for
 
     def call(self, *arguments: Any) -> Any:
         """Call the function with its tuple; the last argument, the tuple's numbers, is ignored."""
         return self.source.function(self._bundle, *arguments[:-1])
 
 
-def bound(
+def bind(
     functions: tuple[Callable[..., Any], ...],
     bundle: Any,
     *,
-    seldom: bool = False,
-    stands_for: Bound | None = None,
-) -> tuple[Bound, ...]:
-    """Bind functions to the tuple that is their first argument; `seldom` if rarely called.
+    rarely_called: bool = False,
+    fallback_for: BoundFunction | None = None,
+) -> tuple[BoundFunction, ...]:
+    """Bind functions to the tuple that is their first argument.
 
-    If the last element of the tuple is an array, all of them share one copy of it.
+    Functions that are `rarely_called` may run as plain Python. If the last element of the tuple is
+    an array, all of them share one copy of it.
     """
     structure = structure_of(bundle)
     if isinstance(bundle, tuple) and isinstance(bundle[-1], np.ndarray):
         bundle = type(bundle)(*bundle[:-1], bundle[-1].copy())  # type: ignore[call-arg]
     return tuple(
-        Bound(_source(one, structure, False, seldom), bundle, stands_for) for one in functions
+        BoundFunction(_bound_source(one, structure, False, rarely_called), bundle, fallback_for)
+        for one in functions
     )
 
 
-def bound_in_lanes(function: Callable[..., Any], bundle: Any) -> Bound:
+def bind_in_lanes(function: Callable[..., Any], bundle: Any) -> BoundFunction:
     """Bind a function to the class of a tuple; each lane has its own numbers of it."""
     structure = structure_of(bundle)
-    return Bound(_source(function, structure, True, False), tuple_from(structure))
+    return BoundFunction(_bound_source(function, structure, True, False), tuple_from(structure))

@@ -21,7 +21,7 @@ cgutils: Final[Any] = import_module("numba.core.cgutils")
 templates: Final[Any] = import_module("numba.core.typing.templates")
 
 
-_INTO_CALLERS: Final = {"forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_INLINED: Final = {"forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
 class BufferType(numba.types.Type):
@@ -55,89 +55,89 @@ def buffer_of(_: Any, array: Any) -> Any:
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         struct = context.make_array(signature.args[0])(context, builder, values[0])
-        made = cgutils.create_struct_proxy(signature.return_type)(context, builder)
-        made.address, made.shape = struct.data, struct.shape
-        return made._getvalue()
+        result = cgutils.create_struct_proxy(signature.return_type)(context, builder)
+        result.address, result.shape = struct.data, struct.shape
+        return result._getvalue()
 
     return BufferType(array.dtype, array.ndim, array.mutable)(array), code
 
 
 @extending.intrinsic
-def _shifted(_: Any, kept: Any, first: Any) -> Any:
+def _shifted(_: Any, buffer: Any, first: Any) -> Any:
     """Return a buffer from an index on, in compiled code."""
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        proxy = cgutils.create_struct_proxy(kept)(context, builder, value=values[0])
-        made = cgutils.create_struct_proxy(kept)(context, builder)
-        made.address = builder.gep(proxy.address, [values[1]])
+        proxy = cgutils.create_struct_proxy(buffer)(context, builder, value=values[0])
+        result = cgutils.create_struct_proxy(buffer)(context, builder)
+        result.address = builder.gep(proxy.address, [values[1]])
         length = builder.sub(builder.extract_value(proxy.shape, 0), values[1])
-        made.shape = builder.insert_value(proxy.shape, length, 0)
-        return made._getvalue()
+        result.shape = builder.insert_value(proxy.shape, length, 0)
+        return result._getvalue()
 
-    return kept(kept, numba.intp), code
+    return buffer(buffer, numba.intp), code
 
 
 @extending.intrinsic
-def _new_view(_: Any, kept: Any, first: Any, count: Any) -> Any:
+def _new_view(_: Any, buffer: Any, first: Any, count: Any) -> Any:
     """Return a buffer of some elements, or rows, of another, in compiled code."""
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        proxy = cgutils.create_struct_proxy(kept)(context, builder, value=values[0])
-        made = cgutils.create_struct_proxy(kept)(context, builder)
-        offset = builder.mul(values[1], context.get_constant(numba.intp, kept.stride))
-        for i in range(1, kept.dimensions):
+        proxy = cgutils.create_struct_proxy(buffer)(context, builder, value=values[0])
+        result = cgutils.create_struct_proxy(buffer)(context, builder)
+        offset = builder.mul(values[1], context.get_constant(numba.intp, buffer.stride))
+        for i in range(1, buffer.dimensions):
             offset = builder.mul(offset, builder.extract_value(proxy.shape, i))
-        made.address = builder.gep(proxy.address, [offset])
-        made.shape = builder.insert_value(proxy.shape, values[2], 0)
-        return made._getvalue()
+        result.address = builder.gep(proxy.address, [offset])
+        result.shape = builder.insert_value(proxy.shape, values[2], 0)
+        return result._getvalue()
 
-    return kept(kept, numba.intp, numba.intp), code
+    return buffer(buffer, numba.intp, numba.intp), code
 
 
 @extending.intrinsic
-def _with_number(_: Any, numbers: Any, place: Any, number: Any) -> Any:
+def _with_number(_: Any, numbers: Any, index: Any, number: Any) -> Any:
     """Return a tuple with another number at a place, in compiled code."""
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        room = cgutils.alloca_once_value(builder, values[0])
+        slot = cgutils.alloca_once_value(builder, values[0])
         zero = context.get_constant(numba.intp, 0)
-        builder.store(values[2], builder.gep(room, [zero, values[1]]))
-        return builder.load(room)
+        builder.store(values[2], builder.gep(slot, [zero, values[1]]))
+        return builder.load(slot)
 
     return numbers(numbers, numba.intp, numbers.dtype), code
 
 
 @extending.intrinsic
-def _strided(_: Any, kept: Any, first: Any) -> Any:
+def _strided(_: Any, buffer: Any, first: Any) -> Any:
     """Return a buffer with stride `LANES` from an index on, in compiled code."""
-    strided = BufferType(kept.dtype, 1, kept.writeable, language.LANES)
+    strided = BufferType(buffer.dtype, 1, buffer.writeable, language.LANES)
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        proxy = cgutils.create_struct_proxy(kept)(context, builder, value=values[0])
-        made = cgutils.create_struct_proxy(strided)(context, builder)
-        made.address, made.shape = builder.gep(proxy.address, [values[1]]), proxy.shape
-        return made._getvalue()
+        proxy = cgutils.create_struct_proxy(buffer)(context, builder, value=values[0])
+        result = cgutils.create_struct_proxy(strided)(context, builder)
+        result.address, result.shape = builder.gep(proxy.address, [values[1]]), proxy.shape
+        return result._getvalue()
 
-    return strided(kept, numba.intp), code
+    return strided(buffer, numba.intp), code
 
 
 @extending.intrinsic
-def _as_integers(_: Any, kept: Any) -> Any:
+def _as_integers(_: Any, buffer: Any) -> Any:
     """Return a buffer of numbers as one of whole numbers of the same memory, in compiled code."""
-    kind = BufferType(numba.int64, 1, kept.writeable, kept.stride)
+    kind = BufferType(numba.int64, 1, buffer.writeable, buffer.stride)
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        proxy = cgutils.create_struct_proxy(kept)(context, builder, value=values[0])
-        made = cgutils.create_struct_proxy(kind)(context, builder)
+        proxy = cgutils.create_struct_proxy(buffer)(context, builder, value=values[0])
+        result = cgutils.create_struct_proxy(kind)(context, builder)
         pointer = context.get_value_type(numba.types.CPointer(numba.int64))
-        made.address, made.shape = builder.bitcast(proxy.address, pointer), proxy.shape
-        return made._getvalue()
+        result.address, result.shape = builder.bitcast(proxy.address, pointer), proxy.shape
+        return result._getvalue()
 
-    return kind(kept), code
+    return kind(buffer), code
 
 
 @extending.intrinsic
-def _widen(_: Any) -> Any:
+def _use_widest_registers(_: Any) -> Any:
     """Let LLVM use the widest registers in the calling function, in compiled code.
 
     Where registers have 512 bits, LLVM by default uses 256 of them, which suits programs that need
@@ -153,25 +153,25 @@ def _widen(_: Any) -> Any:
 
 @extending.overload(language.widest_registers, strict=False, inline="always")
 def _widest_registers() -> Callable[..., Any]:
-    return lambda: _widen()
+    return lambda: _use_widest_registers()
 
 
-@extending.overload(language.view_from, strict=False, jit_options=_INTO_CALLERS)
+@extending.overload(language.view_from, strict=False, jit_options=_INLINED)
 def _view_from(array: Any, first: Any) -> Callable[..., Any]:
     return lambda array, first: _shifted(array, first)
 
 
-@extending.overload(language.view_of, strict=False, jit_options=_INTO_CALLERS)
+@extending.overload(language.view_of, strict=False, jit_options=_INLINED)
 def _view_of(array: Any, first: Any, count: Any) -> Callable[..., Any]:
     return lambda array, first, count: _new_view(array, first, count)
 
 
-@extending.overload(language.lane_of, strict=False, jit_options=_INTO_CALLERS)
+@extending.overload(language.lane_of, strict=False, jit_options=_INLINED)
 def _lane_of(array: Any, field: Any, lane: Any) -> Callable[..., Any]:
     return lambda array, field, lane: _strided(array, field * language.LANES + lane)
 
 
-@extending.overload(language.as_integers, strict=False, jit_options=_INTO_CALLERS)
+@extending.overload(language.as_integers, strict=False, jit_options=_INLINED)
 def _integers_of(array: Any) -> Callable[..., Any]:
     return lambda array: _as_integers(array)
 
@@ -181,9 +181,9 @@ class _Get(templates.AbstractTemplate):
     """The type of an element of a buffer."""
 
     def generic(self, arguments: Any, keywords: Any) -> Any:
-        kept, place = arguments
-        if isinstance(kept, BufferType) and (found := _place_in(kept, place)):
-            return kept.dtype(kept, found)
+        buffer, index = arguments
+        if isinstance(buffer, BufferType) and (found := _index_type(buffer, index)):
+            return buffer.dtype(buffer, found)
         return None
 
 
@@ -197,9 +197,13 @@ class _Set(templates.AbstractTemplate):
     """What may be written to an element of a buffer."""
 
     def generic(self, arguments: Any, keywords: Any) -> Any:
-        kept, place, _ = arguments
-        if isinstance(kept, BufferType) and kept.writeable and (found := _place_in(kept, place)):
-            return numba.void(kept, found, kept.dtype)
+        buffer, index, _ = arguments
+        if (
+            isinstance(buffer, BufferType)
+            and buffer.writeable
+            and (found := _index_type(buffer, index))
+        ):
+            return numba.void(buffer, found, buffer.dtype)
         return None
 
 
@@ -214,8 +218,8 @@ class _Length(templates.AbstractTemplate):
     """The type of the number of elements, or rows, of a buffer."""
 
     def generic(self, arguments: Any, keywords: Any) -> Any:
-        (kept,) = arguments
-        return numba.intp(kept) if isinstance(kept, BufferType) else None
+        (buffer,) = arguments
+        return numba.intp(buffer) if isinstance(buffer, BufferType) else None
 
 
 @extending.lower_builtin(len, BufferType)
@@ -226,57 +230,57 @@ def _length(context: Any, builder: Any, signature: Any, values: Any) -> Any:
 
 def _address_of(context: Any, builder: Any, signature: Any, values: Any) -> Any:
     """Return the address of an element of a buffer."""
-    kept = signature.args[0]
-    proxy = cgutils.create_struct_proxy(kept)(context, builder, value=values[0])
-    if kept.dimensions == 1:
-        offset = builder.mul(values[1], context.get_constant(numba.intp, kept.stride))
+    buffer = signature.args[0]
+    proxy = cgutils.create_struct_proxy(buffer)(context, builder, value=values[0])
+    if buffer.dimensions == 1:
+        offset = builder.mul(values[1], context.get_constant(numba.intp, buffer.stride))
     else:
         row, column = (builder.extract_value(values[1], i) for i in range(2))
         offset = builder.add(builder.mul(row, builder.extract_value(proxy.shape, 1)), column)
     return builder.gep(proxy.address, [offset])
 
 
-def _place_in(kept: BufferType, place: Any) -> Any:
+def _index_type(buffer: BufferType, index: Any) -> Any:
     """Return the type of an index of an element; None for slices, which are not supported."""
-    if kept.dimensions == 1:
-        return numba.intp if isinstance(place, numba.types.Integer) else None
-    numbers = place if isinstance(place, numba.types.BaseTuple) else ()
-    whole = len(numbers) == kept.dimensions and all(
+    if buffer.dimensions == 1:
+        return numba.intp if isinstance(index, numba.types.Integer) else None
+    numbers = index if isinstance(index, numba.types.BaseTuple) else ()
+    whole = len(numbers) == buffer.dimensions and all(
         isinstance(number, numba.types.Integer) for number in numbers
     )
-    return numba.types.UniTuple(numba.intp, kept.dimensions) if whole else None
+    return numba.types.UniTuple(numba.intp, buffer.dimensions) if whole else None
 
 
-@extending.overload(language.constant, strict=False, jit_options=_INTO_CALLERS)
+@extending.overload(language.constant, strict=False, jit_options=_INLINED)
 def _constant(value: Any, like: Any) -> Callable[..., Any]:
-    return _written("value, like", f"return ({'value, ' * len(like)})")
+    return _function_from_source("value, like", f"return ({'value, ' * len(like)})")
 
 
-@extending.overload(language.with_numbers, strict=False, jit_options=_INTO_CALLERS)
+@extending.overload(language.with_numbers, strict=False, jit_options=_INLINED)
 def _with_numbers(numbers: Any, first: Any, others: Any) -> Callable[..., Any]:
-    made = "numbers"
+    result = "numbers"
     for i in range(len(others)):
-        made = f"with_number({made}, first + {i}, others[{i}])"
-    return _written("numbers, first, others", f"return {made}")
+        result = f"with_number({result}, first + {i}, others[{i}])"
+    return _function_from_source("numbers, first, others", f"return {result}")
 
 
-@extending.overload(language.filled, strict=False, jit_options=_INTO_CALLERS)
+@extending.overload(language.filled, strict=False, jit_options=_INLINED)
 def _filled(like: Any, numbers: Any) -> Callable[..., Any]:
     some = ", ".join(f"numbers[{i}]" for i in range(len(like)))
-    return _written("like, numbers", f"return kind({some})", kind=like.instance_class)
+    return _function_from_source("like, numbers", f"return kind({some})", kind=like.instance_class)
 
 
-@extending.overload(language.put, strict=False, jit_options=_INTO_CALLERS)
+@extending.overload(language.put, strict=False, jit_options=_INLINED)
 def _put(numbers: Any, first: Any, out: Any) -> Callable[..., Any]:
     if isinstance(numbers, BufferType):
-        return _written(
+        return _function_from_source(
             "numbers, first, out", "for i in range(len(numbers)): out[first + i] = numbers[i]"
         )
     lines = [f"out[first + {i}] = numbers[{i}]" for i in range(len(numbers))]
-    return _written("numbers, first, out", "; ".join(lines) or "pass")
+    return _function_from_source("numbers, first, out", "; ".join(lines) or "pass")
 
 
-def _written(arguments: str, line: str, **names: Any) -> Callable[..., Any]:
+def _function_from_source(arguments: str, line: str, **names: Any) -> Callable[..., Any]:
     """Make a function from a line of source, whose length depends on that of a tuple."""
     scope: dict[str, Any] = {"with_number": _with_number, **names}
     exec(f"def written({arguments}):\n    {line}\n", scope)  # noqa: S102

@@ -10,7 +10,7 @@ from importlib import import_module
 from typing import Any, Final
 
 from rockframe.compiled.language import KERNELS, is_method
-from rockframe.compiled.passes import PlainPasses, makes_numbers_alone
+from rockframe.compiled.passes import PlainPasses, makes_only_numbers
 
 # numba's own annotations are partial
 numba: Final[Any] = import_module("numba")
@@ -20,10 +20,10 @@ imputils: Final[Any] = import_module("numba.core.imputils")
 templates: Final[Any] = import_module("numba.core.typing.templates")
 
 OPTIONS: Final = {"error_model": "numpy"}
-HELPER: Final = OPTIONS | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+HELPER_OPTIONS: Final = OPTIONS | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 """Options of helper functions. Division by zero gives infinity or NaN as in numpy, unchecked."""
 
-_known: Final[dict[Callable[..., Any], Any]] = {}
+_registered: Final[dict[Callable[..., Any], Any]] = {}
 """Functions and methods registered with numba, and their compiled counterparts, to which numba
 itself holds weak references only."""
 _ANYTHING: Final = numba.types.VarArg(numba.types.Any)
@@ -34,7 +34,7 @@ _methods: Final[dict[Callable[..., Any], Any]] = {}
 def register_kernels() -> None:
     """Register all functions and methods with numba that were marked since the last time."""
     for function, into_caller in list(KERNELS.items()):
-        if function not in _known:
+        if function not in _registered:
             _register(function, into_caller)
             if is_method(function):
                 _register_method(function)
@@ -70,12 +70,12 @@ def _register(function: Callable[..., Any], into_caller: bool) -> None:
 
     numba's ``register_jitable`` compiles it again for callers with other options.
     """
-    plain = makes_numbers_alone(function)  # and has nothing whose references numba would count
-    options: dict[str, Any] = HELPER | {"forceinline": into_caller, "_nrt": not plain}
+    plain = makes_only_numbers(function)  # and has nothing whose references numba would count
+    options: dict[str, Any] = HELPER_OPTIONS | {"forceinline": into_caller, "_nrt": not plain}
     if plain:
         options["pipeline_class"] = PlainPasses
-    _known[function] = numba.njit(**options)(function)
-    templates.infer_global(function, _Compiled(_known[function]))
+    _registered[function] = numba.njit(**options)(function)
+    templates.infer_global(function, _Compiled(_registered[function]))
 
 
 def _register_method(function: Callable[..., Any]) -> None:
@@ -144,18 +144,18 @@ def code_at(signature: Any) -> Any:
 @extending.intrinsic
 def _call(_: Any, function: Any, arguments: Any) -> Any:
     """Call a function at an address with the elements of a tuple, in compiled code."""
-    gives, takes = function.signature.return_type, function.signature.args
+    result_type, argument_types = function.signature.return_type, function.signature.args
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        handed = [
-            context.cast(builder, builder.extract_value(values[1], i), found, taken)
-            for i, (found, taken) in enumerate(zip(arguments, takes, strict=True))
+        converted = [
+            context.cast(builder, builder.extract_value(values[1], i), found, expected)
+            for i, (found, expected) in enumerate(zip(arguments, argument_types, strict=True))
         ]
-        kinds = [context.get_value_type(taken) for taken in takes]
-        pointer = ir.FunctionType(context.get_value_type(gives), kinds).as_pointer()
-        return builder.call(builder.inttoptr(values[0], pointer), handed)
+        types = [context.get_value_type(expected) for expected in argument_types]
+        pointer = ir.FunctionType(context.get_value_type(result_type), types).as_pointer()
+        return builder.call(builder.inttoptr(values[0], pointer), converted)
 
-    return gives(function, arguments), code
+    return result_type(function, arguments), code
 
 
 @extending.overload_method(

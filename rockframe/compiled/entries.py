@@ -18,22 +18,22 @@ from typing import TYPE_CHECKING, Any, Final, ParamSpec, TypeVar, cast
 
 import numpy as np
 
-from rockframe.compiled.bound import Bound, Source
-from rockframe.compiled.called_back import raising
-from rockframe.compiled.language import AS_PYTHON, NEEDED_BY, STILL_TAKES, Vector, inlined
+from rockframe.compiled.bound import BoundFunction, BoundSource
+from rockframe.compiled.callbacks import run_and_raise
+from rockframe.compiled.language import PURPOSE, PYTHON_SECONDS, REMAINING_SECONDS, Vector, inlined
 
 if TYPE_CHECKING:
     from rockframe.compiled.jobs import Job
-    from rockframe.compiled.parallel import Meanwhile
+    from rockframe.compiled.parallel import BackgroundCompilation
 
 
-def viewed(argument: Any) -> Any:
+def as_memoryviews(argument: Any) -> Any:
     """Return an argument of an entry with memory views in place of its arrays."""
     if isinstance(argument, np.ndarray):
         return memoryview(cast("Any", argument))
     if isinstance(argument, tuple):
         kind = type(cast("tuple[Any, ...]", argument))
-        return kind(*(viewed(part) for part in cast("tuple[Any, ...]", argument)))
+        return kind(*(as_memoryviews(part) for part in cast("tuple[Any, ...]", argument)))
     return argument
 
 
@@ -41,20 +41,20 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 P = ParamSpec("P")
 
 _HAS_NUMBA: Final = find_spec("numba") is not None
-_ASKED: Final = os.environ.get("ROCKFRAME_COMPILE", "")
-COMPILED: Final = _ASKED != "0" and _HAS_NUMBA
+_REQUESTED: Final = os.environ.get("ROCKFRAME_COMPILE", "")
+COMPILED: Final = _REQUESTED != "0" and _HAS_NUMBA
 """Whether functions are compiled."""
-WAITS: Final = _ASKED in {"wait", "often"}
-"""Whether all entries wait for their machine code; with `often`, not for what they call seldom."""
-_CALLS_BACK: Final = _ASKED != "wait"
-CALLED_BACK: Final = 1.0 / 3.0
+WAITS: Final = _REQUESTED in {"wait", "often"}
+"""Whether all entries wait for their machine code; with `often`, not for what they rarely call."""
+_CALLS_BACK: Final = _REQUESTED != "wait"
+CALLBACK_SHARE: Final = 1.0 / 3.0
 """A function called back is compiled once it has taken this share of the time to compile it.
 
 Little time is lost if it is compiled in the end, and none if only a few short runs are made.
 """
-PATIENCE: Final = 3.0
+SLOW_RUN: Final = 3.0
 """Time in plain Python after which a message explains why a run was slow [s]."""
-_said_slow: Final[list[bool]] = []
+_warned_slow: Final[list[bool]] = []
 
 _logger = logging.getLogger("rockframe")
 _lock: Final = RLock()
@@ -70,7 +70,7 @@ def entry(function: Function) -> Function:
     return cast("Function", Entry(function) if COMPILED else _as_python(function))
 
 
-def entry_at_once(function: Function) -> Function:
+def background_entry(function: Function) -> Function:
     """Mark an entry that runs as plain Python, with the same results, until it is compiled.
 
     It must return from time to time; as machine code it may call back functions in Python.
@@ -83,7 +83,7 @@ def entry_at_once(function: Function) -> Function:
 def _as_python(function: Callable[..., Any]) -> Callable[..., Any]:
     @wraps(function)
     def call(*arguments: Any) -> Any:
-        return function(*map(viewed, arguments))
+        return function(*map(as_memoryviews, arguments))
 
     return call
 
@@ -91,14 +91,14 @@ def _as_python(function: Callable[..., Any]) -> Callable[..., Any]:
 def table(values: Any) -> Vector:
     """Return a table of constants, of one or two dimensions, in the form that is read fastest."""
     kept = np.array(values, dtype=np.float64)
-    return kept if COMPILED else viewed(kept)
+    return kept if COMPILED else as_memoryviews(kept)
 
 
 _NO_REASONS: Final = ("Failed in", "- Resolution failure", "None")
 _PLACE: Final = re.compile(r'File "([^"]+)", line (\d+)')
 
 
-def _why(problem: Exception) -> str:
+def _reason_of(problem: Exception) -> str:
     """Return what could not be compiled, and where: the innermost reason, which comes first."""
     lines = [line.strip() for line in str(problem).splitlines() if line.strip()]
     reasons = [line for line in lines if not line.startswith(_NO_REASONS)]
@@ -108,25 +108,26 @@ def _why(problem: Exception) -> str:
     return f"{reason or 'no reason'}{at}"
 
 
-def _could_not(function: Callable[..., Any], problem: Exception) -> None:
+def _warn_not_compiled(function: Callable[..., Any], problem: Exception) -> None:
     """Warn that a function could not be compiled, with the reason; log all of it for debugging."""
     _logger.warning(
         "%s.%s could not be compiled, and runs as plain Python, some hundred times slower (%s: "
-        "%s)", function.__module__, function.__qualname__, type(problem).__name__, _why(problem),
+        "%s)", function.__module__, function.__qualname__, type(problem).__name__,
+        _reason_of(problem),
     )  # fmt: skip
     _logger.debug("%s", function.__qualname__, exc_info=problem)
 
 
-def seconds_as_python() -> float:
+def python_seconds() -> float:
     """Return a clock that runs only while entries run as plain Python [s]."""
-    return AS_PYTHON[0] if COMPILED else perf_counter()
+    return PYTHON_SECONDS[0] if COMPILED else perf_counter()
 
 
 def warn_of_slow_run(seconds: float) -> None:
     """Warn once, after a long run in plain Python, why it was slow, and how fast others will be."""
-    if seconds <= PATIENCE or _said_slow or (_HAS_NUMBA and not COMPILED):
+    if seconds <= SLOW_RUN or _warned_slow or (_HAS_NUMBA and not COMPILED):
         return
-    _said_slow.append(True)
+    _warned_slow.append(True)
     why = (
         "while rockframe compiles what it needs, once for this machine: the next"
         if COMPILED
@@ -149,85 +150,93 @@ class Entry:
         self._waits = waits
         self._calls_back = calls_back
         self._routines: dict[tuple[Any, ...], Callable[..., Any] | None] = {}
-        self._awaited: dict[Any, Meanwhile] = {}
+        self._compilations: dict[Any, BackgroundCompilation] = {}
         update_wrapper(self, function)
 
     def __call__(self, *arguments: Any) -> Any:
         """Run the machine code, or the function itself where there is none."""
         words: list[Any] = []
-        sources: list[Source] = []
+        sources: list[BoundSource] = []
         structure = tuple(_structure_of(argument, words, sources) for argument in arguments)
         routine = self._routines.get(structure)
         if routine is not None and all(source.address for source in sources):
             return routine(*words)
-        needed, seldom = self._needed(sources)
+        needed, rare = self._needed(sources)
         with _lock:
-            meanwhile = None if self._waits else self._meanwhile(structure, needed, seldom)
-            ready = meanwhile is None or meanwhile.is_over()
+            compilation = None
+            if not self._waits:
+                compilation = self._background_compilation(structure, needed, rare)
+            ready = compilation is None or compilation.is_due()
             routine = self._compiled(structure, needed) if ready else None
             if routine is not None:
-                from rockframe.compiled.parallel import WORTHWHILE
+                from rockframe.compiled.parallel import START_AFTER
 
-                for source in seldom:
-                    share = CALLED_BACK * source.job.seconds
-                    _make_when_due(source, share if WAITS else WORTHWHILE)
+                for source in rare:
+                    share = CALLBACK_SHARE * source.job.seconds
+                    _compile_when_due(source, share if WAITS else START_AFTER)
         if routine is None:
-            with meanwhile or nullcontext():
+            with compilation or nullcontext():
                 return self._plain(*arguments)
         words = [
-            word.address or word.called_back.address if isinstance(word, Source) else word
+            word.address or word.callback.address if isinstance(word, BoundSource) else word
             for word in words
         ]
-        return raising(routine, words)
+        return run_and_raise(routine, words)
 
-    def _needed(self, sources: list[Source]) -> tuple[list[Source], list[Source]]:
+    def _needed(self, sources: list[BoundSource]) -> tuple[list[BoundSource], list[BoundSource]]:
         """Return the bound functions to compile before this runs, and those to call back."""
-        seldom: list[Source] = []
+        rare: list[BoundSource] = []
         if self._calls_back:
-            seldom = [source for source in _missing(sources) if source.is_seldom_called]
-        return [source for source in sources if source not in seldom], seldom
+            rare = [source for source in _missing(sources) if source.is_rarely_called]
+        return [source for source in sources if source not in rare], rare
 
     def is_compiled_within(self, patience: float, arguments: tuple[Any, ...]) -> bool:
         """See :func:`compiled_within`."""
-        from rockframe.compiled.parallel import time_for
+        from rockframe.compiled.parallel import estimate_wall_time
 
-        sources: list[Source] = []
+        sources: list[BoundSource] = []
         structure = tuple(_structure_of(argument, [], sources) for argument in arguments)
-        sources, seldom = self._needed(sources)
+        sources, rare = self._needed(sources)
         with _lock:
-            if time_for(self._jobs(structure, sources)) > patience:
+            if estimate_wall_time(self._jobs(structure, sources)) > patience:
                 return False
             if not WAITS:
-                meanwhile = self._meanwhile(structure, sources, seldom)
-                if meanwhile is not None and not meanwhile.is_over(at_once=True):
+                compilation = self._background_compilation(structure, sources, rare)
+                if compilation is not None and not compilation.is_due(at_once=True):
                     return False
             return self._compiled(structure, sources) is not None
 
-    def _meanwhile(
-        self, structure: tuple[Any, ...], sources: list[Source], seldom: list[Source]
-    ) -> "Meanwhile | None":
+    def _background_compilation(
+        self, structure: tuple[Any, ...], sources: list[BoundSource], rare: list[BoundSource]
+    ) -> "BackgroundCompilation | None":
         """Return the compilation during which plain Python runs; None where that does not pay.
 
         It does not pay if there can be no machine code, if there is some, or if all functions that
         the entry calls are compiled and the entry itself compiles in a moment.
         """
-        from rockframe.compiled.parallel import WORTHWHILE, Meanwhile, time_for
+        from rockframe.compiled.parallel import (
+            START_AFTER,
+            BackgroundCompilation,
+            estimate_wall_time,
+        )
 
         jobs = self._jobs(structure, sources)
-        is_a_moment = sources and len(jobs) == 1 and time_for(jobs) < WORTHWHILE
+        is_a_moment = sources and len(jobs) == 1 and estimate_wall_time(jobs) < START_AFTER
         if is_a_moment or self._has_failed(structure, sources):
             return None
         key = structure, *map(id, sources)
-        found = self._awaited.get(key)
+        found = self._compilations.get(key)
         if found is None:
-            found = self._awaited[key] = Meanwhile(jobs, [source.job for source in seldom])
+            found = self._compilations[key] = BackgroundCompilation(
+                jobs, [source.job for source in rare]
+            )
         return found
 
-    def _has_failed(self, structure: tuple[Any, ...], sources: list[Source]) -> bool:
+    def _has_failed(self, structure: tuple[Any, ...], sources: list[BoundSource]) -> bool:
         failed = structure in self._routines and self._routines[structure] is None
         return failed or any(source.failed for source in sources)
 
-    def _jobs(self, structure: tuple[Any, ...], sources: list[Source]) -> "list[Job]":
+    def _jobs(self, structure: tuple[Any, ...], sources: list[BoundSource]) -> "list[Job]":
         """Return the jobs of a call: its bound functions without machine code, then the entry."""
         from rockframe.compiled.jobs import Job
 
@@ -235,9 +244,9 @@ class Entry:
         return [*jobs, Job(self.source, structure, False)]
 
     def _compiled(
-        self, structure: tuple[Any, ...], sources: list[Source]
+        self, structure: tuple[Any, ...], sources: list[BoundSource]
     ) -> Callable[..., Any] | None:
-        from rockframe.compiled.parallel import NotCompiledError, make_all
+        from rockframe.compiled.parallel import NotCompiledError, compile_all
 
         if self._has_failed(structure, sources):
             return None
@@ -246,9 +255,9 @@ class Entry:
             return routine
         jobs = self._jobs(structure, sources)
         try:
-            *codes, routine = make_all(jobs)
+            *codes, routine = compile_all(jobs)
         except NotCompiledError as found:
-            _could_not(jobs[found.place].function, found.problem)
+            _warn_not_compiled(jobs[found.place].function, found.problem)
             if found.place < len(missing):  # a bound function: other systems can use the entry
                 missing[found.place].failed = True
             else:
@@ -260,34 +269,34 @@ class Entry:
         return routine
 
 
-_in_background: Final[dict[Source, "Meanwhile"]] = {}
+_in_background: Final[dict[BoundSource, "BackgroundCompilation"]] = {}
 """Compilations by other processes of functions for which others stand in."""
 
 
-def _make_when_due(source: Source, patience: float) -> None:
+def _compile_when_due(source: BoundSource, patience: float) -> None:
     """Compile, or load, a function for which others have stood in for some time [s].
 
     Where entries do not wait, another process compiles it, and this one goes on without it.
     """
-    from rockframe.compiled.parallel import Meanwhile, NotCompiledError, make_all
+    from rockframe.compiled.parallel import BackgroundCompilation, NotCompiledError, compile_all
 
     job = source.job
     try:
-        if source.seconds_without < patience and not job.is_stored:
+        if source.fallback_seconds < patience and not job.is_stored:
             return
         if not WAITS:
-            meanwhile = _in_background.setdefault(source, Meanwhile([job]))
-            if not meanwhile.is_over(at_once=True):
+            compilation = _in_background.setdefault(source, BackgroundCompilation([job]))
+            if not compilation.is_due(at_once=True):
                 return
-        (source.code,) = make_all([job])
+        (source.code,) = compile_all([job])
     except NotCompiledError as found:
-        _could_not(job.function, found.problem)
-        source.failed, source.is_seldom_called = True, False
+        _warn_not_compiled(job.function, found.problem)
+        source.failed, source.is_rarely_called = True, False
     else:
         source.address = source.code.address
 
 
-def is_worth_calling(one: Bound) -> bool:
+def is_worth_calling(one: BoundFunction) -> bool:
     """Whether to call a function for which another one, compiled already but slower, can stand in.
 
     It is called if it has machine code, if nothing has, and if all is compiled before it runs. It
@@ -296,21 +305,21 @@ def is_worth_calling(one: Bound) -> bool:
     source = one.source
     if source.address or not COMPILED or not _CALLS_BACK:
         return True
-    from rockframe.compiled.parallel import WORTHWHILE
+    from rockframe.compiled.parallel import START_AFTER
 
-    taken = source.seconds_without
-    if source.failed or 0.0 < taken < WORTHWHILE:
+    taken = source.fallback_seconds
+    if source.failed or 0.0 < taken < START_AFTER:
         return False
     try:
         if not 0.0 < taken < source.job.seconds:
             with _lock:
-                _make_when_due(source, source.job.seconds)
+                _compile_when_due(source, source.job.seconds)
     except Exception:  # reported where the other one is compiled
         return False
     return bool(source.address)
 
 
-def _missing(sources: list[Source]) -> list[Source]:
+def _missing(sources: list[BoundSource]) -> list[BoundSource]:
     return [*{id(source): source for source in sources if not source.address}.values()]
 
 
@@ -324,29 +333,29 @@ def compiled_within(
 @contextmanager
 def compiling_for(words: str) -> Generator[None]:
     """Set the purpose that messages about compilation in this block state."""
-    before = NEEDED_BY.set(words)
+    before = PURPOSE.set(words)
     try:
         yield
     finally:
-        NEEDED_BY.reset(before)
+        PURPOSE.reset(before)
 
 
 @contextmanager
-def still_taking(seconds: float) -> Generator[None]:
+def expecting_remaining(seconds: float) -> Generator[None]:
     """Set the remaining time in plain Python that the caller of this block expects [s]."""
-    before = STILL_TAKES.set(seconds)
+    before = REMAINING_SECONDS.set(seconds)
     try:
         yield
     finally:
-        STILL_TAKES.reset(before)
+        REMAINING_SECONDS.reset(before)
 
 
-def _structure_of(argument: Any, words: list[Any], sources: list[Source]) -> Any:
+def _structure_of(argument: Any, words: list[Any], sources: list[BoundSource]) -> Any:
     """Return the structure of an argument; append the words that pass it, and bound functions."""
     if isinstance(argument, tuple):
         values = cast("tuple[Any, ...]", argument)
         return (type(values), *[_structure_of(value, words, sources) for value in values])
-    if isinstance(argument, Bound):
+    if isinstance(argument, BoundFunction):
         source = argument.source
         sources.append(source)
         words.append(source.address or source)

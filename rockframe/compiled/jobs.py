@@ -29,11 +29,11 @@ from rockframe.compiled.calls import (
     register_kernels,
 )
 from rockframe.compiled.language import KERNELS, Integers, ReadOnlyMatrix, Vector, view_from
-from rockframe.compiled.linking import linked_once
+from rockframe.compiled.linking import late_linking
 
 VECTOR: Final = BufferType(numba.float64, 1, True)
 """Numba's type of a vector in compiled code."""
-KINDS: Final[dict[Any, Any]] = {
+NUMBA_TYPES: Final[dict[Any, Any]] = {
     int: numba.int64,
     float: numba.float64,
     Vector: VECTOR,
@@ -44,13 +44,13 @@ KINDS: Final[dict[Any, Any]] = {
 """Numba's types of what bound functions take and give."""
 
 
-class Writer:
+class SourceWriter:
     """Writes the source by which a module makes the arguments of a function."""
 
     def __init__(self) -> None:
-        self.kinds: list[Any] = []  # numba's types of the words that are passed
+        self.types: list[Any] = []  # numba's types of the words that are passed
         self.scope: dict[str, Any] = {}  # names that the source uses
-        self.notes: list[str] = []  # comments on what the source depends on but does not show
+        self.comments: list[str] = []  # comments on what the source depends on but does not show
 
     def tuple_of(self, structure: tuple[Any, ...]) -> str:
         """Return the expression that makes a tuple of the elements of ``numbers``.
@@ -58,39 +58,39 @@ class Writer:
         An array, the last element of a tuple, takes the rest of them.
         """
         kind, *parts = structure
-        taken: list[str] = []
+        arguments: list[str] = []
         for part in parts:
             if isinstance(part, tuple):
-                taken.append(self.tuple_of(part))
+                arguments.append(self.tuple_of(part))
                 continue
-            self.kinds.append(part)
+            self.types.append(part)
             if part is np.ndarray:
-                taken.append(f"{self._name(view_from)}(numbers, {len(self.kinds) - 1})")
+                arguments.append(f"{self._name(view_from)}(numbers, {len(self.types) - 1})")
                 continue
-            number = f"numbers[{len(self.kinds) - 1}]"
-            taken.append({bool: f"{number} != 0.0", int: f"int({number})"}.get(part, number))
+            number = f"numbers[{len(self.types) - 1}]"
+            arguments.append({bool: f"{number} != 0.0", int: f"int({number})"}.get(part, number))
         if kind is tuple:
-            return f"({''.join(f'{part}, ' for part in taken)})"
-        return f"{self._name(kind)}({', '.join(taken)})"
+            return f"({''.join(f'{part}, ' for part in arguments)})"
+        return f"{self._name(kind)}({', '.join(arguments)})"
 
     def argument(self, structure: Any) -> str:
         """Return the expression that makes an argument from words."""
         if isinstance(structure, tuple) and isinstance(structure[0], type):
             parts = ", ".join(self.argument(part) for part in structure[1:])
             return f"{self._name(structure[0])}({parts})"
-        word = f"word_{len(self.kinds)}"
+        word = f"word_{len(self.types)}"
         if isinstance(structure, str):
-            self.kinds.append({"real": numba.float64, "integer": numba.int64}[structure])
+            self.types.append({"real": numba.float64, "integer": numba.int64}[structure])
             return word
         if structure[0] == "function":
-            self.kinds.append(numba.int64)
-            cast = f"code_{len(self.kinds)}"
+            self.types.append(numba.int64)
+            cast = f"code_{len(self.types)}"
             self.scope[cast] = code_at(structure[1].value)
-            self.notes.append(f"# {cast}: {structure[1].value}\n")
+            self.comments.append(f"# {cast}: {structure[1].value}\n")
             return f"{cast}({word})"
         dtype, dimensions, writeable = structure
         element = numba.from_dtype(np.dtype(dtype))
-        self.kinds.append(numba.types.Array(element, dimensions, "C", readonly=not writeable))
+        self.types.append(numba.types.Array(element, dimensions, "C", readonly=not writeable))
         return f"buffer_of({word})"
 
     def _name(self, kind: Any) -> str:
@@ -101,7 +101,7 @@ class Writer:
 
 
 _logger = logging.getLogger("rockframe")
-_said: Final[set[str]] = set()
+_warned: Final[set[str]] = set()
 
 _SECONDS_OF_BYTE: Final = 1.7e-4
 """Time to compile a byte of Python's bytecode, of a function and all that it calls [s].
@@ -115,20 +115,22 @@ def signature_of(function: Callable[..., Any]) -> Any:
     """Return numba's signature of a function to be bound to a tuple, from its annotations."""
     names = list(inspect.signature(function).parameters)[1:]
     hints = get_type_hints(function, include_extras=True)
-    return _kind_of(hints["return"])(*(_kind_of(hints[name]) for name in names), VECTOR)
+    return _numba_type_of(hints["return"])(*(_numba_type_of(hints[name]) for name in names), VECTOR)
 
 
-def _kind_of(hint: Any) -> Any:
+def _numba_type_of(hint: Any) -> Any:
     """Return numba's type of an annotation, of a named tuple by the annotations of its fields.
 
-    A bound function is annotated with the function, ``Annotated[Bound, function]``.
+    A bound function is annotated with the function, ``Annotated[BoundFunction, function]``.
     """
-    if hint in KINDS:
-        return KINDS[hint]
+    if hint in NUMBA_TYPES:
+        return NUMBA_TYPES[hint]
     if get_origin(hint) is Annotated:
         return CodeType(signature_of(*hint.__metadata__))
     fields = get_type_hints(hint, include_extras=True)
-    return numba.types.BaseTuple.from_types([_kind_of(fields[name]) for name in hint._fields], hint)
+    return numba.types.BaseTuple.from_types(
+        [_numba_type_of(fields[name]) for name in hint._fields], hint
+    )
 
 
 @dataclass(frozen=True)
@@ -139,19 +141,19 @@ class Job:
     # of a bound function, that of its tuple, :func:`rockframe.compiled.bound.structure_of`; of an
     # entry, that of all arguments, as :class:`rockframe.compiled.entries.Entry` describes it
     structure: tuple[Any, ...]
-    bound: bool  # whether it is a bound function
+    is_bound: bool  # whether it is a bound function
     in_lanes: bool = False  # whether it is bound to the class of a tuple, not to one tuple
 
     @cached_property
     def _written(self) -> tuple[str, dict[str, Any], Any]:
         """Text of the module, the names in it, and the signature of its function."""
-        writer = Writer()
-        if self.bound:
+        writer = SourceWriter()
+        if self.is_bound:
             names = list(inspect.signature(self.function).parameters)[1:]
-            made = writer.tuple_of(self.structure)
+            expression = writer.tuple_of(self.structure)
             if self.in_lanes:
                 text = (
-                    f"@inlined\ndef system_of(numbers):\n    return {made}\n\n\n"
+                    f"@inlined\ndef system_of(numbers):\n    return {expression}\n\n\n"
                     f"def run({', '.join(names)}, numbers):\n"
                     f"    return function({', '.join(['system_of', *names])})\n"
                 )
@@ -159,14 +161,14 @@ class Job:
                 return text, scope, signature_of(self.function)
             text = (
                 f"def run({', '.join(names)}, numbers):\n"
-                f"    return function({', '.join([made, *names])})\n"
+                f"    return function({', '.join([expression, *names])})\n"
             )
             return text, writer.scope, signature_of(self.function)
-        taken = ", ".join(writer.argument(part) for part in self.structure)
-        words = ", ".join(f"word_{i}" for i in range(len(writer.kinds)))
-        text = f"def run({words}):\n    return function({taken})\n{''.join(writer.notes)}"
-        gives = get_type_hints(self.function)["return"] is int
-        signature = (numba.int64 if gives else numba.void)(*writer.kinds)
+        arguments = ", ".join(writer.argument(part) for part in self.structure)
+        words = ", ".join(f"word_{i}" for i in range(len(writer.types)))
+        text = f"def run({words}):\n    return function({arguments})\n{''.join(writer.comments)}"
+        returns_integer = get_type_hints(self.function)["return"] is int
+        signature = (numba.int64 if returns_integer else numba.void)(*writer.types)
         return text, writer.scope | {"buffer_of": buffer_of}, signature
 
     @cached_property
@@ -174,18 +176,18 @@ class Job:
         """The module's file; None where it cannot be stored."""
         text, scope, signature = self._written
         classes = [kind for kind in scope.values() if isinstance(kind, type)]
-        return store.file_of(self.function, f"{text}\n# {signature}\n", classes)
+        return store.module_file(self.function, f"{text}\n# {signature}\n", classes)
 
     @cached_property
     def calls(self) -> set[Any]:
         """All marked functions that are compiled for it."""
-        structure = self.structure if self.bound else ("arguments", *self.structure)
-        return called_by(self.function, classes_of_structure(structure))
+        structure = self.structure if self.is_bound else ("arguments", *self.structure)
+        return callees_of(self.function, classes_of_structure(structure))
 
     @cached_property
     def seconds(self) -> float:
         """About how long it takes to compile [s]."""
-        return seconds_of([self])
+        return estimate_seconds([self])
 
     @property
     def is_stored(self) -> bool:
@@ -202,10 +204,10 @@ class Job:
             try:
                 return self._compiled(keep=True)
             except Exception:  # damaged: reading it may raise anything
-                store.forget_code(file)
+                store.remove_code(file)
                 _logger.warning("machine code in %s was damaged, and is compiled anew", file.parent)
         register_kernels()
-        with store.compiling(file, waiting):
+        with store.lock_while_compiling(file, waiting):
             try:
                 return self._compiled(keep=True)
             except (RuntimeError, OSError) as problem:  # no place that numba could write to
@@ -221,38 +223,38 @@ class Job:
         place = str(self.file) if self.file else f"<{name}>"
         exec(compile(text, place, "exec"), module.__dict__)  # noqa: S102
         options = {**OPTIONS, "cache": True} if keep else OPTIONS
-        with linked_once(), operators_remembered():
-            if self.bound:
+        with late_linking(), cached_operators():
+            if self.is_bound:
                 return numba.cfunc(signature, **options)(module.__dict__["run"])
             return numba.njit(signature, nogil=True, **options)(module.__dict__["run"])
 
 
-def seconds_of(jobs: Sequence[Job]) -> float:
+def estimate_seconds(jobs: Sequence[Job]) -> float:
     """Estimate how long jobs take one after another; functions they share count once [s]."""
     functions = set[Any]().union(*(job.calls for job in jobs))
     return _SECONDS_OF_BYTE * sum(len(each.__code__.co_code) for each in functions)
 
 
 @contextmanager
-def operators_remembered() -> Generator[None]:
+def cached_operators() -> Generator[None]:
     """Let numba resolve an operator on numbers of some types only once in this block.
 
     By default it searches all definitions of an operator, including numpy's, at each use: a twelfth
     of the time of a compilation.
     """
     kind, numbers = numba.types.Function, (numba.types.Number, numba.types.Boolean)
-    look = kind.get_call_type
+    resolve = kind.get_call_type
     found: dict[Any, Any] = {}
 
-    def remembered(operator: Any, context: Any, arguments: Any, keywords: Any) -> Any:
+    def cached(operator: Any, context: Any, arguments: Any, keywords: Any) -> Any:
         if keywords or not all(isinstance(each, numbers) for each in arguments):
-            return look(operator, context, arguments, keywords)
+            return resolve(operator, context, arguments, keywords)
         key = operator, tuple(arguments)
         if key not in found:
-            found[key] = look(operator, context, arguments, keywords)
+            found[key] = resolve(operator, context, arguments, keywords)
         return found[key]
 
-    kind.get_call_type = remembered
+    kind.get_call_type = cached
     try:
         yield
     finally:
@@ -266,7 +268,7 @@ def classes_of_structure(structure: tuple[Any, ...]) -> set[type]:
     return found.union(*(classes_of_structure(part) for part in parts if isinstance(part, tuple)))
 
 
-def called_by(function: Any, kinds: set[type]) -> set[Any]:
+def callees_of(function: Any, kinds: set[type]) -> set[Any]:
     """Return a function and all marked ones it may call; methods of `kinds` by their names."""
     found, waiting = set[Any](), [function]
     while waiting:
@@ -281,6 +283,6 @@ def called_by(function: Any, kinds: set[type]) -> set[Any]:
 
 
 def _warn_once(text: str) -> None:
-    if text not in _said:
-        _said.add(text)
+    if text not in _warned:
+        _warned.add(text)
         _logger.warning(text)

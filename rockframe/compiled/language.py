@@ -29,11 +29,11 @@ KERNELS: Final[dict[Callable[..., Any], bool]] = {}
 """Marked functions, and whether each is compiled into its callers."""
 
 
-NEEDED_BY: Final = ContextVar("needed_by", default="this")
+PURPOSE: Final = ContextVar("purpose", default="this")
 """What needs the machine code that is compiled, for messages."""
-AS_PYTHON: Final[list[float]] = [0.0]
+PYTHON_SECONDS: Final[list[float]] = [0.0]
 """Processor time that entries have spent in plain Python while they were compiled [s]."""
-STILL_TAKES: Final = ContextVar("still_takes", default=0.0)
+REMAINING_SECONDS: Final = ContextVar("remaining_seconds", default=0.0)
 """Remaining time in plain Python that the caller expects; 0 where it is unknown [s]."""
 
 
@@ -103,9 +103,9 @@ LANES: Final = 16
 """Number of lanes: they fill two of the widest registers, or four of the usual ones."""
 
 
-def lane_of(room: Numbers, field: int, lane: int) -> Numbers:
+def lane_of(data: Numbers, field: int, lane: int) -> Numbers:
     """Return the fields of one lane, from a field on, as an array; no copy."""
-    fields: Numbers = room[field * LANES + lane :: LANES]
+    fields: Numbers = data[field * LANES + lane :: LANES]
     return fields
 
 
@@ -121,16 +121,18 @@ def widest_registers() -> None:
 def tuple_from(structure: tuple[Any, ...]) -> Callable[[Vector], Any]:
     """Return the function that makes a tuple of some structure from a vector of its numbers."""
 
-    def made(kind: Any, parts: tuple[Any, ...], numbers: Vector, first: int) -> tuple[Any, int]:
-        taken: list[Any] = []
+    def tuple_and_end(
+        kind: Any, parts: tuple[Any, ...], numbers: Vector, first: int
+    ) -> tuple[Any, int]:
+        elements: list[Any] = []
         for part in parts:
             if isinstance(part, tuple):
-                value, first = made(part[0], part[1:], numbers, first)
+                value, first = tuple_and_end(part[0], part[1:], numbers, first)
             elif part is np.ndarray:  # all that are left
                 value, first = numbers[first:], len(numbers)
             else:
                 value, first = part(numbers[first]), first + 1
-            taken.append(value)
-        return (tuple(taken) if kind is tuple else kind(*taken)), first
+            elements.append(value)
+        return (tuple(elements) if kind is tuple else kind(*elements)), first
 
-    return lambda numbers: made(structure[0], structure[1:], numbers, 0)[0]
+    return lambda numbers: tuple_and_end(structure[0], structure[1:], numbers, 0)[0]

@@ -16,14 +16,14 @@ from typing import Any, Final
 
 from rockframe.compiled.calls import numba
 
-TRIED: Final = ((0, 61), (0, 68))
+TESTED: Final = ((0, 61), (0, 68))
 """First and last version of numba that this was tested with."""
 
 _codegen: Final[Any] = import_module("numba.core.codegen")
 _registry: Final[Any] = import_module("numba.core.registry")
 _lock: Final[Any] = import_module("numba.core.compiler_lock").global_compiler_lock
 
-IS_KNOWN: Final[bool] = TRIED[0] <= tuple(numba.version_info[:2]) <= TRIED[1] and all(
+IS_SUPPORTED: Final[bool] = TESTED[0] <= tuple(numba.version_info[:2]) <= TESTED[1] and all(
     hasattr(_codegen.JITCodeLibrary, name)
     for name in (
         "add_linking_library", "finalize", "get_pointer_to_function", "codegen",
@@ -33,7 +33,7 @@ IS_KNOWN: Final[bool] = TRIED[0] <= tuple(numba.version_info[:2]) <= TRIED[1] an
 """Whether this version of numba allows late linking."""
 
 
-class _Waiting(_codegen.JITCodeLibrary):
+class _LateLibrary(_codegen.JITCodeLibrary):
     """A library of numba that is linked and optimised when an address in it is needed."""
 
     def __init__(self, *arguments: Any, **words: Any) -> None:
@@ -51,7 +51,7 @@ class _Waiting(_codegen.JITCodeLibrary):
 
     def add_linking_library(self, library: Any) -> None:
         """Link a library, whatever its state."""
-        if isinstance(library, _Waiting):
+        if isinstance(library, _LateLibrary):
             self._linking_libraries.append(library)
         else:
             super().add_linking_library(library)
@@ -81,8 +81,10 @@ class _Waiting(_codegen.JITCodeLibrary):
 
     def _optimize_final_module(self) -> None:
         """Optimise once; numba does so twice, to remove reference counting that is not needed."""
-        made = self._codegen._module_pass_manager()
-        passes, *words = made if isinstance(made, tuple) else (made,)  # older numbas give one alone
+        created = self._codegen._module_pass_manager()
+        passes, *words = (
+            created if isinstance(created, tuple) else (created,)
+        )  # older numbas give one alone
         passes.run(self._final_module, *words)
 
     def _get_module_for_linking(self) -> Any:
@@ -99,7 +101,7 @@ class _Waiting(_codegen.JITCodeLibrary):
 def _callers_first(library: Any) -> list[Any]:
     """Return all libraries that a library calls, callers before what they call."""
     seen: set[Any] = set()
-    ended: list[Any] = []
+    ordered: list[Any] = []
 
     def visit(caller: Any) -> None:
         for called in caller._linking_libraries:
@@ -107,22 +109,22 @@ def _callers_first(library: Any) -> list[Any]:
                 seen.add(called)
                 if not called._finalized:
                     visit(called)
-                ended.append(called)
+                ordered.append(called)
 
     visit(library)
-    return ended[::-1]
+    return ordered[::-1]
 
 
 @contextmanager
-def linked_once() -> Generator[None]:
+def late_linking() -> Generator[None]:
     """Let numba make libraries that are linked late in this block; it holds numba's lock."""
-    if not IS_KNOWN:
+    if not IS_SUPPORTED:
         yield
         return
     with _lock:
         codegen = _registry.cpu_target.target_context.codegen()
         before = codegen._library_class
-        codegen._library_class = _Waiting
+        codegen._library_class = _LateLibrary
         try:
             yield
         finally:

@@ -11,10 +11,16 @@ from typing import Any, Final
 # numba's own annotations are partial
 _compiler: Final[Any] = import_module("numba.core.compiler")
 
-_MAKING: Final = {"RAISE_VARARGS", "BUILD_LIST", "BUILD_SET", "BUILD_MAP", "MAKE_FUNCTION"}
+_EXCLUDED_OPCODES: Final = {
+    "RAISE_VARARGS",
+    "BUILD_LIST",
+    "BUILD_SET",
+    "BUILD_MAP",
+    "MAKE_FUNCTION",
+}
 """Bytecode instructions that no plain function has."""
 
-_FOR_OTHERS: Final = {
+_OMITTED_PASSES: Final = {
     "with_lifting", "inline_closure_likes", "make_function_op_code_to_jit_function",
     "inline_inlinables", "Rewrite dynamic raises", "find_literally", "literal_unroll",
     "LiteralPropagation", "nopython_rewrites", "dump_parfor_diagnostics",
@@ -22,11 +28,11 @@ _FOR_OTHERS: Final = {
 """numba's passes over constructs that no plain function has."""
 
 
-def makes_numbers_alone(function: Any) -> bool:
+def makes_only_numbers(function: Any) -> bool:
     """Whether a function makes only numbers and tuples."""
     code = function.__code__
     named = (function.__globals__.get(name) for name in code.co_names)
-    return _MAKING.isdisjoint(each.opname for each in get_instructions(code)) and not any(
+    return _EXCLUDED_OPCODES.isdisjoint(each.opname for each in get_instructions(code)) and not any(
         str(getattr(value, name, "")).startswith(("numpy", "numba"))
         for value in named
         for name in ("__name__", "__module__")
@@ -39,6 +45,6 @@ class PlainPasses(_compiler.CompilerBase):
     def define_pipelines(self) -> list[Any]:
         """Return the passes, in numba's order."""
         passes = _compiler.DefaultPassBuilder.define_nopython_pipeline(self.state)
-        passes.passes = [one for one in passes.passes if one[0].name() not in _FOR_OTHERS]
+        passes.passes = [one for one in passes.passes if one[0].name() not in _OMITTED_PASSES]
         passes.finalize()
         return [passes]

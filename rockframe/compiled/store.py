@@ -85,27 +85,27 @@ def _imported(module: ModuleType, source: bytes) -> Iterator[str]:
                 yield name
 
 
-LONGEST: Final = 120.0
+LOCK_TIMEOUT: Final = 120.0
 """Age after which a lock file counts as left behind by a killed process; longest wait [s]."""
 
 if sys.platform == "win32":
     import msvcrt
 
-    _ELSEWHERE = PermissionError
-    _BEYOND: Final = 2**30  # locked bytes cannot be read: lock one behind the end of the file
+    _LOCKED = PermissionError
+    _LOCKED_BYTE: Final = 2**30  # locked bytes cannot be read: lock one behind the end of the file
 
     def _lock(number: int) -> None:
-        os.lseek(number, _BEYOND, os.SEEK_SET)
+        os.lseek(number, _LOCKED_BYTE, os.SEEK_SET)
         msvcrt.locking(number, msvcrt.LK_NBLCK, 1)
 
     def _unlock(number: int) -> None:
-        os.lseek(number, _BEYOND, os.SEEK_SET)
+        os.lseek(number, _LOCKED_BYTE, os.SEEK_SET)
         msvcrt.locking(number, msvcrt.LK_UNLCK, 1)
 
 else:
     import fcntl
 
-    _ELSEWHERE = BlockingIOError
+    _LOCKED = BlockingIOError
 
     def _lock(number: int) -> None:
         fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -119,16 +119,16 @@ def lock(file: Path) -> Callable[[], None] | None:
     try:
         stream = file.open("r+b")
     except OSError:  # nothing can be written: nobody waits
-        return _nothing
+        return _do_nothing
     number = stream.fileno()
     try:
         _lock(number)
-    except _ELSEWHERE:
+    except _LOCKED:
         stream.close()
         return None
     except OSError:  # the folders of some networks know no locks
         stream.close()
-        return _marked(file.with_suffix(".lock"))
+        return _lock_with_file(file.with_suffix(".lock"))
 
     def release() -> None:
         with stream:
@@ -137,37 +137,37 @@ def lock(file: Path) -> Callable[[], None] | None:
     return release
 
 
-def _marked(mark: Path) -> Callable[[], None] | None:
+def _lock_with_file(lock_file: Path) -> Callable[[], None] | None:
     """Make a lock file and return the function that removes it; None if there is one already."""
     with suppress(OSError):
-        if time.time() - mark.stat().st_mtime > LONGEST:
-            mark.unlink()
+        if time.time() - lock_file.stat().st_mtime > LOCK_TIMEOUT:
+            lock_file.unlink()
     try:
-        mark.touch(exist_ok=False)
+        lock_file.touch(exist_ok=False)
     except FileExistsError:
         return None
     except OSError:
-        return _nothing
-    return partial(_removed, mark)
+        return _do_nothing
+    return partial(_remove, lock_file)
 
 
-def _removed(mark: Path) -> None:
+def _remove(lock_file: Path) -> None:
     with suppress(OSError):
-        mark.unlink()
+        lock_file.unlink()
 
 
-def _nothing() -> None:
+def _do_nothing() -> None:
     """Unlock nothing: no lock could be made."""
 
 
 _POLL: Final = 0.05
 """Time between two checks whether another process is still compiling [s]."""
 
-_UNUSED: Final = 30 * 24 * 3600.0
+_UNUSED_AGE: Final = 30 * 24 * 3600.0
 """Age at which machine code of other sources is removed [s]."""
 
 
-def file_of(function: Callable[..., Any], text: str, classes: Iterable[type]) -> Path | None:
+def module_file(function: Callable[..., Any], text: str, classes: Iterable[type]) -> Path | None:
     """Return the file of a job's module, written if it does not exist; None if it cannot be."""
     classes = list(classes)
     sources = digest_of_sources(function, classes)
@@ -176,7 +176,7 @@ def file_of(function: Callable[..., Any], text: str, classes: Iterable[type]) ->
     # machine code knows functions and classes by the names of their modules
     modules = sorted({function.__module__, *(kind.__module__ for kind in classes)})
     name = f"{function.__name__}_{digest(' '.join(modules).encode(), text.encode())}"
-    for folder in folders():
+    for folder in cache_folders():
         try:
             place = folder / f"code-{sources}"
             if place.is_dir():
@@ -210,11 +210,11 @@ def is_compiled_elsewhere(file: Path) -> bool:
 
 
 @contextmanager
-def compiling(file: Path, waiting: Callable[[], bool]) -> Generator[None]:
+def lock_while_compiling(file: Path, waiting: Callable[[], bool]) -> Generator[None]:
     """Wait while another process compiles a module, then lock it for this one in this block."""
-    begun = time.monotonic()
+    started = time.monotonic()
     release = None
-    while time.monotonic() - begun < LONGEST and waiting():
+    while time.monotonic() - started < LOCK_TIMEOUT and waiting():
         release = lock(file)
         if release is not None:
             break
@@ -226,13 +226,13 @@ def compiling(file: Path, waiting: Callable[[], bool]) -> Generator[None]:
             release()
 
 
-def forget_code(file: Path) -> None:
+def remove_code(file: Path) -> None:
     """Remove the machine code of a module."""
     for kept in (file.parent / "__pycache__").glob(f"{file.stem}.*.nb[ci]"):
         kept.unlink(missing_ok=True)
 
 
-def folders() -> list[Path]:
+def cache_folders() -> list[Path]:
     """Return the folders that the store may be in, the preferred one first."""
     value = os.environ.get("ROCKFRAME_CACHE_DIR")
     if value:
@@ -251,7 +251,7 @@ def folders() -> list[Path]:
 
 def _remove_unused(folder: Path) -> None:
     for old in folder.glob("code-*"):
-        if time.time() - old.stat().st_mtime > _UNUSED:
+        if time.time() - old.stat().st_mtime > _UNUSED_AGE:
             for file in sorted(old.rglob("*"), reverse=True):
                 file.rmdir() if file.is_dir() else file.unlink(missing_ok=True)
             old.rmdir()

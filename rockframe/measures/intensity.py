@@ -28,7 +28,7 @@ from rockframe.signals.integrals import (
     standardized_absolute_velocity,
     time_between_shares,
 )
-from rockframe.signals.motion import greatest
+from rockframe.signals.motion import absolute_peak
 from rockframe.signals.spectra import DAMPING_RATIO, check_cost
 from rockframe.units import ACCELERATION, POSITIVE, QuantityLike, RatioLike, to_ratio, to_si
 
@@ -161,9 +161,9 @@ def _of_ground(
     arias = arias_history(signal, gravity)
     step = signal.time_step
     return {
-        "peak_ground_acceleration": lambda: greatest(signal.pieces),
-        "peak_ground_velocity": lambda: greatest(velocity),
-        "peak_ground_displacement": lambda: greatest(displacement),
+        "peak_ground_acceleration": lambda: absolute_peak(signal.pieces),
+        "peak_ground_velocity": lambda: absolute_peak(velocity),
+        "peak_ground_displacement": lambda: absolute_peak(displacement),
         "arias_intensity": lambda: float(arias[-1]),
         "cumulative_absolute_velocity": lambda: float(absolute_velocity_history(signal)[-1]),
         "standardized_cumulative_absolute_velocity": lambda: standardized_absolute_velocity(

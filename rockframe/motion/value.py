@@ -12,7 +12,7 @@ from rockframe.motion.quantities import with_quantity
 from rockframe.proposals import Immutable, proposing
 from rockframe.signals import Motion, Signal
 from rockframe.signals.integrals import ground_path
-from rockframe.signals.motion import greatest, knots_of
+from rockframe.signals.motion import absolute_peak, knots_of
 from rockframe.units import ACCELERATION, LENGTH, TIME, VELOCITY, Quantity
 
 UNNAMED: Final = "unnamed motion"
@@ -129,7 +129,7 @@ class MotionValue(Immutable):
     @property
     def peak_velocity(self) -> Quantity:
         """Greatest absolute horizontal velocity from rest, between samples too [m s^-1]."""
-        return with_quantity(greatest(ground_path(self.si.horizontal)[0]), VELOCITY)
+        return with_quantity(absolute_peak(ground_path(self.si.horizontal)[0]), VELOCITY)
 
     def __len__(self) -> int:
         return int(self.si.horizontal.samples.size)

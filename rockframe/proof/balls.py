@@ -35,22 +35,22 @@ def bits() -> int:
     return ctx.prec
 
 
-def upper(one: Ball) -> Ball:
+def magnitude(one: Ball) -> Ball:
     """Return the largest absolute value in a ball, rounded up, as an exact ball."""
     return arb(one.abs_upper())
 
 
-def total(one: Sequence[Ball], other: Sequence[Ball]) -> Ball:
+def dot(one: Sequence[Ball], other: Sequence[Ball]) -> Ball:
     """Return the sum of products of two rows, up to the end of the shorter one."""
     return sum(map(mul, one, other), ZERO)
 
 
-def product(one: Row, other: Row, order: int) -> Ball:
+def cauchy_product(one: Row, other: Row, order: int) -> Ball:
     """Return the coefficient of some order in the product of two power series."""
     return sum(map(mul, one, other[order::-1]), ZERO)
 
 
-def value(coefficients: Row, at: Ball) -> Ball:
+def polynomial_value(coefficients: Row, at: Ball) -> Ball:
     """Evaluate a polynomial, lowest power first."""
     result: Ball = 0
     for each in reversed(coefficients):
@@ -58,19 +58,19 @@ def value(coefficients: Row, at: Ball) -> Ball:
     return result
 
 
-def slope(coefficients: Row) -> Row:
+def derivative_of(coefficients: Row) -> Row:
     """Return the derivative of a polynomial."""
     return [each * power for power, each in enumerate(coefficients)][1:]
 
 
-def moved(coefficients: Row, by: Ball) -> Row:
+def taylor_shift(coefficients: Row, shift: Ball) -> Row:
     """Return a polynomial about another point: its Taylor coefficients there."""
     if len(coefficients) == 2:
-        return [coefficients[0] + coefficients[1] * by, coefficients[1]]
+        return [coefficients[0] + coefficients[1] * shift, coefficients[1]]
     row = list(coefficients)
     for start in range(len(row) - 1):
         for each in range(len(row) - 2, start - 1, -1):
-            row[each] = row[each] + by * row[each + 1]
+            row[each] = row[each] + shift * row[each + 1]
     return row
 
 
@@ -82,7 +82,7 @@ def hull(balls: Row) -> Ball:
     return result
 
 
-def times(one: Matrix, other: Matrix) -> Matrix:
+def matrix_product(one: Matrix, other: Matrix) -> Matrix:
     """Multiply two matrices."""
     columns = list(zip(*other, strict=True))
     return [[sum(map(mul, row, column), ZERO) for column in columns] for row in one]

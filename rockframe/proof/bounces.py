@@ -7,42 +7,42 @@ and single impacts cannot be enclosed. Their speeds and heights can: :eq:`eq-pro
 from dataclasses import dataclass, replace
 from typing import Final, NamedTuple
 
-from rockframe.proof.balls import UNIT, ZERO, Ball, Row, ball, hull, upper
+from rockframe.proof.balls import UNIT, ZERO, Ball, Row, ball, hull, magnitude
 from rockframe.proof.problem import (
     GroundPiece,
     Problem,
     Undecided,
     acceleration,
+    acceleration_bound,
     stiffness,
-    strongest,
 )
-from rockframe.proof.standing import lifts_in
+from rockframe.proof.uplift import find_uplift
 
-_WINDOWS: Final = 200
+_MAX_WINDOWS: Final = 200
 """Largest number of windows, of at most an interval each, over which bounces are followed."""
-_GUESSES: Final = 12
-_LIFTING: Final = 1.5
+_MAX_GUESSES: Final = 12
+_UPLIFT_TIME: Final = 1.5
 """Time by which all members have lifted, over the time of their last impacts."""
 
 
 class Instant(NamedTuple):
     """A time, by the number of its interval of the motion and the time since its start [s]."""
 
-    number: int
-    after: Ball
+    interval: int
+    elapsed: Ball
 
     def later(self, problem: Problem, span: Ball) -> "Instant":
         """Return the instant after a span of time [s]."""
-        number, after = self.number, self.after + span
-        while not after < problem.length(number):
-            if not after >= problem.length(number):
+        interval, elapsed = self.interval, self.elapsed + span
+        while not elapsed < problem.length(interval):
+            if not elapsed >= problem.length(interval):
                 message = "small bounces that end at a sample of the motion"
                 raise Undecided(message)
-            after, number = after - problem.length(number), number + 1
-        return Instant(number, after)
+            elapsed, interval = elapsed - problem.length(interval), interval + 1
+        return Instant(interval, elapsed)
 
 
-class Lifted(NamedTuple):
+class UpliftState(NamedTuple):
     """The state of all members after they have lifted to one side, without further impact."""
 
     instant: Instant
@@ -51,48 +51,52 @@ class Lifted(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Pull:
+class RestoringAcceleration:
     """Bounds of the angular acceleration back to upright on one corner, over a window of time."""
 
     least: Ball  # its least value; negative where the ground lifts the block
     most: Ball  # its largest absolute value
-    faster: Ball  # bound of the rate at which it grows
+    growth_rate: Ball  # bound of the rate at which it grows
 
     @classmethod
-    def of(cls, problem: Problem, sign: int, height: Ball, ground: GroundPiece) -> "Pull":
+    def of(
+        cls, problem: Problem, sign: int, height: Ball, ground: GroundPiece
+    ) -> "RestoringAcceleration":
         """Bound it for all rotations up to `height`, and for all values of the ground."""
         corner = problem.corner(sign)
         rotation = UNIT * height * sign
-        pull = -sign * acceleration(rotation, corner, ground)
+        restoring = -sign * acceleration(rotation, corner, ground)
         grows = -sign * acceleration(rotation, corner, ground.rates())
-        faster = ball(grows.upper()) if grows.upper() > 0 else ZERO
-        return cls(ball(pull.lower()), upper(pull), faster)
+        growth_rate = ball(grows.upper()) if grows.upper() > 0 else ZERO
+        return cls(ball(restoring.lower()), magnitude(restoring), growth_rate)
 
 
-def settle(
+def follow_bounces(
     problem: Problem, instant: Instant, height: Ball, speed: Ball
-) -> "Instant | Lifted | None":
+) -> "Instant | UpliftState | None":
     """Follow bounces from bounds of rotation and rate until all members rest, or all have lifted.
 
     Returns the instant after which all are at rest, or their state after lifting, or None if
     neither is proved.
     """
-    ground = problem.ground(instant.number).at(instant.after)
-    pulls = [Pull.of(problem, sign, height, ground) for sign in (1, -1)]
-    if not all(pull.least > 0 for pull in pulls):
+    ground = problem.ground(instant.interval).at(instant.elapsed)
+    both_sides = [RestoringAcceleration.of(problem, sign, height, ground) for sign in (1, -1)]
+    if not all(restoring.least > 0 for restoring in both_sides):
         return None
-    energetic = (speed * speed + 2 * height * hull([pull.most for pull in pulls])).sqrt()
-    bounds = _Bounds(problem, upper(height), upper(energetic))
-    for _ in range(_WINDOWS):
-        if instant.number >= problem.count:
+    energetic = (
+        speed * speed + 2 * height * hull([restoring.most for restoring in both_sides])
+    ).sqrt()
+    bounds = _Bounds(problem, magnitude(height), magnitude(energetic))
+    for _ in range(_MAX_WINDOWS):
+        if instant.interval >= problem.count:
             return None
-        left = problem.length(instant.number) - instant.after
-        ground = problem.ground(instant.number).at(instant.after)
-        lift = lifts_in(problem, instant.number, ground, left)
+        left = problem.length(instant.interval) - instant.elapsed
+        ground = problem.ground(instant.interval).at(instant.elapsed)
+        lift = find_uplift(problem, instant.interval, ground, left)
         longest = left if lift is None else ZERO.max(lift[0].lower())
         window = longest
-        for _ in range(_GUESSES):
-            found = bounds.over(ground.at(UNIT * window), window)
+        for _ in range(_MAX_GUESSES):
+            found = bounds.after_window(ground.at(UNIT * window), window)
             if found is not None:
                 break
             window = (window / 2).mid()
@@ -104,13 +108,13 @@ def settle(
             return instant.later(problem, found)
         whole = window is longest
         if whole and lift is None:
-            bounds = bounds.jumped(instant.number)
-            instant = Instant(instant.number + 1, ZERO)
+            bounds = bounds.after_jump(instant.interval)
+            instant = Instant(instant.interval + 1, ZERO)
         else:
             instant = instant.later(problem, window)
         if whole and lift is not None:
-            waited = lift[0].upper() - lift[0].lower()
-            return _lifted(problem, instant, lift[1], ball(waited), bounds)
+            delay = lift[0].upper() - lift[0].lower()
+            return _uplift_state(problem, instant, lift[1], ball(delay), bounds)
     return None
 
 
@@ -120,102 +124,115 @@ class _Bounds:
 
     problem: Problem
     height: Ball  # bound of the rotation [rad]
-    left: Ball  # bound of the angular velocity that is still to be lost [s^-1]
+    remaining_speed: Ball  # bound of the angular velocity that is still to be lost [s^-1]
 
     @property
     def restitution(self) -> Ball:
         """The greater coefficient of restitution of both corners."""
-        return upper(self.problem.right.restitution.union(self.problem.left.restitution))
+        return magnitude(self.problem.right.restitution.union(self.problem.left.restitution))
 
     @property
     def speed(self) -> Ball:
         """Bound of the speed now, and of the speed at the next impact."""
-        return upper(self.left / self.restitution)
+        return magnitude(self.remaining_speed / self.restitution)
 
-    def jumped(self, number: int) -> "_Bounds":
+    def after_jump(self, interval: int) -> "_Bounds":
         """Return the bounds after an interval, at whose end the ground may jump."""
-        if self.problem.joins(number):
+        if self.problem.is_continuous_after(interval):
             return self
-        before = self.problem.ground(number).at(self.problem.length(number))
-        after = self.problem.ground(number + 1)
+        before = self.problem.ground(interval).at(self.problem.length(interval))
+        after = self.problem.ground(interval + 1)
         change = GroundPiece(
-            [after.along[0] - before.along[0]], [after.weight[0] - before.weight[0]]
+            [after.along[0] - before.along[0]], [after.normal[0] - before.normal[0]]
         )
         corners = self.problem.right, self.problem.left
-        most = hull([strongest(corner, change) for corner in corners])
-        return replace(self, left=upper(self.left + (2 * self.height * upper(most)).sqrt()))
+        most = hull([acceleration_bound(corner, change) for corner in corners])
+        return replace(
+            self,
+            remaining_speed=magnitude(
+                self.remaining_speed + (2 * self.height * magnitude(most)).sqrt()
+            ),
+        )
 
-    def over(self, ground: GroundPiece, window: Ball) -> "_Bounds | Ball | None":
+    def after_window(self, ground: GroundPiece, window: Ball) -> "_Bounds | Ball | None":
         """Follow the members over a window, :eq:`eq-proof-bounces`.
 
         Returns the bounds at its end, or the time after which all are at rest [s], or None if
         the window is too long.
         """
         e = self.restitution
-        reach = upper(self.height + 2 * self.speed * window)
-        pulls = [Pull.of(self.problem, sign, reach, ground) for sign in (1, -1)]
+        reach = magnitude(self.height + 2 * self.speed * window)
+        both_sides = [
+            RestoringAcceleration.of(self.problem, sign, reach, ground) for sign in (1, -1)
+        ]
         limits = self.problem.right.limit, self.problem.left.limit
         if not (e < 1 and all(reach < limit for limit in limits)):
             return None
-        growth, push = ZERO, ZERO
-        for pull in pulls:
-            if pull.least > 0:
-                growth = upper(growth.union(pull.faster / pull.least))
-            elif pull.faster > 0:
+        growth, uplift_bound = ZERO, ZERO
+        for restoring in both_sides:
+            if restoring.least > 0:
+                growth = magnitude(growth.union(restoring.growth_rate / restoring.least))
+            elif restoring.growth_rate > 0:
                 return None
             else:  # the window ends as the ground begins to lift the block
-                push = upper(push.union(-pull.least))
-        root = upper((growth * window / (2 * e)).exp())
-        left = upper((self.left + (2 * push * reach).sqrt() + push * window) * root)
-        if not left <= 2 * self.left:  # else they may go beyond `reach`
+                uplift_bound = magnitude(uplift_bound.union(-restoring.least))
+        root = magnitude((growth * window / (2 * e)).exp())
+        left = magnitude(
+            (self.remaining_speed + (2 * uplift_bound * reach).sqrt() + uplift_bound * window)
+            * root
+        )
+        if not left <= 2 * self.remaining_speed:  # else they may go beyond `reach`
             return None
-        least = ball(min((pull.least.lower() for pull in pulls), key=float))
+        least = ball(min((restoring.least.lower() for restoring in both_sides), key=float))
         if least > 0:
             lost = (1 - e) * least / 2
-            rest = upper(left / lost)
+            rest = magnitude(left / lost)
             if rest < window:
                 return rest
-            left = upper(left - lost * window)
-            low = upper((left / e) ** 2 / (2 * least))
+            left = magnitude(left - lost * window)
+            low = magnitude((left / e) ** 2 / (2 * least))
             reach = low if low < reach else reach
         return _Bounds(self.problem, reach, left)
 
 
-def _lifted(
-    problem: Problem, instant: Instant, sign: int, waited: Ball, bounds: _Bounds
-) -> Lifted | None:
+def _uplift_state(
+    problem: Problem, instant: Instant, sign: int, delay: Ball, bounds: _Bounds
+) -> UpliftState | None:
     """Follow all members from the first time at which the ground lifts any of them, to one side.
 
-    `bounds` hold at that time, `waited` is how much later the last one lifts; :eq:`eq-proof-swept`.
+    `bounds` hold at that time, `delay` is how much later the last one lifts; :eq:`eq-proof-swept`.
     """
     corner, speed = problem.corner(sign), bounds.speed
-    span = 2 * waited + speed / problem.frequency
-    for _ in range(_GUESSES):
-        ground = problem.ground_over(instant.number, instant.after, span)
+    span = 2 * delay + speed / problem.frequency
+    for _ in range(_MAX_GUESSES):
+        ground = problem.ground_over(instant.interval, instant.elapsed, span)
         lifting = sign * acceleration(ZERO, corner, ground.rates())
         if not lifting > 0:
             return None
-        slowest, fastest = ball(lifting.lower()), upper(lifting)
-        reach = upper(bounds.height + (3 * speed + fastest * span * span) * span)
-        back = Pull.of(problem, -sign, reach, ground)
+        slowest, fastest = ball(lifting.lower()), magnitude(lifting)
+        reach = magnitude(bounds.height + (3 * speed + fastest * span * span) * span)
+        back = RestoringAcceleration.of(problem, -sign, reach, ground)
         stiff = stiffness(UNIT * reach * sign, corner, ground)
         limits = problem.right.limit, problem.left.limit
         if not (back.least > 0 and stiff > 0 and all(reach < limit for limit in limits)):
             return None
-        root = upper((back.faster / back.least * span / 2).exp())
-        down = upper((speed + fastest * waited * waited) * root)
-        last = upper((2 * down / slowest).sqrt() + 2 * down * root / back.least)
-        up = upper(speed * root + (fastest * span / 2 + upper(stiff) * reach) * span)
+        root = magnitude((back.growth_rate / back.least * span / 2).exp())
+        down = magnitude((speed + fastest * delay * delay) * root)
+        last = magnitude((2 * down / slowest).sqrt() + 2 * down * root / back.least)
+        up = magnitude(speed * root + (fastest * span / 2 + magnitude(stiff) * reach) * span)
         if not (root < 2 and bounds.height + up * span < reach):
             return None
-        needed = waited + _LIFTING * last
+        needed = delay + _UPLIFT_TIME * last
         if needed < span:
             end = instant.later(problem, span)
-            if not all(problem.joins(number) for number in range(instant.number, end.number)):
+            if not all(
+                problem.is_continuous_after(interval)
+                for interval in range(instant.interval, end.interval)
+            ):
                 return None
-            after = span - waited
-            slow = slowest * (after * after - last * last) / 2
+            elapsed = span - delay
+            slow = slowest * (elapsed * elapsed - last * last) / 2
             rates = ball(slow.lower()).union(up)
-            return Lifted(end, sign, [sign * UNIT * reach, sign * rates])
+            return UpliftState(end, sign, [sign * UNIT * reach, sign * rates])
         span = (needed * 5 / 4).mid()
     return None

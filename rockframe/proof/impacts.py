@@ -10,11 +10,11 @@ from rockframe.proof.balls import (
     Matrix,
     Row,
     ball,
-    times,
-    total,
-    upper,
+    dot,
+    magnitude,
+    matrix_product,
 )
-from rockframe.proof.flow import nearly_still, sweep
+from rockframe.proof.flow import bound_motion, short_flow
 from rockframe.proof.problem import (
     CornerNumbers,
     Deviations,
@@ -24,7 +24,7 @@ from rockframe.proof.problem import (
 from rockframe.proof.states import SetOfStates
 
 
-class Struck(NamedTuple):
+class ImpactEnclosure(NamedTuple):
     """A set after its impacts, as if all members had struck now."""
 
     states: SetOfStates
@@ -36,18 +36,18 @@ class Struck(NamedTuple):
 class _Reset(NamedTuple):
     state: Row  # after impact
     matrix: Matrix  # derivative by the state before
-    free: Matrix  # derivative by the uncertain inputs
+    by_inputs: Matrix  # derivative by the uncertain inputs
     at: Ball  # times of impact, from now [s]
-    coming: Ball  # rates before the impact
+    approach_rate: Ball  # rates before the impact
 
 
-def struck(
+def enclose_impact(
     states: SetOfStates,
     old: CornerNumbers,
     new: CornerNumbers,
     before: GroundPiece,
     after: GroundPiece,
-) -> Struck:
+) -> ImpactEnclosure:
     """Enclose a set after its impacts.
 
     Each member has its impact at its own time near now, which a step of Newton's method encloses,
@@ -57,11 +57,13 @@ def struck(
     """
     centre = _reset(states.centre, old.middle(), new.middle(), before.middle, after.middle)
     whole = _reset(states.box(), old, new, before, after)
-    image = states.image(centre.state, whole.matrix, whole.free if states.uncertain else [[], []])
+    image = states.image(
+        centre.state, whole.matrix, whole.by_inputs if states.uncertain else [[], []]
+    )
     rotation, rate = image.box()
-    coming = whole.coming
-    height = upper(rotation.union(coming * upper(whole.at)))
-    return Struck(image, whole.at, height, upper(rate.union(coming)))
+    approach_rate = whole.approach_rate
+    height = magnitude(rotation.union(approach_rate * magnitude(whole.at)))
+    return ImpactEnclosure(image, whole.at, height, magnitude(rate.union(approach_rate)))
 
 
 def _reset(
@@ -72,36 +74,44 @@ def _reset(
     if not rate * old.sign < 0:
         message = "an impact that hardly touches the ground"
         raise Undecided(message)
-    reach = 2 * upper(rotation) / ball(rate.abs_lower()) + ball(2) ** -400
-    window = upper(reach) * WITHIN_ONE
+    reach = 2 * magnitude(rotation) / ball(rate.abs_lower()) + ball(2) ** -400
+    window = magnitude(reach) * WITHIN_ONE
     one, other = before.at(window), after.at(window)
-    ground = one.united(other)
-    there = sweep(state, old, ground, window)
-    at = -rotation / there.rate
-    if not (there.rate * old.sign < 0 and window.contains(at)):
+    ground = one.union(other)
+    before_impact = bound_motion(state, old, ground, window)
+    at = -rotation / before_impact.rate
+    if not (before_impact.rate * old.sign < 0 and window.contains(at)):
         message = "an impact whose instant is not enclosed"
         raise Undecided(message)
-    arriving = rate + there.acceleration * UNIT * at
+    arriving = rate + before_impact.acceleration * UNIT * at
     leaving = new.restitution * arriving
-    back = sweep([ZERO, leaving], new, ground, -UNIT * at)
-    if not back.rate * old.sign < 0:
+    after_impact = bound_motion([ZERO, leaving], new, ground, -UNIT * at)
+    if not after_impact.rate * old.sign < 0:
         message = "a rebound without speed"
         raise Undecided(message)
-    end = [-leaving * at + back.acceleration * at * at / 2, leaving - back.acceleration * at]
-    jump = (back.acceleration - new.restitution * there.acceleration) / arriving
+    end = [
+        -leaving * at + after_impact.acceleration * at * at / 2,
+        leaving - after_impact.acceleration * at,
+    ]
+    jump = (after_impact.acceleration - new.restitution * before_impact.acceleration) / arriving
     reset = [[new.restitution, ZERO], [jump, new.restitution]]
-    come, go = nearly_still(there, old, ground, at), nearly_still(back, new, ground, at)
-    turned = times(go.matrix, reset)
-    free = [
+    flow_before, flow_after = (
+        short_flow(before_impact, old, ground, at),
+        short_flow(after_impact, new, ground, at),
+    )
+    after_reset = matrix_product(flow_after.matrix, reset)
+    by_inputs = [
         list(
             Deviations.of(
                 new.sign,
                 restitution=back_row[1] * arriving,
-                angle=go.angle,
-                other_angle=total(row, [come.angle] * 2),
-                scale=total(row, [come.scale] * 2) + go.scale,
+                angle=flow_after.angle,
+                other_angle=dot(row, [flow_before.angle] * 2),
+                scale=dot(row, [flow_before.scale] * 2) + flow_after.scale,
             )
         )
-        for back_row, row in zip(go.matrix, turned, strict=True)
+        for back_row, row in zip(flow_after.matrix, after_reset, strict=True)
     ]
-    return _Reset(end, times(turned, come.matrix), free, at, there.rate)
+    return _Reset(
+        end, matrix_product(after_reset, flow_before.matrix), by_inputs, at, before_impact.rate
+    )

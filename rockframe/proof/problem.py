@@ -5,8 +5,8 @@ from itertools import zip_longest
 from typing import NamedTuple
 
 from rockframe.dynamics.rigid_ground import BlockOnRigidGround, RockingCorner
-from rockframe.proof.balls import ONE, ZERO, Ball, Row, ball, moved, upper
-from rockframe.signals.motion import Motion, Slope
+from rockframe.proof.balls import ONE, ZERO, Ball, Row, ball, magnitude, taylor_shift
+from rockframe.signals.motion import Incline, Motion
 from rockframe.system.bodies import OverturningAngles
 
 
@@ -49,7 +49,7 @@ class Deviations(NamedTuple):
         """Whether all of them are single numbers."""
         return all(one.is_exact() for one in self)
 
-    def spread(self) -> "Deviations":
+    def centred(self) -> "Deviations":
         """Return the deviations less their middles."""
         return self._make(one - one.mid() for one in self)
 
@@ -99,30 +99,30 @@ class GroundPiece(NamedTuple):
     """Ground acceleration along the base, and normal to it plus gravity: polynomials of time."""
 
     along: Row
-    weight: Row
+    normal: Row
     spread: "GroundSpread | None" = None  # None where the scale is a single number
 
     def at(self, time: Ball) -> "GroundPiece":
         """Return the polynomials about another time, or about all times of a ball [s]."""
         spread = None if self.spread is None else self.spread.at(time)
-        return GroundPiece(moved(self.along, time), moved(self.weight, time), spread)
+        return GroundPiece(taylor_shift(self.along, time), taylor_shift(self.normal, time), spread)
 
     def rates(self) -> "GroundPiece":
         """Return the rates of both accelerations at the origin of the polynomials."""
-        along, weight = ([*row[1:2], ZERO][:1] for row in (self.along, self.weight))
-        return GroundPiece(along, weight)
+        along, normal = ([*row[1:2], ZERO][:1] for row in (self.along, self.normal))
+        return GroundPiece(along, normal)
 
-    def united(self, other: "GroundPiece") -> "GroundPiece":
+    def union(self, other: "GroundPiece") -> "GroundPiece":
         """Enclose the coefficients of both this and another piece."""
         spread = None
         if self.spread is not None and other.spread is not None:
-            middle = self.spread.middle.united(other.spread.middle)
-            spread = GroundSpread(middle, self.spread.by_scale.united(other.spread.by_scale))
-        rows = ((self.along, other.along), (self.weight, other.weight))
-        along, weight = (
+            middle = self.spread.middle.union(other.spread.middle)
+            spread = GroundSpread(middle, self.spread.by_scale.union(other.spread.by_scale))
+        rows = ((self.along, other.along), (self.normal, other.normal))
+        along, normal = (
             [a.union(b) for a, b in zip_longest(*pair, fillvalue=ZERO)] for pair in rows
         )
-        return GroundPiece(along, weight, spread)
+        return GroundPiece(along, normal, spread)
 
     @property
     def middle(self) -> "GroundPiece":
@@ -142,12 +142,12 @@ class GroundSpread(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Shaking:
+class PiecewiseGround:
     """A motion of the ground, a polynomial between two samples, and still ground after it."""
 
     motion: Motion
     scale: Ball
-    slope: Slope
+    slope: Incline
     still_step: float  # length of the intervals of still ground after the motion [s]
     _known: dict[int, GroundPiece] = field(default_factory=dict[int, GroundPiece], kw_only=True)
 
@@ -156,52 +156,52 @@ class Shaking:
         """Number of intervals of the motion."""
         return self.motion.horizontal.samples.size - 1
 
-    def length(self, number: int) -> Ball:
+    def length(self, interval: int) -> Ball:
         """Return the length of an interval [s]."""
-        return ball(self.motion.time_step if number < self.count else self.still_step)
+        return ball(self.motion.time_step if interval < self.count else self.still_step)
 
-    def time(self, number: int, after: Ball) -> Ball:
+    def time(self, interval: int, elapsed: Ball) -> Ball:
         """Return the time since the first sample [s]."""
-        moving, still = min(number, self.count), max(0, number - self.count)
-        return moving * ball(self.motion.time_step) + still * ball(self.still_step) + after
+        moving, still = min(interval, self.count), max(0, interval - self.count)
+        return moving * ball(self.motion.time_step) + still * ball(self.still_step) + elapsed
 
-    def joins(self, number: int) -> bool:
+    def is_continuous_after(self, interval: int) -> bool:
         """Whether the ground acceleration is proved continuous at the end of an interval."""
         components = [one for one in (self.motion.horizontal, self.motion.vertical) if one]
         lines = all(one.polynomials is None for one in components)
-        ends = number == self.count - 1 and any(one.samples[-1] != 0.0 for one in components)
-        return number >= self.count or (lines and not ends)
+        ends = interval == self.count - 1 and any(one.samples[-1] != 0.0 for one in components)
+        return interval >= self.count or (lines and not ends)
 
-    def ground(self, number: int) -> GroundPiece:
+    def ground(self, interval: int) -> GroundPiece:
         """Return ground in an interval, by the time since its start, :eq:`eq-incline-ground`."""
-        number = min(number, self.count)
-        if number not in self._known:
-            self._known[number] = self._ground(number)
-        return self._known[number]
+        interval = min(interval, self.count)
+        if interval not in self._known:
+            self._known[interval] = self._ground(interval)
+        return self._known[interval]
 
-    def _ground(self, number: int) -> GroundPiece:
+    def _ground(self, interval: int) -> GroundPiece:
         gravity = ball(self.slope.gravity)
-        ground = _ground(self, number, self.scale, gravity)
+        ground = _ground(self, interval, self.scale, gravity)
         if self.scale.is_exact():
             return ground
-        middle = _ground(self, number, self.scale.mid(), gravity)
-        return ground._replace(spread=GroundSpread(middle, _ground(self, number, ONE, ZERO)))
+        middle = _ground(self, interval, self.scale.mid(), gravity)
+        return ground._replace(spread=GroundSpread(middle, _ground(self, interval, ONE, ZERO)))
 
-    def ground_over(self, number: int, after: Ball, span: Ball) -> GroundPiece:
+    def ground_over(self, interval: int, elapsed: Ball, span: Ball) -> GroundPiece:
         """Enclose the ground at all times of a span that starts in an interval [s]."""
         found: GroundPiece | None = None
         while True:
-            left = self.length(number) - after
+            left = self.length(interval) - elapsed
             inside = ZERO.union(span) if span < left else ZERO.union(left)
-            here = self.ground(number).at(after + inside)
-            found = here if found is None else found.united(here)
+            here = self.ground(interval).at(elapsed + inside)
+            found = here if found is None else found.union(here)
             if span < left:
                 return found
-            span, number, after = span - left, number + 1, ZERO
+            span, interval, elapsed = span - left, interval + 1, ZERO
 
 
 @dataclass(frozen=True)
-class Problem(Shaking):
+class Problem(PiecewiseGround):
     """A block under a motion."""
 
     right: CornerNumbers
@@ -213,7 +213,7 @@ class Problem(Shaking):
         cls,
         block: BlockOnRigidGround,
         motion: Motion,
-        slope: Slope,
+        slope: Incline,
         limits: OverturningAngles,
         scale: float,
         inputs: Deviations,
@@ -236,47 +236,47 @@ class Problem(Shaking):
         return self.right if sign > 0 else self.left
 
 
-def _ground(problem: Shaking, number: int, scale: Ball, gravity: Ball) -> GroundPiece:
+def _ground(problem: PiecewiseGround, interval: int, scale: Ball, gravity: Ball) -> GroundPiece:
     inclination = ball(problem.slope.inclination)
-    across, up = (_component(problem, number, scale, vertical=one) for one in (False, True))
+    across, up = (_component(problem, interval, scale, vertical=one) for one in (False, True))
     if problem.slope.level:
         return GroundPiece(across, [gravity + up[0], *up[1:]])
     sine, cosine = inclination.sin_cos()
     pairs = list(zip_longest(across, up, fillvalue=ZERO))
     along = [x * cosine + y * sine for x, y in pairs]
-    weight = [y * cosine - x * sine for x, y in pairs]
+    normal = [y * cosine - x * sine for x, y in pairs]
     return GroundPiece(
-        [along[0] + gravity * sine, *along[1:]], [weight[0] + gravity * cosine, *weight[1:]]
+        [along[0] + gravity * sine, *along[1:]], [normal[0] + gravity * cosine, *normal[1:]]
     )
 
 
-def _component(problem: Shaking, number: int, scale: Ball, *, vertical: bool) -> Row:
+def _component(problem: PiecewiseGround, interval: int, scale: Ball, *, vertical: bool) -> Row:
     """Return a component of the motion as a polynomial of time."""
     motion = problem.motion
     signal = motion.vertical if vertical else motion.horizontal
-    if signal is None or number >= problem.count:
+    if signal is None or interval >= problem.count:
         return [ZERO]
     if signal.polynomials is None:
-        first, last = (ball(float(signal.samples[number + each])) for each in (0, 1))
+        first, last = (ball(float(signal.samples[interval + each])) for each in (0, 1))
         row = [first, last - first]
     else:
-        row = [ball(float(each)) for each in signal.polynomials[number]]
-    step = problem.length(number)
+        row = [ball(float(each)) for each in signal.polynomials[interval]]
+    step = problem.length(interval)
     return [scale * each / step**power for power, each in enumerate(row)]
 
 
 def acceleration(rotation: Ball, corner: CornerNumbers, ground: GroundPiece) -> Ball:
     """Return the angular acceleration, with the ground at the origin of its polynomials."""
     sine, cosine = (corner.angle * corner.sign - rotation).sin_cos()
-    return -corner.ratio * (ground.weight[0] * sine + ground.along[0] * cosine)
+    return -corner.ratio * (ground.normal[0] * sine + ground.along[0] * cosine)
 
 
 def stiffness(rotation: Ball, corner: CornerNumbers, ground: GroundPiece) -> Ball:
     """Return the derivative of the angular acceleration with respect to the rotation."""
     sine, cosine = (corner.angle * corner.sign - rotation).sin_cos()
-    return corner.ratio * (ground.weight[0] * cosine - ground.along[0] * sine)
+    return corner.ratio * (ground.normal[0] * cosine - ground.along[0] * sine)
 
 
-def strongest(corner: CornerNumbers, ground: GroundPiece) -> Ball:
+def acceleration_bound(corner: CornerNumbers, ground: GroundPiece) -> Ball:
     """Bound the angular acceleration at any rotation and its derivative, :eq:`eq-proof-field`."""
-    return upper(corner.ratio * (abs(ground.weight[0]) + abs(ground.along[0])))
+    return magnitude(corner.ratio * (abs(ground.normal[0]) + abs(ground.along[0])))

@@ -11,8 +11,8 @@ from rockframe.proof.problem import Deviations, Undecided
 from rockframe.proof.verdict import OVERTURNS, SAFE, UNDECIDED, Proof, Tolerances, outwards
 
 if TYPE_CHECKING:
-    from rockframe.proof.course import Course
-    from rockframe.proof.pads.way import PadWay
+    from rockframe.proof.pads.prover import PadProver
+    from rockframe.proof.rocking import RockingProver
 
 PRECISIONS: Final = (106, 212, 424)
 """Bits of the balls: the next number is tried where nothing is decided and more bits may help."""
@@ -23,7 +23,7 @@ Attempt: TypeAlias = Callable[[Deviations], tuple[Proof, list[float]]]
 """A function that tries a proof for a set of inputs; also gives the influence of each input."""
 
 
-def proved(attempt: Attempt, within: Tolerances) -> Proof:
+def prove_for_set(attempt: Attempt, within: Tolerances) -> Proof:
     """Prove a verdict: for exact inputs with more and more bits, for a set in more and more parts.
 
     A part without a proof is halved along the input that changes its states most; the largest part
@@ -50,37 +50,37 @@ def proved(attempt: Attempt, within: Tolerances) -> Proof:
                 else:
                     heappush(waiting, part)
     return replace(
-        _of_parts(known, sorted(waiting)),
+        _joined_proof(known, sorted(waiting)),
         restitution_tolerance=within.restitution,
         scale_tolerance=within.scale,
         angle_tolerance=within.angle,
     )
 
 
-def concluded(course: "Course | PadWay", scale: float, law: str) -> Proof:
+def prove_verdict(prover: "RockingProver | PadProver", scale: float, law: str) -> Proof:
     """Follow a set of states until it is decided whether it overturns, and give what is proved."""
     verdict, reason, earliest, latest = UNDECIDED, "", math.nan, math.nan
     try:
-        verdict = OVERTURNS if course.overturns() else SAFE
+        verdict = OVERTURNS if prover.overturns() else SAFE
     except Undecided as why:
-        reason, earliest = str(why), float(course.time)
+        reason, earliest = str(why), float(prover.time)
         latest = earliest
-    if verdict == OVERTURNS and course.beyond is not None:
-        low, high = course.beyond
+    if verdict == OVERTURNS and prover.overturning_time is not None:
+        low, high = prover.overturning_time
         earliest, latest = outwards(low.lower(), -math.inf), outwards(high.upper(), math.inf)
     return Proof(
-        verdict, reason, earliest, latest, course.widest, course.impacts, bits(), scale, law
+        verdict, reason, earliest, latest, prover.largest_radius, prover.impacts, bits(), scale, law
     )
 
 
-def _ends_alike(before: Proof, after: Proof) -> bool:
+def _ends_alike(before: Proof, elapsed: Proof) -> bool:
     """Whether an undecided proof ends where it did with half the bits, for the same reason.
 
     Then the reason lies in the motion, such as a contact that no enclosure can follow, and not in
     the width of the balls.
     """
-    same_time = math.isclose(before.latest, after.latest, rel_tol=_SAME_TIME)
-    return before.reason == after.reason and same_time
+    same_time = math.isclose(before.latest, elapsed.latest, rel_tol=_SAME_TIME)
+    return before.reason == elapsed.reason and same_time
 
 
 class _Part(NamedTuple):
@@ -93,7 +93,7 @@ class _Part(NamedTuple):
     influences: list[float]
 
 
-def _of_parts(known: list[_Part], rest: list[_Part]) -> Proof:
+def _joined_proof(known: list[_Part], rest: list[_Part]) -> Proof:
     """Return the proof for a set from the proofs of its parts."""
     every = [part.proof for part in (*known, *rest)]
     shares = {

@@ -141,8 +141,8 @@ class Proof:
         between = f"this record{scaled}, joined by straight lines,"
         if self.analytic:
             between = f"this motion{scaled}, the polynomials that runs take,"
-        weight = "" if math.isnan(self.gravity) else f"gravity {self.gravity!r} m s^-2"
-        scene = [words for words in (weight, self.start) if words]
+        normal = "" if math.isnan(self.gravity) else f"gravity {self.gravity!r} m s^-2"
+        scene = [words for words in (normal, self.start) if words]
         listed = ", ".join(["the numbers of this block", *scene])
         of = f"for {listed} and {between} and for {self.law}"
         within = {

@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from rockframe.compiled import Integers, Matrix, Vector, entry_at_once, inlined
+from rockframe.compiled import Integers, Matrix, Vector, background_entry, inlined
 from rockframe.results.outcome import Generic
 from rockframe.signals.arrays import Array
 from rockframe.solve.trajectory import Steps
@@ -132,7 +132,7 @@ def slope_in(shown: Matrix, row: int, i: int, per_length: Vector) -> float:
     return (shown[row, i] - shown[row, i - 1]) * per_length[i]
 
 
-@entry_at_once
+@background_entry
 def promise_of_steps(shown: Matrix, length: Vector, per_length: Vector, out: Matrix) -> None:
     """Fill a bound of each row in each step, from values at its ends and changes of slope there.
 

@@ -26,7 +26,7 @@ from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.bodies import OF_EACH_BODY, OF_EACH_LINK
 from rockframe.results.variables.runs import Direction
 from rockframe.signals.arrays import Array
-from rockframe.signals.motion import Slope
+from rockframe.signals.motion import Incline
 from rockframe.solve.observe import energies_of, memory_at_outputs
 from rockframe.solve.trajectory import Summary, Trajectory
 from rockframe.solve.workspace import Status
@@ -52,7 +52,7 @@ Values = Mapping[str, "Generic | float | int | bool"]
 def peak_share(run: Summary, angles: OverturningAngles) -> float:
     """Return the largest ratio of a peak rotation to the overturning angle of its side and body."""
     own = largest(run.peak_right / angles.right, run.peak_left / angles.left)
-    return largest(own, run.other_share)
+    return largest(own, run.other_rotation_ratio)
 
 
 def columns_of(name: str, count: int) -> tuple[str, ...]:
@@ -144,7 +144,7 @@ def cap_histories(
 
 
 def energy_histories(
-    model: ContactModel, run: Trajectory, displacement: Array, slope: Slope
+    model: ContactModel, run: Trajectory, displacement: Array, slope: Incline
 ) -> dict[str, Generic]:
     """Return the energies at the output times by their names in the schema [J].
 
@@ -221,7 +221,7 @@ def scalars(
     elif len(every) > 1:
         sides["peak_body_slip"] = np.array([one.peak for one in every])
     return sides | {
-        "overturned": run.passed,
+        "overturned": run.reached_limit,
         "overturning_time": run.overturning_time,
         "overturning_direction": run.overturning_direction,
         "peak_rotation": run.peak_rotation + 0.0,
@@ -279,21 +279,21 @@ def verdict(run: Summary, setting: Setting, model: ContactModel) -> str:
     peak = f"peak rotation {rotation:.4g} rad, {100.0 * share:.3g} % of the overturning angle{of}"
     if setting.leans and rotation > 0.0:
         peak += f" to the {side.name.lower()}"
-    if run.other_share > (1.0 + SAME) * share:
-        peak += f", a lower body {100.0 * run.other_share:.3g} % of its own"
-    if run.passed:
+    if run.other_rotation_ratio > (1.0 + SAME) * share:
+        peak += f", a lower body {100.0 * run.other_rotation_ratio:.3g} % of its own"
+    if run.reached_limit:
         text = f"{_overturned(run, setting, model)}, after {impacts}"
     elif not run.status.finished:
         text = f"Not finished: {_cut_off(run)}. Until then no overturning: {peak}; {impacts}"
     else:
         text = f"Did not overturn: {peak}; {impacts}"
-    if not run.passed and math.isnan(run.first_uplift_time):
+    if not run.reached_limit and math.isnan(run.first_uplift_time):
         text += ", no uplift from the pads" if setting.stacked else f", no uplift{of}"
     if run.flight_time > 0.0:
         text += f", {run.flight_time:.3g} s in flight"
     if broken:
         text += f"; {', '.join([*broken[:-2], ' and '.join(broken[-2:])])} broke"
-    if run.passed and not run.status.finished:
+    if run.reached_limit and not run.status.finished:
         text += f". Not finished: {_cut_off(run)}"
     slid = [_slid(slips) for slips in setting.slips_of(run.ending)]
     if len(slid) > 1:
@@ -348,7 +348,7 @@ OF_WHAT_IT_STANDS_ON = ("cap_acceleration",)
 """Accelerations along the base in which a model includes the component of gravity."""
 
 
-def slope_attributes(slope: Slope) -> dict[str, str]:
+def slope_attributes(slope: Incline) -> dict[str, str]:
     """Return the attributes of a result that describe its axes."""
     axes = "horizontal and vertical"
     if not slope.level:
@@ -361,15 +361,15 @@ def slope_attributes(slope: Slope) -> dict[str, str]:
     return {"inclination": f"{slope.inclination!r} {ANGLE.unit}", "axes": axes}
 
 
-def ground_on_slope(ground: Array, slope: Slope) -> tuple[Array, Array]:
+def ground_on_slope(ground: Array, slope: Incline) -> tuple[Array, Array]:
     """Return the ground's acceleration along and normal to the base, without and with gravity."""
     if slope.level:
         return ground, ground
-    moved = np.column_stack(slope.turned(ground[:, 0], ground[:, 1]))
+    moved = np.column_stack(slope.rotated(ground[:, 0], ground[:, 1]))
     return moved, moved + np.array([slope.along_gravity, 0.0])
 
 
-def without_gravity(shown: Mapping[str, Generic], slope: Slope) -> dict[str, Generic]:
+def without_gravity(shown: Mapping[str, Generic], slope: Incline) -> dict[str, Generic]:
     """Subtract gravity from the absolute accelerations among a model's columns."""
     return {
         name: values - slope.along_gravity if name in OF_WHAT_IT_STANDS_ON else values

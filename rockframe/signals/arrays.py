@@ -13,12 +13,12 @@ OWNER: Final = "GroundMotion"
 """Name of the class that messages speak of."""
 
 
-def frozen(values: object, name: str, shape: tuple[int, ...] | None = None) -> Array:
+def readonly_array(values: object, name: str, shape: tuple[int, ...] | None = None) -> Array:
     """Copy values to an array that is read-only and contiguous, or refuse them."""
     array = np.array(values, dtype=np.float64, order="C", copy=True)
     if (array.ndim != 1) if shape is None else (array.shape != shape):
-        wanted = "one dimension" if shape is None else f"the shape {shape}"
-        msg = f"{OWNER}: {name} needs {wanted}, got the shape {array.shape}"
+        expected = "one dimension" if shape is None else f"the shape {shape}"
+        msg = f"{OWNER}: {name} needs {expected}, got the shape {array.shape}"
         raise ComponentError(msg)
     flat = array.reshape(-1)
     wrong = np.flatnonzero(~np.isfinite(flat))

@@ -10,16 +10,16 @@ import numpy as np
 from scipy import signal
 
 from rockframe.signals.arrays import Array
-from rockframe.signals.motion import divided, slopes_of
+from rockframe.signals.motion import derivatives_of, subdivided
 from rockframe.signals.oscillator import (
     QUANTITIES,
     STEPS_PER_PERIOD,
-    bound_of,
+    extremum_bound,
     fill_step,
-    turning_value,
+    step_extremum,
 )
 
-_STEPS_AT_ONCE: Final = 250_000
+_STEPS_IN_PART: Final = 250_000
 _STEPS_IN_BLOCK: Final = 4096
 
 
@@ -32,7 +32,7 @@ class _Steps:
         # at starts and ends of the steps, shape (2, n): the ground may jump between them
         self.ground, self.slopes = (
             length**2 * np.array([one[:, 0], one.sum(axis=1)])
-            for one in (pieces, slopes_of(pieces))
+            for one in (pieces, derivatives_of(pieces))
         )
 
 
@@ -43,15 +43,15 @@ def filter_all(pieces: Array, time_step: float, damping: float, periods: Array) 
     parts = np.ceil(STEPS_PER_PERIOD * time_step / periods).astype(int)
     for count in np.unique(parts).tolist():
         oscillators = np.flatnonzero(parts == count).tolist()
-        rows = max(1, _STEPS_AT_ONCE // count)
+        rows = max(1, _STEPS_IN_PART // count)
         for first in range(0, len(pieces), rows):
-            steps = _Steps(time_step / count, divided(pieces[first : first + rows], count))
+            steps = _Steps(time_step / count, subdivided(pieces[first : first + rows], count))
             for k in oscillators:
-                _follow(steps, float(periods[k]), damping, state[k], found[k])
+                _update_peaks(steps, float(periods[k]), damping, state[k], found[k])
     still = np.zeros((STEPS_PER_PERIOD, pieces.shape[1]))
-    for k in np.flatnonzero(_may_swing_higher(periods, damping, state, found)).tolist():
+    for k in np.flatnonzero(_may_exceed_peaks(periods, damping, state, found)).tolist():
         rest = _Steps(float(periods[k]) / STEPS_PER_PERIOD, still)
-        _follow(rest, float(periods[k]), damping, state[k], found[k])
+        _update_peaks(rest, float(periods[k]), damping, state[k], found[k])
     return found
 
 
@@ -68,44 +68,44 @@ def filter_pairs(
     for k, period in enumerate(periods.tolist()):
         state = np.zeros((2, 2))
         parts = int(np.ceil(STEPS_PER_PERIOD * time_step / period))
-        rows = max(1, _STEPS_AT_ONCE // parts)
+        rows = max(1, _STEPS_IN_PART // parts)
         for first in range(0, len(pieces[0]), rows):
             steps = [
-                _Steps(time_step / parts, divided(one[first : first + rows], parts))
+                _Steps(time_step / parts, subdivided(one[first : first + rows], parts))
                 for one in pieces
             ]
-            _follow_pair(steps, period, damping, state, directions, found[k])
+            _update_direction_peaks(steps, period, damping, state, directions, found[k])
         rest = _Steps(period / STEPS_PER_PERIOD, still)
-        _follow_pair([rest, rest], period, damping, state, directions, found[k])
+        _update_direction_peaks([rest, rest], period, damping, state, directions, found[k])
     return found
 
 
-def _follow_pair(
+def _update_direction_peaks(
     steps: list[_Steps],
     period: float,
     damping: float,
     state: Array,
     directions: Array,
-    most: Array,
+    peaks: Array,
 ) -> None:
-    """Follow an oscillator under both components; update `state` and `most`, displacements (SI)."""
+    """Follow an oscillator under both components; update `state` and peaks of displacement (SI)."""
     states = np.array(
         [_states(one, period, damping, start) for one, start in zip(steps, state, strict=True)]
     )
     for first in range(0, states.shape[3], _STEPS_IN_BLOCK):
         block = states[..., first : first + _STEPS_IN_BLOCK]
-        (_, size), (_, speed), bends = np.hypot(*block)
+        (_, size), (_, speed), second = np.hypot(*block)
         # no direction has a larger peak in a step
-        reach = np.flatnonzero(bound_of(size, speed, *bends) > most.min())
-        if reach.size == 0:
+        steps_of_peaks = np.flatnonzero(extremum_bound(size, speed, *second) > peaks.min())
+        if steps_of_peaks.size == 0:
             continue
-        u, v, w = np.einsum("dc,cqen->qedn", directions, block[..., reach])
-        most[:] = np.maximum(most, np.abs(u[1]).max(axis=1))
-        d, n = np.nonzero((v[0] * v[1] < 0.0) & (bound_of(u[1], v[1], *w) > most[:, None]))
-        np.maximum.at(most, d, np.abs(_turning(u[:, d, n], v[:, d, n], w[:, d, n])))
+        u, v, w = np.einsum("dc,cqen->qedn", directions, block[..., steps_of_peaks])
+        peaks[:] = np.maximum(peaks, np.abs(u[1]).max(axis=1))
+        d, n = np.nonzero((v[0] * v[1] < 0.0) & (extremum_bound(u[1], v[1], *w) > peaks[:, None]))
+        np.maximum.at(peaks, d, np.abs(_extrema(u[:, d, n], v[:, d, n], w[:, d, n])))
 
 
-def _may_swing_higher(periods: Array, damping: float, state: Array, found: Array) -> Any:
+def _may_exceed_peaks(periods: Array, damping: float, state: Array, found: Array) -> Any:
     """Tell which oscillators may pass their peaks in free vibration: their energy only falls."""
     frequency = 2.0 * np.pi / periods
     speed = np.hypot(frequency * state[:, 0], state[:, 1])
@@ -115,8 +115,8 @@ def _may_swing_higher(periods: Array, damping: float, state: Array, found: Array
     return (bounds > found).any(axis=1)
 
 
-def _follow(steps: _Steps, period: float, damping: float, state: Array, greatest: Array) -> None:
-    """Follow one oscillator; update `state` and its peaks in `greatest` (SI)."""
+def _update_peaks(steps: _Steps, period: float, damping: float, state: Array, peaks: Array) -> None:
+    """Follow one oscillator; update `state` and its peaks in `peaks` (SI)."""
     kappa = 2.0 * np.pi * steps.length / period
     stiffness, drag = kappa**2, 2.0 * damping * kappa
     u, v, w = _states(steps, period, damping, state)
@@ -127,7 +127,7 @@ def _follow(steps: _Steps, period: float, damping: float, state: Array, greatest
         _peak(v, w, jerk),
         _peak(drag * v + stiffness * u, rate, drag * jerk + stiffness * w),
     )
-    greatest[:] = np.maximum(greatest, found / steps.length ** np.arange(QUANTITIES))
+    peaks[:] = np.maximum(peaks, found / steps.length ** np.arange(QUANTITIES))
 
 
 def _states(steps: _Steps, period: float, damping: float, state: Array) -> Array:
@@ -157,13 +157,13 @@ def _march(step: Array, driven: Array, start: Array) -> Array:
     return np.concatenate([start[:, None], lines], axis=1)
 
 
-def _peak(value: Array, slope: Array, bend: Array) -> float:
+def _peak(value: Array, slope: Array, second: Array) -> float:
     """Return the greatest absolute value in all steps, from arrays of shape (2, n)."""
     peak = float(np.abs(value).max())
-    turns = (slope[0] * slope[1] < 0.0) & (bound_of(value[1], slope[1], *bend) > peak)
-    inside = np.abs(_turning(value[:, turns], slope[:, turns], bend[:, turns]))
+    which = (slope[0] * slope[1] < 0.0) & (extremum_bound(value[1], slope[1], *second) > peak)
+    inside = np.abs(_extrema(value[:, which], slope[:, which], second[:, which]))
     return float(inside.max(initial=peak))
 
 
-def _turning(value: Array, slope: Array, bend: Array) -> Any:
-    return turning_value(value[0], slope[0], bend[0], value[1], slope[1], bend[1])
+def _extrema(value: Array, slope: Array, second: Array) -> Any:
+    return step_extremum(value[0], slope[0], second[0], value[1], slope[1], second[1])

@@ -14,13 +14,13 @@ from rockframe.signals.arrays import Array
 from rockframe.signals.motion import (
     MAXIMUM_SAMPLES,
     Signal,
+    derivatives_of,
+    extrema_of,
     integral_of,
     knots_of,
     roots_of,
-    slopes_of,
+    sign_changes,
     split_at,
-    turned_in,
-    turning_points,
 )
 from rockframe.signals.spectra import spectral_peaks
 
@@ -38,21 +38,21 @@ def arias_history(signal: Signal, gravity: float) -> Array:
         weights = 1.0 / (exponents[:, None] + exponents + 1.0)  # integral of x^j x^k
         square = ((signal.pieces @ weights) * signal.pieces).sum(axis=1)
     else:
-        square = _trapezoids(signal.samples**2)
-    return _summed(square) * (signal.time_step * 0.5 * math.pi / gravity)
+        square = _trapezoid_means(signal.samples**2)
+    return _cumulative(square) * (signal.time_step * 0.5 * math.pi / gravity)
 
 
 def absolute_velocity_history(signal: Signal) -> Array:
     """Return the cumulative absolute velocity up to every sample, :eq:`eq-cav` [m s^-1]."""
     if not signal.analytic:
-        return _summed(_trapezoids(np.abs(signal.samples))) * signal.time_step
+        return _cumulative(_trapezoid_means(np.abs(signal.samples))) * signal.time_step
     # the total variation of the velocity, its extrema between samples included
     velocity = integral_of(signal.pieces, signal.time_step)
     knots = knots_of(velocity)
-    ways = np.abs(np.diff(knots))
-    rows, turned = turning_points(velocity)
-    ways[rows] = np.abs(turned - knots[rows]) + np.abs(turned - knots[rows + 1])
-    return _summed(ways)
+    variation = np.abs(np.diff(knots))
+    rows, extrema = extrema_of(velocity)
+    variation[rows] = np.abs(extrema - knots[rows]) + np.abs(extrema - knots[rows + 1])
+    return _cumulative(variation)
 
 
 def standardized_absolute_velocity(signal: Signal, threshold: float) -> float:
@@ -80,11 +80,11 @@ def standardized_absolute_velocity(signal: Signal, threshold: float) -> float:
     return float(np.sum(np.diff(at_seconds)[strong]))
 
 
-def _trapezoids(values: Array) -> Array:
+def _trapezoid_means(values: Array) -> Array:
     return 0.5 * (values[:-1] + values[1:])
 
 
-def _summed(steps: Array) -> Array:
+def _cumulative(steps: Array) -> Array:
     return np.concatenate([[0.0], np.cumsum(steps)])
 
 
@@ -133,8 +133,8 @@ def _split_at_extrema(pieces: Array) -> tuple[Array, Array, Array]:
     Each part is monotone, so that it crosses a level once at most.
     """
     starts, lengths = np.arange(float(len(pieces))), np.ones(len(pieces))
-    slopes = slopes_of(pieces)
-    rows = turned_in(slopes)
+    slopes = derivatives_of(pieces)
+    rows = sign_changes(slopes)
     if not rows.size:
         return pieces, starts, lengths
     at = roots_of(slopes[rows])

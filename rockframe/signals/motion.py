@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final, Self
 import numpy as np
 
 from rockframe.errors import ComponentError
-from rockframe.signals.arrays import OWNER, Array, frozen
+from rockframe.signals.arrays import OWNER, Array, readonly_array
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -88,14 +88,14 @@ class Signal:
             msg = f"{OWNER}: time_step must be finite and greater than zero, got {dt!r} s"
             raise ComponentError(msg)
         object.__setattr__(self, "time_step", dt)
-        samples = frozen(self.samples, self.name)
+        samples = readonly_array(self.samples, self.name)
         object.__setattr__(self, "samples", samples)
         if samples.size < 2:
             msg = f"{OWNER}: {self.name} needs at least two samples, got {samples.size}"
             raise ComponentError(msg)
         if self.polynomials is not None:
             name = "pieces" if self.name == HORIZONTAL else f"{self.name}_pieces"
-            held = frozen(self.polynomials, name, (samples.size - 1, COEFFICIENTS))
+            held = readonly_array(self.polynomials, name, (samples.size - 1, COEFFICIENTS))
             object.__setattr__(self, "polynomials", held)
 
     @property
@@ -126,7 +126,9 @@ class Signal:
     def peak(self) -> float:
         """Greatest absolute acceleration, between samples too [m s^-2]."""
         highest = float(np.max(np.abs(self.samples)))
-        return highest if self.polynomials is None else max(highest, greatest(self.polynomials))
+        if self.polynomials is None:
+            return highest
+        return max(highest, absolute_peak(self.polynomials))
 
     def at(self, time: npt.ArrayLike) -> Array:
         """Evaluate the acceleration.
@@ -212,9 +214,9 @@ class Motion:
         vertical = self.vertical
         if vertical is None:
             return
-        wanted, found = self.horizontal.samples.shape, vertical.samples.shape
-        if found != wanted:
-            msg = f"{OWNER}: vertical needs the shape {wanted}, got the shape {found}"
+        expected, found = self.horizontal.samples.shape, vertical.samples.shape
+        if found != expected:
+            msg = f"{OWNER}: vertical needs the shape {expected}, got the shape {found}"
             raise ComponentError(msg)
         if vertical.time_step != self.time_step:
             msg = (
@@ -292,7 +294,7 @@ class Motion:
 
 
 @dataclass(frozen=True)
-class Slope:
+class Incline:
     """The inclination of a base line, which rises to the right, and the gravity on it."""
 
     inclination: float  # i [rad]
@@ -309,7 +311,7 @@ class Slope:
             level=i == 0.0, along_gravity=g * math.sin(i), normal_gravity=g * math.cos(i)
         )
 
-    def turned(self, across: Array, up: Array) -> tuple[Array, Array]:
+    def rotated(self, across: Array, up: Array) -> tuple[Array, Array]:
         """Return the components along and normal to the base of horizontal and vertical ones."""
         sine, cosine = math.sin(self.inclination), math.cos(self.inclination)
         return across * cosine + up * sine, up * cosine - across * sine
@@ -336,12 +338,12 @@ class Slope:
         shape = max(moving, math.ceil(duration / step) + 1), COEFFICIENTS
         across, up = np.zeros(shape), np.zeros(shape)
         if motion is not None:
-            given = motion.horizontal.pieces
-            across[:moving, : given.shape[1]] = given
+            pieces = motion.horizontal.pieces
+            across[:moving, : pieces.shape[1]] = pieces
             if motion.vertical is not None:
-                given = motion.vertical.pieces
-                up[:moving, : given.shape[1]] = given
-        along, normal = self.turned(across, up)
+                pieces = motion.vertical.pieces
+                up[:moving, : pieces.shape[1]] = pieces
+        along, normal = self.rotated(across, up)
         along[:, 0] += self.along_gravity
         return Motion(_signal(step, along, HORIZONTAL), _signal(step, normal, VERTICAL))
 
@@ -351,15 +353,15 @@ def _signal(step: float, pieces: Array, name: str) -> Signal:
     return Signal(step, np.append(pieces[:, 0], pieces[-1].sum()), pieces, name)
 
 
-def values_at(pieces: Array, place: Array | float) -> Array:
+def values_at(pieces: Array, x: Array | float) -> Array:
     """Evaluate rows of coefficients, shape (..., m), each at its own x, from 0 to 1."""
     values = np.zeros(pieces.shape[:-1])
     for power in reversed(range(pieces.shape[-1])):
-        values = values * place + pieces[..., power]
+        values = values * x + pieces[..., power]
     return values
 
 
-def slopes_of(pieces: Array) -> Array:
+def derivatives_of(pieces: Array) -> Array:
     """Return the coefficients of the derivatives by x."""
     return pieces[:, 1:] * np.arange(1.0, pieces.shape[1])
 
@@ -371,7 +373,7 @@ def integral_of(pieces: Array, time_step: float) -> Array:
     return np.column_stack([start, rising])
 
 
-def divided(pieces: Array, parts: int) -> Array:
+def subdivided(pieces: Array, parts: int) -> Array:
     """Divide every interval into equal parts, each with its own x."""
     if parts == 1:
         return pieces
@@ -403,36 +405,35 @@ def roots_of(pieces: Array) -> Array:
     return 0.5 * (low + high)
 
 
-def split_at(pieces: Array, place: Array) -> tuple[Array, Array]:
+def split_at(pieces: Array, x: Array) -> tuple[Array, Array]:
     """Divide each row at its x, into the polynomials before and after, each with its own x."""
     powers = range(pieces.shape[1])
     after = [  # Taylor's expansion about x
-        sum(math.comb(j, k) * pieces[:, j] * place ** (j - k) for j in powers[k:])
-        * (1.0 - place) ** k
+        sum(math.comb(j, k) * pieces[:, j] * x ** (j - k) for j in powers[k:]) * (1.0 - x) ** k
         for k in powers
     ]
-    return pieces * place[:, None] ** np.arange(len(powers)), np.stack(after, axis=1)
+    return pieces * x[:, None] ** np.arange(len(powers)), np.stack(after, axis=1)
 
 
-def turning_points(pieces: Array) -> tuple[NDArray[np.intp], Array]:
+def extrema_of(pieces: Array) -> tuple[NDArray[np.intp], Array]:
     """Return the intervals whose slopes at both ends differ in sign, and the extrema in them."""
-    slopes = slopes_of(pieces)
-    rows = turned_in(slopes)
+    slopes = derivatives_of(pieces)
+    rows = sign_changes(slopes)
     return rows, values_at(pieces[rows], roots_of(slopes[rows]))
 
 
-def turned_in(values: Array) -> NDArray[np.intp]:
+def sign_changes(values: Array) -> NDArray[np.intp]:
     """Return the intervals at whose ends values differ in sign."""
     return np.flatnonzero(values[:, 0] * values.sum(axis=1) < 0.0)
 
 
-def greatest(pieces: Array) -> float:
+def absolute_peak(pieces: Array) -> float:
     """Return the greatest absolute value, also between the ends of intervals."""
-    found = [pieces[:, 0], pieces.sum(axis=1), turning_points(pieces)[1]]
+    found = [pieces[:, 0], pieces.sum(axis=1), extrema_of(pieces)[1]]
     if pieces.shape[1] > 3:
         # the slope may be zero twice, or once and at an end: once on each side of its extremum
-        bends = slopes_of(slopes_of(pieces))
-        rows = turned_in(bends)
-        halves = split_at(pieces[rows], roots_of(bends[rows]))
-        found += [turning_points(half)[1] for half in halves]
+        second_derivatives = derivatives_of(derivatives_of(pieces))
+        rows = sign_changes(second_derivatives)
+        halves = split_at(pieces[rows], roots_of(second_derivatives[rows]))
+        found += [extrema_of(half)[1] for half in halves]
     return float(np.max(np.abs(np.concatenate(found))))

@@ -18,7 +18,7 @@ Arguments of the functions, by their names:
     Zeros, shape (12, m): the ground during a period after the motion.
 ``row``, ``part``, ``parts``
     An interval, and which of how many equal steps in it.
-``force``
+``h_squared``
     h^2, the factor from a ground acceleration to the scaled force in the equation [s^2].
 ``kappa``, ``damping``
     2 pi h/T and the damping ratio [1].
@@ -27,10 +27,11 @@ Arguments of the functions, by their names:
     motion.
 ``start``, ``end``
     u, V and W of the first component, then of the second, at both ends of a step, shape (6,) [m].
-``directions``, ``few``
+``directions``, ``sample_directions``
     Cosines and sines of all directions, shape (d, 2), and of some, shape (f, 2).
-``most``
-    Greatest absolute displacement so far in every direction, shape (d,), which is updated [m].
+``peaks``
+    Greatest absolute displacement so far in every direction, shape (d,), which is updated [m];
+    those of :func:`march_oscillator` are described there.
 ``shifted``
     Scratch, shape (m,).
 """
@@ -44,7 +45,7 @@ from rockframe.compiled import Matrix, Vector, entry, inlined, kernel
 STEPS_PER_PERIOD: Final = 12
 """Least number of steps in a period, for which intervals are split: kappa is at most 0.52."""
 
-TERMS: Final = 24
+SERIES_TERMS: Final = 24
 """Terms of the power series; 0.52^24/24! is 3e-31."""
 
 QUANTITIES: Final = 3
@@ -65,7 +66,7 @@ def fill_step(kappa: float, damping: float, step: Matrix) -> None:
         term = 1.0 if column == 0 else 0.0
         following = 1.0 if column == 1 else 0.0
         value, slope = term + following, following
-        for n in range(TERMS):
+        for n in range(SERIES_TERMS):
             new = -2.0 * damping * kappa * (n + 1) * following - kappa * kappa * term
             if n == column - 2:
                 new -= 1.0
@@ -77,36 +78,37 @@ def fill_step(kappa: float, damping: float, step: Matrix) -> None:
 
 
 @kernel
-def turning_value(
-    value: Any, slope: Any, bend: Any, end_value: Any, end_slope: Any, end_bend: Any
+def step_extremum(
+    value: Any, slope: Any, second: Any, end_value: Any, end_slope: Any, end_second: Any
 ) -> Any:
     """Find the extremum inside a step whose slopes differ in sign, :eq:`eq-step-extremum`."""
-    rise = end_value - value - slope - 0.5 * bend
-    turn = end_slope - slope - bend
-    twist = end_bend - bend
-    third = 10.0 * rise - 4.0 * turn + 0.5 * twist
-    fourth = -15.0 * rise + 7.0 * turn - twist
-    fifth = 6.0 * rise - 3.0 * turn + 0.5 * twist
-    # the root of the parabola through both slopes and the first bend: that of the chord may be at
-    # a bend of zero, where Newton's method leaves the step
-    fall = -np.copysign(np.sqrt(np.maximum(0.0, bend * bend - 4.0 * turn * slope)), slope)
-    plain = 1.0 * (bend * fall >= 0.0)  # of the two forms of the root that without cancellation
-    at = (plain * -2.0 * slope + (1.0 - plain) * (fall - bend)) / (
-        plain * (bend + fall) + (1.0 - plain) * 2.0 * turn
+    d_value = end_value - value - slope - 0.5 * second
+    d_slope = end_slope - slope - second
+    d_second = end_second - second
+    third = 10.0 * d_value - 4.0 * d_slope + 0.5 * d_second
+    fourth = -15.0 * d_value + 7.0 * d_slope - d_second
+    fifth = 6.0 * d_value - 3.0 * d_slope + 0.5 * d_second
+    # the root of the parabola through both slopes and the first second derivative: that of the
+    # chord may be at a second derivative of zero, where Newton's method leaves the step
+    root = -np.copysign(np.sqrt(np.maximum(0.0, second * second - 4.0 * d_slope * slope)), slope)
+    # of the two forms of the root that without cancellation
+    first_form = 1.0 * (second * root >= 0.0)
+    at = (first_form * -2.0 * slope + (1.0 - first_form) * (root - second)) / (
+        first_form * (second + root) + (1.0 - first_form) * 2.0 * d_slope
     )
     x = np.minimum(1.0, np.maximum(0.0, at))
     for _ in range(_NEWTON_STEPS):
-        rate = slope + x * (bend + x * (3.0 * third + x * (4.0 * fourth + x * 5.0 * fifth)))
-        change = bend + x * (6.0 * third + x * (12.0 * fourth + x * 20.0 * fifth))
+        rate = slope + x * (second + x * (3.0 * third + x * (4.0 * fourth + x * 5.0 * fifth)))
+        change = second + x * (6.0 * third + x * (12.0 * fourth + x * 20.0 * fifth))
         x = np.minimum(1.0, np.maximum(0.0, x - rate * change / (change * change + _TINY)))
-    return value + x * (slope + x * (0.5 * bend + x * (third + x * (fourth + x * fifth))))
+    return value + x * (slope + x * (0.5 * second + x * (third + x * (fourth + x * fifth))))
 
 
 @kernel
-def bound_of(end_value: Any, end_slope: Any, bend: Any, end_bend: Any) -> Any:
+def extremum_bound(end_value: Any, end_slope: Any, second: Any, end_second: Any) -> Any:
     """Bound the extrema inside a step, between its ends."""
-    # half the greatest bend would do if the bend were linear
-    return abs(end_value) + abs(end_slope) + np.maximum(abs(bend), abs(end_bend))
+    # half the greatest second derivative would do if that were linear
+    return abs(end_value) + abs(end_slope) + np.maximum(abs(second), abs(end_second))
 
 
 @kernel
@@ -129,7 +131,7 @@ def shift_piece(pieces: Matrix, row: int, part: int, parts: int, shifted: Vector
 def march_oscillator(
     pieces: Matrix,
     parts: int,
-    force: float,
+    h_squared: float,
     kappa: float,
     damping: float,
     step: Matrix,
@@ -144,12 +146,12 @@ def march_oscillator(
     """
     stiffness, drag = kappa * kappa, 2.0 * damping * kappa
     powers = pieces.shape[1]
-    uu, uv, u0, u1 = step[0, 0], step[0, 1], force * step[0, 2], force * step[0, 3]
-    vu, vv, v0, v1 = step[1, 0], step[1, 1], force * step[1, 2], force * step[1, 3]
+    uu, uv, u0, u1 = step[0, 0], step[0, 1], h_squared * step[0, 2], h_squared * step[0, 3]
+    vu, vv, v0, v1 = step[1, 0], step[1, 1], h_squared * step[1, 2], h_squared * step[1, 3]
     u, v = state[0], state[1]
-    pull = drag * v + stiffness * u
+    total = drag * v + stiffness * u
     share = 1.0 / parts
-    most_u, most_v, most_pull = abs(u), abs(v), abs(pull)
+    peak_u, peak_v, peak_total = abs(u), abs(v), abs(total)
     for row in range(pieces.shape[0]):
         for part in range(parts):
             if powers == 2:
@@ -166,36 +168,36 @@ def march_oscillator(
                 for j in range(1, powers):
                     end_ground += shifted[j]
                     end_slope += j * shifted[j]
-                    next_u += force * step[0, 2 + j] * shifted[j]
-                    next_v += force * step[1, 2 + j] * shifted[j]
-            next_pull = drag * next_v + stiffness * next_u
+                    next_u += h_squared * step[0, 2 + j] * shifted[j]
+                    next_v += h_squared * step[1, 2 + j] * shifted[j]
+            next_total = drag * next_v + stiffness * next_u
             # both ends from this step's own ground, which may jump between intervals
-            w, next_w = -pull - force * ground, -next_pull - force * end_ground
+            w, next_w = -total - h_squared * ground, -next_total - h_squared * end_ground
             rate, next_rate = drag * w + stiffness * v, drag * next_w + stiffness * next_v
-            most_u = max(most_u, abs(next_u))
-            most_v = max(most_v, abs(next_v))
-            most_pull = max(most_pull, abs(next_pull))
-            if v * next_v < 0.0 and bound_of(next_u, next_v, w, next_w) > most_u:
-                most_u = max(most_u, abs(turning_value(u, v, w, next_u, next_v, next_w)))
-            jerk, next_jerk = -rate - force * slope, -next_rate - force * end_slope
-            if w * next_w < 0.0 and bound_of(next_v, next_w, jerk, next_jerk) > most_v:
-                most_v = max(most_v, abs(turning_value(v, w, jerk, next_v, next_w, next_jerk)))
-            bend, next_bend = drag * jerk + stiffness * w, drag * next_jerk + stiffness * next_w
+            peak_u = max(peak_u, abs(next_u))
+            peak_v = max(peak_v, abs(next_v))
+            peak_total = max(peak_total, abs(next_total))
+            if v * next_v < 0.0 and extremum_bound(next_u, next_v, w, next_w) > peak_u:
+                peak_u = max(peak_u, abs(step_extremum(u, v, w, next_u, next_v, next_w)))
+            jerk, next_jerk = -rate - h_squared * slope, -next_rate - h_squared * end_slope
+            if w * next_w < 0.0 and extremum_bound(next_v, next_w, jerk, next_jerk) > peak_v:
+                peak_v = max(peak_v, abs(step_extremum(v, w, jerk, next_v, next_w, next_jerk)))
+            second, next_second = drag * jerk + stiffness * w, drag * next_jerk + stiffness * next_w
             if (
                 rate * next_rate < 0.0
-                and bound_of(next_pull, next_rate, bend, next_bend) > most_pull
+                and extremum_bound(next_total, next_rate, second, next_second) > peak_total
             ):
-                inside = turning_value(pull, rate, bend, next_pull, next_rate, next_bend)
-                most_pull = max(most_pull, abs(inside))
-            u, v, pull = next_u, next_v, next_pull
+                extremum = step_extremum(total, rate, second, next_total, next_rate, next_second)
+                peak_total = max(peak_total, abs(extremum))
+            u, v, total = next_u, next_v, next_total
     state[0], state[1] = u, v
-    peaks[0] = max(peaks[0], most_u)
-    peaks[1] = max(peaks[1], most_v)
-    peaks[2] = max(peaks[2], most_pull)
+    peaks[0] = max(peaks[0], peak_u)
+    peaks[1] = max(peaks[1], peak_v)
+    peaks[2] = max(peaks[2], peak_total)
 
 
 @kernel
-def clear(peaks: Vector) -> None:
+def clear_peaks(peaks: Vector) -> None:
     """Set all peaks to zero."""
     for j in range(QUANTITIES):
         peaks[j] = 0.0
@@ -229,47 +231,47 @@ def march_all(
         kappa = 2.0 * np.pi * length / period
         fill_step(kappa, damping, step)
         state[0] = state[1] = 0.0
-        clear(peaks)
+        clear_peaks(peaks)
         march_oscillator(
             pieces, parts, length * length, kappa, damping, step, shifted, state, peaks
         )  # fmt: skip
         for j in range(QUANTITIES):
             found[k, j] = peaks[j] / length**j
         state[1] *= free_length / length
-        clear(peaks)
+        clear_peaks(peaks)
         march_oscillator(still, 1, 0.0, free, damping, free_step, shifted, state, peaks)
         for j in range(QUANTITIES):
             found[k, j] = max(found[k, j], peaks[j] / free_length**j)
 
 
 @kernel
-def raise_peaks(
+def update_direction_peaks(
     directions: Matrix,
     start: Vector,
     end: Vector,
-    most: Vector,
+    peaks: Vector,
 ) -> float:
     """Update the peaks in all directions by those of one step; give the least peak [m]."""
     least = np.inf
     for d in range(directions.shape[0]):
         c, s = directions[d, 0], directions[d, 1]
         u, v, w = c * end[0] + s * end[3], c * end[1] + s * end[4], c * end[2] + s * end[5]
-        most[d] = max(most[d], abs(u))
-        before, bend = c * start[1] + s * start[4], c * start[2] + s * start[5]
-        if before * v < 0.0 and bound_of(u, v, bend, w) > most[d]:
-            inside = turning_value(c * start[0] + s * start[3], before, bend, u, v, w)
-            most[d] = max(most[d], abs(inside))
-        least = min(least, most[d])
+        peaks[d] = max(peaks[d], abs(u))
+        before, second = c * start[1] + s * start[4], c * start[2] + s * start[5]
+        if before * v < 0.0 and extremum_bound(u, v, second, w) > peaks[d]:
+            extremum = step_extremum(c * start[0] + s * start[3], before, second, u, v, w)
+            peaks[d] = max(peaks[d], abs(extremum))
+        least = min(least, peaks[d])
     return least
 
 
 @inlined
-def follow_component(
+def step_component(
     pieces: Matrix,
     row: int,
     part: int,
     parts: int,
-    force: float,
+    h_squared: float,
     kappa: float,
     damping: float,
     step: Matrix,
@@ -290,57 +292,59 @@ def follow_component(
         slope = pieces[row, 1] / parts
         before = pieces[row, 0] + part * slope
         ground = before + slope
-        next_u += force * (step[0, 2] * before + step[0, 3] * slope)
-        next_v += force * (step[1, 2] * before + step[1, 3] * slope)
+        next_u += h_squared * (step[0, 2] * before + step[0, 3] * slope)
+        next_v += h_squared * (step[1, 2] * before + step[1, 3] * slope)
     else:
         shift_piece(pieces, row, part, parts, shifted)
         before, ground = shifted[0], 0.0
         for j in range(pieces.shape[1]):
             ground += shifted[j]
-            next_u += force * step[0, 2 + j] * shifted[j]
-            next_v += force * step[1, 2 + j] * shifted[j]
-    start[place + 2] = -drag * v - stiffness * u - force * before
+            next_u += h_squared * step[0, 2 + j] * shifted[j]
+            next_v += h_squared * step[1, 2 + j] * shifted[j]
+    start[place + 2] = -drag * v - stiffness * u - h_squared * before
     end[place], end[place + 1] = next_u, next_v
-    end[place + 2] = -drag * next_v - stiffness * next_u - force * ground
+    end[place + 2] = -drag * next_v - stiffness * next_u - h_squared * ground
 
 
 @kernel
-def outermost(
+def find_outermost_points(
     first: Matrix,
     second: Matrix,
     parts: int,
-    force: float,
+    h_squared: float,
     kappa: float,
     damping: float,
     step: Matrix,
     shifted: Vector,
     start: Vector,
     end: Vector,
-    few: Matrix,
-    reached: Matrix,
+    sample_directions: Matrix,
+    outermost: Matrix,
 ) -> None:
     """Find the points of the oscillator's path that lie farthest out in a few directions.
 
     These points bound its peaks in all directions from below, so that most steps need not be
-    examined in every direction. `reached`, shape (f, 3), is updated: the distance in each of these
-    directions, and both displacements there [m].
+    examined in every direction. `outermost`, shape (f, 3), is updated: the distance in each of
+    these directions, and both displacements there [m].
     """
     least = 0.0
     for row in range(first.shape[0]):
         for part in range(parts):
-            follow_component(
-                first, row, part, parts, force, kappa, damping, step, shifted, 0, start, end
+            step_component(
+                first, row, part, parts, h_squared, kappa, damping, step, shifted, 0, start, end
             )
-            follow_component(
-                second, row, part, parts, force, kappa, damping, step, shifted, 3, start, end
+            step_component(
+                second, row, part, parts, h_squared, kappa, damping, step, shifted, 3, start, end
             )
             if end[0] * end[0] + end[3] * end[3] > least * least:
                 least = np.inf
-                for d in range(few.shape[0]):
-                    far = abs(few[d, 0] * end[0] + few[d, 1] * end[3])
-                    if far > reached[d, 0]:
-                        reached[d, 0], reached[d, 1], reached[d, 2] = far, end[0], end[3]
-                    least = min(least, reached[d, 0])
+                for d in range(sample_directions.shape[0]):
+                    distance = abs(
+                        sample_directions[d, 0] * end[0] + sample_directions[d, 1] * end[3]
+                    )
+                    if distance > outermost[d, 0]:
+                        outermost[d, 0], outermost[d, 1], outermost[d, 2] = distance, end[0], end[3]
+                    least = min(least, outermost[d, 0])
             for j in range(6):
                 start[j] = end[j]
 
@@ -350,7 +354,7 @@ def march_pair(
     first: Matrix,
     second: Matrix,
     parts: int,
-    force: float,
+    h_squared: float,
     kappa: float,
     damping: float,
     step: Matrix,
@@ -358,27 +362,27 @@ def march_pair(
     start: Vector,
     end: Vector,
     directions: Matrix,
-    most: Vector,
+    peaks: Vector,
 ) -> None:
     """Follow one oscillator under both components from interval to interval."""
     least = np.inf
     for d in range(directions.shape[0]):
-        least = min(least, most[d])
+        least = min(least, peaks[d])
     for row in range(first.shape[0]):
         for part in range(parts):
-            follow_component(
-                first, row, part, parts, force, kappa, damping, step, shifted, 0, start, end
+            step_component(
+                first, row, part, parts, h_squared, kappa, damping, step, shifted, 0, start, end
             )
-            follow_component(
-                second, row, part, parts, force, kappa, damping, step, shifted, 3, start, end
+            step_component(
+                second, row, part, parts, h_squared, kappa, damping, step, shifted, 3, start, end
             )
             # no direction has a larger peak in this step
-            bend = start[2] * start[2] + start[5] * start[5]
-            reach = np.sqrt(max(bend, end[2] * end[2] + end[5] * end[5]))
+            square = start[2] * start[2] + start[5] * start[5]
+            reach = np.sqrt(max(square, end[2] * end[2] + end[5] * end[5]))
             reach += np.sqrt(end[0] * end[0] + end[3] * end[3])
             reach += np.sqrt(end[1] * end[1] + end[4] * end[4])
             if reach > least:
-                least = raise_peaks(directions, start, end, most)
+                least = update_direction_peaks(directions, start, end, peaks)
             for j in range(6):
                 start[j] = end[j]
 
@@ -397,9 +401,9 @@ def march_pairs(
     shifted: Vector,
     start: Vector,
     end: Vector,
-    few: Matrix,
-    reached: Matrix,
-    most: Vector,
+    sample_directions: Matrix,
+    outermost: Matrix,
+    peaks: Vector,
     found: Matrix,
 ) -> None:
     """Find the peaks of all oscillators in all directions, in `found`, shape (k, d) [m]."""
@@ -413,28 +417,30 @@ def march_pairs(
         fill_step(kappa, damping, step)
         for j in range(6):
             start[j] = 0.0
-        for d in range(few.shape[0]):
-            reached[d, 0] = reached[d, 1] = reached[d, 2] = 0.0
-        outermost(
-            first, second, parts, length * length, kappa, damping, step, shifted, start, end, few,
-            reached,
+        for d in range(sample_directions.shape[0]):
+            outermost[d, 0] = outermost[d, 1] = outermost[d, 2] = 0.0
+        find_outermost_points(
+            first, second, parts, length * length, kappa, damping, step, shifted, start, end,
+            sample_directions, outermost,
         )  # fmt: skip
         for j in range(6):
             start[j] = 0.0
         for d in range(directions.shape[0]):
-            most[d] = 0.0
-            for place in range(few.shape[0]):
-                far = directions[d, 0] * reached[place, 1] + directions[d, 1] * reached[place, 2]
-                most[d] = max(most[d], abs(far))
+            peaks[d] = 0.0
+            for place in range(sample_directions.shape[0]):
+                distance = (
+                    directions[d, 0] * outermost[place, 1] + directions[d, 1] * outermost[place, 2]
+                )
+                peaks[d] = max(peaks[d], abs(distance))
         march_pair(
             first, second, parts, length * length, kappa, damping, step, shifted, start, end,
-            directions, most,
+            directions, peaks,
         )  # fmt: skip
         change = period / STEPS_PER_PERIOD / length
         start[1] *= change
         start[4] *= change
         march_pair(
-            still, still, 1, 0.0, free, damping, free_step, shifted, start, end, directions, most
+            still, still, 1, 0.0, free, damping, free_step, shifted, start, end, directions, peaks
         )
         for d in range(directions.shape[0]):
-            found[k, d] = most[d]
+            found[k, d] = peaks[d]

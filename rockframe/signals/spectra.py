@@ -7,7 +7,7 @@ import numpy as np
 from rockframe.compiled import COMPILED
 from rockframe.errors import ComponentError
 from rockframe.signals.arrays import Array
-from rockframe.signals.motion import Signal, greatest
+from rockframe.signals.motion import Signal, absolute_peak
 from rockframe.signals.oscillator import QUANTITIES, STEPS_PER_PERIOD, march_all, march_pairs
 from rockframe.units import Condition
 
@@ -56,7 +56,7 @@ def spectral_peaks(signal: Signal, periods: Array, damping_ratio: float) -> Arra
         acceleration [m s^-2].
     """
     found = np.zeros((periods.size, 3))
-    found[:, 2] = greatest(signal.pieces)  # a rigid oscillator moves with the ground
+    found[:, 2] = absolute_peak(signal.pieces)  # a rigid oscillator moves with the ground
     moving = np.flatnonzero(periods > 0.0)
     if COMPILED:
         found[moving] = _march(signal, periods[moving], damping_ratio)
@@ -74,7 +74,7 @@ def pseudo_spectra(
     rigid = periods == 0.0
     frequency = 2.0 * np.pi / np.where(rigid, 1.0, periods)
     velocity = np.where(rigid, 0.0, frequency * spectral_displacement)
-    acceleration = np.where(rigid, greatest(signal.pieces), frequency * velocity)
+    acceleration = np.where(rigid, absolute_peak(signal.pieces), frequency * velocity)
     return velocity, acceleration
 
 
@@ -98,9 +98,9 @@ def _march(signal: Signal, periods: Array, damping_ratio: float) -> Array:
     return found
 
 
-_BOTH: Final = 6
+_BOTH_COMPONENTS: Final = 6
 """Number of displacements, velocities and accelerations under both components."""
-_FEW: Final = 16
+_SAMPLE_DIRECTIONS: Final = 16
 """Number of directions in which the peaks are first bounded from below."""
 
 
@@ -119,7 +119,7 @@ def rotated_displacements(
 
     `directions` are cosines and sines, shape (d, 2); both signals have one time step and length.
     """
-    one, other = (np.ascontiguousarray(pieces) for pieces in _of_one_degree(first, second))
+    one, other = (np.ascontiguousarray(pieces) for pieces in _same_degree(first, second))
     powers = one.shape[1]
     if not COMPILED:
         from rockframe.signals.filtering import filter_pairs
@@ -137,10 +137,10 @@ def rotated_displacements(
         np.empty((2, 2 + powers)),
         np.empty((2, 2 + powers)),
         np.empty(powers),
-        np.empty(_BOTH),
-        np.empty(_BOTH),
-        unit_vectors(_FEW),
-        np.empty((_FEW, 3)),
+        np.empty(_BOTH_COMPONENTS),
+        np.empty(_BOTH_COMPONENTS),
+        unit_vectors(_SAMPLE_DIRECTIONS),
+        np.empty((_SAMPLE_DIRECTIONS, 3)),
         np.empty(len(directions)),
         found,
     )
@@ -149,12 +149,12 @@ def rotated_displacements(
 
 def rotated_peaks(first: Signal, second: Signal, directions: Array) -> Array:
     """Find the greatest acceleration of the ground in each direction: shape (d,) [m s^-2]."""
-    one, other = _of_one_degree(first, second)
-    return np.array([greatest(along * one + across * other) for along, across in directions])
+    one, other = _same_degree(first, second)
+    return np.array([absolute_peak(cosine * one + sine * other) for cosine, sine in directions])
 
 
-def _of_one_degree(first: Signal, second: Signal) -> tuple[Array, Array]:
+def _same_degree(first: Signal, second: Signal) -> tuple[Array, Array]:
     pieces = first.pieces, second.pieces
     powers = max(one.shape[1] for one in pieces)
-    one, other = (np.pad(given, ((0, 0), (0, powers - given.shape[1]))) for given in pieces)
+    one, other = (np.pad(each, ((0, 0), (0, powers - each.shape[1]))) for each in pieces)
     return one, other

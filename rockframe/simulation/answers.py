@@ -37,7 +37,7 @@ from rockframe.results.points import point_histories, point_labels, point_peaks
 from rockframe.results.schema import ENERGIES, ON_REQUEST, SCHEMA, fitting
 from rockframe.results.variables.variable import EVENT, TIME
 from rockframe.signals.arrays import Array
-from rockframe.signals.motion import Slope
+from rockframe.signals.motion import Incline
 from rockframe.simulation.plan import Plan
 from rockframe.simulation.soundness import SlidingCheck, sliding_scalars, slidings
 from rockframe.solve.observe import memory_at_outputs, observe_run, observe_states
@@ -207,7 +207,7 @@ class _Observed:
         def inside(which: Integers) -> dict[str, Generic]:
             places, length = len(FRACTIONS), steps.length[which]
             time = (steps.time[which] - length)[:, None] + length[:, None] * FRACTIONS
-            time, states = time.ravel(), steps.inside(which, self.system.model, FRACTIONS)
+            time, states = time.ravel(), steps.states_inside(which, self.system.model, FRACTIONS)
             ground = ground_at(self.plan.motion, time)
             moved, resolved = ground_on_slope(ground, slope)
             modes, rows = (np.repeat(of[which], places) for of in (steps.mode, steps.memory_row))
@@ -287,10 +287,10 @@ def _state_of(values: dict[str, Generic], time: Array, ground: Array) -> dict[st
     }
 
 
-def _level(moved: Array, slope: Slope) -> Array:
+def _level(moved: Array, slope: Incline) -> Array:
     """Return horizontal and vertical components of those along and normal to the base."""
     back = replace(slope, inclination=-slope.inclination)
-    return np.column_stack(back.turned(moved[:, 0], moved[:, 1]))
+    return np.column_stack(back.rotated(moved[:, 0], moved[:, 1]))
 
 
 def or_missing(work: Callable[[], Found], instead: Found, what: str, missing: list[str]) -> Found:

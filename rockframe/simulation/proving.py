@@ -281,7 +281,7 @@ def proof_of(
         found = prove_pads(law, mode, state, motion.si, slope, limits, scale=scale, within=within)
         return replace(found, **told)
     assert isinstance(law, BlockOnRigidGround)  # noqa: S101
-    from rockframe.proof.course import prove_block
+    from rockframe.proof.rocking import prove_block
 
     begin = float(state[0]), float(state[1])
     found = prove_block(law, motion.si, slope, limits, begin, scale=scale, within=within)

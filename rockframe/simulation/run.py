@@ -269,7 +269,7 @@ def _attributes(
     coupling = {"coupling": str(system.options.coupling)} if system.scene.coupling else {}
     return {
         "verdict": verdict(summary, system.setting, system.model),
-        "overturned": int(summary.passed),
+        "overturned": int(summary.reached_limit),
         "overturning_time": summary.overturning_time,
         "overturning_direction": Direction(summary.overturning_direction).name.lower(),
         "model": system.setting.model,

@@ -134,10 +134,10 @@ def accuracy_of(choice: "str | float | Accuracy", *, owner: str = "simulate") ->
         raise SolverError(msg) from None
 
 
-STABLE: Final = 0.85
+STABILITY_LIMIT: Final = 0.85
 """Largest product of fixed step and fastest rate for which the method damps any damped vibration;
 the bound is 0.857 for infinite, 1.0 for critical and 2.45 for no damping."""
-WHOLE: Final = 1e-9
+LENGTH_TOLERANCE: Final = 1e-9
 """Share of a sub-step by which it may be longer than its limit."""
 
 
@@ -173,8 +173,8 @@ def substeps_of(accuracy: Accuracy, model: ContactModel, interval: float) -> int
     rate = fastest_rate(model)
     if accuracy.substeps == FEWEST:
         longest = 2.0 * math.pi / rate / accuracy.steps_per_period
-        return ceil(interval / longest * (1.0 - WHOLE))
-    least = ceil(interval * rate / STABLE * (1.0 - WHOLE))
+        return ceil(interval / longest * (1.0 - LENGTH_TOLERANCE))
+    least = ceil(interval * rate / STABILITY_LIMIT * (1.0 - LENGTH_TOLERANCE))
     if accuracy.substeps < least:
         msg = (
             f"Accuracy: substeps={accuracy.substeps} in each interval of {interval:.6g} s "

@@ -17,7 +17,7 @@ from rockframe.dynamics.protocol import (
     Ground,
 )
 from rockframe.solve import workspace as at
-from rockframe.solve.crossings import extremum, interpolate
+from rockframe.solve.crossings import interpolate, quintic_extremum
 from rockframe.solve.equations import BoundEquations
 from rockframe.solve.march import rotation_in_step
 from rockframe.solve.workspace import (
@@ -25,19 +25,19 @@ from rockframe.solve.workspace import (
     RIGHT_LIMIT,
     WEIGHTS,
     EventTable,
-    KnownMode,
     Output,
     Progress,
     Span,
+    UnpackedMode,
     Work,
     Workspace,
-    ground_in,
+    ground_in_step,
 )
 
 ROUNDING: Final = 4.0 * sys.float_info.epsilon
 """Relative rounding error of a term of the energy balance, and of times."""
 RIGHT_ANGLE: Final = 0.5 * math.pi
-ON_SAMPLE: Final = 1e-9
+SAMPLE_TOLERANCE: Final = 1e-9
 """Share of the output step within which the end of a step counts as an output time."""
 
 
@@ -48,7 +48,7 @@ GAUSS_WEIGHTS: Final = table(0.5 * _WEIGHTS)
 
 
 @kernel
-def audit(
+def check_energy_balance(
     equations: BoundEquations, mode: int, memory: Vector, clock: Vector, w: Workspace
 ) -> None:
     """Check the balance of the energies since the start of the run, :eq:`eq-audit`.
@@ -56,17 +56,17 @@ def audit(
     The imbalance is related to the largest energy of the motion: gravity and elastic energy enter
     as differences from their values at rest, which would hide the errors of a quiet run.
     """
-    equations.stored.call(mode, w.state, w.answers, equations.numbers)
-    energies = Energies(w.answers[0], w.answers[1], w.answers[2], w.answers[3])
+    equations.energies.call(mode, w.state, w.scratch, equations.numbers)
+    energies = Energies(w.scratch[0], w.scratch[1], w.scratch[2], w.scratch[3])
     stored = energies.gravity + energies.from_rest
     if math.isnan(clock[at.START_ENERGY]):
         clock[at.START_ENERGY] = energies.kinetic + energies.gravity + energies.from_rest
     lost = clock[at.DISSIPATED] + memory[IMPACT_LOSS] + memory[REPINNING_LOSS] + memory[LINK_LOSS]
     supplied = clock[at.SUPPLIED] + memory[IMPULSIVE_INPUT]
     balance = energies.kinetic + stored + lost - supplied - clock[at.START_ENERGY]
-    moved = max(energies.kinetic, abs(stored), lost, abs(supplied))
-    clock[at.LARGEST_MOVED] = max(clock[at.LARGEST_MOVED], moved)
-    terms = max(moved, abs(energies.gravity), energies.elastic)
+    energy = max(energies.kinetic, abs(stored), lost, abs(supplied))
+    clock[at.LARGEST_ENERGY] = max(clock[at.LARGEST_ENERGY], energy)
+    terms = max(energy, abs(energies.gravity), energies.elastic)
     clock[at.LARGEST_TERM] = max(clock[at.LARGEST_TERM], terms)
     # all terms are rounded, the energies at rest too
     imbalance = abs(balance) - ROUNDING * clock[at.LARGEST_TERM]
@@ -75,25 +75,32 @@ def audit(
 
 @kernel
 def work_between(
-    equations: BoundEquations, start: float, end: float, known: KnownMode, span: Span, w: Workspace
+    equations: BoundEquations,
+    start: float,
+    end: float,
+    unpacked: UnpackedMode,
+    span: Span,
+    w: Workspace,
 ) -> Work:
     """Integrate the powers of dashpots and ground over a part of a step, by Gauss's rule."""
     powers = equations.coordinate_count + equations.variable_count
     dissipated = supplied = 0.0
     for i in range(len(GAUSS_POINTS)):
         fraction = start + GAUSS_POINTS[i] * (end - start)
-        interpolate(equations, known.moving, fraction, span.h, w)
-        ground = ground_in(fraction, span, w.ground)
-        equations.slope.call(known.mode, w.scratch, ground.x, ground.y, w.powers, equations.numbers)
+        interpolate(equations, unpacked.moving, fraction, span.h, w)
+        ground = ground_in_step(fraction, span, w.ground)
+        equations.slope.call(
+            unpacked.mode, w.inner_state, ground.x, ground.y, w.inner_powers, equations.numbers
+        )
         weight = GAUSS_WEIGHTS[i] * (end - start) * span.h
-        dissipated += weight * w.powers[powers]
-        supplied += weight * w.powers[powers + 1]
+        dissipated += weight * w.inner_powers[powers]
+        supplied += weight * w.inner_powers[powers + 1]
     return Work(dissipated, supplied)
 
 
 @kernel
 def work_until(
-    equations: BoundEquations, fraction: float, work: Work, known: KnownMode, span: Span,
+    equations: BoundEquations, fraction: float, work: Work, unpacked: UnpackedMode, span: Span,
     w: Workspace,
 ) -> Work:  # fmt: skip
     """Return the work up to a fraction of a step, so that all of the step has the given work.
@@ -102,47 +109,47 @@ def work_until(
     """
     if fraction >= 1.0:
         return work
-    first = work_between(equations, 0.0, fraction, known, span, w)
-    second = work_between(equations, fraction, 1.0, known, span, w)
+    first = work_between(equations, 0.0, fraction, unpacked, span, w)
+    second = work_between(equations, fraction, 1.0, unpacked, span, w)
     # dissipated energy only grows: it is scaled, not shifted, to the work of the step
     both = first.dissipated + second.dissipated
     share = first.dissipated / both if both > 0.0 else fraction
-    lacking = work.supplied - first.supplied - second.supplied
-    return Work(share * work.dissipated, first.supplied + fraction * lacking)
+    deficit = work.supplied - first.supplied - second.supplied
+    return Work(share * work.dissipated, first.supplied + fraction * deficit)
 
 
 @inlined
 def store_outputs(
-    equations: BoundEquations, end: float, span: Span, known: KnownMode, work: Work,
+    equations: BoundEquations, end: float, span: Span, unpacked: UnpackedMode, work: Work,
     progress: Progress, output: Output, w: Workspace,
 ) -> None:  # fmt: skip
     """Store the output samples that lie in the step that ends at `end`."""
     clock = progress.clock
     step = progress.controls[at.OUTPUT_STEP]
     row = progress.counters[at.OUTPUTS]
-    while row < len(output.mode) and row * step - end <= ON_SAMPLE * step:
-        ahead = row * step - end
+    while row < len(output.mode) and row * step - end <= SAMPLE_TOLERANCE * step:
+        offset = row * step - end
         fraction = 1.0
-        if ahead < -ON_SAMPLE * step and span.h + ahead > 0.0:
-            fraction = 1.0 + ahead / span.h
+        if offset < -SAMPLE_TOLERANCE * step and span.h + offset > 0.0:
+            fraction = 1.0 + offset / span.h
         if len(output.work) > 0:
-            so_far = work_until(equations, fraction, work, known, span, w)
+            so_far = work_until(equations, fraction, work, unpacked, span, w)
             output.work[row, 0] = clock[at.DISSIPATED] + so_far.dissipated
             output.work[row, 1] = clock[at.SUPPLIED] + so_far.supplied
         if fraction < 1.0:
-            interpolate(equations, known.moving, fraction, span.h, w)
-            for i in range(len(w.scratch)):
-                output.state[row, i] = w.scratch[i]
+            interpolate(equations, unpacked.moving, fraction, span.h, w)
+            for i in range(len(w.inner_state)):
+                output.state[row, i] = w.inner_state[i]
         else:
-            for i in range(len(w.new)):
-                output.state[row, i] = w.new[i]
-        output.mode[row] = known.mode
+            for i in range(len(w.new_state)):
+                output.state[row, i] = w.new_state[i]
+        output.mode[row] = unpacked.mode
         row += 1
     progress.counters[at.OUTPUTS] = row
 
 
 @inlined
-def follow_peak(
+def update_peaks(
     equations: BoundEquations, count: int, h: float, clock: Vector, w: Workspace
 ) -> None:
     """Update the peaks of the rotation to both sides, with extrema inside the step.
@@ -155,9 +162,9 @@ def follow_peak(
     )
     for row in range(WEIGHTS + size, len(w.limits), WEIGHTS + size):
         left, right = w.limits[row + LEFT_LIMIT], w.limits[row + RIGHT_LIMIT]
-        share = clock[at.OTHER_SHARE]
-        peaks = peaks_in_step(row, size, count, h, share * left, share * right, w)
-        clock[at.OTHER_SHARE] = max(share, peaks[0] / left, peaks[1] / right)
+        ratio = clock[at.OTHER_ROTATION_RATIO]
+        peaks = peaks_in_step(row, size, count, h, ratio * left, ratio * right, w)
+        clock[at.OTHER_ROTATION_RATIO] = max(ratio, peaks[0] / left, peaks[1] / right)
 
 
 @inlined
@@ -168,28 +175,28 @@ def peaks_in_step(
 
     `row` is the index of its limits.
     """
-    rotation = rotation_in_step(row, size, w.limits, w.state, w.new)
+    rotation = rotation_in_step(row, size, w.limits, w.state, w.new_state)
     peaks = rotation.may_peak(h, left, right)
     left, right = max(left, rotation.left), max(right, rotation.right)
     if peaks:
         a0 = a1 = 0.0
         for i in range(count):
-            a0 += w.limits[row + WEIGHTS + i] * w.first[i]
-            a1 += w.limits[row + WEIGHTS + i] * w.last[i]
-        top = extremum(
+            a0 += w.limits[row + WEIGHTS + i] * w.slope[i]
+            a1 += w.limits[row + WEIGHTS + i] * w.new_slope[i]
+        extremum = quintic_extremum(
             rotation.start, h * rotation.start_rate, h * h * a0,
             rotation.end, h * rotation.end_rate, h * h * a1,
         )  # fmt: skip
-        left, right = max(left, -top), max(right, top)
+        left, right = max(left, -extremum), max(right, extremum)
     return left, right
 
 
 @kernel
-def reach_limit(time: float, size: int, progress: Progress, w: Workspace) -> tuple[int, int]:
+def record_overturning(time: float, size: int, progress: Progress, w: Workspace) -> tuple[int, int]:
     """Record overturning, or the end of the fall after it; return kind of event and status."""
     clock = progress.clock
     if not math.isnan(clock[at.OVERTURNING_TIME]):
-        return TOPPLED, at.FELL
+        return TOPPLED, at.TOPPLED
     rotation = 0.0
     for i in range(size):
         rotation += w.limits[WEIGHTS + i] * w.state[i]
@@ -206,8 +213,8 @@ def reach_limit(time: float, size: int, progress: Progress, w: Workspace) -> tup
 def record_event(
     time: float,
     kind: int,
-    before: KnownMode,
-    after: KnownMode,
+    before: UnpackedMode,
+    after: UnpackedMode,
     memory: Vector,
     progress: Progress,
     events: EventTable,
@@ -249,16 +256,16 @@ def record_event(
 
 
 @inlined
-def accept(
+def count_step(
     fixed: bool, work: Work, ground: Ground, clock: Vector, counters: Integers, w: Workspace
 ) -> None:
     """Add an accepted step to the progress of the run."""
     if not fixed:
         for i in range(len(w.state)):
-            w.reference[i] = max(w.reference[i], abs(w.new[i]))
+            w.reference[i] = max(w.reference[i], abs(w.new_state[i]))
     clock[at.DISSIPATED] += work.dissipated
     clock[at.SUPPLIED] += work.supplied
-    clock[at.LARGEST_MOVED] = max(clock[at.LARGEST_MOVED], abs(clock[at.SUPPLIED]))
+    clock[at.LARGEST_ENERGY] = max(clock[at.LARGEST_ENERGY], abs(clock[at.SUPPLIED]))
     clock[at.GROUND_X] = ground.x
     clock[at.GROUND_Y] = ground.y
     counters[at.STEPS] += 1

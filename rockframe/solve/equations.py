@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 from rockframe.compiled import (
     COMPILED,
-    Bound,
+    BoundFunction,
     Vector,
-    bound,
+    bind,
     inlined,
     is_worth_calling,
     kernel,
@@ -20,14 +20,21 @@ from rockframe.compiled import (
     put,
 )
 from rockframe.dynamics.protocol import CalledBySteps, Equations, Ground
-from rockframe.solve.accuracy import STABLE
-from rockframe.solve.evaluation import ByAddress, Called, CompiledIn, guards_at, powered, slope
+from rockframe.solve.accuracy import STABILITY_LIMIT
+from rockframe.solve.evaluation import (
+    CalledEquations,
+    EquationsByAddress,
+    InlinedEquations,
+    evaluate_guards,
+    evaluate_powers,
+    evaluate_slope,
+)
 from rockframe.solve.march import march_by_tolerance, march_fixed, march_fixed_by_rates
-from rockframe.solve.workspace import KnownMode, Pieces, Progress, StepTable, Workspace
+from rockframe.solve.workspace import Pieces, Progress, StepTable, UnpackedMode, Workspace
 
 
 @kernel
-def switched(
+def switch_mode(
     system: Equations, mode: int, guard: int, state: Vector, ground_x: float, ground_y: float,
     memory: Vector,
 ) -> int:  # fmt: skip
@@ -36,7 +43,7 @@ def switched(
 
 
 @kernel
-def meaning(system: Equations, mode: int, out: Vector) -> None:
+def mode_properties(system: Equations, mode: int, out: Vector) -> None:
     """Write how many coordinates move in a mode, the contact state, and the rate of relaxation."""
     out[0] = system.moving_in(mode)
     out[1] = system.contact_state_of(mode, 0)
@@ -44,13 +51,13 @@ def meaning(system: Equations, mode: int, out: Vector) -> None:
 
 
 @kernel
-def energies(system: Equations, mode: int, state: Vector, out: Vector) -> None:
+def evaluate_energies(system: Equations, mode: int, state: Vector, out: Vector) -> None:
     """Write the energies of a state."""
     put(system.energies(mode, state), 0, out)
 
 
 @kernel
-def observed(
+def evaluate_columns(
     system: Equations, mode: int, state: Vector, slope: Vector, ground_x: float, ground_y: float,
     memory: Vector, out: Vector,
 ) -> None:  # fmt: skip
@@ -65,14 +72,14 @@ class BoundEquations(NamedTuple):
     called at events only are compiled when that pays.
     """
 
-    stepping: Bound  # the loop of steps
-    slope: Bound
-    powering: Bound  # powers of a slope at other rates; the slope where the loop needs none
-    observing: Bound
-    guarding: Bound
-    switching: Bound
-    stored: Bound
-    meaning: Bound
+    march: BoundFunction  # the loop of steps
+    slope: BoundFunction
+    powers: BoundFunction  # powers of a slope at other rates; the slope where the loop needs none
+    columns: BoundFunction
+    guards: BoundFunction
+    switch: BoundFunction
+    energies: BoundFunction
+    mode_properties: BoundFunction
     numbers: Vector
     coordinate_count: int
     variable_count: int
@@ -80,20 +87,20 @@ class BoundEquations(NamedTuple):
 
     @inlined
     def make_steps(
-        self, known: KnownMode, trial: float, pieces: Pieces, progress: Progress, steps: StepTable,
-        w: Workspace,
+        self, unpacked: UnpackedMode, trial: float, pieces: Pieces, progress: Progress,
+        steps: StepTable, w: Workspace,
     ) -> int:  # fmt: skip
         """Make steps until something happens, or try one; see :mod:`rockframe.solve.march`."""
-        called = Called(
-            self.slope, self.powering, self.guarding, self.coordinate_count, self.variable_count,
+        called = CalledEquations(
+            self.slope, self.powers, self.guards, self.coordinate_count, self.variable_count,
             self.guard_count, self.numbers,
         )  # fmt: skip
-        return self.stepping.call(
-            called, known, trial, pieces, progress, steps, w.of_steps(), self.numbers
+        return self.march.call(
+            called, unpacked, trial, pieces, progress, steps, w.of_steps(), self.numbers
         )
 
 
-def gives_powers(system: Equations) -> bool:
+def has_powers(system: Equations) -> bool:
     """Whether equations are :class:`rockframe.dynamics.protocol.EquationsWithPowers`."""
     return hasattr(system, "powers")
 
@@ -116,31 +123,37 @@ def equations_of(
     are as soon as runs have taken so long that this pays. For work at the output times
     (`with_work`) slopes are evaluated so often that they are compiled.
     """
-    march = march_by_tolerance
+    march_kernel = march_by_tolerance
     if fixed_steps:
-        march = march_fixed_by_rates if gives_powers(system) else march_fixed
-    own = None if is_called(system) else bound((march,), CompiledIn(system))[0]
-    if own is not None and (is_worth_calling(own) if compiled_in is None else compiled_in):
-        stepping, powering = own, []
-        (observing,) = bound((observed,), system)
-        (sloping,) = bound((slope,), system, seldom=not (fixed_steps or with_work))
-        (guarding,) = bound((guards_at,), system, seldom=True)
+        march_kernel = march_fixed_by_rates if has_powers(system) else march_fixed
+    inlined_march = None
+    if not is_called(system):
+        (inlined_march,) = bind((march_kernel,), InlinedEquations(system))
+    if inlined_march is not None and (
+        is_worth_calling(inlined_march) if compiled_in is None else compiled_in
+    ):
+        march, powers = inlined_march, []
+        (columns,) = bind((evaluate_columns,), system)
+        (slope,) = bind((evaluate_slope,), system, rarely_called=not (fixed_steps or with_work))
+        (guards,) = bind((evaluate_guards,), system, rarely_called=True)
     else:
-        (stepping,) = bound((march,), ByAddress(), stands_for=own)
-        apart = [powered] if march is march_fixed_by_rates else []
-        sloping, guarding, observing, *powering = bound(
-            (slope, guards_at, observed, *apart), system
+        (march,) = bind((march_kernel,), EquationsByAddress(), fallback_for=inlined_march)
+        powers_kernel = [evaluate_powers] if march_kernel is march_fixed_by_rates else []
+        slope, guards, columns, *powers = bind(
+            (evaluate_slope, evaluate_guards, evaluate_columns, *powers_kernel), system
         )
-    switching, stored, meant = bound((switched, energies, meaning), system, seldom=True)
+    switch, energies, properties = bind(
+        (switch_mode, evaluate_energies, mode_properties), system, rarely_called=True
+    )
     return BoundEquations(
-        stepping=stepping,
-        slope=sloping,
-        powering=powering[0] if powering else sloping,
-        observing=observing,
-        guarding=guarding,
-        switching=switching,
-        stored=stored,
-        meaning=meant,
+        march=march,
+        slope=slope,
+        powers=powers[0] if powers else slope,
+        columns=columns,
+        guards=guards,
+        switch=switch,
+        energies=energies,
+        mode_properties=properties,
         numbers=numbers_in(system),
         coordinate_count=system.coordinates(),
         variable_count=system.variables(),
@@ -150,30 +163,32 @@ def equations_of(
 
 def runs_as_python(equations: BoundEquations) -> bool:
     """Whether a system runs as plain Python, as nothing is compiled or its equations cannot be."""
-    return not COMPILED or any(one.source.failed for one in equations if isinstance(one, Bound))
+    return not COMPILED or any(
+        one.source.failed for one in equations if isinstance(one, BoundFunction)
+    )
 
 
-def has_machine_code(equations: BoundEquations) -> bool:
+def is_fully_compiled(equations: BoundEquations) -> bool:
     """Whether all functions of a system are compiled, those called at events too."""
-    return all(one.source.address for one in equations if isinstance(one, Bound))
+    return all(one.source.address for one in equations if isinstance(one, BoundFunction))
 
 
-def call_nothing_back(equations: BoundEquations) -> None:
+def compile_in_next_run(equations: BoundEquations) -> None:
     """Let the next run compile all functions: for measuring times."""
     for one in equations:
-        if isinstance(one, Bound):
-            one.source.seconds_without = math.inf
+        if isinstance(one, BoundFunction):
+            one.source.fallback_seconds = math.inf
 
 
-def steps_as_machine_code(equations: BoundEquations) -> bool:
+def steps_are_compiled(equations: BoundEquations) -> bool:
     """Whether the functions that steps call are compiled."""
-    bounds = (one for one in equations if isinstance(one, Bound))
-    return all(one.source.address or one.source.is_seldom_called for one in bounds)
+    bounds = (one for one in equations if isinstance(one, BoundFunction))
+    return all(one.source.address or one.source.is_rarely_called for one in bounds)
 
 
 @inlined
-def known_mode(equations: BoundEquations, mode: int, room: Vector) -> KnownMode:
-    """Unpack a mode; `room` is scratch for three numbers."""
-    equations.meaning.call(mode, room, equations.numbers)
-    longest = STABLE / room[2] if room[2] > 0.0 else math.inf
-    return KnownMode(mode, int(room[0]), int(room[1]), longest)
+def unpack_mode(equations: BoundEquations, mode: int, scratch: Vector) -> UnpackedMode:
+    """Unpack a mode; `scratch` holds three numbers."""
+    equations.mode_properties.call(mode, scratch, equations.numbers)
+    longest = STABILITY_LIMIT / scratch[2] if scratch[2] > 0.0 else math.inf
+    return UnpackedMode(mode, int(scratch[0]), int(scratch[1]), longest)

@@ -6,13 +6,13 @@ faster one, by a fifth, but is compiled for each structure of systems and takes 
 
 from typing import Annotated, Any, NamedTuple
 
-from rockframe.compiled import Bound, Vector, inlined, kernel, put, view_from
+from rockframe.compiled import BoundFunction, Vector, inlined, kernel, put, view_from
 from rockframe.dynamics.protocol import Equations, EquationsWithPowers, Ground, Guards, Slope
 from rockframe.solve.workspace import LEFT_LIMIT, RIGHT_LIMIT, WEIGHTS
 
 
 @kernel
-def slope(
+def evaluate_slope(
     system: Equations, mode: int, state: Vector, ground_x: float, ground_y: float, out: Vector
 ) -> None:
     """Write accelerations, rates of variables of first order, and powers."""
@@ -20,18 +20,18 @@ def slope(
 
 
 @kernel
-def powered(
+def evaluate_powers(
     system: EquationsWithPowers, mode: int, state: Vector, ground_x: float, ground_y: float,
     out: Vector,
 ) -> None:  # fmt: skip
     """Write the powers of a state into a slope at the same coordinates but other rates."""
     powers = system.coordinates() + system.variables()
-    found = system.powers(mode, state, out, Ground(ground_x, ground_y))
-    out[powers], out[powers + 1] = found
+    values = system.powers(mode, state, out, Ground(ground_x, ground_y))
+    out[powers], out[powers + 1] = values
 
 
 @inlined
-def guards_at(
+def evaluate_guards(
     system: Equations, mode: int, state: Vector, slope: Vector, ground_x: float, ground_y: float,
     limits: Vector, out: Vector,
 ) -> None:  # fmt: skip
@@ -46,11 +46,11 @@ def guards_at(
             rotation += limits[row + WEIGHTS + i] * state[i]
             rate += limits[row + WEIGHTS + i] * state[size + i]
         left = rotation <= 0.0
-        apart = (
+        distance = (
             limits[row + LEFT_LIMIT] + rotation if left else limits[row + RIGHT_LIMIT] - rotation
         )
-        if apart < out[last]:
-            out[last], out[2 * last + 1] = apart, rate if left else -rate
+        if distance < out[last]:
+            out[last], out[2 * last + 1] = distance, rate if left else -rate
         row += WEIGHTS + size
 
 
@@ -71,13 +71,13 @@ def put_guards(
     out[2 * last + 1] = rate if left else -rate
 
 
-class CompiledIn(NamedTuple):
+class InlinedEquations(NamedTuple):
     """Equations that are compiled into the loop of steps."""
 
     system: Any
 
     @inlined
-    def evaluated(self, called: "Called") -> "CompiledIn":
+    def resolved(self, called: "CalledEquations") -> "InlinedEquations":
         """Return these equations, not those called by their addresses."""
         return self
 
@@ -107,8 +107,8 @@ class CompiledIn(NamedTuple):
     def write_guards(
         self, mode: int, state: Vector, slope: Vector, ground: Ground, limits: Vector, out: Vector
     ) -> None:
-        """Write guards, then their rates, see :func:`guards_at`."""
-        guards_at(self.system, mode, state, slope, ground.x, ground.y, limits, out)
+        """Write guards, then their rates, see :func:`evaluate_guards`."""
+        evaluate_guards(self.system, mode, state, slope, ground.x, ground.y, limits, out)
 
     @inlined
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
@@ -116,12 +116,12 @@ class CompiledIn(NamedTuple):
         return self.system.powers(mode, state, slope, ground)
 
 
-class Called(NamedTuple):
+class CalledEquations(NamedTuple):
     """The equations of a system, which the loop of steps calls by their addresses."""
 
-    slope: Annotated[Bound, slope]
-    powering: Annotated[Bound, powered]
-    guarding: Annotated[Bound, guards_at]
+    slope: Annotated[BoundFunction, evaluate_slope]
+    bound_powers: Annotated[BoundFunction, evaluate_powers]
+    bound_guards: Annotated[BoundFunction, evaluate_guards]
     coordinate_count: int
     variable_count: int
     guard_count: int
@@ -153,23 +153,23 @@ class Called(NamedTuple):
     def write_guards(
         self, mode: int, state: Vector, slope: Vector, ground: Ground, limits: Vector, out: Vector
     ) -> None:
-        """Write guards, then their rates, see :func:`guards_at`."""
-        self.guarding.call(mode, state, slope, ground.x, ground.y, limits, out, self.numbers)
+        """Write guards, then their rates, see :func:`evaluate_guards`."""
+        self.bound_guards.call(mode, state, slope, ground.x, ground.y, limits, out, self.numbers)
 
     @inlined
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
         """Write the powers at the rates of a state into a slope, and return them."""
         powers = self.coordinate_count + self.variable_count
-        self.powering.call(mode, state, ground.x, ground.y, slope, self.numbers)
+        self.bound_powers.call(mode, state, ground.x, ground.y, slope, self.numbers)
         return slope[powers], slope[powers + 1]
 
 
-class ByAddress(NamedTuple):
-    """Stands for equations that are not compiled into the loop of steps."""
+class EquationsByAddress(NamedTuple):
+    """Stand for equations that the loop of steps calls by their addresses."""
 
     unused: float = 0.0  # numba cannot call methods of empty tuples
 
     @inlined
-    def evaluated(self, called: Called) -> Called:
+    def resolved(self, called: CalledEquations) -> CalledEquations:
         """Return the equations that are called by their addresses."""
         return called

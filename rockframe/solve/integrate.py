@@ -17,8 +17,8 @@ from rockframe.compiled import (
     Integers,
     Matrix,
     Vector,
-    seconds_as_python,
-    still_taking,
+    expecting_remaining,
+    python_seconds,
     warn_of_slow_run,
 )
 from rockframe.dynamics.events import FLIGHT, FULL
@@ -40,29 +40,29 @@ from rockframe.solve.driver import advance
 from rockframe.solve.equations import (
     BoundEquations,
     equations_of,
-    has_machine_code,
+    is_fully_compiled,
     runs_as_python,
-    steps_as_machine_code,
+    steps_are_compiled,
 )
 from rockframe.solve.outputs import OutputRows
 from rockframe.solve.schemes import STAGES
-from rockframe.solve.trajectory import Events, Steps, Trajectory, run_counts, steps_of
+from rockframe.solve.trajectory import Events, Steps, Trajectory, steps_of, summary_fields
 from rockframe.solve.workspace import (
-    BESIDE,
-    CODES,
-    ERRORS,
+    MAX_TERMS,
     NO_STEPS,
-    TERMS,
+    ROW_CODES,
+    ROW_HEADER,
+    STATE_ERRORS,
     EventTable,
     Pieces,
     Progress,
     Status,
     StepTable,
     Workspace,
-    has_no_room,
+    is_full,
 )
 
-FIRST_SCALE: Final = 1e-6
+INITIAL_SCALE: Final = 1e-6
 """Share of its typical size that counts as a variable's size before it has moved."""
 FIRST_STEP: Final = 1e-3
 """First step, as a share of the model's shortest period."""
@@ -75,7 +75,7 @@ NEVER: Final = 2**62
 
 
 @dataclass(frozen=True)
-class Begun:
+class RunStart:
     """A run before its first step."""
 
     mode: int  # of the model
@@ -91,7 +91,7 @@ class Begun:
     substeps: int  # fixed steps in each interval, 0 for steps by tolerance
 
 
-def begun(
+def run_start(
     model: ContactModel,
     start: Start | Ending,
     accuracy: Accuracy,
@@ -100,7 +100,7 @@ def begun(
     duration: float,
     output_step: float | None,
     stop_at_overturning: bool,
-) -> Begun:
+) -> RunStart:
     """Return the arrays of a run as they are before its first step.
 
     Arguments as of :func:`integrate`, and the `interval` between samples of the motion [s].
@@ -137,7 +137,7 @@ def begun(
         at.NEXT_STEP: controls[at.MAX_STEP] if substeps else FIRST_STEP * shortest_period,
         at.PEAK_LEFT: max(-rotation, 0.0),
         at.PEAK_RIGHT: max(rotation, 0.0),
-        at.OTHER_SHARE: model.other_share_in(state),
+        at.OTHER_ROTATION_RATIO: model.other_share_in(state),
         at.FIRST_UPLIFT: math.nan if contact == FULL else 0.0,
         at.OVERTURNING_TIME: math.nan,
         at.EVENT_TIME: -1.0,
@@ -145,7 +145,7 @@ def begun(
         at.GROUND_X: math.nan,
         at.GROUND_Y: math.nan,
         at.LARGEST_TERM: noise,
-        at.LARGEST_MOVED: noise,
+        at.LARGEST_ENERGY: noise,
     }
     counters = np.zeros(at.COUNTERS, dtype=np.int64)
     counters[at.MODE] = mode
@@ -155,7 +155,7 @@ def begun(
     counters[at.MAX_STEPS] = counters[at.PAUSE_AT] = accuracy.max_steps
     counters[at.STOP_AT_OVERTURNING] = int(stop_at_overturning)
     counters[at.FLIGHTS] = int(contact == FLIGHT)
-    return Begun(
+    return RunStart(
         mode, state, memory, memory.copy(), _filled(at.CONTROLS, controls),
         _filled(at.CLOCK, clock), counters,
         reference=_sizes(model, accuracy, state, rotation),
@@ -171,7 +171,7 @@ def _filled(size: int, numbers: Mapping[int, float]) -> Vector:
 
 
 def _sizes(model: ContactModel, accuracy: Accuracy, state: Vector, rotation: float) -> Vector:
-    sizes: Vector = np.maximum(np.abs(state), FIRST_SCALE * model.scales)
+    sizes: Vector = np.maximum(np.abs(state), INITIAL_SCALE * model.scales)
     if model.rounding is not None and accuracy.rtol is not None and accuracy.floor > 0.0:
         # no step is so short that its error is below the rounding error of the forces
         noise = model.rounding(abs(rotation))
@@ -179,21 +179,21 @@ def _sizes(model: ContactModel, accuracy: Accuracy, state: Vector, rotation: flo
     return sizes
 
 
-EVENT_ROOM = 256
-STEP_ROOM = 1024
+EVENT_ROWS = 256
+STEP_ROWS = 1024
 STEPS_PER_INTERVAL = 3.0
 """Steps for which memory is allocated, more than most runs need: unwritten memory costs nothing."""
-MOST_STEPS_KEPT = 2_000_000
+MAX_STEPS_KEPT = 2_000_000
 """Most rows of the table of steps, some hundred megabytes: then it grows no more."""
-STEPS_UNHEARD = 2_000_000
+STEPS_BETWEEN_INTERRUPTS = 2_000_000
 """Steps of machine code, a second or less, between checks for a keyboard interrupt."""
 STEPS_CALLING_BACK = 5000
 """Steps of machine code between checks whether functions that it calls back pay to be compiled."""
-STEPS_AT_ONCE = 100
+STEPS_IN_PYTHON = 100
 """Steps in plain Python between checks whether machine code is ready."""
-TELLING = 0.1
+ESTIMATED_AFTER = 0.1
 """Time in plain Python after which the remaining time of the run is estimated [s]."""
-AND_AGAIN = 2.0
+WITH_HISTORIES_AND_CHECK = 2.0
 """Time of a run of fixed steps with its histories and the run that checks it with half as many
 steps more, over the time of the run itself. Measured for blocks on one another: 1.9.
 """
@@ -201,69 +201,71 @@ STILL_INTERVAL = 0.01
 """Interval that takes the place of the sample interval where there is no motion [s]."""
 
 
-def _steps_at_once(equations: BoundEquations) -> int:
+def _steps_to_pause(equations: BoundEquations) -> int:
     """Return how many steps are made before the run pauses."""
-    if has_machine_code(equations):
-        return STEPS_UNHEARD
-    return STEPS_CALLING_BACK if steps_as_machine_code(equations) else STEPS_AT_ONCE
+    if is_fully_compiled(equations):
+        return STEPS_BETWEEN_INTERRUPTS
+    return STEPS_CALLING_BACK if steps_are_compiled(equations) else STEPS_IN_PYTHON
 
 
-class InPython:
+class PythonTime:
     """Time of a run in plain Python, or in steps that stand in for others not yet compiled."""
 
-    def __init__(self, duration: float, interval: float, over_its_own: float) -> None:
-        self.taken = 0.0  # so far [s]
+    def __init__(self, duration: float, interval: float, total_over_rest: float) -> None:
+        self.seconds = 0.0  # so far [s]
         self._rest = 0.0  # what it may still take [s]
         self._duration, self._interval = duration, interval
-        self._over_its_own = over_its_own  # the rest and what follows, over the rest
+        self._total_over_rest = total_over_rest  # the rest and what follows, over the rest
 
     @contextmanager
-    def counted(self, equations: BoundEquations, clock: Vector) -> Generator[None]:
+    def measured(self, equations: BoundEquations, clock: Vector) -> Generator[None]:
         """Count what some steps take, and estimate the rest from how far they come."""
-        was_compiled, began_as_python = steps_as_machine_code(equations), seconds_as_python()
-        began = thread_time()
-        with still_taking(self._rest):
+        was_compiled, started_as_python = steps_are_compiled(equations), python_seconds()
+        started = thread_time()
+        with expecting_remaining(self._rest):
             yield
         self._rest = 0.0
         if was_compiled:  # and nothing was compiled in this time
-            if equations.stepping.stands_for is not None:
-                own = equations.stepping.stands_for.source
-                own.seconds_without += thread_time() - began
-        elif not steps_as_machine_code(equations):
-            self.taken += seconds_as_python() - began_as_python
-            if self.taken > TELLING:
+            if equations.march.fallback_for is not None:
+                replaced = equations.march.fallback_for.source
+                replaced.fallback_seconds += thread_time() - started
+        elif not steps_are_compiled(equations):
+            self.seconds += python_seconds() - started_as_python
+            if self.seconds > ESTIMATED_AFTER:
                 parts = self._duration / max(float(clock[at.TIME]), self._interval)
-                self._rest = self.taken * (parts - 1.0) * self._over_its_own
+                self._rest = self.seconds * (parts - 1.0) * self._total_over_rest
 
 
 class Tables:
     """Tables of events and, in a number of intervals of the motion, of steps, which grow."""
 
     def __init__(
-        self, run: Begun, model: ContactModel, intervals: float | None, *, exact: bool
+        self, run: RunStart, model: ContactModel, intervals: float | None, *, exact: bool
     ) -> None:
         self._width, self._exact = len(run.state), exact
         self.events = EventTable(
-            np.empty((EVENT_ROOM, 1 + 2 * self._width + len(run.memory))),
-            np.empty((EVENT_ROOM, 3), dtype=np.int64),
+            np.empty((EVENT_ROWS, 1 + 2 * self._width + len(run.memory))),
+            np.empty((EVENT_ROWS, 3), dtype=np.int64),
         )
         self.steps = NO_STEPS
         self._closed: Steps | None = None
         if intervals is not None:
             expected = STEPS_PER_INTERVAL * intervals * max(run.substeps, 1)
-            room = STEP_ROOM + math.ceil(min(expected, MOST_STEPS_KEPT))
-            row = BESIDE + 2 * self._width - model.system.coordinates()
-            self.steps = StepTable(np.empty(room * row), np.empty(room * CODES, dtype=np.int64))
+            rows = STEP_ROWS + math.ceil(min(expected, MAX_STEPS_KEPT))
+            row_length = ROW_HEADER + 2 * self._width - model.system.coordinates()
+            self.steps = StepTable(
+                np.empty(rows * row_length), np.empty(rows * ROW_CODES, dtype=np.int64)
+            )
 
-    def make_room(self, counters: Integers) -> bool:
+    def enlarge(self, counters: Integers) -> bool:
         """Make tables longer that are full; whether they could, all steps being kept."""
         if counters[at.EVENTS] >= len(self.events.codes):
-            self.events = EventTable(*_longer(*self.events))
-        if not has_no_room(self.steps.codes, counters):
+            self.events = EventTable(*_doubled(*self.events))
+        if not is_full(self.steps.codes, counters):
             return True
-        grows = bool(counters[at.STEPS_KEPT] < MOST_STEPS_KEPT)
+        grows = bool(counters[at.STEPS_KEPT] < MAX_STEPS_KEPT)
         if grows:
-            self.steps = StepTable(*_longer(*self.steps))
+            self.steps = StepTable(*_doubled(*self.steps))
         return grows
 
     def close(self, counters: Integers, *, complete: bool = True) -> Steps:
@@ -288,7 +290,7 @@ class Tables:
         )
 
 
-def _longer(values: Matrix, codes: Integers) -> tuple[Matrix, Integers]:
+def _doubled(values: Matrix, codes: Integers) -> tuple[Matrix, Integers]:
     """Return the arrays of a table, twice as long."""
     return (
         np.concatenate([values, np.empty_like(values)]),
@@ -336,7 +338,7 @@ def integrate(
     Trajectory
         Also where the run could not be finished; see its status.
     """
-    run = begun(
+    run = run_start(
         model, start, accuracy, interval=STILL_INTERVAL if motion is None else motion.time_step,
         duration=duration, output_step=output_step, stop_at_overturning=stop_at_overturning,
     )  # fmt: skip
@@ -353,21 +355,21 @@ def integrate(
     equations = equations_of(model.system, fixed_steps=not exact, with_work=with_work)
     workspace = make_workspace(equations, run.state, run.reference, run.limits)
     progress = Progress(run.controls, clock, counters)
-    waiting = InPython(duration, interval, 1.0 if exact else AND_AGAIN)
+    python_time = PythonTime(duration, interval, 1.0 if exact else WITH_HISTORIES_AND_CHECK)
     while True:
-        tried = counters[at.STEPS] + counters[at.REJECTED]
-        counters[at.PAUSE_AT] = min(tried + _steps_at_once(equations), counters[at.MAX_STEPS])
-        with waiting.counted(equations, clock):
+        made = counters[at.STEPS] + counters[at.REJECTED]
+        counters[at.PAUSE_AT] = min(made + _steps_to_pause(equations), counters[at.MAX_STEPS])
+        with python_time.measured(equations, clock):
             result = advance(
                 equations, run.tolerance, memory, pieces, progress,
                 rows.output(tables.steps), tables.events, workspace,
             )  # fmt: skip
-        if result not in (at.MORE_ROOM, at.PAUSED):
+        if result not in (at.TABLE_FULL, at.PAUSED):
             break
-        if not tables.make_room(counters):
+        if not tables.enlarge(counters):
             rows.read_from_steps(tables.close(counters, complete=False))
     if not COMPILED or not runs_as_python(equations):  # else a warning has been given already
-        warn_of_slow_run(waiting.taken)
+        warn_of_slow_run(python_time.seconds)
     steps = tables.close(counters) if keep_steps else None
     if steps is not None:
         rows.read_from_steps(steps)
@@ -375,14 +377,14 @@ def integrate(
     time = rows.end(events, clock, workspace.state, finished=result == at.COMPLETED)
     return Trajectory(
         time=time,
-        other_state=rows.state,
+        stored_state=rows.state,
         mode=rows.mode,
         work=rows.work,
         start_mode=run.mode,
         start_memory=run.start_memory,
         events=events,
         status=Status(result),
-        **run_counts(clock, counters),
+        **summary_fields(clock, counters),
         substeps=run.substeps,
         ending=Ending(int(counters[at.MODE]), workspace.state.copy(), memory.copy()),
         start_energy=float(clock[at.START_ENERGY]),
@@ -404,33 +406,33 @@ def make_workspace(
     start, end = ends[: parts[-1]], ends[parts[-1] :]
     start[: parts[0]] = state
     return Workspace(
-        both_ends=ends,
+        ends=ends,
         state=start[: parts[0]],
-        first=start[parts[0] : parts[1]],
-        before=start[parts[1] :],
-        new=end[: parts[0]],
-        last=end[parts[0] : parts[1]],
-        after=end[parts[1] :],
+        slope=start[parts[0] : parts[1]],
+        guards=start[parts[1] :],
+        new_state=end[: parts[0]],
+        new_slope=end[parts[0] : parts[1]],
+        new_guards=end[parts[1] :],
         stages=np.zeros(STAGES * (size + slope)),
-        works=np.zeros(ERRORS + len(state)),
+        works=np.zeros(STATE_ERRORS + len(state)),
         reference=reference,
         limits=limits,
-        scratch=state.copy(),
-        scratch_rates=np.zeros(slope),
-        inside=np.zeros(guards),
-        powers=np.zeros(slope),
-        ground=np.zeros(2 * TERMS),
-        answers=np.zeros(4),
+        inner_state=state.copy(),
+        inner_slope=np.zeros(slope),
+        inner_guards=np.zeros(guards),
+        inner_powers=np.zeros(slope),
+        ground=np.zeros(2 * MAX_TERMS),
+        scratch=np.zeros(4),
     )
 
 
 def pieces_of(motion: Motion | None) -> Pieces:
     """Return the polynomials of the ground acceleration in both directions."""
     if motion is None:
-        return Pieces(_STILL, _STILL)
-    vertical = _STILL if motion.vertical is None else motion.vertical.pieces
+        return Pieces(_NO_PIECES, _NO_PIECES)
+    vertical = _NO_PIECES if motion.vertical is None else motion.vertical.pieces
     return Pieces(motion.horizontal.pieces, vertical)
 
 
-_STILL: Matrix = np.zeros((0, 2))
-_STILL.setflags(write=False)
+_NO_PIECES: Matrix = np.zeros((0, 2))
+_NO_PIECES.setflags(write=False)

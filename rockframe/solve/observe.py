@@ -6,28 +6,29 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from rockframe.compiled import (
-    Bound,
+    BoundFunction,
     IntegerMatrix,
     Integers,
     Matrix,
     Vector,
-    bound,
-    entry_at_once,
+    background_entry,
+    bind,
     kernel,
     numbers_in,
 )
 from rockframe.dynamics.protocol import POWERS, Column, ContactModel, Equations
-from rockframe.solve.equations import energies, observed, slope
+from rockframe.solve.equations import evaluate_columns, evaluate_energies
+from rockframe.solve.evaluation import evaluate_slope
 from rockframe.solve.trajectory import Trajectory
-from rockframe.solve.workspace import BESIDE
+from rockframe.solve.workspace import ROW_HEADER
 
-MANY: Final = 500
+MANY_ROWS: Final = 500
 """Number of rows without slopes from which compiling the slope pays."""
 NO_SAMPLES: Final = np.zeros(0, dtype=np.int64)
 NO_COLUMNS: Final = np.zeros((0, 0))
 
 
-class Room(NamedTuple):
+class RowWorkspace(NamedTuple):
     """Scratch for one row."""
 
     state: Vector
@@ -43,70 +44,86 @@ def copy_row(rows: Matrix, i: int, out: Vector) -> None:
         out[j] = rows[i, j]
 
 
-class OfSystem(NamedTuple):
+class SystemFunction(NamedTuple):
     """A function of a system, and the system's numbers."""
 
-    function: Bound
+    function: BoundFunction
     numbers: Vector
 
 
-def _of(system: Equations, function: Callable[..., None], *, seldom: bool = False) -> OfSystem:
-    (one,) = bound((function,), system, seldom=seldom)
-    return OfSystem(one, numbers_in(system))
+def _system_function(
+    system: Equations, function: Callable[..., None], *, rarely_called: bool = False
+) -> SystemFunction:
+    (one,) = bind((function,), system, rarely_called=rarely_called)
+    return SystemFunction(one, numbers_in(system))
 
 
-@entry_at_once
+@background_entry
 def observe_rows(
-    sloping: OfSystem,
-    observing: OfSystem,
+    slope_function: SystemFunction,
+    column_function: SystemFunction,
     exact: int,
     values: Matrix,
     codes: IntegerMatrix,
     memory: Matrix,
-    wanted: Integers,
+    requested: Integers,
     samples: Integers,
-    room: Room,
+    workspace: RowWorkspace,
     out: Matrix,
-    shown: Matrix,
+    at_samples: Matrix,
 ) -> None:
-    """Fill the columns `wanted` of `out` for each row of the table of steps.
+    """Fill the columns `requested` of `out` for each row of the table of steps.
 
     Slopes are taken from the table if they are `exact`, else evaluated. For the rows `samples`,
-    all columns are filled in `shown` as well, from its second place on.
+    all columns are filled in `at_samples` as well, from its second place on.
     """
     sample = 0
-    width, slopes = len(room.state), values.shape[1] - BESIDE - len(room.state)
+    width, slopes = len(workspace.state), values.shape[1] - ROW_HEADER - len(workspace.state)
     for i in range(len(codes)):
         for j in range(width):
-            room.state[j] = values[i, BESIDE + j]
+            workspace.state[j] = values[i, ROW_HEADER + j]
         mode, x, y = codes[i, 0], values[i, 2], values[i, 3]
         if exact:
             for j in range(slopes):
-                room.slope[j] = values[i, BESIDE + width + j]
+                workspace.slope[j] = values[i, ROW_HEADER + width + j]
         else:
-            sloping.function.call(mode, room.state, x, y, room.slope, sloping.numbers)
-        copy_row(memory, codes[i, 1], room.memory)
-        observing.function.call(
-            mode, room.state, room.slope, x, y, room.memory, room.columns, observing.numbers
+            slope_function.function.call(
+                mode, workspace.state, x, y, workspace.slope, slope_function.numbers
+            )
+        copy_row(memory, codes[i, 1], workspace.memory)
+        column_function.function.call(
+            mode,
+            workspace.state,
+            workspace.slope,
+            x,
+            y,
+            workspace.memory,
+            workspace.columns,
+            column_function.numbers,
         )
-        for j in range(len(wanted)):
-            out[j, i] = room.columns[wanted[j]]
+        for j in range(len(requested)):
+            out[j, i] = workspace.columns[requested[j]]
         if sample < len(samples) and samples[sample] == i:
             sample += 1
-            for j in range(len(room.columns)):
-                shown[j, sample] = room.columns[j]
+            for j in range(len(workspace.columns)):
+                at_samples[j, sample] = workspace.columns[j]
 
 
-@entry_at_once
+@background_entry
 def energy_rows(
-    storing: OfSystem, mode: Integers, state: Matrix, row: Vector, stored: Vector, out: Matrix
+    energy_function: SystemFunction,
+    mode: Integers,
+    state: Matrix,
+    row: Vector,
+    energies: Vector,
+    out: Matrix,
 ) -> None:
-    """Fill a row of energies for each row of states; `row` and `stored` are scratch."""
+    """Fill a row of energies for each row of states; `row` and `energies` are scratch."""
     for i in range(len(mode)):
         copy_row(state, i, row)
-        storing.function.call(mode[i], row, stored, storing.numbers)
-        for j in range(len(stored)):
-            out[i, j] = stored[j]
+        energy_function.function.call(mode[i], row, energies, energy_function.numbers)
+        for j in range(len(energies)):
+            out[i, j] = energies[j]
 
 
 def memory_at_outputs(trajectory: Trajectory) -> tuple[Matrix, Integers]:
@@ -166,7 +183,7 @@ def _rows(
     ground: Matrix,
 ) -> Matrix:
     out = np.empty((len(model.columns), len(mode)))
-    place = np.zeros((len(mode), BESIDE))
+    place = np.zeros((len(mode), ROW_HEADER))
     place[:, 2:] = ground
     _observe(
         model, np.hstack([place, state]), np.stack([mode, memory_row], 1).astype(np.int64), memory,
@@ -176,13 +193,16 @@ def _rows(
 
 
 def _observe(
-    model: ContactModel, values: Matrix, codes: IntegerMatrix, memory: Matrix, wanted: Integers,
-    out: Matrix, exact: bool = False, samples: Integers = NO_SAMPLES, shown: Matrix = NO_COLUMNS,
+    model: ContactModel, values: Matrix, codes: IntegerMatrix, memory: Matrix, requested: Integers,
+    out: Matrix, exact: bool = False, samples: Integers = NO_SAMPLES,
+    at_samples: Matrix = NO_COLUMNS,
 ) -> None:  # fmt: skip
-    moves = _of(model.system, slope, seldom=exact or len(codes) < MANY)
+    slope_function = _system_function(
+        model.system, evaluate_slope, rarely_called=exact or len(codes) < MANY_ROWS
+    )
     observe_rows(
-        moves, _of(model.system, observed), int(exact), values, codes, memory, wanted, samples,
-        _room(model, memory), out, shown,
+        slope_function, _system_function(model.system, evaluate_columns), int(exact), values, codes,
+        memory, requested, samples, _row_workspace(model, memory), out, at_samples,
     )  # fmt: skip
 
 
@@ -218,32 +238,32 @@ def observe_run(
     steps, events, in_steps = run.kept_steps, run.events, run.outputs_in_steps
     memory, row = memory_at_outputs(run)
     before, samples = np.arange(len(events.time)), np.arange(len(run.time))
-    apart = np.delete(samples, slice(1, 1 + len(in_steps)))
-    places = np.concatenate([apart, np.arange(len(samples), len(ground))])
-    shown = np.empty((len(model.columns), len(ground)))
-    shown[:, places] = _rows(
+    not_in_steps = np.delete(samples, slice(1, 1 + len(in_steps)))
+    places = np.concatenate([not_in_steps, np.arange(len(samples), len(ground))])
+    at_samples = np.empty((len(model.columns), len(ground)))
+    at_samples[:, places] = _rows(
         model,
-        np.concatenate([run.mode[apart], events.mode_before, events.mode_after]),
-        np.concatenate([run.other_state[apart], events.state_before, events.state_after]),
+        np.concatenate([run.mode[not_in_steps], events.mode_before, events.mode_after]),
+        np.concatenate([run.stored_state[not_in_steps], events.state_before, events.state_after]),
         memory,
-        np.concatenate([row[apart], before, before + 1]),
+        np.concatenate([row[not_in_steps], before, before + 1]),
         ground[places],
     )
     chosen = [i for i, one in enumerate(model.columns) if names is None or one.name in names]
     out = np.empty((len(chosen), len(steps.time)))
     _observe(
         model, steps.values, steps.codes, memory, np.array(chosen, dtype=np.int64), out,
-        steps.exact, in_steps, shown,
+        steps.exact, in_steps, at_samples,
     )  # fmt: skip
     along = _named(model, [model.columns[i] for i in chosen], out)
-    return along, _named(model, model.columns, shown)
+    return along, _named(model, model.columns, at_samples)
 
 
-def _room(model: ContactModel, memory: Matrix) -> Room:
+def _row_workspace(model: ContactModel, memory: Matrix) -> RowWorkspace:
     size, variables = model.system.coordinates(), model.system.variables()
     slopes = size + variables
     sizes = size + slopes, slopes + POWERS, memory.shape[1], len(model.columns)
-    return Room(*(np.zeros(size) for size in sizes))
+    return RowWorkspace(*(np.zeros(size) for size in sizes))
 
 
 def _named(model: ContactModel, columns: Sequence[Column], out: Matrix) -> dict[str, Vector]:
@@ -266,7 +286,7 @@ def energies_of(model: ContactModel, trajectory: Trajectory) -> Matrix:
     """
     out = np.empty((len(trajectory.time), 4))
     energy_rows(
-        _of(model.system, energies),
+        _system_function(model.system, evaluate_energies),
         trajectory.mode,
         np.ascontiguousarray(trajectory.state),
         np.zeros(trajectory.state.shape[1]),

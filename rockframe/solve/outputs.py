@@ -6,7 +6,7 @@ import numpy as np
 
 from rockframe.compiled import Integers, Matrix, Vector
 from rockframe.solve import workspace as at
-from rockframe.solve.bookkeeping import ON_SAMPLE, ROUNDING
+from rockframe.solve.bookkeeping import ROUNDING, SAMPLE_TOLERANCE
 from rockframe.solve.trajectory import Events, Steps
 from rockframe.solve.workspace import Output, Pieces, StepTable
 
@@ -38,26 +38,26 @@ class OutputRows:
     def expect_in_steps(self, pieces: Pieces, interval: float) -> None:
         """Leave out what the table of steps will hold: output times that are samples."""
         if len(self.mode):
-            self._expected = self._on_samples(max(map(len, pieces)), interval)
+            self._expected = self._count_on_samples(max(map(len, pieces)), interval)
             self._counters[at.OUTPUTS] += self._expected
 
-    def _on_samples(self, intervals: int, interval: float) -> int:
+    def _count_on_samples(self, intervals: int, interval: float) -> int:
         """Count the output times behind the start that are samples of the motion."""
-        every = round(self.step / interval)
-        if every < 1:
+        intervals_per_output = round(self.step / interval)
+        if intervals_per_output < 1:
             return 0
-        count = min(len(self.mode) - 1, intervals // every)
+        count = min(len(self.mode) - 1, intervals // intervals_per_output)
         last = count * self.step
-        apart = abs(last - count * every * interval) + ROUNDING * last
-        return count if apart <= 0.5 * ON_SAMPLE * self.step else 0
+        difference = abs(last - count * intervals_per_output * interval) + ROUNDING * last
+        return count if difference <= 0.5 * SAMPLE_TOLERANCE * self.step else 0
 
     def read_from_steps(self, steps: Steps) -> None:
         """Find the expected output times that the run reached in its steps, and their modes."""
         if not self._expected:
             return
         # the first row at, or just before, each multiple of the output step
-        passed = np.floor(steps.time / self.step + ON_SAMPLE)
-        self.in_steps = 1 + np.flatnonzero(passed[1:] > passed[:-1])[: self._expected]
+        reached = np.floor(steps.time / self.step + SAMPLE_TOLERANCE)
+        self.in_steps = 1 + np.flatnonzero(reached[1:] > reached[:-1])[: self._expected]
         count = 1 + len(self.in_steps)
         self.mode[1:count] = steps.mode[self.in_steps]
         if count <= self._expected:  # the run ended before
@@ -73,12 +73,12 @@ class OutputRows:
         self.state, self.mode = self.state[:stored], self.mode[:stored]
         self.work = self.work[:stored]
         time: Vector = np.arange(stored, dtype=np.float64) * self.step
-        at_once = int(np.count_nonzero(events.time == 0.0))
-        if stored and at_once:  # the first sample shows the state after the events at the start
-            self.state[0] = events.state_after[at_once - 1]
-            self.mode[0] = events.mode_after[at_once - 1]
+        at_start = int(np.count_nonzero(events.time == 0.0))
+        if stored and at_start:  # the first sample shows the state after the events at the start
+            self.state[0] = events.state_after[at_start - 1]
+            self.mode[0] = events.mode_after[at_start - 1]
         end = float(clock[at.TIME])
-        if stored and not finished and end - time[-1] > ON_SAMPLE * self.step:
+        if stored and not finished and end - time[-1] > SAMPLE_TOLERANCE * self.step:
             time = np.append(time, end)
             self.state = np.vstack([self.state, state])
             self.mode = np.append(self.mode, self._counters[at.MODE])

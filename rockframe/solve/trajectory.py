@@ -15,11 +15,13 @@ from rockframe.compiled import Integers, Matrix, Vector
 from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.many import isnan, largest
 from rockframe.solve import workspace as at
-from rockframe.solve.crossings import cubic, quintic
-from rockframe.solve.workspace import BESIDE, CODES, Status, StepTable
+from rockframe.solve.crossings import cubic_value_and_rate, quintic_coefficients
+from rockframe.solve.workspace import ROW_CODES, ROW_HEADER, Status, StepTable
 
-_quintic: Final = cast("Callable[..., tuple[Matrix, ...]]", quintic)  # of arrays too
-_cubic: Final = cast("Callable[..., tuple[Matrix, ...]]", cubic)
+_quintic_coefficients: Final = cast(
+    "Callable[..., tuple[Matrix, ...]]", quintic_coefficients
+)  # of arrays too
+_cubic_value_and_rate: Final = cast("Callable[..., tuple[Matrix, ...]]", cubic_value_and_rate)
 
 
 @dataclass(frozen=True)
@@ -47,10 +49,10 @@ class Steps:
     slope: Matrix = field(init=False)
 
     def __post_init__(self) -> None:
-        values, codes, end = self.values, self.codes, BESIDE + self.width
+        values, codes, end = self.values, self.codes, ROW_HEADER + self.width
         vars(self).update(
-            time=values[:, 0], length=values[:, 1], ground=values[:, 2:BESIDE],
-            state=values[:, BESIDE:end], slope=values[:, end:],
+            time=values[:, 0], length=values[:, 1], ground=values[:, 2:ROW_HEADER],
+            state=values[:, ROW_HEADER:end], slope=values[:, end:],
             mode=codes[:, 0], memory_row=codes[:, 1],
         )  # fmt: skip
 
@@ -61,7 +63,7 @@ class Steps:
             count -= 1
         return replace(self, values=self.values[:count], codes=self.codes[:count])
 
-    def inside(self, which: Integers, model: ContactModel, fraction: Vector) -> Matrix:
+    def states_inside(self, which: Integers, model: ContactModel, fraction: Vector) -> Matrix:
         """Return states inside steps by their dense solution, :eq:`eq-hermite`."""
         size, u = model.system.coordinates(), fraction[:, None]
         h = self.length[which, None, None]
@@ -70,23 +72,25 @@ class Steps:
         )
         x, v, w = (slice(0, size), slice(size, 2 * size), slice(2 * size, None))
         rates = slice(size, None)
-        c0, c1, c2, c3, c4, c5 = _quintic(
+        c0, c1, c2, c3, c4, c5 = _quintic_coefficients(
             state[..., x], h * state[..., v], h * h * first[..., x],
             new[..., x], h * new[..., v], h * h * last[..., x],
         )  # fmt: skip
-        place = c0 + u * (c1 + u * (c2 + u * (c3 + u * (c4 + u * c5))))
-        speed = (c1 + u * (2.0 * c2 + u * (3.0 * c3 + u * (4.0 * c4 + u * 5.0 * c5)))) / h
-        value, _ = _cubic(
+        coordinate = c0 + u * (c1 + u * (c2 + u * (c3 + u * (c4 + u * c5))))
+        velocity = (c1 + u * (2.0 * c2 + u * (3.0 * c3 + u * (4.0 * c4 + u * 5.0 * c5)))) / h
+        variable, _ = _cubic_value_and_rate(
             state[..., w], h * first[..., rates], new[..., w], h * last[..., rates], u
         )
         moves = np.arange(size) < model.moving(self.mode[which])[:, None, None]
-        place = np.where(moves, place, state[..., x])
-        return np.concatenate([place, np.where(moves, speed, state[..., v]), value], axis=-1)
+        coordinate = np.where(moves, coordinate, state[..., x])
+        return np.concatenate(
+            [coordinate, np.where(moves, velocity, state[..., v]), variable], axis=-1
+        )
 
 
 def steps_of(table: StepTable, counters: Integers, width: int, *, exact: bool) -> Steps:
     """Return the steps that a run has kept, whose states have `width` numbers."""
-    codes, count = table.codes.reshape(-1, CODES), int(counters[at.STEPS_KEPT])
+    codes, count = table.codes.reshape(-1, ROW_CODES), int(counters[at.STEPS_KEPT])
     values = table.values.reshape(len(codes), -1)
     return Steps(values[:count], codes[:count], width, exact).until(np.inf)
 
@@ -125,7 +129,7 @@ class Summary:
     energy_residual: float  # largest imbalance of the energies over the largest energy of motion
     ending: Ending  # where the run ended
     # largest ratio of another body's rotation to its overturning angle
-    other_share: float = 0.0
+    other_rotation_ratio: float = 0.0
 
     @property
     def peak_rotation(self) -> float:
@@ -133,7 +137,7 @@ class Summary:
         return largest(self.peak_left, self.peak_right)
 
     @property
-    def passed(self) -> bool:
+    def reached_limit(self) -> bool:
         """Whether the rotation reached the overturning angle."""
         return not isnan(self.overturning_time)
 
@@ -163,7 +167,7 @@ class Trajectory(Summary):
 
     time: Vector  # output times [s]
     # states at these, except those that `steps` has, see `outputs_in_steps`
-    other_state: Matrix
+    stored_state: Matrix
     mode: Integers  # modes of the model
     work: Matrix  # energies dissipated by dashpots and put in by the ground; no rows unless stored
     start_mode: int  # the model's mode at the start
@@ -180,8 +184,8 @@ class Trajectory(Summary):
         """Coordinates, then their rates, at the output times, shape (times, 2 n + variables)."""
         count = len(self.outputs_in_steps)
         if count:
-            self.other_state[1 : 1 + count] = self.kept_steps.state[self.outputs_in_steps]
-        return self.other_state
+            self.stored_state[1 : 1 + count] = self.kept_steps.state[self.outputs_in_steps]
+        return self.stored_state
 
     @property
     def kept_steps(self) -> Steps:
@@ -192,15 +196,15 @@ class Trajectory(Summary):
         return self.steps
 
 
-def run_counts(clock: Vector, counters: Integers) -> dict[str, Any]:
+def summary_fields(clock: Vector, counters: Integers) -> dict[str, Any]:
     """Return the fields of a summary that follow from the progress of a finished run."""
     reals, wholes = clock.tolist(), counters.tolist()
-    moved, residual = reals[at.LARGEST_MOVED], reals[at.RESIDUAL]
+    energy, residual = reals[at.LARGEST_ENERGY], reals[at.RESIDUAL]
     return {
         "end_time": reals[at.TIME],
         "peak_left": reals[at.PEAK_LEFT],
         "peak_right": reals[at.PEAK_RIGHT],
-        "other_share": reals[at.OTHER_SHARE],
+        "other_rotation_ratio": reals[at.OTHER_ROTATION_RATIO],
         "overturning_time": reals[at.OVERTURNING_TIME],
         "overturning_direction": int(reals[at.OVERTURNING_SIDE]),
         "first_uplift_time": reals[at.FIRST_UPLIFT],
@@ -209,5 +213,5 @@ def run_counts(clock: Vector, counters: Integers) -> dict[str, Any]:
         "flight_count": wholes[at.FLIGHTS],
         "step_count": wholes[at.STEPS],
         "rejected_count": wholes[at.REJECTED],
-        "energy_residual": residual / moved if moved > 0.0 else 0.0,
+        "energy_residual": residual / energy if energy > 0.0 else 0.0,
     }

@@ -47,12 +47,12 @@ class Status(IntEnum):
 
 
 # Results of the integrator: a Status, or one of these.
-MORE_ROOM: Final = -1
+TABLE_FULL: Final = -1
 PAUSED: Final = -2
 
 COMPLETED: Final = int(Status.COMPLETED)
 OVERTURNED: Final = int(Status.OVERTURNED)
-FELL: Final = int(Status.TOPPLED)
+TOPPLED: Final = int(Status.TOPPLED)
 STEP_LIMIT: Final = int(Status.STEP_LIMIT)
 STEP_TOO_SMALL: Final = int(Status.STEP_TOO_SMALL)
 CHATTER: Final = int(Status.CHATTER)
@@ -78,10 +78,10 @@ PEAK_LEFT: Final = 3  # largest rotation of the block to the left [rad]
 PEAK_RIGHT: Final = 4  # and to the right
 DISSIPATED: Final = 5  # work of dashpots
 SUPPLIED: Final = 6  # work of the ground
-LARGEST_MOVED: Final = 7  # largest energy of the motion so far
+LARGEST_ENERGY: Final = 7  # largest energy of the motion so far
 GROUND_X: Final = 8  # ground acceleration at the end of the last step [m s^-2]
 GROUND_Y: Final = 9
-OF_STEPS: Final = 10
+STEP_CLOCK: Final = 10
 FIRST_UPLIFT: Final = 10  # time of the first loss of contact, or NaN [s]
 OVERTURNING_TIME: Final = 11  # or NaN [s]
 OVERTURNING_SIDE: Final = 12  # sign of the rotation then
@@ -91,10 +91,10 @@ START_ENERGY: Final = 15  # energy at the start, or NaN before it is known
 EVENT_TIME: Final = 16  # time of the last event [s]
 TIME: Final = 17  # time that the run has reached, written when the driver returns [s]
 STEP: Final = 18  # length of the last step, where the march leaves it to the driver [s]
-ASKED: Final = 19  # length of the sub-step that it is, or is a part of [s]
-EXCESS: Final = 20  # its error over the error allowed
+REQUESTED: Final = 19  # length of the sub-step that it is, or is a part of [s]
+ERROR_NORM: Final = 20  # its error over the error allowed
 NEXT_OUTPUT: Final = 21  # next output time, less a margin for rounding [s]
-OTHER_SHARE: Final = 22  # largest ratio of another body's rotation to its limit
+OTHER_ROTATION_RATIO: Final = 22  # largest ratio of another body's rotation to its limit
 CLOCK: Final = 23
 
 # counters: integer progress and switches
@@ -110,7 +110,7 @@ PENDING: Final = 8  # guard that has fallen and whose event is still to be carri
 CLOSE_EVENTS: Final = 9  # events in a row that count as chatter
 MAX_STEPS: Final = 10
 STOP_AT_OVERTURNING: Final = 11  # 1 if the run ends there
-HALF: Final = 12  # half of `both_ends` that is the start of the next step
+HALF: Final = 12  # half of `ends` that is the start of the next step
 DEGREE_X: Final = 13  # degree of the ground's polynomial in the present interval
 DEGREE_Y: Final = 14
 STALE: Final = 15  # whether slope and guards at the state must be evaluated again
@@ -122,19 +122,19 @@ COUNTERS: Final = 19
 CLOSE_EVENTS_LIMIT: Final = 1000
 """Most events in a row, each within CHATTER_TIME of the one before; more end a run as chatter."""
 
-TERMS: Final = 6
+MAX_TERMS: Final = 6
 """Most coefficients per direction and interval; a record needs two, an analytic pulse six."""
 
-BESIDE: Final = 4
+ROW_HEADER: Final = 4
 """Numbers before the state in a row of :class:`StepTable`."""
-CODES: Final = 2
+ROW_CODES: Final = 2
 """Whole numbers in such a row."""
 
-ERRORS: Final = 3
+STATE_ERRORS: Final = 3
 """Index in `works` of the first error of the state."""
 
 
-class KnownMode(NamedTuple):
+class UnpackedMode(NamedTuple):
     """A mode, and what it means for steps: unpacked when it begins.
 
     The contact state is that of the body that the scene is about.
@@ -143,7 +143,7 @@ class KnownMode(NamedTuple):
     mode: int
     moving: int  # leading coordinates that move
     contact: int  # rockframe.dynamics.events.ContactState
-    longest: float  # longest fixed step that is stable for the relaxation of a constraint [s]
+    longest_step: float  # longest fixed step that is stable for the relaxation of a constraint [s]
 
 
 class Pieces(NamedTuple):
@@ -192,7 +192,7 @@ class EventTable(NamedTuple):
 class StepArrays(NamedTuple):
     """Those arrays of a :class:`Workspace` that the loop of steps reads and writes."""
 
-    both_ends: Vector
+    ends: Vector
     stages: Vector
     works: Vector
     reference: Vector
@@ -206,29 +206,29 @@ class Workspace(NamedTuple):
     A *slope* holds accelerations, rates of variables of first order, and powers.
     """
 
-    both_ends: Vector  # memory of both ends of a step: of the next six arrays
+    ends: Vector  # memory of both ends of a step: of the next six arrays
     state: Vector  # state at the start
-    first: Vector  # slope at the start
-    before: Vector  # guards and their rates at the start
-    new: Vector  # state at the end
-    last: Vector  # slope at the end
-    after: Vector  # guards and their rates at the end
+    slope: Vector  # slope at the start
+    guards: Vector  # guards and their rates at the start
+    new_state: Vector  # state at the end
+    new_slope: Vector  # slope at the end
+    new_guards: Vector  # guards and their rates at the end
     stages: Vector  # velocities and slopes of the stages
     works: Vector  # energies dissipated and put in, error of their difference, errors of the state
     reference: Vector  # largest size so far of each element of the state
     limits: Vector  # limits of rotations, see LEFT_LIMIT
-    scratch: Vector  # a state inside the step
-    scratch_rates: Vector  # its slope
-    inside: Vector  # guards and their rates inside the step
-    powers: Vector  # a slope inside the step, evaluated for its powers
+    inner_state: Vector  # a state inside the step
+    inner_slope: Vector  # its slope
+    inner_guards: Vector  # guards and their rates inside the step
+    inner_powers: Vector  # a slope inside the step, evaluated for its powers
     ground: Vector  # coefficients of the ground acceleration in the present interval
-    answers: Vector  # scratch for a few numbers that the system gives
+    scratch: Vector  # scratch for a few numbers that the system gives
 
     @inlined
     def of_steps(self) -> StepArrays:
         """Return those arrays that the loop of steps reads and writes."""
         return StepArrays(
-            self.both_ends, self.stages, self.works, self.reference, self.limits, self.ground
+            self.ends, self.stages, self.works, self.reference, self.limits, self.ground
         )
 
 
@@ -243,36 +243,36 @@ NO_STEPS: Final = StepTable(np.empty(0), np.empty(0, dtype=np.int64))
 
 
 @inlined
-def keep_row(
+def append_row(
     time: float, length: float, mode: int, ground: Ground, width: int, slopes: int, state: Vector,
     slope: Vector, counters: Integers, values: Vector, codes: Integers,
 ) -> None:  # fmt: skip
     """Fill a row of the table of steps with `width` and `slopes` numbers of state and slope."""
     row = counters[STEPS_KEPT]
-    begin = row * (BESIDE + width + slopes)
+    begin = row * (ROW_HEADER + width + slopes)
     values[begin], values[begin + 1] = time, length
     values[begin + 2], values[begin + 3] = ground.x, ground.y
     for i in range(width):
-        values[begin + BESIDE + i] = state[i]
+        values[begin + ROW_HEADER + i] = state[i]
     for i in range(slopes):
-        values[begin + BESIDE + width + i] = slope[i]
-    codes[CODES * row], codes[CODES * row + 1] = mode, counters[EVENTS]
+        values[begin + ROW_HEADER + width + i] = slope[i]
+    codes[ROW_CODES * row], codes[ROW_CODES * row + 1] = mode, counters[EVENTS]
     counters[STEPS_KEPT] = row + 1
 
 
 @inlined
-def has_no_room(codes: Integers, counters: Integers) -> bool:
+def is_full(codes: Integers, counters: Integers) -> bool:
     """Whether a table of steps, if one is kept, has no room for a start and a step from it."""
-    return CODES * (counters[STEPS_KEPT] + 2) > len(codes) > 0
+    return ROW_CODES * (counters[STEPS_KEPT] + 2) > len(codes) > 0
 
 
 @inlined
-def swapped(w: Workspace) -> Workspace:
+def with_ends_swapped(w: Workspace) -> Workspace:
     """Return the workspace with both ends exchanged: the end of a step is the start of the next."""
     return Workspace(
-        w.both_ends, w.new, w.last, w.after, w.state, w.first, w.before, w.stages, w.works,
-        w.reference,
-        w.limits, w.scratch, w.scratch_rates, w.inside, w.powers, w.ground, w.answers,
+        w.ends, w.new_state, w.new_slope, w.new_guards, w.state, w.slope, w.guards, w.stages,
+        w.works, w.reference, w.limits, w.inner_state, w.inner_slope, w.inner_guards,
+        w.inner_powers, w.ground, w.scratch,
     )  # fmt: skip
 
 
@@ -311,7 +311,7 @@ def load_interval(index: int, pieces: ReadOnlyMatrix, first: int, coefficients: 
 
 
 @inlined
-def polynomial(u: float, degree: int, first: int, coefficients: Vector) -> float:
+def polynomial_value(u: float, degree: int, first: int, coefficients: Vector) -> float:
     """Evaluate at u the polynomial whose coefficients begin at index `first`."""
     value = coefficients[first + degree]
     for j in range(degree - 1, -1, -1):
@@ -320,7 +320,7 @@ def polynomial(u: float, degree: int, first: int, coefficients: Vector) -> float
 
 
 @inlined
-def may_turn(degree_x: int, degree_y: int, coefficients: Vector) -> bool:
+def ground_may_peak(degree_x: int, degree_y: int, coefficients: Vector) -> bool:
     """Whether the ground acceleration may have a peak inside an interval, not at its ends.
 
     Of two directions that bend, or of one that bends and another that changes, some sum may have
@@ -330,18 +330,18 @@ def may_turn(degree_x: int, degree_y: int, coefficients: Vector) -> bool:
         return False
     if min(degree_x, degree_y) > 0:
         return True
-    first, degree = (0, degree_x) if degree_x > degree_y else (TERMS, degree_y)
-    bends = 0.0
+    first, degree = (0, degree_x) if degree_x > degree_y else (MAX_TERMS, degree_y)
+    higher_terms = 0.0
     for j in range(2, degree + 1):
-        bends += j * abs(coefficients[first + j])
-    return abs(coefficients[first + 1]) <= bends
+        higher_terms += j * abs(coefficients[first + j])
+    return abs(coefficients[first + 1]) <= higher_terms
 
 
 @inlined
-def ground_in(fraction: float, span: Span, coefficients: Vector) -> Ground:
+def ground_in_step(fraction: float, span: Span, coefficients: Vector) -> Ground:
     """Return the ground acceleration at a fraction of a step."""
     u = span.u + fraction * span.du
     return Ground(
-        polynomial(u, span.degree_x, 0, coefficients),
-        polynomial(u, span.degree_y, TERMS, coefficients),
+        polynomial_value(u, span.degree_x, 0, coefficients),
+        polynomial_value(u, span.degree_y, MAX_TERMS, coefficients),
     )

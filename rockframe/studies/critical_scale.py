@@ -16,7 +16,7 @@ from rockframe.motion import GroundMotion
 from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.studies import Outcome
 from rockframe.shared_arguments import takes
-from rockframe.signals.motion import turning_points
+from rockframe.signals.motion import extrema_of
 from rockframe.simulation.certify.run_summary import RunSummary
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.provenance import motion_attributes
@@ -220,7 +220,7 @@ def _uplift_scale(system: System, plan: Plan) -> float:
     if motion is None or motion.si.vertical is not None:
         return math.nan
     pieces = motion.si.horizontal.pieces
-    _, between = turning_points(pieces)
+    _, between = extrema_of(pieces)
     values = np.concatenate([pieces[:, 0], pieces.sum(axis=1), between])
     # ground that is accelerated to the right tips the block to the left
     peaks = float(values.max()), -float(values.min())

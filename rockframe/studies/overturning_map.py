@@ -14,7 +14,7 @@ from rockframe.results.schema import SCHEMA, with_labels, with_variables
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
-from rockframe.signals.motion import greatest
+from rockframe.signals.motion import absolute_peak
 from rockframe.simulation.system import System, check_system
 from rockframe.studies.limit_states import overturns
 from rockframe.studies.lines import SCALE, SOURCE, VERDICT, Lines, read_rising, read_width
@@ -189,7 +189,7 @@ def _labels(
         own = setting.body.frequency_at(system.options.gravity)
         rows.append(("relative_pulse_frequency", MOTION, angular / own))
         # of amplitude one, which need not be the peak, as in less than a quarter of a sine
-        peaks = np.array([greatest(one.si.horizontal.pieces) for one in pulses])
+        peaks = np.array([absolute_peak(one.si.horizontal.pieces) for one in pulses])
         if np.ptp(peaks) <= _SAME_PEAK * peaks.max():
             rows.append(("relative_peak_ground_acceleration", SCALE, levels * peaks[0] / uplift))
     found = {name: (dim, values, SCHEMA[name].attributes()) for name, dim, values in rows}

@@ -9,7 +9,7 @@ from typing import Final, Literal, TypeAlias, TypeVar
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.dynamics.body import BY_CONTACT, CENTRE, LEADING_CORNER
 from rockframe.errors import RockframeError, nearest, shown
-from rockframe.signals.motion import Slope
+from rockframe.signals.motion import Incline
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel
 from rockframe.units import ACCELERATION, ANGLE, POSITIVE, Condition, Measure, QuantityLike, to_si
 
@@ -96,11 +96,11 @@ class Options:
     inclination: float = 0.0
     sliding: Sliding = Sliding.COMPUTED
     # inclination of the base and gravity; whether the kinematics are expanded to second order
-    slope: Slope = field(init=False, repr=False, compare=False)
+    slope: Incline = field(init=False, repr=False, compare=False)
     small: bool = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        slope = Slope(self.inclination, self.gravity)
+        slope = Incline(self.inclination, self.gravity)
         vars(self).update(slope=slope, small=self.rotation is Rotation.SMALL)
 
     def to_dict(self) -> dict[str, str]:

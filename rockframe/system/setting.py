@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar, NamedTuple, cast
 
 from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.many import largest
-from rockframe.signals.motion import Slope
+from rockframe.signals.motion import Incline
 from rockframe.system.bodies import BaseLoad, OverturningAngles, SupportedBody
 from rockframe.system.options import Options
 from rockframe.system.rigid_base import NO_VERTICAL_START
@@ -60,7 +60,7 @@ class Setting(ABC):
     body: SupportedBody = field(init=False, repr=False, compare=False)
     options: Options = field(init=False, repr=False, compare=False)
     gravity: float = field(init=False, repr=False, compare=False)
-    slope: Slope = field(init=False, repr=False, compare=False)
+    slope: Incline = field(init=False, repr=False, compare=False)
     # whether the body is not symmetric, or stands on a slope; rotations of unstable equilibrium to
     # either side, relative to the base line [rad]
     leans: bool = field(init=False, repr=False, compare=False)

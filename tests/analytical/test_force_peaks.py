@@ -84,7 +84,7 @@ def test_a_jump_of_the_ground_is_seen_from_both_sides():
 
 def test_the_table_of_steps_grows(monkeypatch):
     whole = SCENES["pads"].simulate(PULSE, duration="1.5 s", points=TOP)
-    monkeypatch.setattr("rockframe.solve.integrate.STEP_ROOM", 1)
+    monkeypatch.setattr("rockframe.solve.integrate.STEP_ROWS", 1)
     monkeypatch.setattr("rockframe.solve.integrate.STEPS_PER_INTERVAL", 0.0)
     grown = SCENES["pads"].simulate(PULSE, duration="1.5 s", points=TOP)
     assert grown.drop_attrs().identical(whole.drop_attrs())

@@ -11,7 +11,7 @@ pytest.importorskip("flint")
 import rockframe as rf
 from rockframe.errors import ComponentError
 from rockframe.proof.balls import bits
-from rockframe.proof.sets import PRECISIONS, proved
+from rockframe.proof.sets import PRECISIONS, prove_for_set
 from rockframe.proof.verdict import EXACT, Proof
 
 FAST = 1e-5  # of the scale, where runs with accuracy="fast" are right
@@ -266,6 +266,6 @@ def test_more_bits_are_taken_as_long_as_they_lead_on(ends, tried):
         attempts.append(bits())
         return Proof("undecided", reason, time, time, 1e-20, 0, bits(), 1.0, "a law"), []
 
-    found = proved(attempt, EXACT)
+    found = prove_for_set(attempt, EXACT)
     assert attempts == [*PRECISIONS[:tried]]
     assert (found.reason, found.bits) == (ends[tried - 1][0], PRECISIONS[tried - 1])

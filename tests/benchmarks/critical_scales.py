@@ -22,7 +22,7 @@ from records import records_folder
 
 import rockframe as rf
 from rockframe.errors import RockframeWarning
-from rockframe.signals.motion import greatest
+from rockframe.signals.motion import absolute_peak
 from rockframe.simulation.certify.run_summary import RunSummary
 from rockframe.simulation.plan import plan_run
 from rockframe.simulation.run import summary_of
@@ -105,7 +105,7 @@ def dense(kind: str, system: rf.System, motion: rf.GroundMotion) -> Dense:
     ]
     start = 0
     if not system.parts.signature & {"pads", "soil"} and motion.si.vertical is None:
-        uplift = system.setting.uplift_acceleration / greatest(motion.si.horizontal.pieces)
+        uplift = system.setting.uplift_acceleration / absolute_peak(motion.si.horizontal.pieces)
         start = int(uplift / LARGEST * DENSE)
     return Dense(kind, runs, start)
 

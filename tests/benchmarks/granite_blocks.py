@@ -13,7 +13,7 @@ from scipy.stats import qmc
 
 import rockframe as rf
 from rockframe.errors import ModelWarning
-from rockframe.signals.motion import greatest
+from rockframe.signals.motion import absolute_peak
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.run import respond
 
@@ -63,7 +63,7 @@ class Shaking:
             free_vibration="10 s", initial=None, accuracy=accuracy, output_step=None,
             outputs=None, overturning="stop",
         )  # fmt: skip
-        return cls(plan, greatest(motion.si.horizontal.pieces))
+        return cls(plan, absolute_peak(motion.si.horizontal.pieces))
 
     def overturns(self, system: rf.System) -> bool:
         """Whether a block overturns; one that the motion cannot lift is not run."""

@@ -11,7 +11,7 @@ import xarray as xr
 
 import rockframe as rf
 from rockframe.signals.integrals import ground_path
-from rockframe.signals.motion import greatest
+from rockframe.signals.motion import absolute_peak
 
 VARIABLE = "ROCKFRAME_GRANITE"
 _BESIDE_THE_PROJECT = (
@@ -48,8 +48,8 @@ class Programme:
     def peaks(self) -> tuple[np.ndarray, np.ndarray]:
         """Return peak accelerations [m s^-2] and peak velocities [m s^-1] of the table."""
         signals = [motion.si.horizontal for motion in self.motions]
-        accelerations = [greatest(signal.pieces) for signal in signals]
-        velocities = [greatest(ground_path(signal)[0]) for signal in signals]
+        accelerations = [absolute_peak(signal.pieces) for signal in signals]
+        velocities = [absolute_peak(ground_path(signal)[0]) for signal in signals]
         return np.array(accelerations), np.array(velocities)
 
 

@@ -24,7 +24,7 @@ from reference_models.fifty_digits import ExactRun  # noqa: E402
 
 import rockframe as rf  # noqa: E402
 from rockframe.proof.balls import ball  # noqa: E402
-from rockframe.proof.course import prove_block  # noqa: E402
+from rockframe.proof.rocking import prove_block  # noqa: E402
 
 SEED = 31
 RECORDS = {

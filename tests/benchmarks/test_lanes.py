@@ -11,7 +11,7 @@ from rockframe.compiled import COMPILED
 from rockframe.compiled.bound import structure_of
 from rockframe.dynamics.protocol import Start
 from rockframe.solve.accuracy import LEVELS, AccuracyLevel
-from rockframe.solve.integrate import begun, integrate
+from rockframe.solve.integrate import integrate, run_start
 
 pytestmark = [
     pytest.mark.benchmarks,
@@ -42,7 +42,7 @@ def test_all_lanes_share_their_instructions(base, fixed):
     structure = structure_of(system)
     register_kernels()
     step = steps_in_lanes(system, fixed_steps=fixed)
-    code = Job(step, structure, bound=True, in_lanes=True)._compiled(keep=False)
+    code = Job(step, structure, is_bound=True, in_lanes=True)._compiled(keep=False)
     text = code._library.get_asm_str()
     if "xmm" not in text:
         pytest.skip("not the instructions of an x86 processor")
@@ -62,7 +62,7 @@ def test_lanes_beside_single_runs(base):
     ).si
     model = model_on(*BASES[base])
     options = {"duration": motion.duration, "output_step": None}
-    start = begun(
+    start = run_start(
         model, Start(), FAST, interval=motion.time_step, stop_at_overturning=True, **options
     )
     motions = [motion.each(lambda one, f=f: scaled(one, f)) for f in np.linspace(0.2, 2.0, 128)]

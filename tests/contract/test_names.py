@@ -8,9 +8,6 @@ import rockframe as rf
 from rockframe import plot
 
 PACKAGE = Path(rf.__file__).parent
-SHARED_CLASSES = {
-    "Source",  # of a record, by which readers of users' own know it, and of compiled functions
-}
 SHARED_FUNCTIONS = {
     # the same for each of several
     "execute",  # commands
@@ -19,7 +16,7 @@ SHARED_FUNCTIONS = {
     # public names that users have known from the beginning
     "register", "table",
     # a figure, and what it shows
-    "energies", "moment_rotation", "velocity_pulse",
+    "moment_rotation", "velocity_pulse",
 }  # fmt: skip
 
 
@@ -33,7 +30,7 @@ def test_names_of_classes_and_functions_stand_once():
                 places[type(node)][node.name].append(str(path.relative_to(PACKAGE)))
     figures = set(plot.__all__) & set(rf.__all__)
     for kind, shared in (
-        (ast.ClassDef, SHARED_CLASSES), (ast.FunctionDef, SHARED_FUNCTIONS | figures)
+        (ast.ClassDef, set()), (ast.FunctionDef, SHARED_FUNCTIONS | figures)
     ):  # fmt: skip
         several = {name: files for name, files in places[kind].items() if len(files) > 1}
         doubled = {name: files for name, files in several.items() if name not in shared}

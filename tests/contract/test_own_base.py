@@ -380,7 +380,7 @@ def test_code_is_kept_for_each_name_of_a_module(tmp_path, monkeypatch):
     for name in ("law_as_one", "law_as_another"):
         (tmp_path / f"{name}.py").write_text(text)
         law = importlib.import_module(name).Law
-        files.append(store.file_of(as_before, "as is", [law]))
+        files.append(store.module_file(as_before, "as is", [law]))
     assert files[0] != files[1]
 
 

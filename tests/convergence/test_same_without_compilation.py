@@ -10,11 +10,11 @@ import pytest
 from plainly import plainly
 
 import rockframe as rf
-from rockframe.compiled import COMPILED, bound
+from rockframe.compiled import COMPILED, bind
 from rockframe.solve import equations, integrate
 from rockframe.solve import workspace as at
 from rockframe.solve.equations import equations_of
-from rockframe.solve.evaluation import CompiledIn
+from rockframe.solve.evaluation import InlinedEquations
 from rockframe.solve.march import march_by_tolerance
 
 pytestmark = [
@@ -107,30 +107,30 @@ def test_compiled_and_plain_are_the_same(name, monkeypatch):
 def test_runs_whose_steps_call_the_equations_count_their_time(monkeypatch):
     """After some seconds it pays to compile the equations into the steps."""
     system = rf.System(BLOCK)
-    (own,) = bound((march_by_tolerance,), CompiledIn(system.assembly.model.system))
+    (own,) = bind((march_by_tolerance,), InlinedEquations(system.assembly.model.system))
     monkeypatch.setattr(equations, "is_worth_calling", lambda _: False)
-    counted = [own.source.seconds_without]
+    counted = [own.source.fallback_seconds]
     for _ in range(3):
         system.simulate(MOTION)
-        counted.append(own.source.seconds_without)
+        counted.append(own.source.fallback_seconds)
     assert np.all(np.diff(counted) > 0.0)
     monkeypatch.setattr(equations, "is_worth_calling", lambda _: True)
     system.simulate(MOTION)
-    assert own.source.seconds_without == counted[-1]
+    assert own.source.fallback_seconds == counted[-1]
 
 
 def test_compilation_does_not_count_as_time_of_steps(monkeypatch):
     system = rf.System(BLOCK)
     system.simulate(MOTION)  # compiled by now
     called = equations_of(system.assembly.model.system, fixed_steps=False, compiled_in=False)
-    own = called.stepping.stands_for.source
-    before = own.seconds_without
-    waiting, clock = integrate.InPython(1.0, 0.01, 1.0), np.ones(at.CLOCK)
-    address = called.stepping.source.address
-    monkeypatch.setattr(called.stepping.source, "address", 0)
-    with waiting.counted(called, clock):
-        called.stepping.source.address = address
-    assert own.seconds_without == before
-    with waiting.counted(called, clock):
+    own = called.march.fallback_for.source
+    before = own.fallback_seconds
+    python_time, clock = integrate.PythonTime(1.0, 0.01, 1.0), np.ones(at.CLOCK)
+    address = called.march.source.address
+    monkeypatch.setattr(called.march.source, "address", 0)
+    with python_time.measured(called, clock):
+        called.march.source.address = address
+    assert own.fallback_seconds == before
+    with python_time.measured(called, clock):
         np.linalg.norm(np.ones(1000))
-    assert own.seconds_without > before
+    assert own.fallback_seconds > before

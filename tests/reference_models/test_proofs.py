@@ -13,11 +13,11 @@ pytest.importorskip("flint", reason="python-flint is not installed")
 from reference_models.fifty_digits import DIGITS, ExactRun
 
 from rockframe.proof import flow
-from rockframe.proof.balls import ball, upper, working_precision
-from rockframe.proof.course import Course
+from rockframe.proof.balls import ball, magnitude, working_precision
 from rockframe.proof.problem import Deviations, Problem, Undecided
+from rockframe.proof.rocking import RockingProver
 from rockframe.proof.states import SetOfStates
-from rockframe.signals.motion import Slope
+from rockframe.signals.motion import Incline
 from rockframe.system.bodies import OverturningAngles
 
 STEP = 0.0625
@@ -58,29 +58,29 @@ def enclosures(name, *, change=lambda block: block, **tolerances):
     motion = rf.GroundMotion.from_arrays((across, "m/s^2"), f"{STEP} s", **vertical)
     boxes = {}
 
-    def watch(number, after, side, box):
-        if after.is_zero() and number < KNOTS:
-            boxes[number] = side, box
+    def callback(interval, elapsed, side, box):
+        if elapsed.is_zero() and interval < KNOTS:
+            boxes[interval] = side, box
 
     far = OverturningAngles(math.inf, math.inf)
     with working_precision(BITS):
         block = change(numbers(block))
         inputs = Deviations.within(*(tolerances.get(one, 0.0) for one in SETS))
-        problem = Problem.of(block, motion.si, Slope(0.0, 9.81), far, 1.0, inputs, 0.05)
-        course = Course(problem, watch, [] if inputs.exact else inputs.spread())
-        while course.number < KNOTS:
-            course._stands() if course.sign == 0 else course._rocks()
+        problem = Problem.of(block, motion.si, Incline(0.0, 9.81), far, 1.0, inputs, 0.05)
+        prover = RockingProver(problem, callback, [] if inputs.exact else inputs.centred())
+        while prover.interval < KNOTS:
+            prover._follow_rest() if prover.sign == 0 else prover._follow_rocking()
     assert boxes
-    return boxes, course
+    return boxes, prover
 
 
 def holds(boxes, run):
     """Whether every box holds the exact state, to the digits of the balls."""
     with mpmath.workdps(DIGITS), working_precision(BITS):
-        for number, (side, box) in boxes.items():
-            if side != run.sides[number]:
+        for interval, (side, box) in boxes.items():
+            if side != run.sides[interval]:
                 return False
-            for each, exact in zip(box, run.states[number], strict=True):
+            for each, exact in zip(box, run.states[interval], strict=True):
                 if not each.overlaps(ball(mpmath.nstr(exact, DIGITS - 5))):
                     return False
     return True
@@ -88,8 +88,8 @@ def holds(boxes, run):
 
 @pytest.mark.parametrize("name", CASES)
 def test_a_run_with_fifty_digits_is_inside(name, exact_runs):
-    boxes, course = enclosures(name)
-    assert course.impacts == exact_runs[name].impacts > 2
+    boxes, prover = enclosures(name)
+    assert prover.impacts == exact_runs[name].impacts > 2
     assert holds(boxes, exact_runs[name])
     assert max(float(box[0].rad()) for _, box in boxes.values()) < 1e-13
     assert DIGITS * math.log2(10.0) > BITS
@@ -111,8 +111,8 @@ def member(name, kind, by):
     "name", [pytest.param("symmetric", marks=pytest.mark.long), "skew, with vertical motion"]
 )
 def test_a_run_with_another_number_is_inside_a_set_of_them(name, kind, tolerance):
-    boxes, course = enclosures(name, **{kind: tolerance})
-    assert course.impacts > 2
+    boxes, prover = enclosures(name, **{kind: tolerance})
+    assert prover.impacts > 2
     for share in (-0.999, 0.6):
         assert holds(boxes, member(name, kind, share * tolerance).run())
     assert not holds(boxes, member(name, kind, 40.0 * tolerance).run())
@@ -140,7 +140,7 @@ def test_what_an_input_does_within_a_step_is_missed_where_it_is_left_out(kind, m
 def test_members_that_lift_before_the_last_one_are_inside():
     # without what they rise until then the set would begin at rest
     boxes, _ = enclosures("symmetric", scale=1e-4)
-    first = min(boxes, key=lambda number: (boxes[number][0] == 0, number))
+    first = min(boxes, key=lambda interval: (boxes[interval][0] == 0, interval))
     for share in (-0.999, 0.0, 0.999):
         run = member("symmetric", "scale", share * 1e-4).run()
         assert holds({first: boxes[first]}, run)
@@ -205,8 +205,9 @@ def test_a_remainder_that_is_left_out_is_caught(exact_runs, monkeypatch):
 
 
 def test_rounding_to_the_wrong_side_is_caught(exact_runs, monkeypatch):
-    monkeypatch.setattr(flow, "upper", lambda one: ball(one.abs_lower()))
-    monkeypatch.setattr(flow, "_raised", lambda power: upper(ball(2) ** (ball(power - 8) / 4)))
+    monkeypatch.setattr(flow, "magnitude", lambda one: ball(one.abs_lower()))
+    too_small = lambda power: magnitude(ball(2) ** (ball(power - 8) / 4))  # noqa: E731
+    monkeypatch.setattr(flow, "_root_power", too_small)
     flow.majorants.cache_clear()
     assert caught("symmetric", exact_runs["symmetric"])
     flow.majorants.cache_clear()
@@ -217,22 +218,22 @@ def test_radii_that_are_forgotten_are_caught(exact_runs, monkeypatch):
 
     def wrong(states, *arguments):
         new = right(states, *arguments)
-        return new._replace(rest=[each.mid() for each in new.rest])
+        return new._replace(remainder=[each.mid() for each in new.remainder])
 
     monkeypatch.setattr(SetOfStates, "image", wrong)
     assert caught("symmetric", exact_runs["symmetric"])
 
 
 def test_an_impact_that_is_not_guessed_is_never_passed_over(monkeypatch):
-    monkeypatch.setattr(Course, "_predicted", lambda *arguments: None)
+    monkeypatch.setattr(RockingProver, "_predict_impact", lambda *arguments: None)
     with pytest.raises(Undecided):
         enclosures("symmetric")
 
 
 def test_an_impact_that_is_missed_is_caught(exact_runs, monkeypatch):
-    def blind(course, ground, step, *, strikes):
-        return flow.advance(course.states, course.corner, ground, step)
+    def blind(prover, ground, step, *, ends_at_impact):
+        return flow.advance(prover.states, prover.corner, ground, step)
 
-    monkeypatch.setattr(Course, "_predicted", lambda *arguments: None)
-    monkeypatch.setattr(Course, "_step", blind)
+    monkeypatch.setattr(RockingProver, "_predict_impact", lambda *arguments: None)
+    monkeypatch.setattr(RockingProver, "_make_step", blind)
     assert caught("symmetric", exact_runs["symmetric"])

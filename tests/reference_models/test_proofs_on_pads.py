@@ -18,8 +18,8 @@ pytest.importorskip("flint", reason="python-flint is not installed")
 from rockframe.dynamics.pads import CLEAR as CLEARS
 from rockframe.dynamics.pads import TOUCHING as HOLDS
 from rockframe.proof.balls import ball, working_precision
-from rockframe.proof.pads import flow, law, way
-from rockframe.proof.pads.verdict import way_of
+from rockframe.proof.pads import flow, law, prover
+from rockframe.proof.pads.verdict import pad_prover
 from rockframe.proof.problem import Undecided
 from rockframe.signals.motion import Motion, Signal
 from rockframe.simulation.plan import plan_run, start_of
@@ -273,16 +273,16 @@ def outside(case, prepare=None, beside=NOWHERE):
     system, motion, mode, state, *_ = begun(case)
     seen = []
     with working_precision(BITS):
-        one = way_of(
+        one = pad_prover(
             system.assembly.model.system, mode, state, motion, system.assembly.options.slope,
             system.assembly.setting.overturning_angles,
-            watch=lambda k, standing, box: seen.append(box),
+            callback=lambda k, contacts, box: seen.append(box),
         )  # fmt: skip
         if prepare is not None:
             prepare(one)
         stopped = None
         try:
-            while one.k < KNOTS and one.beyond is None:
+            while one.k < KNOTS and one.overturning_time is None:
                 one._to_next_knot()
         except Undecided as why:
             stopped = str(why)
@@ -297,7 +297,9 @@ def outside(case, prepare=None, beside=NOWHERE):
                 missed += not all(
                     a.overlaps(ball(text) + near) for a, text in zip(box, texts, strict=True)
                 )
-    return SimpleNamespace(missed=missed, seen=len(seen), way=one, stopped=stopped, last=seen[-1])
+    return SimpleNamespace(
+        missed=missed, seen=len(seen), prover=one, stopped=stopped, last=seen[-1]
+    )
 
 
 @pytest.mark.parametrize(
@@ -308,7 +310,7 @@ def test_enclosures_hold_the_run_of_fifty_digits(case):
     found = outside(case)
     assert found.stopped is None
     assert found.missed == 0
-    assert found.seen == KNOTS or found.way.beyond is not None
+    assert found.seen == KNOTS or found.prover.overturning_time is not None
     assert max(float(one.rad()) for one in found.last) < 1e-15
 
 
@@ -351,7 +353,7 @@ def about_a_jump(moved):
     pieces = np.zeros((JUMP + 2, 6))
     pieces[JUMP] = [-400.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     motion = Motion(Signal(lands * (1 + 1e-11) / JUMP, np.append(pieces[:, 0], 0.0), pieces))
-    one = way_of(
+    one = pad_prover(
         system.assembly.model.system, mode, state, motion, system.assembly.options.slope,
         system.assembly.setting.overturning_angles,
     )  # fmt: skip
@@ -387,8 +389,8 @@ def test_a_corner_that_may_lift_off_before_the_other_one_lands_is_undecided(rest
     limits = system.assembly.setting.overturning_angles
     mode, state, _ = model.initial(start_of(rf.InitialState()))
     with working_precision(BITS):
-        one = way_of(model.system, mode, state, still, options.slope, limits)
-        one.standing = law.Standing(CLEARS, HOLDS)
+        one = pad_prover(model.system, mode, state, still, options.slope, limits)
+        one.contacts = law.Contacts(CLEARS, HOLDS)
         tall, wide = float(one.pads.height), float(one.pads.left)
         rotation, falls, sunk = 1e-4, -0.3, float(one.pads.settlements[0])
         height = sunk - tall * (1 - np.cos(rotation)) - wide * np.sin(rotation)
@@ -399,9 +401,9 @@ def test_a_corner_that_may_lift_off_before_the_other_one_lands_is_undecided(rest
         rate = (falls - rises) / (left - right)
         box = [rotation, rate, height, falls - left * rate, 0.0]
         box = [ball(value, 1e-6 * (k == 2)) for k, value in enumerate(box)]
-        ground = one.shaking.ground(0)
+        ground = one.ground.ground(0)
         with pytest.raises(Undecided, match="the contacts about a change"):
-            one._crossed(ground, ball(0.1), box, law.Guard("gap", True), 1.0)
+            one._enclose_change(ground, ball(0.1), box, law.Guard("gap", True), 1.0)
 
 
 def short_series(one):
@@ -411,63 +413,63 @@ def short_series(one):
 
 
 def sign_of_the_ground(monkeypatch):
-    old = way.course
+    old = prover.enclose_motion
 
-    def course(pads, standing, ground, *others):
+    def course(pads, contacts, ground, *others):
         turned = ground._replace(along=[-one for one in ground.along])
-        return old(pads, standing, turned, *others)
+        return old(pads, contacts, turned, *others)
 
-    monkeypatch.setattr(way, "course", course)
+    monkeypatch.setattr(prover, "enclose_motion", course)
 
 
 def dropped_remainder(monkeypatch):
-    old = way.course
+    old = prover.enclose_motion
 
     def course(*given):
         found = old(*given)
         nothing = [0.0] * 7 + [(0.0, 0.0)] * 3 + [0.0] * 2
         return found._replace(left_out=type(found.left_out)(*nothing))
 
-    monkeypatch.setattr(way, "course", course)
+    monkeypatch.setattr(prover, "enclose_motion", course)
 
 
 def missed_contact(monkeypatch):
-    old = way.PadWay._first
+    old = prover.PadProver._first_guard
 
     def first(self, made):
         guard, place = old(self, made)
         return (None, 2.0) if guard is not None and guard.kind == "press" else (guard, place)
 
-    monkeypatch.setattr(way.PadWay, "_first", first)
-    monkeypatch.setattr(way, "_positive", lambda *_, **__: True)
+    monkeypatch.setattr(prover.PadProver, "_first_guard", first)
+    monkeypatch.setattr(prover, "_positive", lambda *_, **__: True)
 
 
 def damping_off(monkeypatch):
-    old = way.PadWay.__init__
+    old = prover.PadProver.__init__
 
     def init(self, pads, *others, **named):
         old(self, pads._replace(damping=pads.damping * (1 + ball(1e-12))), *others, **named)
 
-    monkeypatch.setattr(way.PadWay, "__init__", init)
+    monkeypatch.setattr(prover.PadProver, "__init__", init)
 
 
 def rounded_inwards(monkeypatch):
-    old = flow.StateSet.mapped
+    old = flow.StateSet.image
 
     def mapped(self, *given):
         return old(self, *given)._replace(spread=np.zeros(law.SIZE))
 
-    monkeypatch.setattr(flow.StateSet, "mapped", mapped)
+    monkeypatch.setattr(flow.StateSet, "image", mapped)
 
 
 def restitution_off(monkeypatch):
-    old = way.PadWay.__init__
+    old = prover.PadProver.__init__
 
     def init(self, pads, *others, **named):
         both = tuple(one * (1 - ball(1e-12)) for one in pads.restitutions)
         old(self, pads._replace(restitutions=both), *others, **named)
 
-    monkeypatch.setattr(way.PadWay, "__init__", init)
+    monkeypatch.setattr(prover.PadProver, "__init__", init)
 
 
 FAULTS = {

@@ -7,10 +7,10 @@ import rockframe as rf
 
 pytest.importorskip("flint", reason="python-flint is not installed")
 
-from rockframe.proof import bounces, course
+from rockframe.proof import bounces, rocking
 from rockframe.proof.balls import UNIT, ball, working_precision
-from rockframe.proof.bounces import Instant, Lifted, settle
-from rockframe.proof.impacts import Struck
+from rockframe.proof.bounces import Instant, UpliftState, follow_bounces
+from rockframe.proof.impacts import ImpactEnclosure
 from rockframe.proof.problem import Deviations, Problem
 
 STEP = 0.02
@@ -45,7 +45,7 @@ def settled(block, motion):
             assembly.model.system, motion.si, assembly.options.slope,
             assembly.setting.overturning_angles, 1.0, Deviations(), 0.1,
         )  # fmt: skip
-        found = settle(problem, Instant(0, ball(0)), ball(HEIGHT), ball(SPEED))
+        found = follow_bounces(problem, Instant(0, ball(0)), ball(HEIGHT), ball(SPEED))
     return system, found
 
 
@@ -72,10 +72,10 @@ def test_every_member_rests_or_has_lifted_as_it_was_told(name, shaking):
     motion = GROUNDS[shaking]
     system, found = settled(BLOCKS[name], motion)
     assert found is not None
-    instant = found.instant if isinstance(found, Lifted) else found
-    until = instant.number * STEP + float(instant.after)
+    instant = found.instant if isinstance(found, UpliftState) else found
+    until = instant.interval * STEP + float(instant.elapsed)
     states = list(members(system, motion, until))
-    if isinstance(found, Lifted):
+    if isinstance(found, UpliftState):
         assert shaking.startswith("it lifts")
         for state in states:
             for one, value in zip(found.box, state, strict=True):
@@ -93,7 +93,7 @@ def test_bounces_that_lose_more_than_they_do_are_caught(monkeypatch):
     right = bounces._Bounds.restitution
     monkeypatch.setattr(bounces._Bounds, "restitution", property(lambda of: right.fget(of) / 3))
     system, instant = settled(block, motion)
-    until = instant.number * STEP + float(instant.after)
+    until = instant.interval * STEP + float(instant.elapsed)
     assert any(state != (0.0, 0.0) for state in members(system, motion, until))
 
 
@@ -112,7 +112,7 @@ def test_rotations_that_grow_as_a_slow_ground_lifts_the_block_are_bounded():
         bounds = bounces._Bounds(problem, ball(0), speed)
         for halvings in range(4):
             span = window / 2**halvings
-            found = bounds.over(problem.ground(0).at(UNIT * span), span)
+            found = bounds.after_window(problem.ground(0).at(UNIT * span), span)
             run = system.simulate(
                 motion, duration=f"{float(span)} s", accuracy="reference",
                 initial=rf.InitialState(rotation="0 rad", angular_velocity="0.01 rad/s"),
@@ -123,21 +123,22 @@ def test_rotations_that_grow_as_a_slow_ground_lifts_the_block_are_bounded():
 def test_members_that_may_not_have_struck_yet_keep_the_speed_before_their_impact(monkeypatch):
     system, seen = rf.System(BLOCKS["symmetric"], gravity="9.81 m/s^2"), []
     assembly = system.assembly
-    monkeypatch.setattr(course, "settle", lambda *given: seen.append(float(given[3])))
+    monkeypatch.setattr(rocking, "follow_bounces", lambda *given: seen.append(float(given[3])))
     with working_precision(106):
         problem = Problem.of(
             assembly.model.system, GROUNDS["still"].si, assembly.options.slope,
             assembly.setting.overturning_angles, 1.0, Deviations(), 0.1,
         )  # fmt: skip
-        one = course.Course(problem)
+        one = rocking.RockingProver(problem)
         one.start(0.0, SPEED)
         # all members strike within two and a half samples from now
-        one.impact = Struck(one.states, ball(0, 2.5 * STEP), ball(HEIGHT), ball(2 * SPEED))
+        at = ball(0, 2.5 * STEP)
+        one.last_impact = ImpactEnclosure(one.states, at, ball(HEIGHT), ball(2 * SPEED))
         for _ in range(3):
-            one.states, one.fresh = one.states._replace(centre=[ball(0), ball(0.1)]), True
-            one._rocks()
+            one.states, one.just_lifted = one.states._replace(centre=[ball(0), ball(0.1)]), True
+            one._follow_rocking()
             one.states = one.states._replace(centre=[ball(HEIGHT), ball(SPEED)])
-            one._bounce(lift=True)
+            one._settle_bounces(lift=True)
     assert min(seen[:2]) >= 2 * SPEED
     assert seen[2] < 1.1 * SPEED
 
@@ -156,16 +157,16 @@ def test_a_ground_that_may_jump_is_known_and_pays_for_it():
     with working_precision(106):
         straight, closed = problem(lines), problem(jumping)
         last = straight.count - 1
-        assert [straight.joins(k) for k in (0, last - 1, last, last + 1)] == [
+        assert [straight.is_continuous_after(k) for k in (0, last - 1, last, last + 1)] == [
             True,
             True,
             False,
             True,
         ]
-        assert not closed.joins(0)
+        assert not closed.is_continuous_after(0)
         bounds = bounces._Bounds(straight, ball(HEIGHT), ball(SPEED))
-        assert bounds.jumped(0) is bounds
-        after = bounds.jumped(last).left - ball(SPEED)
+        assert bounds.after_jump(0) is bounds
+        after = bounds.after_jump(last).remaining_speed - ball(SPEED)
         # 0.5 m/s^2 are gone at once: the speed that falling through the height may then add
         corner = straight.right
         assert after**2 >= 2 * HEIGHT * corner.ratio * 0.5

@@ -9,7 +9,7 @@ import pytest
 import rockframe as rf
 from rockframe.errors import AssemblyError, ComponentError, ModelWarning
 from rockframe.signals import Motion
-from rockframe.signals.motion import Slope
+from rockframe.signals.motion import Incline
 
 BLOCK = rf.Block(width="0.6 m", height="2 m", mass="1 t")
 SOFT = rf.TwoSpringSupport(stiffness="60 kN/m", damping_ratio=0.1)
@@ -48,7 +48,7 @@ def test_descriptions_tell_the_slope_and_both_sides():
 
 
 def test_a_motion_is_turned_and_gravity_lasts():
-    slope = Slope(math.radians(30.0), 10.0)
+    slope = Incline(math.radians(30.0), 10.0)
     samples = np.array([0.0, 2.0, -1.0])
     felt = slope.resolved(
         Motion.of_samples(0.5, samples, 2.0 * samples), duration=2.0, interval=0.01

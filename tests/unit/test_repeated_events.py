@@ -8,7 +8,7 @@ import pytest
 from rockframe.dynamics.events import SILENT, ContactState
 from rockframe.solve import workspace as at
 from rockframe.solve.bookkeeping import record_event
-from rockframe.solve.workspace import EventTable, KnownMode, Progress, Status
+from rockframe.solve.workspace import EventTable, Progress, Status, UnpackedMode
 
 STATE = (0.1, -0.2)
 
@@ -17,7 +17,7 @@ def recorded(rows, modes=(3, 3), memory=(0.0,)):
     """Return the status after the last of some events: the time of each, and the state before."""
     progress = Progress(np.zeros(at.CONTROLS), np.zeros(at.CLOCK), np.zeros(at.COUNTERS, int))
     events = EventTable(np.zeros((9, 6)), np.zeros((9, 3), dtype=np.int64))
-    before, after = (KnownMode(mode, 1, int(ContactState.FULL), 1.0) for mode in modes)
+    before, after = (UnpackedMode(mode, 1, int(ContactState.FULL), 1.0) for mode in modes)
     place, status = SimpleNamespace(state=np.array(STATE)), 0
     for row, (time, state) in enumerate(rows):
         events.values[row, 1:3] = state

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from rockframe.motion.processing.floors import interval_matrix
 from rockframe.signals.arrays import Array
-from rockframe.signals.oscillator import turning_value
+from rockframe.signals.oscillator import step_extremum
 
 WIDTH: Final = 1.178
 """Width of the taper at a period of one second [s] (Al Atik and Abrahamson 2010)."""
@@ -234,9 +234,9 @@ class Oscillators:
         value, end_value = histories[which, rows], histories[which, rows + 1]
         first, last = slope(rows), slope(rows + 1)
         drag, stiffness = 2.0 * self.damping_ratio * kappa, kappa**2
-        bend = -drag * first - stiffness * (value + start[rows])
-        end_bend = -drag * last - stiffness * (end_value + start[rows] + rise[rows])
-        values: Any = turning_value(value, first, bend, end_value, last, end_bend)
+        second = -drag * first - stiffness * (value + start[rows])
+        end_second = -drag * last - stiffness * (end_value + start[rows] + rise[rows])
+        values: Any = step_extremum(value, first, second, end_value, last, end_second)
         change = first - last
         inside = np.divide(first, change, out=np.zeros_like(first), where=change != 0.0)
         return values, (rows + np.clip(inside, 0.0, 1.0)) * self.time_step

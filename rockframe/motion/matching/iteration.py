@@ -12,7 +12,7 @@ from rockframe.motion.processing import velocity_pulses
 from rockframe.motion.velocity_pulse import LEAST_INDICATOR
 from rockframe.signals import Signal
 from rockframe.signals.integrals import ground_path
-from rockframe.signals.motion import greatest, knots_of
+from rockframe.signals.motion import absolute_peak, knots_of
 from rockframe.signals.spectra import pseudo_spectra, spectral_peaks
 
 if TYPE_CHECKING:
@@ -235,7 +235,7 @@ def changes(before: Signal, after: Signal, goal: Goal) -> dict[str, float]:
     for when, signal in (("before", before), ("after", after)):
         velocity, displacement = ground_path(signal)
         for name, pieces in zip(PEAKS, (signal.pieces, velocity, displacement), strict=True):
-            found[f"{name}_{when}_matching"] = greatest(pieces)
+            found[f"{name}_{when}_matching"] = absolute_peak(pieces)
         found[f"{INDICATOR}_{when}_matching"] = _indicator(knots_of(velocity), signal.time_step)
     periods = np.geomspace(goal.longest, _BEYOND * goal.longest, _PERIODS + 1)[1:]
     old, new = (spectral_peaks(one, periods, goal.damping_ratio)[:, 0] for one in (before, after))

@@ -14,7 +14,7 @@ from rockframe.motion.value import Made
 from rockframe.proposals import hinted
 from rockframe.records import DOWNWARDS, SENSE, UPWARDS
 from rockframe.signals.integrals import ground_path
-from rockframe.signals.motion import greatest
+from rockframe.signals.motion import absolute_peak
 from rockframe.signals.spectra import (
     DAMPING_RATIO,
     check_cost,
@@ -126,9 +126,9 @@ def scaled(
     arguments: dict[str, float | str] = {name: f"{wanted!r} {measure.unit}"}
     across = motion.si.horizontal
     if peak is not None:
-        present = greatest(across.pieces)
+        present = absolute_peak(across.pieces)
     elif peak_velocity is not None:
-        present = greatest(ground_path(across)[0])
+        present = absolute_peak(ground_path(across)[0])
     else:
         seconds = to_si(period, PERIOD, owner=owner, name="period", condition=POSITIVE)
         given_damping = _USUAL_DAMPING if damping_ratio is None else damping_ratio

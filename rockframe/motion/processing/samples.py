@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from rockframe.errors import RecordWarning, warn
-from rockframe.signals.motion import divided
+from rockframe.signals.motion import subdivided
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -141,7 +141,7 @@ def divided_signal(signal: Signal, parts: int) -> Signal:
     step = signal.time_step / parts
     if signal.polynomials is None:
         return replace(signal, time_step=step, samples=refined(signal, step))
-    pieces = divided(signal.polynomials, parts)
+    pieces = subdivided(signal.polynomials, parts)
     samples = np.append(pieces[:, 0], signal.samples[-1])
     samples[::parts] = signal.samples
     return replace(signal, time_step=step, samples=samples, polynomials=pieces)

@@ -12,15 +12,14 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from rockframe.dynamics.pads import TOUCHING
-from rockframe.proof.balls import Row, ball, value
-from rockframe.proof.balls import slope as slope_of
-from rockframe.proof.pads.law import SIZE, Guard, PadBalls, Standing, pin
-from rockframe.proof.pads.series import UPWARDS, PadCourse, TooLong
+from rockframe.proof.balls import Row, ball, derivative_of, polynomial_value
+from rockframe.proof.pads.law import SIZE, Contacts, Guard, PadBalls, pivot_offset
+from rockframe.proof.pads.series import ROUND_UP, PadMotion, StepTooLong
 
 Array = Any
 DEGREE: Final = 12
 """Degree of the polynomials for derivatives and guards."""
-_OF_VARIATION: Final = 20
+VARIATION_ORDER: Final = 20
 _LOST: Final = 1e-13
 """Bound of the rounding error of a sum of products of doubles, over the sum of their sizes."""
 _ROTATION, _RATE, _HEIGHT, _SPEED = range(4)
@@ -29,20 +28,20 @@ _ROTATION, _RATE, _HEIGHT, _SPEED = range(4)
 class Curve:
     """A function of the share of a step, from 0 to 1: a polynomial with a bound of its error."""
 
-    __slots__ = ("error", "of", "size")
+    __slots__ = ("coefficients", "error", "size")
 
-    def __init__(self, of: Array, error: float) -> None:
-        self.of, self.error = of, error
-        self.size = (float(np.abs(of).sum()) + error) * UPWARDS
+    def __init__(self, coefficients: Array, error: float) -> None:
+        self.coefficients, self.error = coefficients, error
+        self.size = (float(np.abs(coefficients).sum()) + error) * ROUND_UP
 
     def __add__(self, other: "Curve") -> "Curve":
         """Add another one."""
         error = self.error + other.error + _LOST * (self.size + other.size)
-        return Curve(self.of + other.of, error)
+        return Curve(self.coefficients + other.coefficients, error)
 
     def __neg__(self) -> "Curve":
         """Return the opposite."""
-        return Curve(-self.of, self.error)
+        return Curve(-self.coefficients, self.error)
 
     def __sub__(self, other: "Curve") -> "Curve":
         """Take another one away."""
@@ -50,32 +49,34 @@ class Curve:
 
     def times(self, factor: float) -> "Curve":
         """Return a multiple."""
-        return Curve(self.of * factor, abs(factor) * self.error + _LOST * abs(factor) * self.size)
+        return Curve(
+            self.coefficients * factor, abs(factor) * self.error + _LOST * abs(factor) * self.size
+        )
 
     def __mul__(self, other: "Curve") -> "Curve":
         """Multiply, and put terms of too high a degree into the error."""
-        whole = np.convolve(self.of, other.of)
+        whole = np.convolve(self.coefficients, other.coefficients)
         cut = float(np.abs(whole[DEGREE + 1 :]).sum())
         error = cut + self.size * other.error + other.size * self.error
-        return Curve(whole[: DEGREE + 1], (error + _LOST * self.size * other.size) * UPWARDS)
+        return Curve(whole[: DEGREE + 1], (error + _LOST * self.size * other.size) * ROUND_UP)
 
     def inverse(self) -> "Curve":
         """Return the reciprocal; its error follows from the product with it, which should be 1."""
-        first = 1.0 / float(self.of[0])
+        first = 1.0 / float(self.coefficients[0])
         found = np.zeros(DEGREE + 1)
         found[0] = first
         for k in range(1, DEGREE + 1):
-            found[k] = -first * float(np.dot(self.of[1 : k + 1], found[k - 1 :: -1][:k]))
+            found[k] = -first * float(np.dot(self.coefficients[1 : k + 1], found[k - 1 :: -1][:k]))
         guess = Curve(found, 0.0)
         product = self * guess
-        product.of[0] -= 1.0
-        off = (float(np.abs(product.of).sum()) + product.error) * UPWARDS
+        product.coefficients[0] -= 1.0
+        off = (float(np.abs(product.coefficients).sum()) + product.error) * ROUND_UP
         if not off < 0.5:
-            raise TooLong
-        return Curve(found, guess.size * off / (1.0 - off) * UPWARDS)
+            raise StepTooLong
+        return Curve(found, guess.size * off / (1.0 - off) * ROUND_UP)
 
 
-def constant(value: float) -> Curve:
+def constant_curve(value: float) -> Curve:
     """Return a constant curve."""
     found = np.zeros(DEGREE + 1)
     found[0] = value
@@ -91,7 +92,7 @@ def curve(series: Row, error: float) -> Curve:
         middles = np.concatenate([middles, np.zeros(DEGREE + 1 - middles.size)])
     kept = middles[: DEGREE + 1]
     lost = _LOST * float(np.abs(kept).sum())
-    return Curve(kept, (error + sizes + radii + lost) * UPWARDS)
+    return Curve(kept, (error + sizes + radii + lost) * ROUND_UP)
 
 
 class StateSet(NamedTuple):
@@ -103,18 +104,18 @@ class StateSet(NamedTuple):
 
     def radius(self) -> float:
         """Bound the distance of members from the centre, over the weights, in any coordinate."""
-        return float((np.abs(self.axes) @ self.spread).max()) * UPWARDS
+        return float((np.abs(self.axes) @ self.spread).max()) * ROUND_UP
 
     def radii(self, weights: Array) -> Array:
         """Bound the distance of members from the centre in each coordinate."""
-        return weights * (np.abs(self.axes) @ self.spread) * UPWARDS
+        return weights * (np.abs(self.axes) @ self.spread) * ROUND_UP
 
     def box(self, weights: Array) -> Row:
         """Enclose the states."""
         radii = self.radii(weights).tolist()
         return [one + ball(0, each) for one, each in zip(self.centre, radii, strict=True)]
 
-    def mapped(self, image: Row, middle: Array, error: Array, weights: Array) -> "StateSet":
+    def image(self, image: Row, middle: Array, error: Array, weights: Array) -> "StateSet":
         """Return the image of the set from that of the centre, and the weighted derivative.
 
         The derivative is `middle`, each element within `error`.
@@ -123,25 +124,25 @@ class StateSet(NamedTuple):
         away = np.array(
             [float((one - mid).abs_upper()) for one, mid in zip(image, centre, strict=True)]
         )
-        away = away / weights * UPWARDS
-        turned = middle @ self.axes
+        away = away / weights * ROUND_UP
+        mapped_axes = middle @ self.axes
         sizes = np.abs(middle) @ np.abs(self.axes)
-        columns = turned * (self.spread + 1e-290)
+        columns = mapped_axes * (self.spread + 1e-290)
         order = np.argsort(-np.abs(columns).sum(axis=0))
         axes = np.linalg.qr(columns[:, order] / (np.abs(columns).max() + 1e-290))[0]
         back = axes.T
-        spread = np.abs(back @ turned) @ self.spread
+        spread = np.abs(back @ mapped_axes) @ self.spread
         spread = spread + np.abs(back) @ (
             (_LOST * sizes + error @ np.abs(self.axes)) @ self.spread + away
         )
         flaw = float(np.abs(back @ axes - np.eye(SIZE)).sum(axis=1).max()) + _LOST
         if not flaw < 1e-10:
-            raise TooLong
-        spread = (spread + 2.0 * flaw * spread.max()) * UPWARDS
+            raise StepTooLong
+        spread = (spread + 2.0 * flaw * spread.max()) * ROUND_UP
         return StateSet(centre, axes, spread)
 
 
-def point(start: Sequence[float]) -> StateSet:
+def single_state(start: Sequence[float]) -> StateSet:
     """Return the set of one state."""
     return StateSet([ball(one) for one in start], np.eye(SIZE), np.zeros(SIZE))
 
@@ -149,7 +150,7 @@ def point(start: Sequence[float]) -> StateSet:
 class Step(NamedTuple):
     """A step of a set."""
 
-    course: PadCourse
+    course: PadMotion
     powers: Array  # weighted derivative by the start, coefficients of powers of the share
     error: Array  # bound of the error of that derivative in the step
     rate: float  # bound of the norm of the weighted derivative of the field, times h
@@ -158,7 +159,7 @@ class Step(NamedTuple):
     def image(self, share: Any) -> Row:
         """Enclose the centre at a share of the step."""
         pairs = zip(self.course.series[:SIZE], self.course.left_out[:SIZE], strict=True)
-        return [value(series, share) + ball(0, rest) for series, rest in pairs]
+        return [polynomial_value(series, share) + ball(0, rest) for series, rest in pairs]
 
     def derivative(self, share: float) -> Array:
         """Return the weighted derivative by the start at a share of the step, without its error."""
@@ -168,34 +169,34 @@ class Step(NamedTuple):
         return found
 
 
-def step(
-    pads: PadBalls, standing: Standing, found: PadCourse, states: StateSet, weights: Array,
+def enclose_step(
+    pads: PadBalls, contacts: Contacts, found: PadMotion, states: StateSet, weights: Array,
     guards: list[Guard],
 ) -> Step:  # fmt: skip
     """Enclose the image of a set in a step, :eq:`eq-proof-pads-variation`.
 
-    Raises `TooLong` if the step must be halved.
+    Raises `StepTooLong` if the step must be halved.
     """
     h = float(found.h)
     radius = states.radius()
     tube = 4.0 * radius
     for _ in range(8):
         motion = _motion(pads, found, tube * weights)
-        stiff = _stiffness(pads, standing, motion)
+        stiff = _stiffness(pads, contacts, motion)
         matrix, error = _weighted(stiff, h, weights)
-        rate = float((np.abs(matrix).sum(axis=0) + error).sum(axis=1).max()) * UPWARDS
+        rate = float((np.abs(matrix).sum(axis=0) + error).sum(axis=1).max()) * ROUND_UP
         if not rate < 20.0:
-            raise TooLong
-        growth = math.exp(rate) * UPWARDS
+            raise StepTooLong
+        growth = math.exp(rate) * ROUND_UP
         if growth * radius <= tube:
             break
         tube = 1.5 * growth * radius
     else:
-        raise TooLong
+        raise StepTooLong
     powers, defect = _variation(matrix, error)
-    off = np.tile((defect.max(axis=0) + _LOST * rate) * growth * UPWARDS, (SIZE, 1))
+    off = np.tile((defect.max(axis=0) + _LOST * rate) * growth * ROUND_UP, (SIZE, 1))
     curves = {
-        one: _guard(pads, standing, one, found, motion, (tube, rate), weights) for one in guards
+        one: _guard(pads, contacts, one, found, motion, (tube, rate), weights) for one in guards
     }
     return Step(found, powers, off, rate, curves)
 
@@ -208,67 +209,79 @@ class _Motion(NamedTuple):
     cosine: Curve
     forces: tuple[Curve | None, Curve | None]  # of the left and of the right pad
     along: Curve  # ground acceleration along the base
-    strays: Array  # bounds of the distances of members from the centre, in each coordinate
+    deviations: Array  # bounds of the distances of members from the centre, in each coordinate
 
 
-def _motion(pads: PadBalls, found: PadCourse, strays: Array) -> _Motion:
+def _motion(pads: PadBalls, found: PadMotion, deviations: Array) -> _Motion:
     series, rest = found.series, found.left_out
-    tall, wide = float(pads.height), float(pads.left) + float(pads.right)
-    lean, turn = float(strays[_ROTATION]), float(strays[_RATE])
-    rate = curve(series.rate, rest.rate + turn)
+    centre_height, wide = float(pads.height), float(pads.left) + float(pads.right)
+    d_rotation, d_rate = float(deviations[_ROTATION]), float(deviations[_RATE])
+    rate = curve(series.rate, rest.rate + d_rate)
     if pads.small:
-        sine, cosine = curve(series.rotation, rest.rotation + lean), constant(1.0)
+        sine, cosine = curve(series.rotation, rest.rotation + d_rotation), constant_curve(1.0)
     else:
         sine, cosine = (
-            curve(series.sine, rest.sine + lean),
-            curve(series.cosine, rest.cosine + lean),
+            curve(series.sine, rest.sine + d_rotation),
+            curve(series.cosine, rest.cosine + d_rotation),
         )
-    reach = tall * (1.0 if not pads.small else sine.size) + wide
-    level = float(strays[_HEIGHT]) + reach * lean
-    speed = float(strays[_SPEED]) + reach * turn + (tall + wide) * rate.size * lean
-    away = (float(pads.stiffness) * level + float(pads.damping) * speed) * UPWARDS
+    reach = centre_height * (1.0 if not pads.small else sine.size) + wide
+    level = float(deviations[_HEIGHT]) + reach * d_rotation
+    speed = (
+        float(deviations[_SPEED]) + reach * d_rate + (centre_height + wide) * rate.size * d_rotation
+    )
+    away = (float(pads.stiffness) * level + float(pads.damping) * speed) * ROUND_UP
     left, right = (
         curve(one, left_out + away) if one else None
         for one, left_out in zip(series.forces, rest.forces, strict=True)
     )
-    return _Motion(rate, sine, cosine, (left, right), curve(found.along, 0.0), strays)
+    return _Motion(rate, sine, cosine, (left, right), curve(found.along, 0.0), deviations)
 
 
-def _stiffness(pads: PadBalls, standing: Standing, motion: _Motion) -> dict[tuple[int, int], Curve]:
+def _stiffness(pads: PadBalls, contacts: Contacts, motion: _Motion) -> dict[tuple[int, int], Curve]:
     """Return the derivatives of both accelerations by the state, by row and column."""
-    if standing.flies:
+    if contacts.in_flight:
         return {}
-    tall, stiff, damped = float(pads.height), float(pads.stiffness), float(pads.damping)
+    centre_height, stiff, damped = float(pads.height), float(pads.stiffness), float(pads.damping)
     rate, sine, cosine = motion.rate, motion.sine, motion.cosine
-    none = constant(0.0)
+    none = constant_curve(0.0)
     upward, moment = [none] * 4, [none] * 4
     load = none
     for left in (True, False):
-        if standing.of(left) != TOUCHING:
+        if contacts.of(left) != TOUCHING:
             continue
         reach = float(pads.left) if left else -float(pads.right)
         force = motion.forces[not left]
         assert force is not None  # noqa: S101
-        lever = sine.times(tall) + cosine.times(reach)
-        bend = constant(tall) if pads.small else cosine.times(tall) - sine.times(reach)
-        by_rotation = (lever.times(stiff) + (bend * rate).times(damped)).times(-1.0)
-        by = [by_rotation, lever.times(-damped), constant(-stiff), constant(-damped)]
+        lever = sine.times(centre_height) + cosine.times(reach)
+        lever_slope = (
+            constant_curve(centre_height)
+            if pads.small
+            else cosine.times(centre_height) - sine.times(reach)
+        )
+        by_rotation = (lever.times(stiff) + (lever_slope * rate).times(damped)).times(-1.0)
+        by = [by_rotation, lever.times(-damped), constant_curve(-stiff), constant_curve(-damped)]
         upward = [a + b for a, b in zip(upward, by, strict=True)]
-        by_moment = [lever * by_rotation + force * bend, *(lever * one for one in by[1:])]
+        by_moment = [lever * by_rotation + force * lever_slope, *(lever * one for one in by[1:])]
         moment = [a + b for a, b in zip(moment, by_moment, strict=True)]
         load = load + force * lever
     if pads.small:
-        inverse = constant(1.0 / (float(pads.inertia) + tall * tall))
+        inverse = constant_curve(1.0 / (float(pads.inertia) + centre_height * centre_height))
     else:
-        held = float(pin(pads, standing))
-        arm, bend = cosine.times(tall) + sine.times(held), cosine.times(held) - sine.times(tall)
+        offset = float(pivot_offset(pads, contacts))
+        arm, lever_slope = (
+            cosine.times(centre_height) + sine.times(offset),
+            cosine.times(offset) - sine.times(centre_height),
+        )
         square = arm * arm
-        inverse = (constant(float(pads.inertia)) + square).inverse()
-        spin, both = rate * rate, arm * bend
-        push = motion.along + bend * spin
-        turning = (load - arm * push) * inverse
+        inverse = (constant_curve(float(pads.inertia)) + square).inverse()
+        spin, both = rate * rate, arm * lever_slope
+        push = motion.along + lever_slope * spin
+        angular_acceleration = (load - arm * push) * inverse
         moment[_ROTATION] = (
-            moment[_ROTATION] - bend * push + square * spin - (both * turning).times(2.0)
+            moment[_ROTATION]
+            - lever_slope * push
+            + square * spin
+            - (both * angular_acceleration).times(2.0)
         )
         moment[_RATE] = moment[_RATE] - (both * rate).times(2.0)
     found = {(_SPEED, j): one for j, one in enumerate(upward)}
@@ -281,8 +294,8 @@ def _weighted(stiff: dict[tuple[int, int], Curve], h: float, weights: Array) -> 
     matrix, error = np.zeros((DEGREE + 1, SIZE, SIZE)), np.zeros((SIZE, SIZE))
     for (i, j), one in stiff.items():
         factor = h * weights[j] / weights[i]
-        matrix[:, i, j] = one.of * factor
-        error[i, j] = (one.error + _LOST * one.size) * factor * UPWARDS
+        matrix[:, i, j] = one.coefficients * factor
+        error[i, j] = (one.error + _LOST * one.size) * factor * ROUND_UP
     for i, j in ((_ROTATION, _RATE), (_HEIGHT, _SPEED)):
         matrix[0, i, j] = h * weights[j] / weights[i]
         error[i, j] = _LOST * matrix[0, i, j]
@@ -291,57 +304,60 @@ def _weighted(stiff: dict[tuple[int, int], Curve], h: float, weights: Array) -> 
 
 def _variation(matrix: Array, error: Array) -> tuple[Array, Array]:
     """Return a polynomial for the derivative by the start, and its residual in its equation."""
-    powers = np.zeros((_OF_VARIATION + 1, SIZE, SIZE))
+    powers = np.zeros((VARIATION_ORDER + 1, SIZE, SIZE))
     powers[0] = np.eye(SIZE)
     size, whole = np.abs(matrix), np.zeros((SIZE, SIZE))
-    for k in range(_OF_VARIATION):
+    for k in range(VARIATION_ORDER):
         count = min(k, DEGREE) + 1
         powers[k + 1] = (matrix[:count] @ powers[k - np.arange(count)]).sum(axis=0) / (k + 1)
         whole += (size[:count] @ np.abs(powers[k - np.arange(count)])).sum(axis=0)
     total = np.abs(powers).sum(axis=0)
     every = size.sum(axis=0) @ total
     cut = np.maximum(every - whole, 0.0)
-    return powers, (cut + 10.0 * _LOST * every + error @ total) * UPWARDS
+    return powers, (cut + 10.0 * _LOST * every + error @ total) * ROUND_UP
 
 
 def _guard(
-    pads: PadBalls, standing: Standing, guard: Guard, found: PadCourse, motion: _Motion,
+    pads: PadBalls, contacts: Contacts, guard: Guard, found: PadMotion, motion: _Motion,
     bounds: tuple[float, float], weights: Array,
 ) -> tuple[Curve, Curve]:  # fmt: skip
     """Return a guard and its derivative by the share, as curves."""
     tube, rate = bounds
     h = float(found.h)
-    lean, turn, sink, fall = (float(one) for one in motion.strays[:4])
+    d_rotation, d_rate, d_height, d_speed = (float(one) for one in motion.deviations[:4])
     series, rest = found.series, found.left_out
     if guard.kind == "limit":
         limit = float(pads.limits[not guard.left])
-        angle = curve(series.rotation, rest.rotation + lean)
+        angle = curve(series.rotation, rest.rotation + d_rotation)
         angle = angle if guard.left else -angle
-        value = constant(limit) + angle
-        change = curve(series.rate, rest.rate + turn).times(h if guard.left else -h)
+        value = constant_curve(limit) + angle
+        change = curve(series.rate, rest.rate + d_rate).times(h if guard.left else -h)
         return value, change
     i = int(not guard.left)
-    tall, wide = float(pads.height), float(pads.left) + float(pads.right)
+    centre_height, wide = float(pads.height), float(pads.left) + float(pads.right)
     spin = motion.rate.size
-    reach = (tall * motion.sine.size + wide) * UPWARDS
-    level_away = sink + reach * lean + rest.levels[i]
-    speed_away = fall + reach * turn + (tall + wide) * spin * lean + rest.speeds[i]
+    reach = (centre_height * motion.sine.size + wide) * ROUND_UP
+    level_away = d_height + reach * d_rotation + rest.levels[i]
+    speed_away = (
+        d_speed + reach * d_rate + (centre_height + wide) * spin * d_rotation + rest.speeds[i]
+    )
     speed = curve(series.speeds[i], speed_away)
     if guard.kind in ("depth", "gap"):
-        level = curve(series.levels[i], level_away) - constant(float(pads.settlements[i]))
+        level = curve(series.levels[i], level_away) - constant_curve(float(pads.settlements[i]))
         sign = 1.0 if guard.kind == "gap" else -1.0
         return level.times(sign), speed.times(sign * h)
     # accelerations of members differ by no more than the rate of change of their distances
-    turning_away, falling_away = (float(rate * tube * weights[j] / h) for j in (_RATE, _SPEED))
+    angular_away, falling_away = (float(rate * tube * weights[j] / h) for j in (_RATE, _SPEED))
     order = len(series.speeds[i])
     sizes = (k * float(one.abs_upper()) for k, one in enumerate(series.rate))
-    turning = turning_away + UPWARDS * (sum(sizes) + len(series.rate) * rest.rate) / h
+    angular_acceleration = angular_away + ROUND_UP * (sum(sizes) + len(series.rate) * rest.rate) / h
     away = (
         falling_away
-        + reach * turning_away
-        + (tall + wide) * (lean * (turning + spin * spin) + 2.0 * spin * turn)
+        + reach * angular_away
+        + (centre_height + wide)
+        * (d_rotation * (angular_acceleration + spin * spin) + 2.0 * spin * d_rate)
     )
-    slope = curve(slope_of(series.speeds[i]), (order * rest.speeds[i] + away * h) * UPWARDS)
+    slope = curve(derivative_of(series.speeds[i]), (order * rest.speeds[i] + away * h) * ROUND_UP)
     if guard.kind == "rise":
         return speed, slope
     stiff, damped = float(pads.stiffness), float(pads.damping)

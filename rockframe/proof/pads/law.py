@@ -14,9 +14,9 @@ from rockframe.proof.problem import Undecided
 
 SIZE: Final = 5
 """Numbers of a state."""
-_TOGETHER: Final = 1e-9
+_SAME_LANDING: Final = 1e-9
 """Share of the settlement within which runs take two landings as one; up to twice undecided."""
-_PARTED: Final = 1e-11
+_SEPARATION: Final = 1e-11
 """Share of the settlement by which a corner that lifts off must be below its pad's own level."""
 
 
@@ -78,17 +78,17 @@ class Dual:
         return Dual(self.value.cos(), [-sine * one for one in self.slope])
 
 
-def duals(state: Row) -> list[Dual]:
+def independent_duals(state: Row) -> list[Dual]:
     """Return a state as duals, the independent variables of gradients."""
     one = [[ball(int(i == j)) for j in range(SIZE)] for i in range(SIZE)]
     return [Dual(value, one[i]) for i, value in enumerate(state)]
 
 
-class Shaken(NamedTuple):
+class GroundAcceleration(NamedTuple):
     """Ground acceleration along the base, and gravity plus the normal one, at a time or several."""
 
     along: Ball
-    weight: Ball
+    normal: Ball
 
 
 class PadBalls(NamedTuple):
@@ -110,7 +110,7 @@ class PadBalls(NamedTuple):
     gravity: Ball
 
 
-class Standing(NamedTuple):
+class Contacts(NamedTuple):
     """Contacts of both corners, by the constants of :mod:`rockframe.dynamics.pads`."""
 
     left: int
@@ -120,12 +120,12 @@ class Standing(NamedTuple):
         """Return the contact of a corner."""
         return self.left if left else self.right
 
-    def with_corner(self, left: bool, contact: int) -> "Standing":
+    def with_corner(self, left: bool, contact: int) -> "Contacts":
         """Return the contacts with another one of a corner."""
-        return Standing(contact, self.right) if left else Standing(self.left, contact)
+        return Contacts(contact, self.right) if left else Contacts(self.left, contact)
 
     @property
-    def flies(self) -> bool:
+    def in_flight(self) -> bool:
         """Whether no corner is held."""
         return self.left >= RELAXING and self.right >= RELAXING
 
@@ -146,13 +146,13 @@ _GUARDS: Final = {
 }
 
 
-def guards_of(standing: Standing) -> list[Guard]:
+def guards_of(contacts: Contacts) -> list[Guard]:
     """Return the guards of some contacts, :eq:`eq-guards`, and those of overturning."""
-    found = [Guard(kind, left) for left in (True, False) for kind in _GUARDS[standing.of(left)]]
+    found = [Guard(kind, left) for left in (True, False) for kind in _GUARDS[contacts.of(left)]]
     return [*found, Guard("limit", True), Guard("limit", False)]
 
 
-class Turned(NamedTuple):
+class RotationTerms(NamedTuple):
     """Sine, cosine and rise of a rotation, or their forms at small rotation."""
 
     sine: Any
@@ -160,12 +160,12 @@ class Turned(NamedTuple):
     rise: Any
 
 
-def turned(pads: PadBalls, rotation: Any) -> Turned:
+def rotation_terms(pads: PadBalls, rotation: Any) -> RotationTerms:
     """Return sine, cosine and rise, :eq:`eq-kinematics`."""
     if pads.small:
-        return Turned(rotation, ball(1), rotation * rotation * (pads.height / 2))
+        return RotationTerms(rotation, ball(1), rotation * rotation * (pads.height / 2))
     cosine = rotation.cos()
-    return Turned(rotation.sin(), cosine, pads.height * (1 - cosine))
+    return RotationTerms(rotation.sin(), cosine, pads.height * (1 - cosine))
 
 
 class CornerMotion(NamedTuple):
@@ -176,10 +176,10 @@ class CornerMotion(NamedTuple):
     lever: Any
 
 
-def corner(pads: PadBalls, left: bool, state: list[Any]) -> CornerMotion:
+def corner_motion(pads: PadBalls, left: bool, state: list[Any]) -> CornerMotion:
     """Return height, speed and lever of a corner in a state."""
     reach = pads.left if left else -pads.right
-    at = turned(pads, state[0])
+    at = rotation_terms(pads, state[0])
     lever = at.sine * pads.height + at.cosine * reach
     return CornerMotion(state[2] + at.rise + at.sine * reach, state[3] + lever * state[1], lever)
 
@@ -190,47 +190,57 @@ def reaction(pads: PadBalls, left: bool, at: CornerMotion) -> Any:
     return depth * pads.stiffness - at.speed * pads.damping
 
 
-def pivot(pads: PadBalls, standing: Standing) -> int:
+def pivot(pads: PadBalls, contacts: Contacts) -> int:
     """Return the pivot: which point of the base is held."""
-    left, right = (standing.of(one) < RELAXING for one in (True, False))
+    left, right = (contacts.of(one) < RELAXING for one in (True, False))
     return pivot_of(pads.rule, left, right, 0.0, 0.0)
 
 
-def pin(pads: PadBalls, standing: Standing) -> Ball:
+def pivot_offset(pads: PadBalls, contacts: Contacts) -> Ball:
     """Return e, from below the centre of mass to the held point."""
-    found = pivot(pads, standing)
+    found = pivot(pads, contacts)
     if found == PIVOT_CENTRE:
         return pads.middle
-    return pads.right if standing.left >= RELAXING else -pads.left
+    return pads.right if contacts.left >= RELAXING else -pads.left
 
 
-def arm(pads: PadBalls, standing: Standing, rotation: Any) -> Any:
+def arm(pads: PadBalls, contacts: Contacts, rotation: Any) -> Any:
     """Return x', the derivative of the centre's horizontal place by the rotation."""
     if pads.small:
         return pads.height
-    at = turned(pads, rotation)
-    return at.cosine * pads.height + at.sine * pin(pads, standing)
+    at = rotation_terms(pads, rotation)
+    return at.cosine * pads.height + at.sine * pivot_offset(pads, contacts)
 
 
-def field(pads: PadBalls, standing: Standing, state: list[Any], ground: Shaken) -> list[Any]:
+def state_rates(
+    pads: PadBalls, contacts: Contacts, state: list[Any], ground: GroundAcceleration
+) -> list[Any]:
     """Return the rates of change of a state, :eq:`eq-two-spring`."""
     rotation, rate, _, speed, _ = state
-    upward, moment = -ground.weight, ZERO
+    upward, moment = -ground.normal, ZERO
     for left in (True, False):
-        if standing.of(left) == TOUCHING:
-            at = corner(pads, left, state)
+        if contacts.of(left) == TOUCHING:
+            at = corner_motion(pads, left, state)
             force = reaction(pads, left, at)
             upward, moment = force + upward, force * at.lever + moment
     zero = rate * ZERO
-    if standing.flies:
+    if contacts.in_flight:
         return [rate, zero, speed, zero + upward, zero - ground.along]
-    sway = arm(pads, standing, rotation)
+    sway = arm(pads, contacts, rotation)
     push = ground.along
     if not pads.small:
-        at = turned(pads, rotation)
-        push = (at.cosine * pin(pads, standing) - at.sine * pads.height) * rate * rate + push
-    turning = zero + moment - zero - push * sway
-    return [rate, turning / (zero + sway * sway + pads.inertia), speed, zero + upward, zero]
+        at = rotation_terms(pads, rotation)
+        push = (
+            at.cosine * pivot_offset(pads, contacts) - at.sine * pads.height
+        ) * rate * rate + push
+    net_moment = zero + moment - zero - push * sway
+    return [
+        rate,
+        net_moment / (zero + sway * sway + pads.inertia),
+        speed,
+        zero + upward,
+        zero,
+    ]
 
 
 def guard_value(pads: PadBalls, guard: Guard, state: list[Any]) -> Any:
@@ -238,7 +248,7 @@ def guard_value(pads: PadBalls, guard: Guard, state: list[Any]) -> Any:
     if guard.kind == "limit":
         limit = pads.limits[not guard.left]
         return state[0] + limit if guard.left else limit - state[0]
-    at = corner(pads, guard.left, state)
+    at = corner_motion(pads, guard.left, state)
     if guard.kind == "depth":
         return pads.settlements[not guard.left] - at.level
     if guard.kind == "gap":
@@ -249,129 +259,134 @@ def guard_value(pads: PadBalls, guard: Guard, state: list[Any]) -> Any:
     return force if guard.kind == "press" else -force
 
 
-class Switched(NamedTuple):
-    """A state after a change of contact; `fresh` are the guards that are zero then."""
+class ContactChange(NamedTuple):
+    """A state after a change of contact; `zero_guards` are the guards that are zero then."""
 
     state: list[Dual]
-    standing: Standing
-    fresh: tuple[Guard, ...]
+    contacts: Contacts
+    zero_guards: tuple[Guard, ...]
     impacts: int
 
 
-def switched(
-    pads: PadBalls, standing: Standing, guard: Guard, state: list[Dual], ground: Shaken
-) -> Switched:
+def change_contact(
+    pads: PadBalls, contacts: Contacts, guard: Guard, state: list[Dual], ground: GroundAcceleration
+) -> ContactChange:
     """Return the state after the event of a guard that has fallen to zero.
 
     Raises `Undecided` if a sign that decides about the event is not known.
     """
-    left, was = guard.left, standing.of(guard.left)
+    left, was = guard.left, contacts.of(guard.left)
     if guard.kind == "depth" and was in (RELAXING, LEAVING):
-        fresh = (Guard("gap", left),)
-        return Switched(state, standing.with_corner(left, CLEAR), fresh, 0)
+        zero_guards = (Guard("gap", left),)
+        return ContactChange(state, contacts.with_corner(left, CLEAR), zero_guards, 0)
     if guard.kind == "press" and was == LEAVING:
-        fresh = (Guard("slack", left),)
-        return Switched(state, standing.with_corner(left, RELAXING), fresh, 0)
+        zero_guards = (Guard("slack", left),)
+        return ContactChange(state, contacts.with_corner(left, RELAXING), zero_guards, 0)
     if guard.kind == "slack" and was == ENGAGING:
-        fresh = (Guard("press", left),)
-        return Switched(state, standing.with_corner(left, TOUCHING), fresh, 0)
+        zero_guards = (Guard("press", left),)
+        return ContactChange(state, contacts.with_corner(left, TOUCHING), zero_guards, 0)
     if was < RELAXING:
-        return _separated(pads, standing, left, state, ground)
-    return _held(pads, standing, left, state)
+        return _lift_off(pads, contacts, left, state, ground)
+    return _land(pads, contacts, left, state)
 
 
-def _separated(
-    pads: PadBalls, standing: Standing, left: bool, state: list[Dual], ground: Shaken
-) -> Switched:
+def _lift_off(
+    pads: PadBalls, contacts: Contacts, left: bool, state: list[Dual], ground: GroundAcceleration
+) -> ContactChange:
     """Return the state after a corner has lifted off."""
-    at, free = corner(pads, left, state), Guard("gap", left)
+    at, own_guard = corner_motion(pads, left, state), Guard("gap", left)
     own = CLEAR
-    if standing.of(left) == TOUCHING and pads.damping > 0:
+    if contacts.of(left) == TOUCHING and pads.damping > 0:
         depth = (pads.settlements[not left] - at.level).value
-        if not depth > pads.rest * _PARTED:
+        if not depth > pads.rest * _SEPARATION:
             msg = "a corner that leaves its pad at the pad's own level"
             raise Undecided(msg)
-        own, free = RELAXING, Guard("slack", left)
-    other = standing.of(not left)
+        own, own_guard = RELAXING, Guard("slack", left)
+    other = contacts.of(not left)
     if other == TOUCHING:
-        if not reaction(pads, not left, corner(pads, not left, state)).value > 0:
+        if not reaction(pads, not left, corner_motion(pads, not left, state)).value > 0:
             msg = "both corners let go at once"
             raise Undecided(msg)
     elif other in (ENGAGING, LEAVING):
         other = RELAXING
-    after = Standing(own, other) if left else Standing(other, own)
-    if after.flies:
-        sway = arm(pads, standing, state[0]) * state[1]
+    after = Contacts(own, other) if left else Contacts(other, own)
+    if after.in_flight:
+        sway = arm(pads, contacts, state[0]) * state[1]
         state = [*state[:4], sway]
-        if own == RELAXING and not _rate(pads, after, Guard("press", left), state, ground) < 0:
+        if (
+            own == RELAXING
+            and not _guard_rate(pads, after, Guard("press", left), state, ground) < 0
+        ):
             msg = "a corner that slides on its pad as it leaves"
             raise Undecided(msg)
-        return Switched(state, after, (free,), 0)
-    if pivot(pads, after) == pivot(pads, standing):
-        return Switched(state, after, (free,), 0)
-    state = _repinned(pads, standing, after, state)
-    at = corner(pads, left, state)
+        return ContactChange(state, after, (own_guard,), 0)
+    if pivot(pads, after) == pivot(pads, contacts):
+        return ContactChange(state, after, (own_guard,), 0)
+    state = _project_momentum(pads, contacts, after, state)
+    at = corner_motion(pads, left, state)
     if not at.speed.value > 0:
         msg = "a corner that its restraint keeps from leaving"
         raise Undecided(msg)
     if own == CLEAR:
-        return Switched(state, after, (free,), 0)
+        return ContactChange(state, after, (own_guard,), 0)
     force = reaction(pads, left, at).value
     if force > 0:
-        return Switched(state, after.with_corner(left, LEAVING), (), 0)
+        return ContactChange(state, after.with_corner(left, LEAVING), (), 0)
     if not force < 0:
         msg = "whether a pad still presses a corner that has left is not resolved"
         raise Undecided(msg)
-    return Switched(state, after, (), 0)
+    return ContactChange(state, after, (), 0)
 
 
-def _held(pads: PadBalls, standing: Standing, left: bool, state: list[Dual]) -> Switched:
+def _land(pads: PadBalls, contacts: Contacts, left: bool, state: list[Dual]) -> ContactChange:
     """Return the state after a corner has landed, or is pressed again by its pad."""
-    lands, other = standing.of(left) == CLEAR, standing.of(not left)
+    lands, other = contacts.of(left) == CLEAR, contacts.of(not left)
     if lands and other == CLEAR:
         level = guard_value(pads, Guard("gap", not left), state).value
-        if not abs(level) > pads.rest * (2 * _TOGETHER):
+        if not abs(level) > pads.rest * (2 * _SAME_LANDING):
             msg = "both corners land at once"
             raise Undecided(msg)
     if other == LEAVING:
         other = RELAXING
-    after = Standing(TOUCHING, other) if left else Standing(other, TOUCHING)
-    before = corner(pads, left, state).speed.value
-    flew = standing.flies
-    repins = flew or pivot(pads, after) != pivot(pads, standing)
-    if repins:
-        state = _repinned(pads, standing, after, state)
-    at = corner(pads, left, state)
+    after = Contacts(TOUCHING, other) if left else Contacts(other, TOUCHING)
+    before = corner_motion(pads, left, state).speed.value
+    was_in_flight = contacts.in_flight
+    changes_pivot = was_in_flight or pivot(pads, after) != pivot(pads, contacts)
+    if changes_pivot:
+        state = _project_momentum(pads, contacts, after, state)
+    at = corner_motion(pads, left, state)
     slower = at.speed.value < 0 if lands else at.speed.value < before
-    if flew and not slower:
+    if was_in_flight and not slower:
         msg = "a corner that slides on its pad as it lands"
         raise Undecided(msg)
     if lands:
-        fresh = () if pads.damping > 0 else (Guard("press", left),)
-        return Switched(_struck(pads, after, left, state), after, fresh, 1)
+        zero_guards = () if pads.damping > 0 else (Guard("press", left),)
+        return ContactChange(_apply_impact(pads, after, left, state), after, zero_guards, 1)
     force = reaction(pads, left, at).value
-    if not repins and standing.of(left) == RELAXING:
-        return Switched(state, after, (Guard("press", left),), 0)
+    if not changes_pivot and contacts.of(left) == RELAXING:
+        return ContactChange(state, after, (Guard("press", left),), 0)
     if force < 0:
-        return Switched(state, after.with_corner(left, ENGAGING), (), 0)
+        return ContactChange(state, after.with_corner(left, ENGAGING), (), 0)
     if not force > 0:
         msg = "whether a pad presses a corner that has come back is not resolved"
         raise Undecided(msg)
-    return Switched(state, after, (), 0)
+    return ContactChange(state, after, (), 0)
 
 
-def _repinned(pads: PadBalls, before: Standing, after: Standing, state: list[Dual]) -> list[Dual]:
+def _project_momentum(
+    pads: PadBalls, before: Contacts, after: Contacts, state: list[Dual]
+) -> list[Dual]:
     """Project the momentum on another held point, :eq:`eq-repinning`."""
-    sway = state[4] if before.flies else arm(pads, before, state[0]) * state[1]
+    sway = state[4] if before.in_flight else arm(pads, before, state[0]) * state[1]
     reach = arm(pads, after, state[0])
     slip = sway - reach * state[1]
     answer = slip * reach / (state[0] * ZERO + reach * reach + pads.inertia)
     return [state[0], state[1] + answer, state[2], state[3], state[4] * ZERO]
 
 
-def _struck(pads: PadBalls, after: Standing, left: bool, state: list[Dual]) -> list[Dual]:
+def _apply_impact(pads: PadBalls, after: Contacts, left: bool, state: list[Dual]) -> list[Dual]:
     """Reduce the speed of a landing corner, :eq:`eq-impact`."""
-    at, reach = corner(pads, left, state), arm(pads, after, state[0])
+    at, reach = corner_motion(pads, left, state), arm(pads, after, state[0])
     if at.speed.value > 0:
         return state
     if not at.speed.value < 0:
@@ -383,14 +398,14 @@ def _struck(pads: PadBalls, after: Standing, left: bool, state: list[Dual]) -> l
     return [state[0], state[1] + impulse * answer, state[2], state[3] + impulse, state[4]]
 
 
-def _rate(
-    pads: PadBalls, standing: Standing, guard: Guard, state: list[Dual], ground: Shaken
+def _guard_rate(
+    pads: PadBalls, contacts: Contacts, guard: Guard, state: list[Dual], ground: GroundAcceleration
 ) -> Ball:
     """Return the rate of change of a guard in a state, as a ball."""
-    at = duals([one.value for one in state])
-    return along(guard_value(pads, guard, at), field(pads, standing, at, ground))
+    at = independent_duals([one.value for one in state])
+    return rate_of_change(guard_value(pads, guard, at), state_rates(pads, contacts, at, ground))
 
 
-def along(of: Dual, rates: list[Dual]) -> Ball:
+def rate_of_change(of: Dual, rates: list[Dual]) -> Ball:
     """Return the rate of change of a dual, from the rates of its state."""
     return sum((a * b.value for a, b in zip(of.slope, rates, strict=True)), ZERO)

@@ -11,18 +11,18 @@ from typing import Any, Final, NamedTuple
 
 from rockframe.dynamics.pads import CLEAR, TOUCHING
 from rockframe.proof.balls import Ball, Row, bits
-from rockframe.proof.pads.law import PadBalls, Standing, pin
+from rockframe.proof.pads.law import Contacts, PadBalls, pivot_offset
 from rockframe.proof.problem import GroundPiece
 
-LOWEST: Final = 14
-HIGHEST: Final = 80
-UPWARDS: Final = 1.0 + 1e-9
+MIN_ORDER: Final = 14
+MAX_ORDER: Final = 80
+ROUND_UP: Final = 1.0 + 1e-9
 """Factor above the rounding error of a sum of products of non-negative doubles."""
-_ROOM: Final = 1.01
+_MARGIN: Final = 1.01
 """Factor from the bounds of the polynomials to those that the motion is proved not to reach."""
 
 
-class TooLong(Exception):  # noqa: N818  (a step to be halved, no error)
+class StepTooLong(Exception):  # noqa: N818  (a step to be halved, no error)
     """A step that is too long for the series."""
 
 
@@ -35,7 +35,7 @@ class SeriesNumbers(NamedTuple):
     stiffness: Any
     damping: Any
     settlements: tuple[Any, Any]
-    pin: Any  # e, from below the centre of mass to the held point
+    pivot_offset: Any  # e, from below the centre of mass to the held point
 
 
 class Series(NamedTuple):
@@ -55,13 +55,13 @@ class Series(NamedTuple):
     arm: Any  # x'
 
 
-def product(a: list[Any], b: list[Any]) -> Any:
+def cauchy_product(a: list[Any], b: list[Any]) -> Any:
     """Return the last coefficient of the product of two series of the same length."""
     return sum(map(mul, a, b[::-1]))
 
 
 def recursion(
-    shape: SeriesNumbers, standing: Standing, small: bool, start: Series,
+    numbers: SeriesNumbers, contacts: Contacts, small: bool, start: Series,
     ground: tuple[list[Any], ...], h: Any, minus: int, enough: Any,
 ) -> Series:  # fmt: skip
     """Return series from their first coefficients; `minus` is -1, or 1 for their bounds.
@@ -72,80 +72,86 @@ def recursion(
     rotation, rate, height, speed, sway, sine, cosine = start[:7]
     (up_left, up_right), (by_left, by_right), (on_left, on_right) = start[7:10]
     inertia, arm = start.inertia, start.arm
-    weights, alongs = ground
-    tall, (reach_left, reach_right) = shape.height, shape.reaches
-    stiff, damped = shape.stiffness, shape.damping
-    free = standing.flies
+    normals, alongs = ground
+    centre_height, (reach_left, reach_right) = numbers.height, numbers.reaches
+    stiff, damped = numbers.stiffness, numbers.damping
+    in_flight = contacts.in_flight
     slopes: list[Any] = []  # of the rate
     arms_rate: list[Any] = []
     pushes: list[Any] = []
     levers: tuple[list[Any], list[Any]] = ([], [])
     corners = (
-        (0, standing.left, reach_left, up_left, by_left, on_left),
-        (1, standing.right, minus * reach_right, up_right, by_right, on_right),
+        (0, contacts.left, reach_left, up_left, by_left, on_left),
+        (1, contacts.right, minus * reach_right, up_right, by_right, on_right),
     )
     k = 0
     while True:
-        kept = risen = 0
+        cosine_rate = rise = 0
         if small:
-            turned = product(rotation, rate)
-            risen = product(rotation, rotation) * tall / 2
+            sine_rate = cauchy_product(rotation, rate)
+            rise = cauchy_product(rotation, rotation) * centre_height / 2
         else:
-            turned, kept = product(sine, rate), product(cosine, rate)
-        weight = weights[k] if k < len(weights) else 0
-        upward, moment = minus * weight, 0
+            sine_rate, cosine_rate = cauchy_product(sine, rate), cauchy_product(cosine, rate)
+        normal = normals[k] if k < len(normals) else 0
+        upward, moment = minus * normal, 0
         for i, contact, reach, levels, speeds, forces in corners:
             if small:
                 if k:
-                    levels.append(height[k] + risen + reach * rotation[k])
-                speeds.append(speed[k] + tall * turned + reach * rate[k])
+                    levels.append(height[k] + rise + reach * rotation[k])
+                speeds.append(speed[k] + centre_height * sine_rate + reach * rate[k])
             else:
                 if k:
-                    levels.append(height[k] + minus * tall * cosine[k] + reach * sine[k])
-                speeds.append(speed[k] + tall * turned + reach * kept)
+                    levels.append(height[k] + minus * centre_height * cosine[k] + reach * sine[k])
+                speeds.append(speed[k] + centre_height * sine_rate + reach * cosine_rate)
             if contact == CLEAR:
                 continue
             if k or not forces:
-                depth = minus * levels[k] + (0 if k else shape.settlements[i])
+                depth = minus * levels[k] + (0 if k else numbers.settlements[i])
                 forces.append(stiff * depth + minus * damped * speeds[k])
             if contact == TOUCHING:
                 upward = upward + forces[k]
                 if not small:
-                    levers[i].append(tall * sine[k] + reach * cosine[k])
-                    moment = moment + product(forces, levers[i])
+                    levers[i].append(centre_height * sine[k] + reach * cosine[k])
+                    moment = moment + cauchy_product(forces, levers[i])
                 else:
-                    moment = moment + tall * product(forces, rotation) + reach * forces[k]
+                    moment = (
+                        moment
+                        + centre_height * cauchy_product(forces, rotation)
+                        + reach * forces[k]
+                    )
         along = alongs[k] if k < len(alongs) else 0
-        if free:
-            turning = 0 * rate[0]
+        if in_flight:
+            angular_acceleration = 0 * rate[0]
             sway.append(minus * h * along / (k + 1))
         elif small:
-            turning = (moment + minus * tall * along) / inertia[0]
+            angular_acceleration = (moment + minus * centre_height * along) / inertia[0]
         else:
             if k:
-                arm.append(tall * cosine[k] + shape.pin * sine[k])
-                inertia.append(product(arm, arm))
-            arms_rate.append(shape.pin * kept + minus * tall * turned)
-            pushes.append(along + product(arms_rate, rate))
-            turning = moment + minus * product(arm, pushes)
+                arm.append(centre_height * cosine[k] + numbers.pivot_offset * sine[k])
+                inertia.append(cauchy_product(arm, arm))
+            arms_rate.append(numbers.pivot_offset * cosine_rate + minus * centre_height * sine_rate)
+            pushes.append(along + cauchy_product(arms_rate, rate))
+            angular_acceleration = moment + minus * cauchy_product(arm, pushes)
             if k:
-                turning = turning + minus * sum(map(mul, slopes, inertia[:0:-1]))
-            turning = turning / inertia[0]
-        slopes.append(turning)
+                angular_acceleration = angular_acceleration + minus * sum(
+                    map(mul, slopes, inertia[:0:-1])
+                )
+            angular_acceleration = angular_acceleration / inertia[0]
+        slopes.append(angular_acceleration)
         share = h / (k + 1)
         rotation.append(share * rate[k])
-        rate.append(share * turning)
+        rate.append(share * angular_acceleration)
         height.append(share * speed[k])
         speed.append(share * upward)
         if not small:
-            sine.append(share * kept)
-            cosine.append(minus * share * turned)
+            sine.append(share * cosine_rate)
+            cosine.append(minus * share * sine_rate)
         k += 1
         if enough(k, found):
             return found
 
 
-class PadCourse(NamedTuple):
+class PadMotion(NamedTuple):
     """A motion from a point over a step h, with bounds of the remainders of its series."""
 
     h: Ball
@@ -154,79 +160,87 @@ class PadCourse(NamedTuple):
     left_out: Series  # bounds of the remainders
 
 
-def course(
-    pads: PadBalls, standing: Standing, shaking: GroundPiece, start: Row, h: Ball,
+def enclose_motion(
+    pads: PadBalls, contacts: Contacts, ground_piece: GroundPiece, start: Row, h: Ball,
     sizes_of: tuple[float, ...], margin: int,
-) -> PadCourse:  # fmt: skip
+) -> PadMotion:  # fmt: skip
     """Enclose the motion from a point, :eq:`eq-proof-pads-majorant`.
 
     The series end where their coefficients, over the typical sizes `sizes_of`, are `margin` bits
-    below the precision. Raises `TooLong` if the step must be halved.
+    below the precision. Raises `StepTooLong` if the step must be halved.
     """
-    held = pin(pads, standing) if not (standing.flies or pads.small) else 0 * h
-    shape = SeriesNumbers(
+    offset = pivot_offset(pads, contacts) if not (contacts.in_flight or pads.small) else 0 * h
+    numbers = SeriesNumbers(
         pads.height, (pads.left, pads.right), pads.inertia, pads.stiffness, pads.damping,
-        pads.settlements, held,
+        pads.settlements, offset,
     )  # fmt: skip
     ground = tuple(
-        [one * h**k for k, one in enumerate(row)] for row in (shaking.weight, shaking.along)
+        [one * h**k for k, one in enumerate(row)]
+        for row in (ground_piece.normal, ground_piece.along)
     )
     least = 2.0 ** -(bits() + margin)
     first, second = least * sizes_of[1], least * sizes_of[3]
 
     def enough(k: int, so_far: Series) -> bool:
-        if k < LOWEST:
+        if k < MIN_ORDER:
             return False
-        if k >= HIGHEST:
-            raise TooLong
+        if k >= MAX_ORDER:
+            raise StepTooLong
         fast, sunk = abs(float(so_far.rate[k])), abs(float(so_far.speed[k]))
         return fast < first and sunk < second and abs(float(so_far.rate[k - 1])) < first * 16
 
     found = recursion(
-        shape, standing, pads.small, _first(pads, standing, start, held), ground, h, -1, enough
+        numbers,
+        contacts,
+        pads.small,
+        _initial_series(pads, contacts, start, offset),
+        ground,
+        h,
+        -1,
+        enough,
     )
     order = len(found.rotation) - 1
-    sizes = [_in_each(_size, one) for one in found]
+    sizes = [_map_corners(_size, one) for one in found]
     # bounds that the motion is to be proved not to reach
-    most = [_in_each(lambda size: size * _ROOM + 1e-200, size) for size in sizes]
+    most = [_map_corners(lambda size: size * _MARGIN + 1e-200, size) for size in sizes]
     inertia = found.inertia
-    least_inertia = float(inertia[0].lower()) / UPWARDS
-    swing = sum(float(one.abs_upper()) for one in inertia[1:]) * UPWARDS
-    low = (least_inertia - swing * _ROOM) * 0.999
+    least_inertia = float(inertia[0].lower()) / ROUND_UP
+    inertia_change = sum(float(one.abs_upper()) for one in inertia[1:]) * ROUND_UP
+    low = (least_inertia - inertia_change * _MARGIN) * 0.999
     if not low > 0:
-        raise TooLong
+        raise StepTooLong
     bounds = Series(
         [most[0]], [most[1]], [most[2]], [most[3]], [most[4]], [min(1.0, most[5])], [1.0],
         ([0.0], [0.0]), ([], []), tuple([one] for one in most[9]), [low],
-        [float(shape.height) * UPWARDS + abs(float(held)) * UPWARDS * min(1.0, most[5])],
+        [float(numbers.height) * ROUND_UP + abs(float(offset)) * ROUND_UP * min(1.0, most[5])],
     )  # fmt: skip
-    upper = SeriesNumbers(*(_in_each(_bound, one) for one in shape))
-    grounds = tuple(_anywhere(row) for row in ground)
+    bounded_numbers = SeriesNumbers(*(_map_corners(_bound, one) for one in numbers))
+    grounds = tuple(_taylor_bounds(row) for row in ground)
     counts = [len(one) for one in bounds]
     ended = recursion(
-        upper, standing, pads.small, bounds, grounds, _bound(h), 1, lambda k, _: k > order
+        bounded_numbers, contacts, pads.small, bounds, grounds, _bound(h), 1, lambda k, _: k > order
     )  # fmt: skip
     grown = zip(ended, counts, strict=True)
     left_out = Series(
         *(
-            _in_each(_last, one) if isinstance(one, tuple) or len(one) > count else 0.0
+            _map_corners(_last_bound, one) if isinstance(one, tuple) or len(one) > count else 0.0
             for one, count in grown
         )
     )
-    _confirm_bounds(sizes, most, left_out, swing, least_inertia - low)
-    return PadCourse(h, ground[1], found, left_out)
+    _confirm_bounds(sizes, most, left_out, inertia_change, least_inertia - low)
+    return PadMotion(h, ground[1], found, left_out)
 
 
-def _anywhere(row: Row) -> list[float]:
+def _taylor_bounds(row: Row) -> list[float]:
     """Bound the Taylor coefficients of a polynomial about all points of the step."""
     sizes = [_bound(one) for one in row]
     return [
-        sum(math.comb(j, k) * one for j, one in enumerate(sizes)) * UPWARDS
+        sum(math.comb(j, k) * one for j, one in enumerate(sizes)) * ROUND_UP
         for k in range(len(sizes))
     ]
 
 
-def _first(pads: PadBalls, standing: Standing, start: Row, held: Ball) -> Series:
+def _initial_series(pads: PadBalls, contacts: Contacts, start: Row, offset: Ball) -> Series:
     """Return the first coefficients of the series from a state."""
     rotation, rate, height, speed, sway = start
     if pads.small:
@@ -234,7 +248,7 @@ def _first(pads: PadBalls, standing: Standing, start: Row, held: Ball) -> Series
         rise, arm = rotation * rotation * pads.height / 2, pads.height
     else:
         sine, cosine = rotation.sin(), rotation.cos()
-        rise, arm = pads.height * (1 - cosine), pads.height * cosine + held * sine
+        rise, arm = pads.height * (1 - cosine), pads.height * cosine + offset * sine
     levels = height + rise + pads.left * sine, height + rise - pads.right * sine
     return Series(
         [rotation], [rate], [height], [speed], [sway], [sine], [cosine],
@@ -242,28 +256,28 @@ def _first(pads: PadBalls, standing: Standing, start: Row, held: Ball) -> Series
     )  # fmt: skip
 
 
-def _in_each(work: Callable[[Any], float], one: Any) -> Any:
+def _map_corners(work: Callable[[Any], float], one: Any) -> Any:
     """Return what a function makes of one thing, or of that of each corner."""
     return tuple(map(work, one)) if isinstance(one, tuple) else work(one)
 
 
 def _bound(one: Ball) -> float:
     """Bound the absolute value of a ball by a double."""
-    return float(abs(one).upper()) * UPWARDS
+    return float(abs(one).upper()) * ROUND_UP
 
 
 def _size(series: Row) -> float:
     """Bound the absolute value of a polynomial over the step."""
-    return sum(float(each.abs_upper()) for each in series) * UPWARDS
+    return sum(float(each.abs_upper()) for each in series) * ROUND_UP
 
 
-def _last(bounds: list[float]) -> float:
+def _last_bound(bounds: list[float]) -> float:
     """Return the last coefficient of bounds, rounded upwards."""
-    return float(bounds[-1]) * UPWARDS if bounds else 0.0
+    return float(bounds[-1]) * ROUND_UP if bounds else 0.0
 
 
 def _confirm_bounds(
-    sizes: list[Any], most: list[Any], left_out: Series, swing: float, low: float
+    sizes: list[Any], most: list[Any], left_out: Series, inertia_change: float, low: float
 ) -> None:
     """Prove that the motion reaches no bound: then all of them hold; raise TooLong otherwise."""
     firsts = zip(sizes, most, left_out, strict=True)
@@ -271,6 +285,6 @@ def _confirm_bounds(
     pairs += zip(sizes[9], most[9], left_out.forces, strict=True)
     for size, bound, rest in pairs:
         if size and not size + rest < bound:
-            raise TooLong
-    if not swing + left_out.inertia < low:
-        raise TooLong
+            raise StepTooLong
+    if not inertia_change + left_out.inertia < low:
+        raise StepTooLong

@@ -11,14 +11,14 @@ from rockframe.dynamics.on_base import BodyOnBase
 from rockframe.dynamics.pads import corner_contact
 from rockframe.dynamics.single_body import SingleBody
 from rockframe.proof.balls import ball
-from rockframe.proof.pads.flow import point
-from rockframe.proof.pads.law import PadBalls, Standing
-from rockframe.proof.pads.way import PadWay, Watch
-from rockframe.proof.problem import Deviations, Shaking
-from rockframe.proof.sets import concluded, proved
+from rockframe.proof.pads.flow import single_state
+from rockframe.proof.pads.law import Contacts, PadBalls
+from rockframe.proof.pads.prover import Callback, PadProver
+from rockframe.proof.problem import Deviations, PiecewiseGround
+from rockframe.proof.sets import prove_for_set, prove_verdict
 from rockframe.proof.verdict import EXACT, Proof, Tolerances
 from rockframe.signals import Motion
-from rockframe.signals.motion import Slope
+from rockframe.signals.motion import Incline
 from rockframe.system.bodies import OverturningAngles
 
 LAW: Final = "the law of two pads"
@@ -40,36 +40,38 @@ def pad_numbers(part: BodyOnBase, limits: OverturningAngles, inputs: Deviations)
     )  # fmt: skip
 
 
-def way_of(
+def pad_prover(
     law: SingleBody,
     mode: int,
     state: Vector,
     motion: Motion,
-    slope: Slope,
+    slope: Incline,
     limits: OverturningAngles,
     *,
     scale: float = 1.0,
     inputs: Deviations | None = None,
-    watch: Watch | None = None,
-) -> PadWay:
+    callback: Callback | None = None,
+) -> PadProver:
     """Return the way of a block from its start, ready to be followed."""
     part, body = law.part, law.state_of(0, state)
     pads = pad_numbers(part, limits, inputs or Deviations())
     contact = part.mode_of(mode).contact
-    standing = Standing(corner_contact(contact, True), corner_contact(contact, False))
+    contacts = Contacts(corner_contact(contact, True), corner_contact(contact, False))
     vertical = math.sqrt(2.0 * float(pads.stiffness))
     arm = math.sqrt(float(pads.inertia) + float(pads.height) ** 2)
     width = float(pads.left) ** 2 + float(pads.right) ** 2
     fastest = max(vertical, math.sqrt(float(pads.stiffness) * width) / arm)
     weights = np.array([1.0, fastest, arm, arm * fastest, arm * fastest])
     weights = 2.0 ** np.round(np.log2(weights))
-    reach = _REACH / fastest
-    shaking = Shaking(motion, ball(scale), slope, reach)
+    step_length = _REACH / fastest
+    ground = PiecewiseGround(motion, ball(scale), slope, step_length)
     begin = [
         body.rotation, body.angular_velocity, body.vertical, body.vertical_velocity,
-        body.horizontal_velocity if standing.flies else 0.0,
+        body.horizontal_velocity if contacts.in_flight else 0.0,
     ]  # fmt: skip
-    return PadWay(pads, shaking, standing, point(begin), weights, reach, watch=watch)
+    return PadProver(
+        pads, ground, contacts, single_state(begin), weights, step_length, callback=callback
+    )
 
 
 def prove_pads(
@@ -77,7 +79,7 @@ def prove_pads(
     mode: int,
     state: Vector,
     motion: Motion,
-    slope: Slope,
+    slope: Incline,
     limits: OverturningAngles,
     *,
     scale: float = 1.0,
@@ -89,7 +91,7 @@ def prove_pads(
     """
 
     def attempt(inputs: Deviations) -> tuple[Proof, list[float]]:
-        way = way_of(law, mode, state, motion, slope, limits, scale=scale, inputs=inputs)
-        return concluded(way, scale, LAW), []
+        prover = pad_prover(law, mode, state, motion, slope, limits, scale=scale, inputs=inputs)
+        return prove_verdict(prover, scale, LAW), []
 
-    return proved(attempt, within)
+    return prove_for_set(attempt, within)

@@ -98,7 +98,7 @@ def run_summary(
     if summary.overturned:
         rate = float(rates[events["event_kind"] == EventKind.OVERTURNING][0])
         clearances = (rate * rate, duration - summary.verdict_time)
-    elif summary.passed:
+    elif summary.reached_limit:
         clearances = (peak_share - 1.0, 1.0 - summary.peak_rotation / RIGHT_ANGLE)
     else:
         clearances = (1.0 - peak_share,)

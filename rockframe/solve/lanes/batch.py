@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from rockframe.compiled import (
     LANES,
-    Bound,
+    BoundFunction,
     Integers,
     ReadOnlyMatrix,
     Vector,
@@ -22,13 +22,13 @@ from rockframe.compiled import (
 )
 from rockframe.dynamics.events import FLIGHT
 from rockframe.solve import workspace as at
-from rockframe.solve.driver import run_on
-from rockframe.solve.equations import BoundEquations, known_mode
+from rockframe.solve.driver import run_to_pause
+from rockframe.solve.equations import BoundEquations, unpack_mode
 from rockframe.solve.lanes import fields
 from rockframe.solve.lanes.fields import is_at_end
-from rockframe.solve.march import interval_length, jumps
+from rockframe.solve.march import interval_length, is_jump
 from rockframe.solve.workspace import (
-    TERMS,
+    MAX_TERMS,
     WEIGHTS,
     EventTable,
     Output,
@@ -55,8 +55,8 @@ class Batch(NamedTuple):
 
     shape: BatchSizes
     rows: Vector  # of all runs, one row after the other
-    room: Vector  # the lanes: element ``field * LANES + lane``
-    taken: Integers  # the row of each lane, then the next row to start
+    data: Vector  # the lanes: element ``field * LANES + lane``
+    row_of_lane: Integers  # the row of each lane, then the next row to start
     pieces: Pieces  # ground acceleration of all motions, one below the other
     equations: BoundEquations  # those of one of the systems; all are of one class
     output: Output  # without rows
@@ -67,7 +67,7 @@ class Batch(NamedTuple):
 @inlined
 def copy_to_lane(batch: Batch, row: Vector, lane: int, first: int, count: int) -> None:
     """Copy fields of a row into a lane."""
-    inside = lane_of(batch.room, first, lane)
+    inside = lane_of(batch.data, first, lane)
     for i in range(count):
         inside[i] = row[first + i]
 
@@ -75,18 +75,19 @@ def copy_to_lane(batch: Batch, row: Vector, lane: int, first: int, count: int) -
 @inlined
 def copy_to_row(batch: Batch, row: Vector, lane: int, first: int, count: int) -> None:
     """Copy fields of a lane into a row."""
-    inside = lane_of(batch.room, first, lane)
+    inside = lane_of(batch.data, first, lane)
     for i in range(count):
         row[first + i] = inside[i]
 
 
 @inlined
-def equations_in(batch: Batch, row: Vector) -> BoundEquations:
+def row_equations(batch: Batch, row: Vector) -> BoundEquations:
     """Return the equations of a row's system."""
     one, shape = batch.equations, batch.shape
     return BoundEquations(
-        stepping=one.stepping, slope=one.slope, powering=one.powering, observing=one.observing,
-        guarding=one.guarding, switching=one.switching, stored=one.stored, meaning=one.meaning,
+        march=one.march, slope=one.slope, powers=one.powers, columns=one.columns,
+        guards=one.guards, switch=one.switch, energies=one.energies,
+        mode_properties=one.mode_properties,
         numbers=view_of(row, shape.numbers, shape.number_count),
         coordinate_count=one.coordinate_count, variable_count=one.variable_count,
         guard_count=one.guard_count,
@@ -94,14 +95,14 @@ def equations_in(batch: Batch, row: Vector) -> BoundEquations:
 
 
 @inlined
-def note_mode(batch: Batch, row: Vector) -> None:
+def write_mode(batch: Batch, row: Vector) -> None:
     """Write what a run's mode means for its steps to its row."""
     counters = as_integers(view_of(row, fields.COUNTERS, at.COUNTERS))
-    whole = as_integers(view_of(row, fields.OWN_WHOLE, fields.WHOLES))
-    known = known_mode(equations_in(batch, row), counters[at.MODE], batch.w.answers)
-    whole[fields.ACTIVE] = known.moving
-    whole[fields.FLIES] = int(known.contact == FLIGHT)
-    row[fields.OWN + fields.LONGEST] = known.longest
+    whole = as_integers(view_of(row, fields.OWN_INTEGERS, fields.INTEGERS))
+    unpacked = unpack_mode(row_equations(batch, row), counters[at.MODE], batch.w.scratch)
+    whole[fields.MOVING] = unpacked.moving
+    whole[fields.IN_FLIGHT] = int(unpacked.contact == FLIGHT)
+    row[fields.OWN + fields.LONGEST_STEP] = unpacked.longest_step
 
 
 @inlined
@@ -128,19 +129,19 @@ def load_ground(batch: Batch, index: int, whole: Integers, ground: Vector) -> No
     else:
         write_still_ground(x.shape[1], 0, ground)
     if index < whole[fields.COUNT_Y]:
-        write_ground(whole[fields.FIRST_Y] + index, y, TERMS, ground)
+        write_ground(whole[fields.FIRST_Y] + index, y, MAX_TERMS, ground)
     else:
-        write_still_ground(y.shape[1], TERMS, ground)
+        write_still_ground(y.shape[1], MAX_TERMS, ground)
 
 
 @inlined
 def enter_interval(batch: Batch, lane: int) -> bool:
     """Move a lane to its next interval; return whether the single-run driver must continue."""
-    room = batch.room
-    clock, controls = lane_of(room, fields.CLOCK, lane), lane_of(room, fields.CONTROLS, lane)
-    own, ground = lane_of(room, fields.OWN, lane), lane_of(room, fields.GROUND, lane)
-    counters = lane_of(as_integers(room), fields.COUNTERS, lane)
-    whole = lane_of(as_integers(room), fields.OWN_WHOLE, lane)
+    data = batch.data
+    clock, controls = lane_of(data, fields.CLOCK, lane), lane_of(data, fields.CONTROLS, lane)
+    own, ground = lane_of(data, fields.OWN, lane), lane_of(data, fields.GROUND, lane)
+    counters = lane_of(as_integers(data), fields.COUNTERS, lane)
+    whole = lane_of(as_integers(data), fields.OWN_INTEGERS, lane)
     length, index = own[fields.LENGTH], counters[at.INTERVAL]
     intervals = max(whole[fields.COUNT_X], whole[fields.COUNT_Y])
     begin = index * controls[at.TIME_STEP]
@@ -151,7 +152,7 @@ def enter_interval(batch: Batch, lane: int) -> bool:
     clock[at.INTO_INTERVAL] = 0.0
     own[fields.LENGTH] = interval_length(index, intervals, controls)
     load_ground(batch, index, whole, ground)
-    if jumps(ground[0], clock[at.GROUND_X]) or jumps(ground[TERMS], clock[at.GROUND_Y]):
+    if is_jump(ground[0], clock[at.GROUND_X]) or is_jump(ground[MAX_TERMS], clock[at.GROUND_Y]):
         counters[at.STALE] = 1
         return True
     return False
@@ -162,8 +163,8 @@ def run_alone(batch: Batch, row: Vector) -> int:
     """Run on to the end of the interval, or of the run, by the driver of single runs."""
     shape, equations, w = batch.shape, batch.equations, batch.w
     counters = as_integers(view_of(row, fields.COUNTERS, at.COUNTERS))
-    whole = as_integers(view_of(row, fields.OWN_WHOLE, fields.WHOLES))
-    width, slope, guards = len(w.scratch), len(w.powers), len(w.inside)
+    whole = as_integers(view_of(row, fields.OWN_INTEGERS, fields.INTEGERS))
+    width, slope, guards = len(w.inner_state), len(w.inner_powers), len(w.inner_guards)
     size = equations.coordinate_count
     state, new = shape.state, shape.state + shape.half
     behind = shape.numbers + shape.number_count
@@ -174,8 +175,8 @@ def run_alone(batch: Batch, row: Vector) -> int:
         view_of(row, new, width), view_of(row, new + width, slope),
         view_of(row, new + width + slope, guards),
         w.stages, w.works, view_of(row, state - width, width),
-        view_of(row, fields.LIMITS, WEIGHTS + size), w.scratch,
-        w.scratch_rates, w.inside, w.powers, w.ground, w.answers,
+        view_of(row, fields.LIMITS, WEIGHTS + size), w.inner_state,
+        w.inner_slope, w.inner_guards, w.inner_powers, w.ground, w.scratch,
     )  # fmt: skip
     tolerance = view_of(row, behind + shape.memory, equations.guard_count + 1)
     pieces = Pieces(
@@ -186,11 +187,11 @@ def run_alone(batch: Batch, row: Vector) -> int:
         view_of(row, fields.CONTROLS, at.CONTROLS), view_of(row, fields.CLOCK, at.CLOCK), counters
     )
     counters[at.LAST_INTERVAL] = counters[at.INTERVAL]
-    result = at.MORE_ROOM
-    while result == at.MORE_ROOM:  # events are counted, and not kept
+    result = at.TABLE_FULL
+    while result == at.TABLE_FULL:  # events are counted, and not kept
         counters[at.EVENTS] = 0
-        result = run_on(
-            equations_in(batch, row), tolerance, view_of(row, behind, shape.memory), pieces,
+        result = run_to_pause(
+            row_equations(batch, row), tolerance, view_of(row, behind, shape.memory), pieces,
             progress, batch.output, batch.events, own,
         )  # fmt: skip
     return result
@@ -201,9 +202,9 @@ def return_to_lane(batch: Batch, row: Vector, lane: int, everything: bool) -> No
     """Copy a run that has paused into a lane: everything, or only fields that have changed."""
     shape = batch.shape
     counters = as_integers(view_of(row, fields.COUNTERS, at.COUNTERS))
-    whole = as_integers(view_of(row, fields.OWN_WHOLE, fields.WHOLES))
+    whole = as_integers(view_of(row, fields.OWN_INTEGERS, fields.INTEGERS))
     controls = view_of(row, fields.CONTROLS, at.CONTROLS)
-    note_mode(batch, row)
+    write_mode(batch, row)
     intervals = max(whole[fields.COUNT_X], whole[fields.COUNT_Y])
     row[fields.OWN + fields.LENGTH] = interval_length(counters[at.INTERVAL], intervals, controls)
     if everything:
@@ -218,55 +219,55 @@ def return_to_lane(batch: Batch, row: Vector, lane: int, everything: bool) -> No
 def start_next_run(batch: Batch, lane: int) -> None:
     """Start the next run, if one is left, and copy it to a lane after its first interval."""
     shape = batch.shape
-    lane_of(as_integers(batch.room), fields.OWN_WHOLE, lane)[fields.BUSY] = 0
-    while batch.taken[LANES] < shape.rows:
-        k = batch.taken[LANES]
-        batch.taken[LANES] += 1
-        batch.taken[lane] = k
+    lane_of(as_integers(batch.data), fields.OWN_INTEGERS, lane)[fields.BUSY] = 0
+    while batch.row_of_lane[LANES] < shape.rows:
+        k = batch.row_of_lane[LANES]
+        batch.row_of_lane[LANES] += 1
+        batch.row_of_lane[lane] = k
         row = view_of(batch.rows, k * shape.width, shape.width)
         result = run_alone(batch, row)
         if result == at.PAUSED:
             return_to_lane(batch, row, lane, True)
             return
-        as_integers(view_of(row, fields.OWN_WHOLE, fields.WHOLES))[fields.STATUS] = result
+        as_integers(view_of(row, fields.OWN_INTEGERS, fields.INTEGERS))[fields.STATUS] = result
 
 
 @kernel
 def continue_alone(batch: Batch, lane: int) -> None:
     """Run a lane's run alone to the end of its interval; start another one if it ends there."""
     shape = batch.shape
-    row = view_of(batch.rows, batch.taken[lane] * shape.width, shape.width)
+    row = view_of(batch.rows, batch.row_of_lane[lane] * shape.width, shape.width)
     copy_to_row(batch, row, lane, 0, shape.state + shape.half)
     result = run_alone(batch, row)
     if result == at.PAUSED:
         return_to_lane(batch, row, lane, False)
         return
-    as_integers(view_of(row, fields.OWN_WHOLE, fields.WHOLES))[fields.STATUS] = result
+    as_integers(view_of(row, fields.OWN_INTEGERS, fields.INTEGERS))[fields.STATUS] = result
     start_next_run(batch, lane)
 
 
 @kernel
-def see_to_lanes(batch: Batch) -> int:
+def drive_lanes(batch: Batch) -> int:
     """Run lanes alone that need the driver, and move all into an interval; return how many run."""
     busy = 0
     for lane in range(LANES):
-        own = lane_of(as_integers(batch.room), fields.OWN_WHOLE, lane)
-        if own[fields.ASKS] == 1:
-            own[fields.ASKS] = 0
+        own = lane_of(as_integers(batch.data), fields.OWN_INTEGERS, lane)
+        if own[fields.NEEDS_DRIVER] == 1:
+            own[fields.NEEDS_DRIVER] = 0
             continue_alone(batch, lane)
-        while is_at_end(batch.room, lane) and enter_interval(batch, lane):
+        while is_at_end(batch.data, lane) and enter_interval(batch, lane):
             continue_alone(batch, lane)
         busy += own[fields.BUSY]
     return busy
 
 
 @entry
-def advance_batch(batch: Batch, steps: Bound) -> None:
+def advance_batch(batch: Batch, steps: BoundFunction) -> None:
     """Make all runs of a batch."""
     for lane in range(LANES):
         start_next_run(batch, lane)
-    found = fields.SOME_WAIT
-    while found == fields.ALL_QUIET or see_to_lanes(batch) > 0:
+    found = fields.NO_STEP_MADE
+    while found == fields.ALL_QUIET or drive_lanes(batch) > 0:
         found = steps.call(
-            LANES, batch.room, batch.pieces.x, batch.pieces.y, batch.equations.numbers
+            LANES, batch.data, batch.pieces.x, batch.pieces.y, batch.equations.numbers
         )

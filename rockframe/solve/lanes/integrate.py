@@ -10,19 +10,19 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from rockframe.compiled import LANES, Matrix, bound_in_lanes, compiled_within
+from rockframe.compiled import LANES, Matrix, bind_in_lanes, compiled_within
 from rockframe.compiled.bound import elements_of, structure_of
 from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.many import Many
 from rockframe.signals import Motion
 from rockframe.solve import workspace as at
 from rockframe.solve.equations import BoundEquations, equations_of
-from rockframe.solve.integrate import EVENT_ROOM, Begun, make_workspace, pieces_of
+from rockframe.solve.integrate import EVENT_ROWS, RunStart, make_workspace, pieces_of
 from rockframe.solve.lanes import fields
 from rockframe.solve.lanes.batch import Batch, BatchSizes, advance_batch
-from rockframe.solve.lanes.fields import Places, places_of
+from rockframe.solve.lanes.fields import FieldIndices, field_indices
 from rockframe.solve.lanes.steps import steps_in_lanes
-from rockframe.solve.trajectory import Summary, run_counts
+from rockframe.solve.trajectory import Summary, summary_fields
 from rockframe.solve.workspace import (
     NO_STEPS,
     EventTable,
@@ -32,10 +32,10 @@ from rockframe.solve.workspace import (
     Workspace,
 )
 
-ROOM: Final = 4_000_000
+MAX_COEFFICIENTS: Final = 4_000_000
 """Most coefficients of ground motions in a batch, so that they stay in a processor's caches."""
 
-Whole = NDArray[np.int64]
+IntegerArray = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class LaneRun:
     """A run to make under one or more motions; or many runs of systems that differ in numbers."""
 
     model: ContactModel  # the equations; those of one of many runs
-    begun: Begun  # its start, without outputs; in one batch steps are all fixed, or all are not
+    start: RunStart  # its start, without outputs; in one batch steps are all fixed, or all are not
     # the row of each of many runs; None for a single run, whose row is made from the above
     rows: Matrix | None = None
 
@@ -53,9 +53,9 @@ class Outcomes:
     """How runs ended: arrays with a row, or a number, for each run."""
 
     clock: Matrix  # laid out in :mod:`rockframe.solve.workspace`
-    counters: Whole  # likewise
-    status: Whole  # :class:`rockframe.solve.workspace.Status`
-    modes: Whole  # modes of the model in which they ended
+    counters: IntegerArray  # likewise
+    status: IntegerArray  # :class:`rockframe.solve.workspace.Status`
+    modes: IntegerArray  # modes of the model in which they ended
     states: Matrix  # states at the end
     memories: Matrix  # memories at the end
 
@@ -66,10 +66,10 @@ class Outcomes:
             status=Status(int(self.status[k])),
             substeps=substeps,
             ending=ending,
-            **run_counts(self.clock[k], self.counters[k]),
+            **summary_fields(self.clock[k], self.counters[k]),
         )
 
-    def summary_of_many(self, some: Whole, substeps: int) -> Summary:
+    def summary_of_many(self, some: IntegerArray, substeps: int) -> Summary:
         """Return one summary of runs that ended in the same way, whose numbers are `Many`."""
 
         def each(rows: Any) -> Any:
@@ -80,22 +80,22 @@ class Outcomes:
             status=Status(int(self.status[some[0]])),
             substeps=substeps,
             ending=Ending(mode, each(self.states), each(self.memories)),
-            **run_counts(each(self.clock), each(self.counters)),
+            **summary_fields(each(self.clock), each(self.counters)),
         )
 
 
-def joined(several: Sequence[Outcomes]) -> Outcomes:
+def join_outcomes(several: Sequence[Outcomes]) -> Outcomes:
     """Join outcomes, one below the other."""
     columns = [vars(one).values() for one in several]
     return Outcomes(*(np.concatenate(each) for each in zip(*columns, strict=True)))
 
 
-def kind_of(model: ContactModel) -> Any:
+def batch_key(model: ContactModel) -> Any:
     """Return a key that is equal for models that can run side by side."""
     return structure_of(model.system), len(model.memory)
 
 
-def lanes_compiled(run: LaneRun, patience: float) -> bool:
+def can_run_in_lanes(run: LaneRun, patience: float) -> bool:
     """Whether runs of the kind of `run` can be made in lanes.
 
     Compiles what they need if that takes at most `patience` [s]. There are no lanes in plain
@@ -108,8 +108,8 @@ def lanes_compiled(run: LaneRun, patience: float) -> bool:
 def integrate_lanes(
     runs: Sequence[LaneRun],
     motions: Sequence[Motion | None],
-    run_of: Whole,
-    motion_of: Whole,
+    run_of: IntegerArray,
+    motion_of: IntegerArray,
 ) -> Outcomes:
     """Make many runs of systems of one kind.
 
@@ -120,7 +120,7 @@ def integrate_lanes(
     counters = np.empty((len(run_of), at.COUNTERS), dtype=np.int64)
     status = np.empty(len(run_of), dtype=np.int64)
     modes = np.empty(len(run_of), dtype=np.int64)
-    states, memories = (np.empty((len(run_of), size)) for size in made.of_endings)
+    states, memories = (np.empty((len(run_of), size)) for size in made.ending_sizes)
     for some in _batches(motions, motion_of):
         used, place = np.unique(motion_of[some], return_inverse=True)
         batch = made.batch([motions[k] for k in used.tolist()], run_of[some], place)
@@ -129,18 +129,18 @@ def integrate_lanes(
         wholes = rows.view(np.int64)
         clock[some] = rows[:, fields.CLOCK : fields.CLOCK + at.CLOCK]
         counters[some] = wholes[:, fields.COUNTERS : fields.COUNTERS + at.COUNTERS]
-        status[some] = wholes[:, fields.OWN_WHOLE + fields.STATUS]
+        status[some] = wholes[:, fields.OWN_INTEGERS + fields.STATUS]
         modes[some], states[some], memories[some] = made.endings(rows)
     return Outcomes(clock, counters, status, modes, states, memories)
 
 
-def _batches(motions: Sequence[Motion | None], motion_of: Whole) -> list[slice]:
+def _batches(motions: Sequence[Motion | None], motion_of: IntegerArray) -> list[slice]:
     """Divide cases into batches whose motions fit into the caches."""
     sizes = np.array([0 if one is None else one.horizontal.samples.size * 2 for one in motions])
     found: list[slice] = []
     begin, seen, total = 0, set[int](), 0
     for case, k in enumerate(motion_of.tolist()):
-        if k not in seen and total + sizes[k] > ROOM and case > begin:
+        if k not in seen and total + sizes[k] > MAX_COEFFICIENTS and case > begin:
             found.append(slice(begin, case))
             begin, seen, total = case, set(), 0
         if k not in seen:
@@ -149,27 +149,27 @@ def _batches(motions: Sequence[Motion | None], motion_of: Whole) -> list[slice]:
     return [*found, slice(begin, len(motion_of))]
 
 
-def rows_of(model: ContactModel, begun: Begun, count: int = 1) -> Matrix:
+def initial_rows(model: ContactModel, start: RunStart, count: int = 1) -> Matrix:
     """Return the row of a run, or the rows of many runs, whose numbers are :class:`Many`."""
-    there, numbers = places_of(model.system), list(elements_of(model.system))
-    memory = there.numbers + len(numbers)
-    tolerance = memory + len(begun.memory)
-    rows = np.zeros((count, tolerance + len(begun.tolerance)))
+    indices, numbers = field_indices(model.system), list(elements_of(model.system))
+    memory = indices.numbers + len(numbers)
+    tolerance = memory + len(start.memory)
+    rows = np.zeros((count, tolerance + len(start.tolerance)))
     wholes = rows.view(np.int64)
     for first, row in (
-        (fields.CLOCK, begun.clock),
-        (fields.CONTROLS, begun.controls),
-        (fields.LIMITS, begun.limits),
-        (there.reference, begun.reference),
-        (there.state, begun.state),
-        (there.numbers, numbers),
-        (memory, begun.memory),
-        (tolerance, begun.tolerance),
+        (fields.CLOCK, start.clock),
+        (fields.CONTROLS, start.controls),
+        (fields.LIMITS, start.limits),
+        (indices.reference, start.reference),
+        (indices.state, start.state),
+        (indices.numbers, numbers),
+        (memory, start.memory),
+        (tolerance, start.tolerance),
     ):
         for place, number in enumerate(row, start=first):
             rows[:, place] = number.values if isinstance(number, Many) else number
-    wholes[:, fields.COUNTERS : fields.COUNTERS + at.COUNTERS] = begun.counters
-    wholes[:, fields.OWN_WHOLE + fields.BUSY] = 1
+    wholes[:, fields.COUNTERS : fields.COUNTERS + at.COUNTERS] = start.counters
+    wholes[:, fields.OWN_INTEGERS + fields.BUSY] = 1
     return rows
 
 
@@ -177,33 +177,35 @@ class _Rows:
     """Rows of runs, which are copied for each of their cases."""
 
     def __init__(self, runs: Sequence[LaneRun]) -> None:
-        model, first = runs[0].model, runs[0].begun
-        self._places = places_of(model.system)
+        model, first = runs[0].model, runs[0].start
+        self._indices = field_indices(model.system)
         fixed = first.substeps > 0
         self._equations = equations_of(model.system, fixed_steps=fixed)
-        self.steps = bound_in_lanes(steps_in_lanes(model.system, fixed_steps=fixed), model.system)
+        self.steps = bind_in_lanes(steps_in_lanes(model.system, fixed_steps=fixed), model.system)
         self._count = len(self._equations.numbers)
         self._memory = len(first.memory)
         self._rows = np.concatenate([
-            rows_of(one.model, one.begun) if one.rows is None else one.rows for one in runs
+            initial_rows(one.model, one.start) if one.rows is None else one.rows for one in runs
         ])  # fmt: skip
 
     @property
-    def of_endings(self) -> tuple[int, int]:
+    def ending_sizes(self) -> tuple[int, int]:
         """The lengths of a state and of a memory."""
-        return self._places.first - self._places.state, self._memory
+        return self._indices.slope - self._indices.state, self._memory
 
-    def endings(self, rows: Matrix) -> tuple[Whole, Matrix, Matrix]:
+    def endings(self, rows: Matrix) -> tuple[IntegerArray, Matrix, Matrix]:
         """Return modes, states and memories at the end of runs, from their rows."""
-        there, behind = self._places, self._places.numbers + self._count
+        indices, behind = self._indices, self._indices.numbers + self._count
         modes = rows.view(np.int64)[:, fields.COUNTERS + at.MODE]
         memories = rows[:, behind : behind + self._memory]
-        return modes, rows[:, there.state : there.first], memories
+        return modes, rows[:, indices.state : indices.slope], memories
 
-    def batch(self, motions: Sequence[Motion | None], run_of: Whole, motion_of: Whole) -> Batch:
+    def batch(
+        self, motions: Sequence[Motion | None], run_of: IntegerArray, motion_of: IntegerArray
+    ) -> Batch:
         """Return the batch of some cases: their rows, and all else that `advance_batch` needs."""
         rows = self._rows[run_of]
-        own = rows.view(np.int64)[:, fields.OWN_WHOLE : fields.OWN_WHOLE + fields.WHOLES]
+        own = rows.view(np.int64)[:, fields.OWN_INTEGERS : fields.OWN_INTEGERS + fields.INTEGERS]
         both = [pieces_of(motion) for motion in motions]
         x, own[:, fields.FIRST_X], own[:, fields.COUNT_X] = _stacked(
             [one.x for one in both], motion_of
@@ -211,35 +213,38 @@ class _Rows:
         y, own[:, fields.FIRST_Y], own[:, fields.COUNT_Y] = _stacked(
             [one.y for one in both], motion_of
         )
-        there = self._places
+        indices = self._indices
         shape = BatchSizes(
-            rows=len(rows), width=rows.shape[1], state=there.state, half=there.new - there.state,
-            numbers=there.numbers, number_count=self._count, memory=self._memory,
+            rows=len(rows), width=rows.shape[1], state=indices.state,
+            half=indices.new_state - indices.state, numbers=indices.numbers,
+            number_count=self._count, memory=self._memory,
         )  # fmt: skip
         return Batch(
-            shape, rows.reshape(-1), np.zeros((there.numbers + self._count) * LANES),
+            shape, rows.reshape(-1), np.zeros((indices.numbers + self._count) * LANES),
             np.zeros(LANES + 1, dtype=np.int64), Pieces(x, y), self._equations,
-            *_scratch(self._equations, there, self._memory),
+            *_scratch(self._equations, indices, self._memory),
         )  # fmt: skip
 
 
 def _scratch(
-    equations: BoundEquations, there: Places, memory: int
+    equations: BoundEquations, indices: FieldIndices, memory: int
 ) -> tuple[Output, EventTable, Workspace]:
     """Return scratch for a single run: no outputs, events that are not kept, a step."""
-    width = there.first - there.state
+    width = indices.slope - indices.state
     output = Output(np.empty((0, width)), np.empty(0, dtype=np.int64), np.empty((0, 2)), NO_STEPS)
     events = EventTable(
-        np.empty((EVENT_ROOM, 1 + 2 * width + memory)), np.empty((EVENT_ROOM, 3), dtype=np.int64)
+        np.empty((EVENT_ROWS, 1 + 2 * width + memory)), np.empty((EVENT_ROWS, 3), dtype=np.int64)
     )
     none = np.zeros(width)
     workspace = make_workspace(
-        equations, none, none.copy(), np.zeros(there.reference - fields.LIMITS)
+        equations, none, none.copy(), np.zeros(indices.reference - fields.LIMITS)
     )
     return output, events, workspace
 
 
-def _stacked(pieces: Sequence[Matrix], motion_of: Whole) -> tuple[Matrix, Whole, Whole]:
+def _stacked(
+    pieces: Sequence[Matrix], motion_of: IntegerArray
+) -> tuple[Matrix, IntegerArray, IntegerArray]:
     """Join polynomials of motions, one below the other; give first row and count of each case."""
     terms = max(one.shape[1] for one in pieces)
     counts = np.array([len(one) for one in pieces], dtype=np.int64)

@@ -20,15 +20,15 @@ from rockframe.simulation.plan import Plan, run_length, start_of
 from rockframe.simulation.run import Response, has_no_cautions, in_motion, scalars_of
 from rockframe.simulation.soundness import STILL_MOVING
 from rockframe.solve.equations import is_called
-from rockframe.solve.integrate import begun
+from rockframe.solve.integrate import run_start
 from rockframe.solve.lanes.integrate import (
     LaneRun,
     Outcomes,
+    batch_key,
+    can_run_in_lanes,
+    initial_rows,
     integrate_lanes,
-    joined,
-    kind_of,
-    lanes_compiled,
-    rows_of,
+    join_outcomes,
 )
 from rockframe.solve.trajectory import Summary
 from rockframe.solve.workspace import Status
@@ -99,7 +99,7 @@ class _Group:
         )  # fmt: skip
         for k, (case, number, _) in enumerate(self.cases):
             scene = self.scenes[number]
-            summary = found.summary(k, scene.run.begun.substeps)
+            summary = found.summary(k, scene.run.start.substeps)
             if has_no_cautions(scene.system, summary):
                 yield Finished(case, scene.system, summary, scene.said)
 
@@ -116,7 +116,7 @@ def when_compiled(patience: float) -> Callable[[LaneScene], bool]:
         if scene.kind not in kinds:
             kinds[scene.kind] = False  # unless it can be compiled
             with compiling_for(f"a sweep in lanes ({scene.system.setting.model})"):
-                kinds[scene.kind] = lanes_compiled(scene.run, patience)
+                kinds[scene.kind] = can_run_in_lanes(scene.run, patience)
         return kinds[scene.kind]
 
     return ready
@@ -162,12 +162,12 @@ def prepared(system: Assembly, said: list[str], plan: Plan) -> LaneScene | None:
     model = system.model
     if model.shows_bodies or model.links or is_called(model.system):
         return None  # its equations use lists, for which there are no lanes
-    begin = begun(
+    begin = run_start(
         system.model, start_of(plan.initial), plan.accuracy, interval=plan.interval,
         duration=plan.duration, output_step=None, stop_at_overturning=plan.stop_at_overturning,
     )  # fmt: skip
     run = LaneRun(system.model, begin)
-    return LaneScene(system, said, run, kind_of(system.model))
+    return LaneScene(system, said, run, batch_key(system.model))
 
 
 @dataclass(frozen=True)
@@ -234,7 +234,7 @@ def run_in_lanes(
             ran.append(here[run])
             found.append(outcomes)
         here = np.concatenate(ran)
-        yield from _told(cases, groups, group_of[here], every[here], joined(found))
+        yield from _told(cases, groups, group_of[here], every[here], join_outcomes(found))
 
 
 def _assembled(cases: CasesOfJob, some: Places) -> _Batch:
@@ -243,8 +243,8 @@ def _assembled(cases: CasesOfJob, some: Places) -> _Batch:
     several, one = prepared(*cases.plan_of_many(some)), prepared(*cases.planned(first))
     if several is None or one is None:
         raise OnlyAlone
-    rows = rows_of(several.run.model, several.run.begun, len(some))
-    if rows[0].tobytes() != rows_of(one.run.model, one.run.begun).tobytes():
+    rows = initial_rows(several.run.model, several.run.start, len(some))
+    if rows[0].tobytes() != initial_rows(one.run.model, one.run.start).tobytes():
         raise OnlyAlone
     return _Batch(one, some, rows)
 
@@ -267,7 +267,7 @@ def _integrated(
             places[key] = len(places)
         ran.append(k)
         motion_of.append(places[key])
-    run = LaneRun(one.run.model, one.run.begun, rows)
+    run = LaneRun(one.run.model, one.run.start, rows)
     which = np.array(ran, dtype=np.intp)
     return which, integrate_lanes([run], motions, which, np.array(motion_of, dtype=np.intp))
 
@@ -283,7 +283,7 @@ def _told(
     ways, way_of = np.unique(way, axis=0, return_inverse=True)
     alone = np.ones(len(ran), dtype=np.bool_)
     for k, (number, *_) in enumerate(ways.tolist()):
-        substeps = groups[number].one.run.begun.substeps
+        substeps = groups[number].one.run.start.substeps
 
         def work(some: Places, substeps: int = substeps) -> FinishedTogether:
             return _summed_up(cases, ran[some], outcomes.summary_of_many(some, substeps))
@@ -296,7 +296,7 @@ def _told(
             system, messages = cases.scene(int(ran[k]))
         except Exception:  # noqa: S112 - reported when the case runs alone
             continue
-        summary = outcomes.summary(k, groups[group_of[k]].one.run.begun.substeps)
+        summary = outcomes.summary(k, groups[group_of[k]].one.run.start.substeps)
         if has_no_cautions(system, summary):
             yield Finished(int(ran[k]), system, summary, messages)
 

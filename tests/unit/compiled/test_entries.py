@@ -15,7 +15,7 @@ from rockframe.compiled import (
     Integers,
     Matrix,
     Vector,
-    bound,
+    bind,
     constant,
     entry,
     inlined,
@@ -114,11 +114,11 @@ def tabulate(
 
 
 def test_time_is_estimated_from_all_that_a_function_calls():
-    from rockframe.compiled.jobs import called_by
+    from rockframe.compiled.jobs import callees_of
 
-    found = called_by(Pair.total_at, {Pair, Linear, Hardening})
+    found = callees_of(Pair.total_at, {Pair, Linear, Hardening})
     assert found == {Pair.total_at, Linear.force_at, Hardening.force_at, cubed}
-    assert called_by(Pair.total_at, {Pair, Linear}) == {Pair.total_at, Linear.force_at}
+    assert callees_of(Pair.total_at, {Pair, Linear}) == {Pair.total_at, Linear.force_at}
 
 
 def arguments(pair):
@@ -163,7 +163,7 @@ def call_all(forces: Any, counting: Any, numbers: Vector, values: Vector, out: V
 
 def test_one_compiled_function_serves_all_bound_ones():
     for pair in PAIRS:
-        functions, numbers = bound((force_of, count_in), pair), numbers_in(pair)
+        functions, numbers = bind((force_of, count_in), pair), numbers_in(pair)
         values, out = np.array([0.5, -1.25, 2.0]), np.zeros(3)
         expected = [pair.total_at(value) for value in values]
         call_all(*functions, numbers, values, out)
@@ -183,7 +183,7 @@ def import_bound(pair: Pair, x: float, out: Vector) -> float:
 def test_a_bound_function_that_cannot_be_compiled_spoils_no_other(fallbacks):
     pair = PAIRS[0]
     numbers = numbers_in(pair)
-    forces, broken, counting = bound((force_of, import_bound, count_in), pair)
+    forces, broken, counting = bind((force_of, import_bound, count_in), pair)
     values, out = np.array([0.5]), np.zeros(3)
     for _ in range(2):
         values[0] = 0.5
@@ -249,7 +249,7 @@ class Shaded(NamedTuple):
 def test_what_cannot_be_compiled_is_told_with_its_innermost_reason_and_place(fallbacks):
     pair = Pair(Shaded(2.0), Linear(0.5))
     values, out = np.array([0.5]), np.zeros(3)
-    functions, numbers = bound((force_of, count_in), pair), numbers_in(pair)
+    functions, numbers = bind((force_of, count_in), pair), numbers_in(pair)
     call_all(*functions, numbers, values, out)
     assert values.tolist() == [pair.total_at(0.5)]
     assert "int(IntEnum<int64>(Shade)); test_entries.py, line " in fallbacks[0]

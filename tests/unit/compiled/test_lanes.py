@@ -8,10 +8,10 @@ import pytest
 from rockframe.compiled import (
     COMPILED,
     LANES,
-    Bound,
+    BoundFunction,
     Vector,
     as_integers,
-    bound_in_lanes,
+    bind_in_lanes,
     entry,
     inlined,
     kernel,
@@ -51,7 +51,7 @@ def pull_all(system_of, lanes: int, room: Vector) -> int:
 
 
 @entry
-def pull_once(pulls: Bound, room: Vector, numbers: Vector) -> int:
+def pull_once(pulls: BoundFunction, room: Vector, numbers: Vector) -> int:
     return pulls.call(LANES, room, numbers)
 
 
@@ -77,7 +77,7 @@ def test_a_tuple_is_made_of_its_numbers():
 def test_each_lane_has_its_own_system(way, tmp_path, monkeypatch):
     monkeypatch.setenv("ROCKFRAME_CACHE_DIR", str(tmp_path))
     room = filled()
-    pulls = bound_in_lanes(pull_all, systems()[0])
+    pulls = bind_in_lanes(pull_all, systems()[0])
     if way == "plain":
         assert pulls.call(LANES, room.reshape(-1), np.zeros(0)) == LANES
     else:

@@ -87,8 +87,8 @@ def made(monkeypatch):
 def test_only_entries_become_machine_code(made):
     from rockframe.compiled import linking
 
-    if not linking.IS_KNOWN:
-        pytest.skip(f"this numba is none of {linking.TRIED}")
+    if not linking.IS_SUPPORTED:
+        pytest.skip(f"this numba is none of {linking.TESTED}")
     values = np.array([9.0, 16.0])
     both(values)
     assert values.tolist() == [13.0, 17.0]
@@ -134,7 +134,7 @@ def test_functions_of_a_users_own_call_what_waits(made):
 def test_another_numba_goes_its_ordinary_way(made, monkeypatch):
     from rockframe.compiled import linking
 
-    monkeypatch.setattr(linking, "IS_KNOWN", False)
+    monkeypatch.setattr(linking, "IS_SUPPORTED", False)
     values = np.array([9.0])
     again(values)
     assert values.tolist() == [12.0]
@@ -161,10 +161,10 @@ def test_what_makes_lists_and_arrays_counts_their_references():
     """They are let go, and those that use them have nothing to count."""
     from numba.core.runtime import _nrt_python, rtsys
 
-    from rockframe.compiled.passes import makes_numbers_alone
+    from rockframe.compiled.passes import makes_only_numbers
 
     counting = [
-        each for each in (root_of, left, right, thrice, listed) if not makes_numbers_alone(each)
+        each for each in (root_of, left, right, thrice, listed) if not makes_only_numbers(each)
     ]
     assert counting == [root_of, listed]
     values = np.array([9.0, 16.0])
@@ -188,9 +188,9 @@ def of_all_kinds(pair, x):
 def test_plain_functions_become_the_same_code_by_fewer_passes():
     import numba
 
-    from rockframe.compiled.passes import _FOR_OTHERS, PlainPasses, makes_numbers_alone
+    from rockframe.compiled.passes import _OMITTED_PASSES, PlainPasses, makes_only_numbers
 
-    assert makes_numbers_alone(of_all_kinds)
+    assert makes_only_numbers(of_all_kinds)
     written = []
     for words in ({}, {"pipeline_class": PlainPasses}):
         code = numba.njit(error_model="numpy", _nrt=False, **words)(of_all_kinds)
@@ -200,14 +200,14 @@ def test_plain_functions_become_the_same_code_by_fewer_passes():
         text = re.sub(r'"[^"]*"|\S*_ZN\S*', "", text)
         written.append([line for line in text.splitlines() if re.match(r"\t[a-z]", line)])
         done = {each.partition("_")[2] for each in done["pipeline_times"]["nopython"]}
-        assert done.isdisjoint(_FOR_OTHERS) if words else done >= _FOR_OTHERS
+        assert done.isdisjoint(_OMITTED_PASSES) if words else done >= _OMITTED_PASSES
     assert written[0] == written[1] != []
 
 
 def test_an_operator_is_looked_up_once_and_only_while_something_is_compiled():
     import numba
 
-    from rockframe.compiled.jobs import operators_remembered
+    from rockframe.compiled.jobs import cached_operators
 
     kind = numba.types.Function
     plain, looked = kind.get_call_type, []
@@ -216,7 +216,7 @@ def test_an_operator_is_looked_up_once_and_only_while_something_is_compiled():
             numba.core.types.functions.BaseFunction, "get_call_type",
             lambda *words: (looked.append(words[2]), plain(*words))[1],
         )  # fmt: skip
-        with operators_remembered():
+        with cached_operators():
             many = numba.njit(lambda x, n: (x + x) * (x + x) + (n + n) * (x + n))
             assert many(2.0, 3) == 46.0
     sums = [words for words in looked if words == (numba.float64, numba.float64)]

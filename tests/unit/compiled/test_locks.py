@@ -18,10 +18,10 @@ AT_ONCE = 5.0
 KEEP = """
 import sys, time
 from pathlib import Path
-from rockframe.compiled.store import compiling
+from rockframe.compiled.store import lock_while_compiling
 
 module = Path(sys.argv[1])
-with compiling(module, lambda: True):
+with lock_while_compiling(module, lambda: True):
     print("begun", flush=True)
     time.sleep(float(sys.argv[2]))
     module.with_suffix(".nbc").touch()
@@ -56,7 +56,7 @@ def keep(module, seconds):
 
 def seconds_until_compiled(module):
     begun = time.monotonic()
-    with store.compiling(module, lambda: True):
+    with store.lock_while_compiling(module, lambda: True):
         return time.monotonic() - begun
 
 
@@ -76,7 +76,7 @@ def test_a_file_that_stands_for_a_lock_delays_nobody_where_there_are_locks(modul
 
 @pytest.mark.wide
 def test_two_processes_do_not_compile_at_once(module):
-    with keep(module, 1.0), store.compiling(module, lambda: True):
+    with keep(module, 1.0), store.lock_while_compiling(module, lambda: True):
         assert module.with_suffix(".nbc").exists()
     assert {path.suffix for path in module.parent.iterdir()} == {".py", ".nbc"}
     assert module.read_text() == "pass"
@@ -85,7 +85,7 @@ def test_two_processes_do_not_compile_at_once(module):
 def test_it_is_not_waited_for_longer_than_is_worth_it(module):
     asked = iter([True, True, False])
     with keep(module, 600) as process:
-        with store.compiling(module, lambda: next(asked)):
+        with store.lock_while_compiling(module, lambda: next(asked)):
             assert store.is_compiled_elsewhere(module)
         assert store.is_compiled_elsewhere(module)
         process.kill()
@@ -100,7 +100,7 @@ def test_nobody_waits_where_nothing_can_be_written(tmp_path):
 @pytest.mark.usefixtures("no_locks")
 def test_a_file_stands_for_a_lock_where_there_are_none(module):
     assert not store.is_compiled_elsewhere(module)
-    with store.compiling(module, lambda: True):
+    with store.lock_while_compiling(module, lambda: True):
         assert store.is_compiled_elsewhere(module)
         assert store.lock(module) is None
     assert not store.is_compiled_elsewhere(module)
@@ -112,7 +112,7 @@ def test_such_a_file_counts_no_longer_than_one_would_wait(module):
     mark = module.with_suffix(".lock")
     mark.touch()
     assert store.is_compiled_elsewhere(module)
-    old = time.time() - 2.0 * store.LONGEST
+    old = time.time() - 2.0 * store.LOCK_TIMEOUT
     os.utime(mark, (old, old))
     assert seconds_until_compiled(module) < AT_ONCE
     assert not mark.exists()

@@ -142,7 +142,7 @@ def test_a_helper_compiles_what_it_can_import(own, folder, monkeypatch):
 
     monkeypatch.setattr(parallel, "processors", lambda: 2)
     job = Job(load(own, monkeypatch).add_one.source, (("float64", 1, True),), False)
-    with parallel._helper([job, job]) as helper:  # for one alone it would not start
+    with parallel._start_helper([job, job]) as helper:  # for one alone it would not start
         assert helper.wait(timeout=120) == 0
     assert job.is_stored
     values = np.array([1.0])
@@ -159,7 +159,7 @@ def test_what_a_helper_cannot_import_is_compiled_all_the_same(monkeypatch):
     jobs = [Job(one.source, structure, False) for one in (add_two, add_three)]
     monkeypatch.delitem(sys.modules, __name__, raising=False)
     values = np.zeros(1)
-    for made in parallel.make_all(jobs):
+    for made in parallel.compile_all(jobs):
         made(values)
     assert values.tolist() == [5.0]
 
@@ -167,12 +167,12 @@ def test_what_a_helper_cannot_import_is_compiled_all_the_same(monkeypatch):
 def test_functions_that_jobs_share_are_compiled_again_for_each(monkeypatch):
     from rockframe.compiled import parallel
 
-    monkeypatch.setattr(parallel, "seconds_of", lambda jobs: 4.0)  # the jobs share 1 s
+    monkeypatch.setattr(parallel, "estimate_seconds", lambda jobs: 4.0)  # the jobs share 1 s
     jobs = [SimpleNamespace(is_stored=False, seconds=seconds) for seconds in (2.0, 3.0)]
     monkeypatch.setattr(parallel, "processors", lambda: 1)
-    assert parallel.time_for(jobs) == pytest.approx(4.0 + parallel.AGAIN)
+    assert parallel.estimate_wall_time(jobs) == pytest.approx(4.0 + parallel.REPEAT_RATIO)
     monkeypatch.setattr(parallel, "processors", lambda: 8)
-    assert parallel.time_for(jobs) == 3.0  # the longest
+    assert parallel.estimate_wall_time(jobs) == 3.0  # the longest
 
 
 def test_what_others_compile_is_left_for_last(monkeypatch):
@@ -185,9 +185,9 @@ def test_what_others_compile_is_left_for_last(monkeypatch):
             file=name, is_stored=False, seconds=0.1, make=lambda _: order.append(name) or name
         )
 
-    monkeypatch.setattr(parallel, "_helper", lambda jobs: None)
+    monkeypatch.setattr(parallel, "_start_helper", lambda jobs: None)
     monkeypatch.setattr(store, "is_compiled_elsewhere", lambda file: file == "first")
-    assert parallel.make_all([job("first"), job("second")]) == ["first", "second"]
+    assert parallel.compile_all([job("first"), job("second")]) == ["first", "second"]
     assert order == ["second", "first"]
 
 
@@ -196,8 +196,8 @@ def test_others_are_waited_for_unless_a_helper_has_died(monkeypatch, ends, waits
     from rockframe.compiled import parallel
 
     helper = subprocess.Popen([sys.executable, "-c", f"raise SystemExit({ends})"])
-    monkeypatch.setattr(parallel, "_helper", lambda jobs: helper)
-    with parallel._helped([]) as waiting:
+    monkeypatch.setattr(parallel, "_start_helper", lambda jobs: helper)
+    with parallel._with_helper([]) as waiting:
         helper.wait(timeout=120)
         assert waiting() is waits
 
@@ -229,7 +229,7 @@ def test_every_state_of_the_sources_has_a_folder_of_its_own(own, tmp_path, monke
     module = load(own, monkeypatch)
 
     def file(text="pass", classes=(module.Law,)):
-        return store.file_of(some_function, text, classes)
+        return store.module_file(some_function, text, classes)
 
     first = file()
     assert first == file()
@@ -253,18 +253,18 @@ def test_every_state_of_the_sources_has_a_folder_of_its_own(own, tmp_path, monke
 
 def test_the_module_of_an_entry_counts_whatever_it_is_called_with(own, monkeypatch):
     module = load(own, monkeypatch)
-    before = store.file_of(module.add_one.__wrapped__, "pass", ())
+    before = store.module_file(module.add_one.__wrapped__, "pass", ())
     edit(own / "own.py", "+= 1.0", "+= 5.0")
-    assert store.file_of(module.add_one.__wrapped__, "pass", ()).parent != before.parent
+    assert store.module_file(module.add_one.__wrapped__, "pass", ()).parent != before.parent
 
 
 def test_a_module_counts_if_its_functions_are_named_by_it(own, monkeypatch):
     edit(own / "own.py", "from own_help import twice", "import own_help")
     edit(own / "own.py", "twice(", "own_help.twice(")
     module = load(own, monkeypatch)
-    before = store.file_of(some_function, "pass", (module.Law,))
+    before = store.module_file(some_function, "pass", (module.Law,))
     edit(own / "own_help.py", "2.0 * x", "20.0 * x")
-    assert store.file_of(some_function, "pass", (module.Law,)).parent != before.parent
+    assert store.module_file(some_function, "pass", (module.Law,)).parent != before.parent
 
 
 def test_a_library_that_a_module_imports_counts_by_its_bytes(own, monkeypatch):
@@ -277,9 +277,9 @@ def test_a_library_that_a_module_imports_counts_by_its_bytes(own, monkeypatch):
         "import own_library\nfrom own_help import twice",
     )
     module = load(own, monkeypatch)
-    before = store.file_of(some_function, "pass", (module.Law,))
+    before = store.module_file(some_function, "pass", (module.Law,))
     (own / "own_library.so").write_bytes(b"\x7fELF\0other")
-    assert store.file_of(some_function, "pass", (module.Law,)).parent != before.parent
+    assert store.module_file(some_function, "pass", (module.Law,)).parent != before.parent
 
 
 def test_every_source_of_the_package_that_is_compiled_counts():
@@ -299,7 +299,7 @@ def test_code_of_other_sources_is_removed_after_a_month(folder):
         kept.mkdir(parents=True)
         (kept / "some.nbc").write_bytes(b"code")
         os.utime(folder / name, (moment, moment))
-    made = store.file_of(some_function, "pass", ())
+    made = store.module_file(some_function, "pass", ())
     assert {path.name for path in folder.iterdir()} == {"code-young", made.parent.name}
 
 
@@ -393,12 +393,12 @@ def test_the_next_folder_serves_where_the_first_cannot(tmp_path, monkeypatch):
     for variable in ("XDG_CACHE_HOME", "LOCALAPPDATA", "HOME"):
         monkeypatch.setenv(variable, str(tmp_path / "own"))
     monkeypatch.setattr(store, "PACKAGE", tmp_path / "package")
-    first = store.file_of(some_function, "pass", ())
+    first = store.module_file(some_function, "pass", ())
     assert first.is_relative_to(tmp_path / "own")
     assert not (tmp_path / "package").exists()
     (tmp_path / "own").rename(tmp_path / "away")
     Path(tmp_path / "own").write_text("")
-    second = store.file_of(some_function, "pass", ())
+    second = store.module_file(some_function, "pass", ())
     assert second.is_relative_to(tmp_path / "package" / "__pycache__")
     assert second.read_text() == "pass"
 
@@ -409,6 +409,6 @@ def test_a_user_without_a_home_keeps_machine_code_beside_the_package(monkeypatch
         raise RuntimeError(msg)
 
     monkeypatch.delenv("ROCKFRAME_CACHE_DIR", raising=False)
-    usual = store.folders()
+    usual = store.cache_folders()
     monkeypatch.setattr(Path, "expanduser", homeless)
-    assert store.folders() == usual[1:]
+    assert store.cache_folders() == usual[1:]

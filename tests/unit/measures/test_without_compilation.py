@@ -59,5 +59,5 @@ def test_a_long_motion_is_filtered_in_pieces(monkeypatch):
     pieces = np.random.default_rng(1).normal(size=(500, 2))
     periods = np.array([0.05, 0.3, 4.0])
     whole = filtering.filter_all(pieces, 0.02, 0.05, periods)
-    monkeypatch.setattr(filtering, "_STEPS_AT_ONCE", 64)
+    monkeypatch.setattr(filtering, "_STEPS_IN_PART", 64)
     np.testing.assert_allclose(filtering.filter_all(pieces, 0.02, 0.05, periods), whole, rtol=1e-10)

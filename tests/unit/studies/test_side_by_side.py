@@ -291,7 +291,7 @@ def test_what_fails_in_preparing_lanes_is_told_as_an_error(monkeypatch):
 
     monkeypatch.setattr(study, "FEWEST_IN_LANES", 1)
     monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)
-    monkeypatch.setattr(in_lanes, "begun", fails)
+    monkeypatch.setattr(in_lanes, "run_start", fails)
     told = r"beside others failed \(ZeroDivisionError: no such lane\).*error in rockframe"
     with pytest.warns(ModelWarning, match=told):
         runs = swept()
@@ -333,7 +333,7 @@ def test_lanes_are_compiled_where_they_save_more_than_that_takes(monkeypatch):
         asked.append(seconds)
         return False
 
-    monkeypatch.setattr(in_lanes, "lanes_compiled", never)
+    monkeypatch.setattr(in_lanes, "can_run_in_lanes", never)
     scales = np.linspace(0.1, 0.2, 500)
     runs = rf.sweep(system, MOTIONS[3], scale=scales, accuracy="fast", duration="0.1 s")
     assert asked

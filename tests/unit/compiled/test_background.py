@@ -10,16 +10,16 @@ import pytest
 import rockframe as rf
 from rockframe.compiled import (
     COMPILED,
-    Bound,
+    BoundFunction,
     Vector,
-    bound,
+    bind,
+    expecting_remaining,
     kernel,
     numbers_in,
     parallel,
-    still_taking,
 )
 from rockframe.compiled.entries import Entry
-from rockframe.compiled.parallel import LONG, WORTHWHILE, Meanwhile
+from rockframe.compiled.parallel import START_AFTER, START_AT_ONCE, BackgroundCompilation
 from rockframe.errors import SolverWarning
 from rockframe.solve import integrate
 
@@ -29,7 +29,7 @@ pytestmark = [
 ]
 
 
-NEEDED = 8.0 / parallel.PRUDENCE
+NEEDED = 8.0 / parallel.SAFETY_FACTOR
 """Time that the jobs of a test are said to take [s]."""
 
 
@@ -55,7 +55,7 @@ class Job:
 def jobs(monkeypatch):
     monkeypatch.setattr(parallel, "_compilers", [])
     monkeypatch.setattr(parallel, "processors", lambda: 2)
-    monkeypatch.setattr(parallel, "time_for", lambda jobs: NEEDED)
+    monkeypatch.setattr(parallel, "estimate_wall_time", lambda jobs: NEEDED)
     return [Job(), Job()]
 
 
@@ -80,64 +80,64 @@ def spend(one, seconds):
 def test_what_is_stored_is_loaded(jobs, started):
     for job in jobs:
         job.is_stored = True
-    assert Meanwhile(jobs).is_over()
+    assert BackgroundCompilation(jobs).is_due()
     assert not started
 
 
 def test_a_short_run_starts_no_compiler_and_a_longer_one_one(jobs, started):
-    one = Meanwhile(jobs)
-    assert not one.is_over()
-    spend(one, 0.9 * WORTHWHILE)
-    assert not one.is_over()
+    one = BackgroundCompilation(jobs)
+    assert not one.is_due()
+    spend(one, 0.9 * START_AFTER)
+    assert not one.is_due()
     assert not started
-    spend(one, 0.2 * WORTHWHILE)
-    assert not one.is_over()
-    assert not one.is_over()
+    spend(one, 0.2 * START_AFTER)
+    assert not one.is_due()
+    assert not one.is_due()
     assert len(started) == 1
     for job in jobs:
         job.is_stored = True
     started[0].ended = 0
-    assert one.is_over()
+    assert one.is_due()
 
 
 def test_a_run_that_will_take_longer_than_both_need_compiles_too(jobs, started):
-    one = Meanwhile(jobs)
-    with still_taking(0.9 * LONG):
-        assert not one.is_over()
+    one = BackgroundCompilation(jobs)
+    with expecting_remaining(0.9 * START_AT_ONCE):
+        assert not one.is_due()
     assert not started
-    with still_taking(0.99 * NEEDED):
-        assert not one.is_over()
-        assert not one.is_over()
-    with still_taking(1.01 * NEEDED):
-        assert one.is_over()
+    with expecting_remaining(0.99 * NEEDED):
+        assert not one.is_due()
+        assert not one.is_due()
+    with expecting_remaining(1.01 * NEEDED):
+        assert one.is_due()
     assert len(started) == 1
 
 
 def test_a_run_that_is_nearly_over_waits_for_nothing(jobs, started):
-    one = Meanwhile(jobs)
+    one = BackgroundCompilation(jobs)
     spend(one, 100.0)
-    with still_taking(0.1):
-        assert not one.is_over()
-        assert not one.is_over()
+    with expecting_remaining(0.1):
+        assert not one.is_due()
+        assert not one.is_due()
 
 
 def test_what_adds_little_is_compiled_behind_what_is_waited_for(started, monkeypatch):
     monkeypatch.setattr(parallel, "_compilers", [])
     monkeypatch.setattr(
-        parallel, "seconds_of", lambda jobs: len(set().union(*(one.calls for one in jobs)))
+        parallel, "estimate_seconds", lambda jobs: len(set().union(*(one.calls for one in jobs)))
     )
     known, inside, beside = Job("march", "slope"), Job("slope"), Job("slope", "switch")
-    assert not Meanwhile([known], [inside, beside]).is_over(at_once=True)
+    assert not BackgroundCompilation([known], [inside, beside]).is_due(at_once=True)
     assert started[0].jobs == [inside, known]  # of which the last is the first
 
 
 def test_a_run_compiles_too_once_it_has_taken_as_long_as_both_need(jobs, started):
-    one = Meanwhile(jobs)
+    one = BackgroundCompilation(jobs)
     spend(one, 7.9)
-    assert not one.is_over()
-    assert not one.is_over()
+    assert not one.is_due()
+    assert not one.is_due()
     spend(one, 0.2)
-    assert one.is_over()
+    assert one.is_due()
     assert len(started) == 1
 
 
@@ -151,51 +151,51 @@ def test_two_processes_compile_from_both_ends(jobs, started, monkeypatch):
             made.append(self)
             return self
 
-    monkeypatch.setattr(parallel, "_tell", lambda jobs: None)
+    monkeypatch.setattr(parallel, "_announce", lambda jobs: None)
     monkeypatch.setattr(parallel, "_process", lambda *words: pytest.fail("a third one"))
     monkeypatch.setattr(parallel, "_jobs_in", lambda order: order)
     parallel._compilers.append(Compiler())
     some = [Stored(), Stored(), Stored()]
-    assert parallel.make_all(some) == some
+    assert parallel.compile_all(some) == some
     assert made == some
-    parallel.make_all_of(some)
+    parallel.compile_all_of(some)
     assert made[3:] == some[::-1]
 
 
 def test_lanes_are_compiled_though_nothing_has_run(jobs, started):
-    assert not Meanwhile(jobs).is_over(at_once=True)
+    assert not BackgroundCompilation(jobs).is_due(at_once=True)
     assert len(started) == 1
 
 
 def test_where_no_process_can_compile_this_one_waits_as_long_as_it_has_run(jobs, monkeypatch):
     monkeypatch.setattr(parallel, "start_compiler", lambda jobs: None)
-    one = Meanwhile(jobs)
+    one = BackgroundCompilation(jobs)
     spend(one, 7.9)
-    assert not one.is_over()
+    assert not one.is_due()
     spend(one, 0.2)
-    assert one.is_over()
-    assert Meanwhile(jobs).is_over(at_once=True)
+    assert one.is_due()
+    assert BackgroundCompilation(jobs).is_due(at_once=True)
 
 
 def test_one_that_has_died_is_not_started_again(jobs, started):
-    one = Meanwhile(jobs)
+    one = BackgroundCompilation(jobs)
     spend(one, 1.0)
-    assert not one.is_over()
+    assert not one.is_due()
     started[0].ended = 1
-    assert not one.is_over()
+    assert not one.is_due()
     spend(one, 8.0)
-    assert one.is_over()
+    assert one.is_due()
     assert len(started) == 1
 
 
 def test_no_more_compilers_at_once_than_half_the_processors(jobs, started):
-    first, second = Meanwhile(jobs), Meanwhile([Job()])
+    first, second = BackgroundCompilation(jobs), BackgroundCompilation([Job()])
     for one in (first, second):
         spend(one, 1.0)
-        assert not one.is_over()
+        assert not one.is_due()
     assert len(started) == 1
     started[0].ended = 0
-    assert not second.is_over()
+    assert not second.is_due()
     assert len(started) == 2
 
 
@@ -205,7 +205,7 @@ def test_what_cannot_be_described_is_compiled_at_once_so_that_it_is_said():
         def is_stored(self):
             raise TypeError
 
-    assert Meanwhile([Broken()]).is_over()
+    assert BackgroundCompilation([Broken()]).is_due()
 
 
 class Slope(NamedTuple):
@@ -222,14 +222,14 @@ def stored_in(law: Slope, x: float) -> float:
     return 0.5 * law.slope * x * x
 
 
-def call_on(function: Bound, values: Vector, numbers: Vector) -> int:
+def call_on(function: BoundFunction, values: Vector, numbers: Vector) -> int:
     values[0] = function.call(values[0], numbers)
     return 0
 
 
 def test_what_takes_a_moment_is_compiled_at_once(tmp_path, monkeypatch):
     monkeypatch.setenv("ROCKFRAME_CACHE_DIR", str(tmp_path))
-    force, stored = bound((force_of, stored_in), Slope(2.0))
+    force, stored = bind((force_of, stored_in), Slope(2.0))
     values, numbers = np.array([1.5]), numbers_in(Slope(2.0))
     Entry(call_on)(force, values, numbers)
     for function, code in ((force, True), (stored, False)):  # the one is compiled, the other not
@@ -244,9 +244,9 @@ BLOCK = rf.Block(width="0.5 m", height="2 m", mass="1 t")
 RUN = """
 import sys, time
 import numpy as np
-from rockframe.compiled import Vector, entry_at_once
+from rockframe.compiled import Vector, background_entry
 
-@entry_at_once
+@background_entry
 def add_up(values: Vector) -> None:
     for _ in range(20_000):
         for i in range(len(values)):
@@ -300,7 +300,7 @@ def test_a_run_that_comes_back_now_and_then_is_the_same_run(monkeypatch, accurac
         counts.append(advance(*arguments))
         return counts[-1]
 
-    monkeypatch.setattr(integrate, "_steps_at_once", lambda equations: 7)
+    monkeypatch.setattr(integrate, "_steps_to_pause", lambda equations: 7)
     monkeypatch.setattr(integrate, "advance", counted)
     pieces = system.simulate(motion, accuracy=accuracy, outputs=["energy"], duration="9 s")
     assert len(counts) > 20
@@ -314,7 +314,7 @@ def test_the_limit_of_steps_ends_a_run_that_comes_back_too(monkeypatch):
     accuracy = rf.Accuracy(rtol=1e-9, max_steps=100)
     with pytest.warns(SolverWarning, match="limit of steps"):
         whole = system.simulate(motion, accuracy=accuracy)
-    monkeypatch.setattr(integrate, "_steps_at_once", lambda equations: 7)
+    monkeypatch.setattr(integrate, "_steps_to_pause", lambda equations: 7)
     with pytest.warns(SolverWarning, match="limit of steps"):
         run = system.simulate(motion, accuracy=accuracy)
     assert run.drop_attrs().identical(whole.drop_attrs())

@@ -7,18 +7,18 @@ import pytest
 
 from rockframe.compiled import (
     COMPILED,
-    Bound,
+    BoundFunction,
     Integers,
     ReadOnlyMatrix,
     Vector,
-    bound,
+    background_entry,
+    bind,
     entry,
-    entry_at_once,
     is_worth_calling,
     kernel,
     numbers_in,
 )
-from rockframe.compiled.bound import _source
+from rockframe.compiled.bound import _bound_source
 
 pytestmark = [
     pytest.mark.unit,
@@ -46,11 +46,11 @@ def gathered(
 
 
 class Handed(NamedTuple):
-    function: Bound
+    function: BoundFunction
     numbers: Vector
 
 
-@entry_at_once
+@background_entry
 def through(
     handed: Handed, row: int, out: Vector, counts: Integers, table: ReadOnlyMatrix, more: Vector
 ) -> int:
@@ -63,12 +63,12 @@ def through(
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
     monkeypatch.setenv("ROCKFRAME_CACHE_DIR", str(tmp_path / "code"))
-    _source.cache_clear()  # and with them what they know of another folder
+    _bound_source.cache_clear()  # and with them what they know of another folder
 
 
 def arguments(row, own=0.0):
     scale = Scale(3.0 + own, np.array([1.0, 2.0, 4.0]))
-    (function,) = bound((gathered,), scale, seldom=True)
+    (function,) = bind((gathered,), scale, rarely_called=True)
     table = np.array([[1.0, 2.0], [3.0, 4.0], [5.0, 7.0]])
     table.setflags(write=False)
     handed = Handed(function, numbers_in(scale))
@@ -86,21 +86,21 @@ EXPECTED = (1 + 5 + 28, [3.0 * (0.5 - 2.5) * 4.0 + 7.0, 5.75, 0.0], [33, 6])
 def test_python_machine_code_and_what_calls_back_give_the_same():
     given = arguments(2)
     source = given[0].function.source
-    source.address, source.seconds_without = 0, 0.0
+    source.address, source.fallback_seconds = 0, 0.0
     assert result_of(given) == EXPECTED
     assert source.address == 0
-    assert source.seconds_without > 0.0
+    assert source.fallback_seconds > 0.0
     # of the numbers that are handed over, not of those that it was bound to
     handed, *others = arguments(2)
     other = Handed(handed.function, numbers_in(Scale(-3.0, np.array([1.0, 2.0, 8.0]))))
     through(other, *others)
     assert others[1][0] == -3.0 * (0.5 - 2.5) * 8.0 + 7.0
     assert source.address == 0
-    source.seconds_without = 1e9
+    source.fallback_seconds = 1e9
     assert result_of(arguments(2)) == EXPECTED
     assert source.address != 0
     # what was kept is taken at once
-    source.address, source.seconds_without = 0, 0.0
+    source.address, source.fallback_seconds = 0, 0.0
     assert result_of(arguments(2)) == EXPECTED
     assert source.address != 0
 
@@ -114,10 +114,10 @@ def interrupted(scale: Scale, out: Vector) -> int:
 def test_what_it_raises_arrives():
     given = arguments(-1)
     source = given[0].function.source
-    source.address, source.seconds_without = 0, 0.0
+    source.address, source.fallback_seconds = 0, 0.0
     with pytest.raises(ValueError, match="no such row"):
         through(*given)
-    (function,) = bound((interrupted,), Scale(1.0, np.zeros(1)), seldom=True)
+    (function,) = bind((interrupted,), Scale(1.0, np.zeros(1)), rarely_called=True)
     with pytest.raises(KeyboardInterrupt, match="by hand"):
         call(Handed(function, np.zeros(2)), np.zeros(1))
     # and does not come again
@@ -131,15 +131,15 @@ def hopeless(scale: Scale, out: Vector) -> int:
     return 3
 
 
-@entry_at_once
+@background_entry
 def call(handed: Handed, out: Vector) -> int:
     return handed.function.call(out, handed.numbers)
 
 
 def test_what_cannot_be_compiled_goes_on_as_python(fallbacks):
     scale = Scale(1.0, np.zeros(1))
-    (function,) = bound((hopeless,), scale, seldom=True)
-    function.source.seconds_without = 1e9
+    (function,) = bind((hopeless,), scale, rarely_called=True)
+    function.source.fallback_seconds = 1e9
     out = np.zeros(1)
     for _ in range(3):
         assert call(Handed(function, numbers_in(scale)), out) == 3
@@ -162,37 +162,37 @@ def plain(scale: Scale, out: Vector) -> int:
 
 def test_what_does_not_return_for_long_calls_nothing_back():
     scale = Scale(2.0, np.zeros(1))
-    (function,) = bound((plain,), scale, seldom=True)
+    (function,) = bind((plain,), scale, rarely_called=True)
     out = np.zeros(1)
     assert at_length(Handed(function, numbers_in(scale)), out) == 5
     assert out[0] == 2.0
     assert function.source.address != 0
-    assert function.source.seconds_without == 0.0
+    assert function.source.fallback_seconds == 0.0
 
 
 def test_another_function_stands_in_until_it_has_taken_as_long_as_compiling(monkeypatch):
     scale = Scale(2.0, np.zeros(1))
-    (own,) = bound((plain,), scale)
+    (own,) = bind((plain,), scale)
     source = own.source
     assert not is_worth_calling(own)
-    source.seconds_without = 0.5 * source.job.seconds
+    source.fallback_seconds = 0.5 * source.job.seconds
     assert not is_worth_calling(own)
     assert source.address == 0
-    monkeypatch.setattr("rockframe.compiled.parallel.WORTHWHILE", 0.0)
-    source.seconds_without = 2.0 * source.job.seconds
+    monkeypatch.setattr("rockframe.compiled.parallel.START_AFTER", 0.0)
+    source.fallback_seconds = 2.0 * source.job.seconds
     assert is_worth_calling(own)
     assert source.address != 0
     # another process, which knows nothing of that time, finds it stored
-    _source.cache_clear()
-    (again,) = bound((plain,), scale)
+    _bound_source.cache_clear()
+    (again,) = bind((plain,), scale)
     assert again.source is not source
     assert is_worth_calling(again)
     assert again.source.address != 0
 
 
 def test_what_cannot_be_compiled_is_not_tried_again(fallbacks):
-    (own,) = bound((hopeless,), Scale(1.0, np.zeros(1)))
-    own.source.seconds_without = 1e9
+    (own,) = bind((hopeless,), Scale(1.0, np.zeros(1)))
+    own.source.fallback_seconds = 1e9
     for _ in range(3):
         assert not is_worth_calling(own)
     assert own.source.failed

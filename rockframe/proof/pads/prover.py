@@ -1,4 +1,4 @@
-"""The way of a set of states on pads, from the start of a motion to a proved verdict."""
+"""A set of states on pads, followed from the start of a motion to a proved verdict."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -6,82 +6,83 @@ from typing import Any, Final
 
 import numpy as np
 
-from rockframe.proof.balls import ZERO, Ball, Matrix, Row, ball, bits, times
-from rockframe.proof.pads.flow import Curve, StateSet, Step, step
+from rockframe.proof.balls import ZERO, Ball, Matrix, Row, ball, bits, matrix_product
+from rockframe.proof.pads.flow import Curve, StateSet, Step, enclose_step
 from rockframe.proof.pads.law import (
     SIZE,
+    ContactChange,
+    Contacts,
     Dual,
+    GroundAcceleration,
     Guard,
     PadBalls,
-    Shaken,
-    Standing,
-    Switched,
-    along,
     arm,
-    corner,
-    duals,
+    change_contact,
+    corner_motion,
     guard_value,
     guards_of,
-    switched,
-    turned,
+    independent_duals,
+    rate_of_change,
+    rotation_terms,
+    state_rates,
 )
-from rockframe.proof.pads.law import field as rates_of
-from rockframe.proof.pads.series import UPWARDS, Series, TooLong, course
-from rockframe.proof.problem import GroundPiece, Shaking, Undecided
+from rockframe.proof.pads.series import ROUND_UP, Series, StepTooLong, enclose_motion
+from rockframe.proof.problem import GroundPiece, PiecewiseGround, Undecided
 
-_HALVINGS: Final = 30
+_MAX_STEP_HALVINGS: Final = 30
 _PIECES: Final = 16
-_DEEPEST: Final = 40
-_CHAIN: Final = 6
+_MAX_HALVINGS: Final = 40
+_MAX_CHANGES: Final = 6
 """Largest number of changes of contact at one instant; with more a proof is given up."""
-_PLACES: Final = np.linspace(0.0, 1.0, 4 * _PIECES + 1)
+_GRID: Final = np.linspace(0.0, 1.0, 4 * _PIECES + 1)
 _LOST_BITS: Final = 16.0
-_NARROW: Final = 1e-3
+_MAX_RADIUS: Final = 1e-3
 """Radius of a set, over the weights, beyond which a proof is given up."""
 
-Watch = Callable[[int, Standing, Row], None]
+Callback = Callable[[int, Contacts, Row], None]
 """A function called with the number of a knot, the contacts and the enclosure there."""
 
 
 @dataclass
-class PadWay:
-    """The way of a set of states through a motion; its fields change as it is followed."""
+class PadProver:
+    """A set of states that is followed through a motion; its fields change."""
 
     pads: PadBalls
-    shaking: Shaking
-    standing: Standing  # contacts, at first those at the start
+    ground: PiecewiseGround
+    contacts: Contacts  # contacts, at first those at the start
     states: StateSet  # at first those at the start
     weights: Any  # typical sizes of the state's numbers, powers of two
-    reach: float  # length of a step [s]
-    patience: float = 60.0  # time after the record in which the block has to calm down [s]
-    watch: Watch | None = None  # called with each enclosure at a knot
+    step_length: float  # [s]
+    settling_time: float = 60.0  # time after the record in which the block has to calm down [s]
+    callback: Callback | None = None  # called with each enclosure at a knot
     k: int = 0  # number of the last knot
     offset: Ball = ZERO  # time since it [s]
-    fresh: tuple[Guard, ...] = ()  # guards that have just become zero
+    zero_guards: tuple[Guard, ...] = ()  # guards that have just become zero
     margin: int = 16  # of the series, in bits below the precision
     impacts: int = 0
-    widest: float = 0.0  # largest radius of a rotation so far [rad]
-    beyond: tuple[Ball, Ball] | None = None  # from when to when it passes the overturning angle
+    largest_radius: float = 0.0  # largest radius of a rotation so far [rad]
+    # from when to when it passes the overturning angle
+    overturning_time: tuple[Ball, Ball] | None = None
 
     @property
     def time(self) -> Ball:
         """Time from the first sample [s]."""
-        return self.shaking.time(self.k, self.offset)
+        return self.ground.time(self.k, self.offset)
 
     def overturns(self) -> bool:
-        """Follow the set until it is proved whether it overturns; `beyond` holds the time.
+        """Follow the set until it is proved whether it overturns, and when.
 
         Raises `Undecided` if that cannot be proved.
         """
         state = self.states.box(self.weights)
-        for one in guards_of(self.standing):
+        for one in guards_of(self.contacts):
             if not guard_value(self.pads, one, state) > 0:
                 msg = "the contacts at the start are not resolved"
                 raise Undecided(msg)
-        shaking = self.shaking
-        last = shaking.count + self.patience / shaking.still_step
-        while self.beyond is None:
-            if self.k >= shaking.count and self._stands_for_ever():
+        ground = self.ground
+        last = ground.count + self.settling_time / ground.still_step
+        while self.overturning_time is None:
+            if self.k >= ground.count and self._is_safe():
                 return False
             if self.k > last:
                 msg = "the motion after the record goes on for too long"
@@ -93,20 +94,20 @@ class PadWay:
         """Follow the set to the next knot, or until the block has overturned."""
         depth, parts = 0, 0
         while True:
-            left = self.shaking.length(self.k) - self.offset
+            left = self.ground.length(self.k) - self.offset
             if not parts:
-                parts = max(1, round(float(left) / self.reach + 0.4)) << depth
-            ground = self.shaking.ground(self.k).at(self.offset)
+                parts = max(1, round(float(left) / self.step_length + 0.4)) << depth
+            ground = self.ground.ground(self.k).at(self.offset)
             h = left if parts == 1 else left / parts
             try:
                 done = self._advance(ground, h)
-            except TooLong:
+            except StepTooLong:
                 depth, parts = depth + 1, 0
-                if depth > _HALVINGS:
+                if depth > _MAX_STEP_HALVINGS:
                     msg = "a contact that hardly changes is not resolved"
                     raise Undecided(msg) from None
                 continue
-            if self.beyond is not None:
+            if self.overturning_time is not None:
                 return
             if not done:
                 depth, parts = 0, 0
@@ -119,35 +120,38 @@ class PadWay:
                 depth, parts = depth - 1, 0
         self.k, self.offset = self.k + 1, ZERO
         radius = self.states.radii(self.weights)[0]
-        self.widest = max(self.widest, float(radius))
-        if self.watch is not None:
-            self.watch(self.k, self.standing, self.states.box(self.weights))
-        if not self.states.radius() < _NARROW:
+        self.largest_radius = max(self.largest_radius, float(radius))
+        if self.callback is not None:
+            self.callback(self.k, self.contacts, self.states.box(self.weights))
+        if not self.states.radius() < _MAX_RADIUS:
             msg = "the enclosure has become as wide as the motion itself"
             raise Undecided(msg)
 
     def _advance(self, ground: GroundPiece, h: Ball) -> bool:
         """Make a step, or a part of it up to a change of contact; give whether it was whole."""
-        pads, standing = self.pads, self.standing
+        pads, contacts = self.pads, self.contacts
         sizes = tuple(float(one) for one in self.weights)
-        found = course(pads, standing, ground, self.states.centre, h, sizes, self.margin)
+        found = enclose_motion(pads, contacts, ground, self.states.centre, h, sizes, self.margin)
         self._set_margin(found.left_out, sizes)
-        made = step(pads, standing, found, self.states, self.weights, guards_of(standing))
-        guard, place = self._first(made)
+        made = enclose_step(pads, contacts, found, self.states, self.weights, guards_of(contacts))
+        guard, place = self._first_guard(made)
         share = ball(1)
         if guard is not None:
             share = _root(_series(pads, guard, made), place)
         until = min(float(share), 1.0)
         for one, (value, change) in made.curves.items():
-            if not _positive(value, change, until, fresh=one in self.fresh, falls=one == guard):
-                raise TooLong
-        states = self.states.mapped(
+            starts_at_zero, ends_at_zero = one in self.zero_guards, one == guard
+            if not _positive(
+                value, change, until, starts_at_zero=starts_at_zero, ends_at_zero=ends_at_zero
+            ):
+                raise StepTooLong
+        states = self.states.image(
             made.image(share), made.derivative(until), made.error, self.weights
         )
         if guard is None:
-            self.states, self.fresh = states, ()
+            self.states, self.zero_guards = states, ()
             return True
-        self._change(ground, h * share, states, guard, made.rate / float(h))
+        self._apply_change(ground, h * share, states, guard, made.rate / float(h))
         return False
 
     def _set_margin(self, left_out: Series, sizes: tuple[float, ...]) -> None:
@@ -159,17 +163,17 @@ class PadWay:
         elif lost < 1.0 / _LOST_BITS:
             self.margin = max(self.margin - 4, 8)
 
-    def _first(self, made: Step) -> tuple[Guard | None, float]:
+    def _first_guard(self, made: Step) -> tuple[Guard | None, float]:
         """Estimate which guard is the first to fall to zero, and where; this proves nothing."""
         which, first = None, 2.0
         for guard, (value, change) in made.curves.items():
             if value.size == 0.0:
                 continue
-            seen = np.polynomial.polynomial.polyval(_PLACES, value.of)
+            seen = np.polynomial.polynomial.polyval(_GRID, value.coefficients)
             below = seen <= 0.0
-            if guard in self.fresh:
+            if guard in self.zero_guards:
                 begin = 1
-                slope = np.polynomial.polynomial.polyval(_PLACES, change.of)
+                slope = np.polynomial.polynomial.polyval(_GRID, change.coefficients)
                 while begin < below.size and slope[begin] > 0.0 and below[begin]:
                     begin += 1
                 below[:begin] = False
@@ -177,10 +181,10 @@ class PadWay:
             if at.size == 0:
                 continue
             i = int(at[0])
-            low, high = float(_PLACES[max(i - 1, 0)]), float(_PLACES[i])
+            low, high = float(_GRID[max(i - 1, 0)]), float(_GRID[i])
             for _ in range(50):
                 middle = 0.5 * (low + high)
-                if np.polynomial.polynomial.polyval(middle, value.of) > 0.0:
+                if np.polynomial.polynomial.polyval(middle, value.coefficients) > 0.0:
                     low = middle
                 else:
                     high = middle
@@ -188,44 +192,48 @@ class PadWay:
                 which, first = guard, high
         return which, first
 
-    def _change(
+    def _apply_change(
         self, ground: GroundPiece, h: Ball, states: StateSet, guard: Guard, rate: float
     ) -> None:
         """Map a set through a change of contact of all its members, :eq:`eq-proof-pads-event`."""
-        whole = self._crossed(ground, h, states.box(self.weights), guard, rate)
-        centre = self._crossed(ground, h, states.centre, guard, rate)
+        whole = self._enclose_change(ground, h, states.box(self.weights), guard, rate)
+        centre = self._enclose_change(ground, h, states.centre, guard, rate)
         self.offset = self.offset + h
         if guard.kind == "limit":
             at = self.time + whole.delay
-            self.beyond = at, at
+            self.overturning_time = at, at
             return
         middle = np.array([[float(one) for one in row] for row in whole.slope])
         radii = np.array([[float(one.rad()) for one in row] for row in whole.slope])
         scale = self.weights[None, :] / self.weights[:, None]
-        self.states = states.mapped(
-            centre.image, middle * scale, radii * scale * UPWARDS, self.weights
+        self.states = states.image(
+            centre.image, middle * scale, radii * scale * ROUND_UP, self.weights
         )
-        self.standing, self.fresh = whole.after.standing, whole.after.fresh
+        self.contacts, self.zero_guards = whole.after.contacts, whole.after.zero_guards
         self.impacts += whole.after.impacts
 
-    def _crossed(
+    def _enclose_change(
         self, shaking: GroundPiece, h: Ball, box: Row, guard: Guard, rate: float
-    ) -> "_Crossed":
+    ) -> "_EnclosedChange":
         """Enclose the image of a box whose members reach the zero of a guard near one time."""
-        pads, standing = self.pads, self.standing
-        value = guard_value(pads, guard, duals(box))
-        falling = along(value, rates_of(pads, standing, duals(box), self._shaken(shaking, h)))
+        pads, contacts = self.pads, self.contacts
+        value = guard_value(pads, guard, independent_duals(box))
+        falling = rate_of_change(
+            value, state_rates(pads, contacts, independent_duals(box), self._ground_at(shaking, h))
+        )
         if not falling < 0:
             msg = "a contact that changes as it hardly moves"
             raise Undecided(msg)
         reach = 2.0 * float(value.value.abs_upper()) / float(falling.abs_lower()) + 1e-60
         window = ball(0, reach)
-        ground = self._shaken(shaking, h + window)
-        wide = _inflated(lambda at: rates_of(pads, standing, at, ground), box, window, self.weights)
-        at = duals(wide)
-        before = rates_of(pads, standing, at, ground)
+        ground = self._ground_at(shaking, h + window)
+        wide = _inflated(
+            lambda at: state_rates(pads, contacts, at, ground), box, window, self.weights
+        )
+        at = independent_duals(wide)
+        before = state_rates(pads, contacts, at, ground)
         guarded = guard_value(pads, guard, at)
-        falling = along(guarded, before)
+        falling = rate_of_change(guarded, before)
         if not falling < 0:
             msg = "a contact that changes as it hardly moves"
             raise Undecided(msg)
@@ -233,35 +241,39 @@ class PadWay:
         if not window.contains(delay):
             msg = "the time of a change of contact is not enclosed"
             raise Undecided(msg)
-        others = [one for one in guards_of(standing) if one != guard]
-        self._resolved(others, self.fresh, at, before)
+        others = [one for one in guards_of(contacts) if one != guard]
+        self._confirm_guards(others, self.zero_guards, at, before)
         met = [a + delay * b.value for a, b in zip(box, before, strict=True)]
         met = [a.intersection(b) for a, b in zip(met, wide, strict=True)]
         if guard.kind == "limit":
-            return _Crossed(delay, met, [], Switched([], standing, (), 0))
-        after = self._settled(switched(pads, standing, guard, duals(met), ground), ground)
+            return _EnclosedChange(delay, met, [], ContactChange([], contacts, (), 0))
+        after = self._after_further_changes(
+            change_contact(pads, contacts, guard, independent_duals(met), ground), ground
+        )
         image = [one.value for one in after.state]
         back = _inflated(
-            lambda at: rates_of(pads, after.standing, at, ground), image, window, self.weights
+            lambda at: state_rates(pads, after.contacts, at, ground), image, window, self.weights
         )
-        at = duals(back)
-        later = rates_of(pads, after.standing, at, ground)
-        self._resolved(guards_of(after.standing), after.fresh, at, later)
+        at = independent_duals(back)
+        later = state_rates(pads, after.contacts, at, ground)
+        self._confirm_guards(guards_of(after.contacts), after.zero_guards, at, later)
         image = [a - delay * b.value for a, b in zip(image, later, strict=True)]
         slope = _saltation(after, before, later, guarded, falling)
         swing = reach * max(rate, _norm(later, self.weights), _norm(before, self.weights))
-        near = ball(0, np.expm1(swing) * UPWARDS + 1e-60)
-        slope = self._swung(slope, near)
-        return _Crossed(delay, image, slope, after)
+        near = ball(0, np.expm1(swing) * ROUND_UP + 1e-60)
+        slope = self._widened(slope, near)
+        return _EnclosedChange(delay, image, slope, after)
 
-    def _settled(self, after: Switched, ground: Shaken) -> Switched:
+    def _after_further_changes(
+        self, after: ContactChange, ground: GroundAcceleration
+    ) -> ContactChange:
         """Carry out further changes of contact that follow at the same instant."""
-        for _ in range(_CHAIN):
+        for _ in range(_MAX_CHANGES):
             state = [one.value for one in after.state]
             waiting = [
                 one
-                for one in guards_of(after.standing)
-                if one not in after.fresh and guard_value(self.pads, one, state) < 0
+                for one in guards_of(after.contacts)
+                if one not in after.zero_guards and guard_value(self.pads, one, state) < 0
             ]
             if not waiting:
                 return after
@@ -269,53 +281,53 @@ class PadWay:
                 msg = "several contacts change at one instant"
                 raise Undecided(msg)
             count = after.impacts
-            after = switched(self.pads, after.standing, waiting[0], after.state, ground)
+            after = change_contact(self.pads, after.contacts, waiting[0], after.state, ground)
             after = after._replace(impacts=count + after.impacts)
         msg = "contacts that change without end at one instant"
         raise Undecided(msg)
 
-    def _shaken(self, ground: GroundPiece, time: Ball) -> Shaken:
+    def _ground_at(self, ground: GroundPiece, time: Ball) -> GroundAcceleration:
         """Return ground at a time from now, or at all times of a ball, in both intervals [s]."""
-        left = self.shaking.length(self.k) - self.offset
+        left = self.ground.length(self.k) - self.offset
         found = ground.at(time)
         if not time < left:
-            found = found.united(self.shaking.ground(self.k + 1).at(time - left))
-        return Shaken(found.along[0], found.weight[0])
+            found = found.union(self.ground.ground(self.k + 1).at(time - left))
+        return GroundAcceleration(found.along[0], found.normal[0])
 
-    def _resolved(
-        self, guards: list[Guard], fresh: tuple[Guard, ...], at: list[Dual], rates: list[Dual]
+    def _confirm_guards(
+        self, guards: list[Guard], zero_guards: tuple[Guard, ...], at: list[Dual], rates: list[Dual]
     ) -> None:
         """Prove that guards are positive, or rise from zero, while members change one by one."""
         for one in guards:
             value = guard_value(self.pads, one, at)
-            if not (value.value > 0 or (one in fresh and along(value, rates) > 0)):
+            if not (value.value > 0 or (one in zero_guards and rate_of_change(value, rates) > 0)):
                 msg = "the contacts about a change are not resolved"
                 raise Undecided(msg)
 
-    def _swung(self, slope: Matrix, near: Ball) -> Matrix:
+    def _widened(self, slope: Matrix, near: Ball) -> Matrix:
         """Widen a derivative by the motion of members between their change and the centre's."""
         scale = [ball(float(one)) for one in self.weights]
         beside = [
             [ball(int(i == j)) + near * scale[i] / scale[j] for j in range(SIZE)]
             for i in range(SIZE)
         ]
-        return times(beside, times(slope, beside))
+        return matrix_product(beside, matrix_product(slope, beside))
 
-    def _stands_for_ever(self) -> bool:
+    def _is_safe(self) -> bool:
         """Prove by energy that the block stands for ever, :eq:`eq-proof-pads-energy`."""
         pads, state = self.pads, self.states.box(self.weights)
         rotation, rate, height, speed, sway = state
-        if not self.standing.flies:
-            sway = arm(pads, self.standing, rotation) * rate
+        if not self.contacts.in_flight:
+            sway = arm(pads, self.contacts, rotation) * rate
         energy = (pads.inertia * rate * rate + speed * speed + sway * sway) / 2
         energy = energy + pads.gravity * height
         for left in (True, False):
-            depth = pads.settlements[not left] - corner(pads, left, state).level
+            depth = pads.settlements[not left] - corner_motion(pads, left, state).level
             energy = energy + pads.stiffness * depth.nonnegative_part() ** 2 / 2
         sunk = pads.gravity / pads.stiffness
         for left in (True, False):
             limit = -pads.limits[0] if left else pads.limits[1]
-            at = turned(pads, limit)
+            at = rotation_terms(pads, limit)
             below = at.rise + at.sine * (pads.left if left else -pads.right)
             crest = pads.gravity * (pads.settlements[not left] - below - sunk / 2)
             if not energy < crest:
@@ -324,20 +336,20 @@ class PadWay:
 
 
 @dataclass
-class _Crossed:
+class _EnclosedChange:
     """A change of contact of a box of states."""
 
     delay: Ball  # time of the change of each member, from now [s]
     image: Row  # states after it
     slope: Matrix  # derivative of these by the states before
-    after: Switched
+    after: ContactChange
 
 
 def _inflated(rates: Callable[[list[Any]], list[Any]], box: Row, window: Ball, weights: Any) -> Row:
     """Enclose all states that a box passes through in a window of time [s]."""
     grown = box
     for _ in range(12):
-        flow = [one.value for one in rates(duals(grown))]
+        flow = [one.value for one in rates(independent_duals(grown))]
         reached = [a + window * b for a, b in zip(box, flow, strict=True)]
         if all(a.contains(b) for a, b in zip(grown, reached, strict=True)):
             return reached
@@ -350,7 +362,7 @@ def _inflated(rates: Callable[[list[Any]], list[Any]], box: Row, window: Ball, w
 
 
 def _saltation(
-    after: Switched, before: list[Any], later: list[Any], guarded: Any, falling: Ball
+    after: ContactChange, before: list[Any], later: list[Any], guarded: Any, falling: Ball
 ) -> Matrix:
     """Return the saltation matrix: the derivative of a change by the state, at one fixed time."""
     reset = [one.slope for one in after.state]
@@ -368,34 +380,38 @@ def _saltation(
 def _norm(rates: list[Any], weights: Any) -> float:
     """Bound the norm of the weighted derivative of the field."""
     sizes = np.array([[float(one.abs_upper()) for one in row.slope] for row in rates])
-    return float((sizes * weights[None, :] / weights[:, None]).sum(axis=1).max()) * UPWARDS
+    return float((sizes * weights[None, :] / weights[:, None]).sum(axis=1).max()) * ROUND_UP
 
 
-def _positive(value: Curve, change: Curve, until: float, *, fresh: bool, falls: bool) -> bool:
+def _positive(
+    value: Curve, change: Curve, until: float, *, starts_at_zero: bool, ends_at_zero: bool
+) -> bool:
     """Prove that a guard is positive up to a share, except where it begins or ends at zero."""
-    of, slopes = value.of, change.of
+    of, slopes = value.coefficients, change.coefficients
     powers = np.arange(of.size)
-    bend = float((np.abs(of) * powers * np.maximum(powers - 1, 0)).sum()) * UPWARDS
-    turn = float((np.abs(slopes) * powers).sum()) * UPWARDS
+    curvature = float((np.abs(of) * powers * np.maximum(powers - 1, 0)).sum()) * ROUND_UP
+    slope_change = float((np.abs(slopes) * powers).sum()) * ROUND_UP
     own = (of * powers)[1:]
     edges = [(until * i / _PIECES, until * (i + 1) / _PIECES, 0) for i in range(_PIECES)]
     lost = 1e-14 * (value.size + change.size)
     down = until
     while edges:  # from the last piece to the first
         begin, end, depth = edges.pop()
-        middle, half = 0.5 * (begin + end), 0.5 * (end - begin) * UPWARDS
+        middle, half = 0.5 * (begin + end), 0.5 * (end - begin) * ROUND_UP
         tilt = abs(float(np.polynomial.polynomial.polyval(middle, own)))
-        least = float(np.polynomial.polynomial.polyval(middle, of)) - half * (tilt + half * bend)
+        least = float(np.polynomial.polynomial.polyval(middle, of)) - half * (
+            tilt + half * curvature
+        )
         if least > value.error + lost:
             continue
         rise = float(np.polynomial.polynomial.polyval(middle, slopes))
-        away = half * turn + change.error + lost
-        if fresh and begin == 0.0 and rise > away:
+        away = half * slope_change + change.error + lost
+        if starts_at_zero and begin == 0.0 and rise > away:
             continue
-        if falls and end == down and rise < -away:
+        if ends_at_zero and end == down and rise < -away:
             down = begin  # from here on it falls all the way to its zero
             continue
-        if depth == _DEEPEST:
+        if depth == _MAX_HALVINGS:
             return False
         edges += [(begin, middle, depth + 1), (middle, end, depth + 1)]
     return True
@@ -432,5 +448,5 @@ def _root(series: Row, place: float) -> Ball:
     if not abs(float(at) - place) < 1e-6:
         at = ball(place)
     if not 0 < at < 1:
-        raise TooLong
+        raise StepTooLong
     return at

@@ -2,7 +2,7 @@
 
 from itertools import zip_longest
 
-from rockframe.proof.balls import ZERO, Ball, Row, slope, value
+from rockframe.proof.balls import ZERO, Ball, Row, derivative_of, polynomial_value
 from rockframe.proof.problem import GroundPiece, Problem, Undecided
 
 _HALVINGS = 50
@@ -10,8 +10,8 @@ _NEWTON_STEPS = 12
 _VERGE = "a ground that comes to the verge of uplift"
 
 
-def lifts_in(
-    problem: Problem, number: int, ground: GroundPiece, left: Ball
+def find_uplift(
+    problem: Problem, interval: int, ground: GroundPiece, left: Ball
 ) -> tuple[Ball, int] | None:
     """Return when it lifts in the rest of an interval [s], and the sign of its rotation; or None.
 
@@ -19,59 +19,66 @@ def lifts_in(
     both.
     """
     try:
-        times = {side: first_zero(guard_of(problem, ground, side), left) for side in (1, -1)}
+        times = {side: first_zero(uplift_guard(problem, ground, side), left) for side in (1, -1)}
     except Undecided:
-        if not problem.joins(number):
+        if not problem.is_continuous_after(interval):
             raise
-        following, length = (of(number + 1) for of in (problem.ground, problem.length))
-        found = _lifts_about_sample(problem, ground, left, following, length)
+        following, length = (of(interval + 1) for of in (problem.ground, problem.length))
+        found = _uplift_about_sample(problem, ground, left, following, length)
         return None if found is None or found[0] > left else found
-    return _earlier(times)
+    return _earlier_uplift(times)
 
 
-def _lifts_about_sample(
+def _uplift_about_sample(
     problem: Problem, ground: GroundPiece, left: Ball, following: GroundPiece, length: Ball
 ) -> tuple[Ball, int] | None:
     found = dict[int, Ball | None]()
     for side in (1, -1):
-        here, there = (guard_of(problem, each, side) for each in (ground, following))
+        here, there = (uplift_guard(problem, each, side) for each in (ground, following))
         if there[0] > 0:
             found[side] = first_zero(here, left)
             if found[side] is None:
                 after = first_zero(there, length)
                 found[side] = None if after is None else left + after
         else:
-            found[side] = _zero_about(here, left, there, length)
-    return _earlier(found)
+            found[side] = _zero_about_sample(here, left, there, length)
+    return _earlier_uplift(found)
 
 
-def guard_of(problem: Problem, ground: GroundPiece, side: int) -> Row:
+def uplift_guard(problem: Problem, ground: GroundPiece, side: int) -> Row:
     """Return guard of uplift to a side, a polynomial that is positive while it does not lift."""
     tangent = problem.corner(side).angle.tan()
-    pairs = zip_longest(ground.weight, ground.along, fillvalue=ZERO)
-    return [weight * tangent + side * along for weight, along in pairs]
+    pairs = zip_longest(ground.normal, ground.along, fillvalue=ZERO)
+    return [normal * tangent + side * along for normal, along in pairs]
 
 
-def _zero_about(here: Row, left: Ball, there: Row, length: Ball) -> Ball:
+def _zero_about_sample(here: Row, left: Ball, there: Row, length: Ball) -> Ball:
     """Enclose the zero of a guard near a sample; polynomials before and after it are given."""
     low, high = left, length
     for _ in range(_HALVINGS):
         low = (low / 2).mid()
-        falls = value(slope(here), (left - low).union(left)) < 0
-        if value(here, left - low) > 0 and falls and first_zero(here, left - low) is None:
+        falls = polynomial_value(derivative_of(here), (left - low).union(left)) < 0
+        if (
+            polynomial_value(here, left - low) > 0
+            and falls
+            and first_zero(here, left - low) is None
+        ):
             break
     else:
         raise Undecided(_VERGE)
     for _ in range(_HALVINGS):
-        if not value(there, high / 2) < 0:
+        if not polynomial_value(there, high / 2) < 0:
             break
         high = (high / 2).mid()
-    if not (value(there, high) < 0 and value(slope(there), ZERO.union(high)) < 0):
+    if not (
+        polynomial_value(there, high) < 0
+        and polynomial_value(derivative_of(there), ZERO.union(high)) < 0
+    ):
         raise Undecided(_VERGE)
     return (left - low).union(left + high)
 
 
-def _earlier(times: dict[int, Ball | None]) -> tuple[Ball, int] | None:
+def _earlier_uplift(times: dict[int, Ball | None]) -> tuple[Ball, int] | None:
     found = [(at, side) for side, at in times.items() if at is not None]
     if len(found) < 2:
         return found[0] if found else None
@@ -91,7 +98,7 @@ def first_zero(guard: list[Ball], left: Ball) -> Ball | None:
     if not guard[0] > 0:
         message = "a block at rest on the verge of uplift"
         raise Undecided(message)
-    return _first_zero(guard, slope(guard), ZERO, left, _HALVINGS)
+    return _first_zero(guard, derivative_of(guard), ZERO, left, _HALVINGS)
 
 
 def _first_zero(
@@ -99,18 +106,20 @@ def _first_zero(
 ) -> Ball | None:
     """Enclose the first zero between two times; the polynomial is positive at the first."""
     span = low.union(high)
-    if value(guard, span) > 0:
+    if polynomial_value(guard, span) > 0:
         return None
-    rates, last = value(rate, span), value(guard, high)
+    rates, last = polynomial_value(rate, span), polynomial_value(guard, high)
     if rates > 0 or (rates < 0 and last > 0):
         return None
     if rates < 0 and last < 0:
         for _ in range(_NEWTON_STEPS):
             middle = span.mid()
-            span = span.intersection(middle - value(guard, middle) / value(rate, span))
+            span = span.intersection(
+                middle - polynomial_value(guard, middle) / polynomial_value(rate, span)
+            )
         return span
     middle = ((low * 5 + high * 4) / 9).mid()
-    there = value(guard, middle)
+    there = polynomial_value(guard, middle)
     if halvings == 0 or not (there > 0 or there < 0):
         raise Undecided(_VERGE)
     found = _first_zero(guard, rate, low, middle, halvings - 1)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Final, get_type_hints
 from rockframe.compiled.language import Integers, ReadOnlyMatrix, Vector, tuple_from
 
 if TYPE_CHECKING:
-    from rockframe.compiled.bound import Source
+    from rockframe.compiled.bound import BoundSource
 
 _WORD: Final = ctypes.c_int64
 _NUMBERS: Final[dict[Any, Any]] = {int: _WORD, float: ctypes.c_double, type(None): None}
@@ -37,43 +37,43 @@ class _Raised(threading.local):
 _raised: Final = _Raised()
 
 
-class CalledBack:
+class PythonCallback:
     """A bound function that runs as plain Python and has an address for machine code to call."""
 
-    def __init__(self, source: "Source") -> None:
-        bundle_of = tuple_from(source.structure)
+    def __init__(self, source: "BoundSource") -> None:
+        make_tuple = tuple_from(source.structure)
         hints = get_type_hints(source.function, include_extras=True)
         names = [*inspect.signature(source.function).parameters][1:]
-        kinds = [*(hints[name] for name in names), Vector]
+        types = [*(hints[name] for name in names), Vector]
         words: list[Any] = []
-        for kind in kinds:
+        for kind in types:
             words += [_NUMBERS[kind]] if kind in _NUMBERS else [_WORD] * (1 + _BUFFERS[kind][2])
 
-        def called(*words: Any) -> Any:
-            began = perf_counter()
+        def callback(*words: Any) -> Any:
+            started = perf_counter()
             try:
-                *arguments, numbers = _arguments(kinds, words)
-                return source.function(bundle_of(numbers), *arguments)
+                *arguments, numbers = _arguments(types, words)
+                return source.function(make_tuple(numbers), *arguments)
             except BaseException as raised:  # machine code knows no exceptions: raised after it
                 _raised.first = _raised.first or raised
                 return 0
             finally:
-                source.seconds_without += perf_counter() - began
+                source.fallback_seconds += perf_counter() - started
 
-        self._kept = ctypes.CFUNCTYPE(_NUMBERS[hints["return"]], *words)(called)
-        self.address = ctypes.cast(self._kept, ctypes.c_void_p).value or 0
+        self._c_function = ctypes.CFUNCTYPE(_NUMBERS[hints["return"]], *words)(callback)
+        self.address = ctypes.cast(self._c_function, ctypes.c_void_p).value or 0
 
 
-def _arguments(kinds: list[Any], words: tuple[Any, ...]) -> list[Any]:
+def _arguments(types: list[Any], words: tuple[Any, ...]) -> list[Any]:
     """Return the arguments of a call from the words passed; arrays are memory views."""
     arguments: list[Any] = []
     place = 0
-    for kind in kinds:
-        if kind in _NUMBERS:
+    for type_ in types:
+        if type_ in _NUMBERS:
             arguments.append(words[place])
             place += 1
             continue
-        element, letter, dimensions = _BUFFERS[kind]
+        element, letter, dimensions = _BUFFERS[type_]
         address, *lengths = words[place : place + 1 + dimensions]
         place += 1 + dimensions
         count = lengths[0] if dimensions == 1 else lengths[0] * lengths[1]
@@ -82,7 +82,7 @@ def _arguments(kinds: list[Any], words: tuple[Any, ...]) -> list[Any]:
     return arguments
 
 
-def raising(routine: Callable[..., Any], words: list[Any]) -> Any:
+def run_and_raise(routine: Callable[..., Any], words: list[Any]) -> Any:
     """Run machine code, then raise the first exception of a function that it called back."""
     _raised.first = None
     result = routine(*words)
