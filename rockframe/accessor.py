@@ -216,10 +216,10 @@ class RockframeAccessor:
             return ""
         from rockframe.notebook import drawing
         from rockframe.plot._checks import system_of_run
-        from rockframe.system.geometry import geometry_of, shapes_of
+        from rockframe.system.geometry import geometry_of, scene_polygons
 
         try:
             system = system_of_run(self._dataset, "card")
         except RockframeError:  # for example a user's own component that is not registered
             return ""
-        return drawing(shapes_of(geometry_of(system.assembly)))
+        return drawing(scene_polygons(geometry_of(system.assembly)))

@@ -8,13 +8,13 @@ from rockframe.measures.common import check_some
 from rockframe.motion import GroundMotion
 from rockframe.simulation.system import System
 from rockframe.system.rigid_ground import RigidGroundSetting
-from rockframe.system.sliding_stack import TiedSetting
+from rockframe.system.sliding_stack import RestrainedSetting
 from rockframe.units import QuantityLike
 
 
 def rocking_block(
     system: object, owner: str, *, carries: bool = False, slides: bool = False
-) -> RigidGroundSetting | TiedSetting:
+) -> RigidGroundSetting | RestrainedSetting:
     """Return the setting of a block that rocks on level rigid ground; refuse any other scene.
 
     With `carries` it may carry loads that are masses, with `slides` it may slide.
@@ -29,9 +29,9 @@ def rocking_block(
             return setting
         if (
             carries
-            and isinstance(setting, TiedSetting)
+            and isinstance(setting, RestrainedSetting)
             and not setting.slides
-            and not setting.ties  # links other than loads that are masses
+            and not setting.links  # links other than loads that are masses
         ):
             return setting
     carried = ", which may carry loads that are masses," if carries else ","

@@ -160,6 +160,6 @@ def residuals(last: Values, load: BaseLoad) -> dict[str, float]:
 
 
 def _settlement(values: Values, load: BaseLoad) -> Array:
-    """Return how much lower than at rest the middle of the base is, :eq:`eq-settlement`."""
-    small = load.options.small
-    return load.body.sunk(values["rotation"], values["vertical_displacement"], small=small)
+    """Return the settlement of the middle of the base from rest, :eq:`eq-settlement`."""
+    rotation, height = values["rotation"], values["vertical_displacement"]
+    return load.body.base_settlement(rotation, height, small=load.options.small)

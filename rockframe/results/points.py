@@ -55,7 +55,7 @@ def point_histories(
     angular = values["angular_acceleration"]
     body, small = load.body, load.options.small
     places = np.array([(point.x, point.y) for point in points])[:, :, None]
-    right, up = body.arms(places[:, 0], places[:, 1], values)
+    right, up = body.relative_to_centre(places[:, 0], places[:, 1], values)
     sine, cosine = sines_cosines(rotation, small=small)
     # derivatives of the place about the centre of mass by the rotation
     across_rate, up_rate = up * cosine - right * sine, -right * cosine - up * sine
@@ -124,7 +124,7 @@ class Placement:
         if self.geometry.columns:
             return self._about_corner(points)
         moves = values["horizontal_displacement"], values["vertical_displacement"]
-        return self._moved(points, self.geometry.moved, values["rotation"], moves)
+        return self._moved(points, self.geometry.response_centre, values["rotation"], moves)
 
     def _about_corner(self, points: Array) -> Array:
         """Return where points of a column are, as if it stood in the middle of the frame.

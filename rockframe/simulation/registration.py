@@ -12,11 +12,17 @@ from rockframe.proposals import hinted
 from rockframe.results.diagnostics import DIAGNOSTICS, Diagnostic, add_diagnostic
 from rockframe.results.schema import GROUPS, SCHEMA
 from rockframe.results.variables.variable import EVENT, TIME, Variable
-from rockframe.system.assembly import add_scene, twin_of
+from rockframe.system.assembly import add_scene, scene_of_same_parts
 from rockframe.system.links import OwnLink
 from rockframe.system.own_base import OwnAnswers, OwnBase
 from rockframe.system.own_scene import OwnScene
-from rockframe.system.parts import RESTRAINER, SHIPPED, Kind, add_kind, slot_of_kind
+from rockframe.system.parts import (
+    BUILTIN_SLOTS,
+    RESTRAINER,
+    PartKind,
+    add_part_class,
+    slot_of_class,
+)
 from rockframe.units import Unit
 
 _OWNER: Final = "register"
@@ -92,14 +98,14 @@ def register(
         )
     _refuse(faults)
     if issubclass(kind, OwnBase):
-        add_kind(kind, Kind(kind.slot, kind.support))
+        add_part_class(kind, PartKind(kind.slot, kind.support))
     elif issubclass(kind, OwnLink):
-        add_kind(kind, Kind(RESTRAINER))
+        add_part_class(kind, PartKind(RESTRAINER))
     else:
         add_scene(kind)
         for slot, part in kind.made_of.items():
-            if slot not in SHIPPED:
-                add_kind(part, Kind(slot))
+            if slot not in BUILTIN_SLOTS:
+                add_part_class(part, PartKind(slot))
     SCHEMA.update({row.name: row for row in columns})
 
 
@@ -169,12 +175,12 @@ def _faults_of_scene(kind: type[OwnScene]) -> list[str]:
         return [*faults, *of_parts]
     if not any(issubclass(part, Block) for part in made_of.values()):
         faults.append(f"{kind.__name__} has no Block among its parts, of which the response is")
-    if not set(made_of) - set(SHIPPED):
+    if not set(made_of) - set(BUILTIN_SLOTS):
         faults.append(
             f"{kind.__name__} is made of rockframe's own parts alone, and so could not be told "
             "from its scenes; add a part of your own"
         )
-    twin = twin_of(kind)
+    twin = scene_of_same_parts(kind)
     if twin is not None:
         faults.append(f"{kind.__name__} is made of the same parts as {twin}")
     return faults
@@ -195,10 +201,10 @@ def _faults_of_part(owner: str, slot: Any, part: Any) -> list[str]:
         return [f"{where}: a slot is called by a name such as 'floor'"]
     if not (isinstance(part, type) and issubclass(part, Component)):
         return [f"{where} must be a class of components, got {shown(part)}"]
-    fills = slot_of_kind(part)
+    fills = slot_of_class(part)
     if fills is not None and fills != slot:
         return [f"{where}: {part.__name__} fills the slot {fills!r}"]
-    if fills is None and slot in SHIPPED:
+    if fills is None and slot in BUILTIN_SLOTS:
         return [f"{where}: the slot is one of rockframe's own parts; give {part.__name__} another"]
     return []
 

@@ -106,7 +106,7 @@ class System(SystemValue):
             inclination=inclination, sliding=sliding,
         )  # fmt: skip
         self._assembly = assembly
-        for caution in assembly.doubts:
+        for caution in assembly.setting_cautions:
             warn(caution, ModelWarning)
 
     def describe(self) -> str:

@@ -224,7 +224,7 @@ def _uplift_scale(system: System, plan: Plan) -> float:
     values = np.concatenate([pieces[:, 0], pieces.sum(axis=1), between])
     # ground that is accelerated to the right tips the block to the left
     peaks = float(values.max()), -float(values.min())
-    scales = zip(setting.moving_accelerations, peaks, strict=True)
+    scales = zip(setting.onset_accelerations, peaks, strict=True)
     return min((uplift / peak for uplift, peak in scales if peak > 0.0), default=math.inf)
 
 

@@ -22,7 +22,7 @@ from rockframe.simulation.plan import certification_of, read_arguments
 from rockframe.simulation.run_arguments import Certification
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import Accuracy
-from rockframe.system.parts import slot_of_kind
+from rockframe.system.parts import slot_of_class
 
 _FILE: Final = "file"
 MOTIONS: Final = (*CONSTRUCTORS, "example")
@@ -253,7 +253,7 @@ def _read_arguments(**values: Any) -> None:
 def _unknown_table(file: TomlFile, name: str) -> None:
     letters = name.replace("_", "").casefold()
     kind = next((kind for one, kind in kinds().items() if one.casefold() == letters), None)
-    slot = None if kind is None else slot_of_kind(kind)
+    slot = None if kind is None else slot_of_class(kind)
     if kind is None or slot is None:
         file.unknown((), name, keys())
     else:

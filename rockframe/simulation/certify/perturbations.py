@@ -11,7 +11,7 @@ from rockframe.motion import GroundMotion
 from rockframe.motion.processing.samples import divided_signal
 from rockframe.simulation.plan import Plan
 from rockframe.solve.accuracy import LEVELS, Accuracy, AccuracyLevel
-from rockframe.system.assembly import Assembly, assembly_of
+from rockframe.system.assembly import Assembly, assemble_parts
 from rockframe.system.bodies import OverturningAngles
 from rockframe.system.links import link_labels
 
@@ -33,7 +33,7 @@ def parameters(system: Assembly) -> Iterator[tuple[str, SceneAt]]:
         def at(change: float) -> Assembly | None:
             try:
                 part = parts[slot].with_scaled(name, 1.0 + change)
-                return assembly_of(parts.changed(**{slot: part}, motion=None), system.options)
+                return assemble_parts(parts.replace(**{slot: part}, motion=None), system.options)
             except RockframeError:
                 return None
 

@@ -37,8 +37,8 @@ from rockframe.studies.sweeps.scenes import (
     scene_of,
 )
 from rockframe.studies.sweeps.study import Histories, Study
-from rockframe.system.alone import AloneSetting
 from rockframe.system.assembly import Assembly
+from rockframe.system.single_body import SingleBodySetting
 from rockframe.units import PERIOD, POSITIVE, QuantityLike, own_unit, to_si
 
 
@@ -215,7 +215,7 @@ def _pays_to_screen(system: Assembly, motions: Iterable[GroundMotion | None]) ->
     """
     if not system.setting.steps_cost_most:
         return False
-    return not isinstance(system.setting, AloneSetting) or any(
+    return not isinstance(system.setting, SingleBodySetting) or any(
         one is None or one.recipe is None for one in motions
     )
 

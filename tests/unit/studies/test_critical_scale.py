@@ -131,7 +131,7 @@ def test_nothing_happens_on_rigid_ground_before_uplift(found):
         with pytest.warns(ModelWarning) if slope > friction else nullcontext():
             slides = rf.System(BLOCK, ground, inclination=f"{slope!r} rad")
         least = max(0.0, math.tan(math.atan(min(friction, 0.8 / 3.6)) - slope))
-        either = slides.setting.moving_accelerations
+        either = slides.setting.onset_accelerations
         assert min(either) == pytest.approx(9.80665 * least, rel=1e-12)
     slippery = rf.System(BLOCK, rf.RigidGround(friction=0.1))
     slid = rf.critical_scale(slippery, SHAKING, **SPARING)
