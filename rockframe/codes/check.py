@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple, cast
 
 from rockframe.errors import ComponentError, shown
-from rockframe.measures.common import check_some
+from rockframe.measures.common import check_not_empty
 from rockframe.motion import GroundMotion
 from rockframe.simulation.system import System
 from rockframe.system.rigid_ground import RigidGroundSetting
@@ -52,7 +52,7 @@ def read_motions(value: object, owner: str) -> dict[str, GroundMotion]:
         msg = f"{owner}: expected a GroundMotion or several by their labels, got {shown(value)}"
         raise ComponentError(msg)
     motions = cast("Mapping[str, GroundMotion]", several)
-    check_some(motions, owner=owner)
+    check_not_empty(motions, owner=owner)
     for label, motion in motions.items():
         if not isinstance(cast("Any", motion), GroundMotion):
             msg = f"{owner}: {label!r} needs a GroundMotion, got {shown(motion)}"

@@ -15,7 +15,7 @@ from rockframe.plot._checks import RUN, above_zero, checked_run, draws, refuse, 
 from rockframe.plot._panels import Axes, AxesLike, single
 from rockframe.plot._response import CONTACT_OF_BODIES
 from rockframe.results.points import UPRIGHT, Placement
-from rockframe.simulation.plan import points_of
+from rockframe.simulation.plan import read_body_points
 from rockframe.simulation.system import System
 from rockframe.system.geometry import Geometry, geometry_of
 from rockframe.units import ANGLE, LENGTH, TIME, QuantityLike, to_si
@@ -91,7 +91,7 @@ def scene(
     at = Placement(drawer.geometry, UPRIGHT, system.restraint)
     named = truth(legend, owner="rf.plot.scene", name="legend")
     faults: list[str] = []
-    marked = points_of(points, faults, owner="rf.plot.scene")
+    marked = read_body_points(points, faults, owner="rf.plot.scene")
     if faults:
         msg = f"rf.plot.scene: {'; '.join(faults)}"
         raise ComponentError(msg)
