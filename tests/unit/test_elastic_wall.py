@@ -111,7 +111,7 @@ def test_the_wall_that_a_refusal_names_throws_back_as_the_stiff_one(given, share
 def test_a_wall_that_stops_the_body_has_critical_damping():
     found = equivalent_wall(rf.RearWall(restitution=0), BLOCK.si)
     mass = (BLOCK.si.inertia + BLOCK.si.mass * BLOCK.si.centre_height**2) / BLOCK.si.height**2
-    assert found.share == 0.0
+    assert found.rebound == 0.0
     assert found.damping == pytest.approx(2.0 * math.sqrt(found.stiffness * mass))
 
 

@@ -16,7 +16,7 @@ from rockframe.simulation.soundness import (
     DOUBTFUL_RESIDUAL_ON_SPRINGS,
     MAX_ADAPTIVE_RESIDUAL,
     MAX_FIXED_STEP_RESIDUAL,
-    unbalanced,
+    energy_caution,
 )
 
 SYSTEM, MOTION = Scene().system, Scene().motion
@@ -42,7 +42,7 @@ def said(accuracy, residual, other=STOOD, base=STOOD, system=SYSTEM):
         tried.append(beside.accuracy)
         return other
 
-    return unbalanced(system.assembly, plan, summary, lambda: base, run), tried
+    return energy_caution(system.assembly, plan, summary, lambda: base, run), tried
 
 
 @pytest.mark.parametrize("accuracy", ["standard", "reference", 1e-6])
