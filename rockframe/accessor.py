@@ -170,7 +170,7 @@ class RockframeAccessor:
     @property
     def summary(self) -> str:
         """Contents and outcome of the dataset, in a few lines."""
-        from rockframe.results.variables.variable import unit_behind
+        from rockframe.results.variables.variable import unit_suffix
 
         data = self._dataset
         lines = [line for line in (str(data.attrs.get("title", "")), self.verdict) if line]
@@ -183,7 +183,7 @@ class RockframeAccessor:
             lines.append("over " + ", ".join(f"{dim} ({n})" for dim, n in data.sizes.items()))
         for name in _SHOWN:
             if name in data and data[name].ndim == 0 and not math.isnan(data[name].item()):
-                unit = unit_behind(data[name].attrs)
+                unit = unit_suffix(data[name].attrs)
                 lines.append(f"{name}: {data[name].item():.4g}{unit}")
         return "\n".join(lines)
 
@@ -216,10 +216,10 @@ class RockframeAccessor:
             return ""
         from rockframe.notebook import drawing
         from rockframe.plot._checks import system_of_run
-        from rockframe.system.geometry import geometry_of, shapes_of
+        from rockframe.system.geometry import geometry_of, scene_polygons
 
         try:
             system = system_of_run(self._dataset, "card")
         except RockframeError:  # for example a user's own component that is not registered
             return ""
-        return drawing(shapes_of(geometry_of(system.assembly)))
+        return drawing(scene_polygons(geometry_of(system.assembly)))

@@ -18,7 +18,7 @@ FOLDER = Path(__file__).parents[1] / "examples"
 FILE = FOLDER / "own_base.py"
 NAME = FILE.stem  # as who runs `import own_base` finds it, with the same machine code
 SCENE_FILE = FOLDER / "own_scene.py"
-TABLES: tuple[dict[Any, Any], ...] = (SCHEMA, DIAGNOSTICS, assembly._OWN, parts_of._KINDS)
+TABLES: tuple[dict[Any, Any], ...] = (SCHEMA, DIAGNOSTICS, assembly._USER_SCENES, parts_of._KINDS)
 """What registration adds to."""
 
 

@@ -4,17 +4,17 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple, cast
 
 from rockframe.errors import ComponentError, shown
-from rockframe.measures.common import check_some
+from rockframe.measures.common import check_not_empty
 from rockframe.motion import GroundMotion
 from rockframe.simulation.system import System
 from rockframe.system.rigid_ground import RigidGroundSetting
-from rockframe.system.sliding_stack import TiedSetting
+from rockframe.system.sliding_stack import RestrainedSetting
 from rockframe.units import QuantityLike
 
 
 def rocking_block(
     system: object, owner: str, *, carries: bool = False, slides: bool = False
-) -> RigidGroundSetting | TiedSetting:
+) -> RigidGroundSetting | RestrainedSetting:
     """Return the setting of a block that rocks on level rigid ground; refuse any other scene.
 
     With `carries` it may carry loads that are masses, with `slides` it may slide.
@@ -29,9 +29,9 @@ def rocking_block(
             return setting
         if (
             carries
-            and isinstance(setting, TiedSetting)
+            and isinstance(setting, RestrainedSetting)
             and not setting.slides
-            and not setting.ties  # links other than loads that are masses
+            and not setting.links  # links other than loads that are masses
         ):
             return setting
     carried = ", which may carry loads that are masses," if carries else ","
@@ -52,7 +52,7 @@ def read_motions(value: object, owner: str) -> dict[str, GroundMotion]:
         msg = f"{owner}: expected a GroundMotion or several by their labels, got {shown(value)}"
         raise ComponentError(msg)
     motions = cast("Mapping[str, GroundMotion]", several)
-    check_some(motions, owner=owner)
+    check_not_empty(motions, owner=owner)
     for label, motion in motions.items():
         if not isinstance(cast("Any", motion), GroundMotion):
             msg = f"{owner}: {label!r} needs a GroundMotion, got {shown(motion)}"

@@ -18,7 +18,7 @@ from rockframe.reports.checks import CheckedLine, CheckedVerdict, CodeCheck
 from rockframe.simulation.system import System
 from rockframe.suites import TargetSpectrum
 from rockframe.system.rigid_ground import RigidGroundSetting
-from rockframe.system.sliding_stack import TiedSetting
+from rockframe.system.sliding_stack import RestrainedSetting
 from rockframe.units import (
     POSITIVE,
     TIME,
@@ -212,9 +212,9 @@ class _Mechanism(NamedTuple):
         return square / (self.centre[1] * horizontal)
 
 
-def _mechanism(system: System, setting: RigidGroundSetting | TiedSetting) -> _Mechanism:
+def _mechanism(system: System, setting: RigidGroundSetting | RestrainedSetting) -> _Mechanism:
     """Return the mechanism of the wall and its loads about the edge over which it overturns."""
-    angles, block = setting.overturning_angles, system.parts.the_block
+    angles, block = setting.overturning_angles, system.parts.block_si
     side = 1.0 if setting.overturning_rotations[0] > 0.0 and angles.right <= angles.left else -1.0
     carried = [one.si for one in system.parts.links if isinstance(one, Load)]
     places = [(block.eccentricity, block.centre_height), *(one.at for one in carried)]

@@ -165,9 +165,9 @@ def _in_words(values: Any, attributes: Mapping[str, Any]) -> Any:
     """Replace flags by their meanings, and flags of truth by true and false."""
     import numpy as np
 
-    from rockframe.results.variables.variable import TRUTH, words_of_flags
+    from rockframe.results.variables.variable import TRUTH, flag_words
 
-    words: dict[Any, str | bool] = {**words_of_flags(attributes)}
+    words: dict[Any, str | bool] = {**flag_words(attributes)}
     if not words:
         return values
     if (*words.values(),) == TRUTH:

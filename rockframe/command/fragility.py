@@ -23,7 +23,7 @@ from rockframe.command.shared import (
 from rockframe.errors import FileError, StudyError
 from rockframe.reports.project import ATTRIBUTE
 from rockframe.results.variables.analyses import FragilityStatus
-from rockframe.results.variables.variable import words_of_flags
+from rockframe.results.variables.variable import flag_words
 from rockframe.studies import fragility, open_study, sweep
 from rockframe.studies.sweeps.case import NOT_GIVEN
 
@@ -87,7 +87,7 @@ def _line(state: str, row: xr.Dataset) -> str:
     """Write the median and dispersion of a limit state."""
     median = row["median_intensity"]
     status = row["fragility_status"]
-    words = words_of_flags(status.attrs)[int(status)].replace("_", " ")
+    words = flag_words(status.attrs)[int(status)].replace("_", " ")
     if bool(median.isnull()):
         return f"  {state}: no fit, {words}"
     if int(status) != FragilityStatus.FITTED:

@@ -15,12 +15,12 @@ from rockframe.comparison.models import model_ladder
 from rockframe.comparison.recommend import recommend
 from rockframe.errors import ComponentError, ModelWarning, SolverWarning, nearest, shown
 from rockframe.motion import GroundMotion
-from rockframe.results.outcome import LEAST_SLIP, PEAK_SLIPS, Generic, verdict_of
+from rockframe.results.outcome import MIN_REPORTED_SLIP, PEAK_SLIPS, Generic, verdict_of
 from rockframe.results.schema import build_dataset
 from rockframe.shared_arguments import takes
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.provenance import motion_attributes
-from rockframe.simulation.run import respond, run
+from rockframe.simulation.run import compute_response, run
 from rockframe.simulation.run_arguments import ComparedArguments
 from rockframe.simulation.system import System, check_system
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
@@ -45,7 +45,7 @@ def relative_peak_error(run: xr.Dataset, reference: xr.Dataset) -> float:
     peak, slips = float(reference["peak_rotation"]), _slips(reference)
     error = _relative(abs(float(run["peak_rotation"]) - peak), peak)
     slip = float(np.max(slips))
-    if slip < LEAST_SLIP:
+    if slip < MIN_REPORTED_SLIP:
         return error
     return max(error, float(np.max(np.abs(_slips(run) - slips))) / slip)
 
@@ -265,12 +265,12 @@ def _run_until_compiled(scene: System, plan: Plan) -> None:
     while not (is_fully_compiled(equations) or runs_as_python(equations)):
         if time.perf_counter() > deadline:
             return
-        respond(scene.assembly, plan)
+        compute_response(scene.assembly, plan)
 
 
 def _timed(scene: System, plan: Plan) -> float:
     start = time.perf_counter()
-    respond(scene.assembly, plan)
+    compute_response(scene.assembly, plan)
     return time.perf_counter() - start
 
 

@@ -71,9 +71,9 @@ class TrialSystems:
 
     def __init__(self, system: System, names: Sequence[str]) -> None:
         alone = system.parts.signature == frozenset({"block"})
-        self._parts = (system.parts.standing() if alone else system.parts).structural()
+        self._parts = (system.parts.with_ground() if alone else system.parts).structural()
         self._options: dict[str, Any] = system.options.to_dict()
-        self.radius = system.parts.the_block.radius
+        self.radius = system.parts.block_si.radius
         self.gravity = system.options.gravity
         known = dict(self._ratios(system))
         inside = set(self._ratios_inside())
@@ -81,7 +81,7 @@ class TrialSystems:
 
     def _ratios(self, system: System) -> Iterator[tuple[str, PartParameter | None]]:
         """Find the dimensionless parameters of all parts; None for one without a start value."""
-        usual = {"restitution": system.parts.the_block.maximum_restitution}
+        usual = {"restitution": system.parts.block_si.maximum_restitution}
         for index, part in enumerate(self._parts):
             for argument, declared in _declared_ratios(part):
                 value = part.to_dict().get(argument, usual.get(argument))

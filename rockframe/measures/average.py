@@ -18,7 +18,7 @@ from rockframe.units import PERIOD, QuantityLike, RatioLike
 
 _OWNER: Final = "average_spectral_acceleration"
 _REFERENCES: Final = "Eads et al. (2015), Earthquake Engng. Struct. Dyn. 44, 2057-2073"
-_OF_PAIRS: Final = {
+_PAIR_AVERAGES: Final = {
     "geometric_mean_acceleration": "average_geometric_mean_acceleration",
     "median_rotated_acceleration": "average_median_rotated_acceleration",
 }
@@ -80,7 +80,7 @@ def average_spectral_acceleration(
     things = list(motion.values()) if isinstance(motion, Mapping) else [motion]
     if things and all(isinstance(one, HorizontalPair) for one in things):
         spectrum = rotated_spectrum(cast("Any", motion), with_unit, damping_ratio)
-        names = _OF_PAIRS
+        names = _PAIR_AVERAGES
     else:
         spectrum = response_spectrum(
             cast("Any", motion), with_unit, damping_ratio, component=component

@@ -41,17 +41,17 @@ def signal_of(motion: object, component: object, *, owner: str) -> Signal:
     return motion.si.vertical
 
 
-Thing = TypeVar("Thing")
-Answer = TypeVar("Answer")
+Input = TypeVar("Input")
+Result = TypeVar("Result")
 
 _LABEL: Final = {"long_name": "ground motion"}
 
 
 @dataclass(frozen=True)
-class Inputs(Generic[Thing]):
+class Inputs(Generic[Input]):
     """Inputs of a measure: one signal or pair, or several with their labels."""
 
-    things: list[Thing]  # signals, or pairs of motions
+    items: list[Input]  # signals, or pairs of motions
     labels: list[str] | None  # of several; None for a single one
     attributes: dict[str, str | float | int]  # attributes of the result on them
 
@@ -60,18 +60,18 @@ class Inputs(Generic[Thing]):
         """The dimension of several inputs; none for a single one."""
         return () if self.labels is None else (MOTION,)
 
-    def each(self, function: Callable[[Thing], Answer]) -> list[Answer]:
+    def each(self, function: Callable[[Input], Result]) -> list[Result]:
         """Return the function of each input, computed in threads where compiled code permits."""
-        workers = min(cpu_count() or 1, len(self.things))
+        workers = min(cpu_count() or 1, len(self.items))
         if not COMPILED or workers < 2:
-            return [function(thing) for thing in self.things]
-        first = function(self.things[0])  # compiles, the first time
+            return [function(item) for item in self.items]
+        first = function(self.items[0])  # compiles, the first time
         with ThreadPoolExecutor(workers) as pool:
-            return [first, *pool.map(function, self.things[1:])]
+            return [first, *pool.map(function, self.items[1:])]
 
-    def joined(self, answers: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
+    def joined(self, results: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
         """Return the values of all results as arrays, or those of the single one."""
-        rows = list(answers)
+        rows = list(results)
         if self.labels is None:
             return dict(rows[0])
         return {name: np.array([row[name] for row in rows]) for name in rows[0]}
@@ -89,13 +89,13 @@ def read_inputs(value: object, component: object, *, owner: str) -> Inputs[Signa
         signal = signal_of(value, component, owner=owner)
         return Inputs([signal], None, component_attributes(cast("GroundMotion", value), component))
     motions = cast("Mapping[Any, Any]", value)
-    check_some(motions, owner=owner)
+    check_not_empty(motions, owner=owner)
     signals = [signal_of(motion, component, owner=owner) for motion in motions.values()]
     attributes: dict[str, Any] = {"component": str(component), "references": REFERENCES}
     return Inputs(signals, [str(label) for label in motions], attributes)
 
 
-def check_some(motions: Mapping[Any, Any], *, owner: str) -> None:
+def check_not_empty(motions: Mapping[Any, Any], *, owner: str) -> None:
     """Refuse a mapping that is empty."""
     if not motions:
         msg = f"{owner}: found no motions; expected one at least"

@@ -8,12 +8,12 @@ import xarray as xr
 
 from rockframe.arguments import whole_number
 from rockframe.errors import ComponentError, shown
-from rockframe.measures.common import Inputs, build_over, check_some
+from rockframe.measures.common import Inputs, build_over, check_not_empty
 from rockframe.measures.response import (
     checked_periods,
     checked_ratios,
     oscillator_axes,
-    shortest_of,
+    shortest_positive_period,
 )
 from rockframe.motion.pair import HorizontalPair, axis_and_intensities
 from rockframe.motion.processing.samples import warn_of_coarse_samples
@@ -38,7 +38,7 @@ _REFERENCES: Final = (
     "Boore (2010), Bull. Seism. Soc. Am. 100, 1830-1835; Penzien and Watabe (1975), Earthquake "
     "Engng. Struct. Dyn. 3, 365-373"
 )
-_MOST_DIRECTIONS: Final = 3600
+_MAX_DIRECTIONS: Final = 3600
 
 
 @hinted()
@@ -101,28 +101,28 @@ def rotated_spectrum(
     >>> spectrum.greatest_rotated_acceleration.values.round(2).tolist()
     [[5.0, 13.5]]
     """
-    looked = _pairs(pair, owner=_SPECTRUM)
+    inputs = _pairs(pair, owner=_SPECTRUM)
     seconds = checked_periods(periods, owner=_SPECTRUM)
     ratios = checked_ratios(damping_ratios, owner=_SPECTRUM)
     count = whole_number(
-        directions, owner=_SPECTRUM, name="directions", lowest=2, highest=_MOST_DIRECTIONS
+        directions, owner=_SPECTRUM, name="directions", lowest=2, highest=_MAX_DIRECTIONS
     )
     if count % 2:
         msg = (
             f"{_SPECTRUM}: directions must be even, to have both components among them, got {count}"
         )
         raise ComponentError(msg)
-    for one in looked.things:
+    for one in inputs.items:
         check_cost(one.signals[0], seconds, owner=_SPECTRUM)
     if periods is not None:
-        both = [one.signals[0] for one in looked.things]
-        warn_of_coarse_samples(both, shortest_of(seconds), owner=_SPECTRUM)
+        both = [one.signals[0] for one in inputs.items]
+        warn_of_coarse_samples(both, shortest_positive_period(seconds), owner=_SPECTRUM)
     vectors = unit_vectors(count)
-    upwards = all(one.vertical is not None for one in looked.things)
+    has_vertical = all(one.vertical is not None for one in inputs.items)
 
     def spectra(one: HorizontalPair) -> dict[str, Array]:
         values = _spectra(one.signals, seconds, ratios, vectors)
-        if upwards and one.vertical is not None:
+        if has_vertical and one.vertical is not None:
             vertical = _vertical(one.vertical.si.horizontal, seconds, ratios)
             horizontal = values["median_rotated_acceleration"]
             with np.errstate(divide="ignore", invalid="ignore"):
@@ -133,13 +133,13 @@ def rotated_spectrum(
 
     dataset = build_over(
         oscillator_axes(ratios, seconds),
-        looked.joined(looked.each(spectra)),
-        {**looked.attributes, "directions": count},
-        over=looked.over,
+        inputs.joined(inputs.each(spectra)),
+        {**inputs.attributes, "directions": count},
+        over=inputs.over,
         title="Response spectra of two horizontal components",
         source="recurrence of Nigam and Jennings",
     )
-    return looked.labelled(dataset)
+    return inputs.labelled(dataset)
 
 
 @hinted()
@@ -176,15 +176,15 @@ def principal_axes(pair: HorizontalPair | Mapping[str, HorizontalPair]) -> xr.Da
     >>> round(float(principal_axes(pair).major_axis_angle), 4)
     1.1071
     """
-    looked = _pairs(pair, owner=_AXES)
+    inputs = _pairs(pair, owner=_AXES)
     dataset = build_dataset(
-        looked.joined(looked.each(_axes)),
-        looked.attributes,
-        over=looked.over,
+        inputs.joined(inputs.each(_axes)),
+        inputs.attributes,
+        over=inputs.over,
         title="Principal axes of two horizontal components",
         source="integration from sample to sample",
     )
-    return looked.labelled(dataset)
+    return inputs.labelled(dataset)
 
 
 def _spectra(
@@ -231,7 +231,7 @@ def _pairs(value: object, *, owner: str) -> Inputs[HorizontalPair]:
         msg = f"{owner}: pair needs {wanted}, got {shown(value)}"
         raise ComponentError(msg)
     pairs = cast("Mapping[Any, Any]", value)
-    check_some(pairs, owner=owner)
+    check_not_empty(pairs, owner=owner)
     for label, one in pairs.items():
         if not isinstance(one, HorizontalPair):
             msg = (

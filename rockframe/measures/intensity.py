@@ -105,7 +105,7 @@ def intensity_measures(
     >>> round(float(measures.relative_peak_ground_acceleration), 4)
     2.0394
     """
-    looked = read_inputs(motion, component, owner=_OWNER)
+    inputs = read_inputs(motion, component, owner=_OWNER)
     accelerations = {
         "threshold": threshold,
         "gravity": f"{STANDARD_GRAVITY!r} m/s^2" if gravity is None else gravity,
@@ -118,28 +118,28 @@ def intensity_measures(
     if block is not None:
         _check_block(block, component)
 
-    def measured(signal: Signal) -> dict[str, float]:
+    def compute(signal: Signal) -> dict[str, float]:
         check_cost(signal, _PERIODS, owner=_OWNER)
-        found = _of_ground(signal, threshold=level, damping_ratio=damping, gravity=g)
+        found = _ground_measures(signal, threshold=level, damping_ratio=damping, gravity=g)
         values = {name: measure() for name, measure in found.items()}
         if block is not None:
-            values |= _of_block(signal, block, values, gravity=g)
+            values |= _block_measures(signal, block, values, gravity=g)
         return values
 
     dataset = build_dataset(
-        looked.joined(looked.each(measured)),
+        inputs.joined(inputs.each(compute)),
         {
-            **looked.attributes,
+            **inputs.attributes,
             "threshold": f"{level!r} {ACCELERATION.unit}",
             "gravity": f"{g!r} {ACCELERATION.unit}",
             "damping_ratio": damping,
             **({} if block is None else {"block": repr(block)}),
         },
-        over=looked.over,
+        over=inputs.over,
         title="Intensity measures",
         source="integration from sample to sample",
     )
-    return looked.labelled(dataset)
+    return inputs.labelled(dataset)
 
 
 def measure_of_ground(motion: GroundMotion, name: str) -> float:
@@ -147,13 +147,13 @@ def measure_of_ground(motion: GroundMotion, name: str) -> float:
     if name in ("housner_spectrum_intensity", "predominant_velocity_period"):
         check_cost(motion.si.horizontal, _PERIODS, owner=_OWNER)
     level = to_si(_THRESHOLD, ACCELERATION, owner=_OWNER, name="threshold", condition=POSITIVE)
-    found = _of_ground(
+    found = _ground_measures(
         motion.si.horizontal, threshold=level, damping_ratio=_DAMPING, gravity=STANDARD_GRAVITY
     )
     return found[name]()
 
 
-def _of_ground(
+def _ground_measures(
     signal: Signal, *, threshold: float, damping_ratio: float, gravity: float
 ) -> dict[str, Callable[[], float]]:
     """Return a function for each measure: some take a hundred times as long as others."""
@@ -178,7 +178,7 @@ def _of_ground(
     }
 
 
-def _of_block(
+def _block_measures(
     signal: Signal, block: Block, of_ground: dict[str, float], *, gravity: float
 ) -> dict[str, float]:
     """Compute :eq:`eq-rocking-measures`."""

@@ -95,39 +95,41 @@ def response_spectrum(
     >>> spectrum.pseudo_spectral_acceleration.values.round(4).tolist()
     [[1.0, 1.7321, 0.3963]]
     """
-    looked = read_inputs(motion, component, owner=_OWNER)
+    inputs = read_inputs(motion, component, owner=_OWNER)
     seconds = checked_periods(periods, owner=_OWNER)
     ratios = checked_ratios(damping_ratios, owner=_OWNER)
-    between = one_of_words(Interpolation, interpolation, owner=_OWNER, name="interpolation")
-    if between is Interpolation.LINEAR and periods is not None:
-        warn_of_coarse_samples(looked.things, shortest_of(seconds), owner=_OWNER, remedy=_REMEDY)
-    return spectra_of(looked, seconds, ratios, between)
+    method = one_of_words(Interpolation, interpolation, owner=_OWNER, name="interpolation")
+    if method is Interpolation.LINEAR and periods is not None:
+        warn_of_coarse_samples(
+            inputs.items, shortest_positive_period(seconds), owner=_OWNER, remedy=_REMEDY
+        )
+    return spectra_of(inputs, seconds, ratios, method)
 
 
 def spectra_of(
-    looked: Inputs[Signal],
+    inputs: Inputs[Signal],
     seconds: Array,
     ratios: Array,
-    between: Interpolation = Interpolation.LINEAR,
+    method: Interpolation = Interpolation.LINEAR,
 ) -> xr.Dataset:
     """Return spectra of signals at checked periods, as :func:`response_spectrum` does."""
-    if between is Interpolation.BAND_LIMITED:
-        looked = replace(looked, things=[_refined(one, seconds) for one in looked.things])
-    for signal in looked.things:
+    if method is Interpolation.BAND_LIMITED:
+        inputs = replace(inputs, items=[_refined_record(one, seconds) for one in inputs.items])
+    for signal in inputs.items:
         check_cost(signal, seconds, owner=_OWNER)
-    values = looked.joined(looked.each(lambda signal: _spectra(signal, seconds, ratios)))
+    values = inputs.joined(inputs.each(lambda signal: _spectra(signal, seconds, ratios)))
     dataset = build_over(
         oscillator_axes(ratios, seconds),
         values,
-        {**looked.attributes, "interpolation": str(between)},
-        over=looked.over,
+        {**inputs.attributes, "interpolation": str(method)},
+        over=inputs.over,
         title="Response spectra",
         source="recurrence of Nigam and Jennings",
     )
-    return looked.labelled(dataset)
+    return inputs.labelled(dataset)
 
 
-def shortest_of(seconds: Array) -> float:
+def shortest_positive_period(seconds: Array) -> float:
     """Return the shortest period above zero; infinity where there is none [s]."""
     return float(seconds[seconds > 0.0].min(initial=np.inf))
 
@@ -140,7 +142,7 @@ def oscillator_axes(ratios: Array, seconds: Array) -> dict[str, tuple[Array, str
     }
 
 
-def _refined(signal: Signal, seconds: Array) -> Signal:
+def _refined_record(signal: Signal, seconds: Array) -> Signal:
     """Resample a record so that straight lines represent it well, :eq:`eq-straight-lines`."""
     if signal.analytic:
         return signal

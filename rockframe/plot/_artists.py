@@ -75,7 +75,7 @@ class Drawer:
     @property
     def pad_thickness(self) -> float:
         """Thickness with which pads are drawn; those of the equations have none [m]."""
-        sink = self.geometry.pads_sink
+        sink = self.geometry.pad_settlement
         if sink is None:
             return 0.0
         return max(2.0 * _PAD_THICKNESS * self.geometry.half_width, 3.0 * self.magnify * sink)
@@ -90,7 +90,7 @@ class Drawer:
         """Lay out a scene at an instant."""
         geometry, lift = self.geometry, self._lift(at)
         block = self._moved(at.block, geometry.block) + lift
-        level = geometry.place
+        level = geometry.base_position
         members = tuple(self._moved(at.block, one + level) + lift for one in geometry.members)
         centres = self._moved(at.block, np.array([geometry.centre]) + level) + lift
         outline = geometry.cap_outline
@@ -102,7 +102,7 @@ class Drawer:
         if geometry.beam is not None:
             block, others = columns[0], (*columns[1:], self._moved(at.beam, geometry.beam))
             moves = (at.values["horizontal_displacement"], at.values["vertical_displacement"])
-            centres = np.array([geometry.moved]) + self.magnify * np.array([moves])
+            centres = np.array([geometry.response_centre]) + self.magnify * np.array([moves])
         floor = 0.0 if geometry.stacked else -self.pad_thickness
         ground = np.array([(-self.reach, floor), (self.reach, floor)])
         lower = tuple(
@@ -130,7 +130,7 @@ class Drawer:
             )
         ties = tuple(
             np.full((2, 2), np.nan) if number in at.broken else self._tie(at, one)
-            for number, one in enumerate(geometry.ties)
+            for number, one in enumerate(geometry.links)
         )
         laid_out = (block, cap, members, centres, pads, bear, soil, touching, ground)
         return self._inclined(Layout(*laid_out, lower, ties, others))
@@ -148,7 +148,7 @@ class Drawer:
     def points(self, at: Placement, places: Array) -> Array:
         """Lay out points of the body to which results refer, from the middle of its base."""
         geometry = self.geometry
-        below = geometry.place if geometry.stacked or geometry.lower else np.zeros(2)
+        below = geometry.base_position if geometry.stacked or geometry.lower else np.zeros(2)
         drawn = self._moved(at.block, places + below) + self._lift(at)
         if geometry.columns:  # points of a column are drawn on the first column
             beside = np.where(places[:, 1:] > geometry.height, 0.0, geometry.columns[0])
@@ -168,12 +168,12 @@ class Drawer:
 
     def _pads(self, at: Placement) -> tuple[tuple[Array, ...], tuple[bool, ...]]:
         geometry, thick = self.geometry, self.pad_thickness
-        if geometry.pads_sink is None:
+        if geometry.pad_settlement is None:
             return (), ()
-        half, level = geometry.half_width, geometry.level if geometry.stacked else 0.0
+        half, level = geometry.half_width, geometry.base_level if geometry.stacked else 0.0
         width = 2.0 * _PAD_WIDTH * half
         base = self._moved(at.block, np.array([(-half, level), (half, level)])) + self._lift(at)
-        free = self.magnify * geometry.pads_sink
+        free = self.magnify * geometry.pad_settlement
         found: list[Array] = []
         for side in (-1.0, 1.0):
             outer, inner = side * half, side * (half - width)
@@ -195,9 +195,9 @@ class Drawer:
     def _soil(self, at: Placement) -> tuple[Array | None, tuple[Array, ...]]:
         """Return the surface of the soil, which follows the base up to its free level."""
         geometry = self.geometry
-        if geometry.bed_sinks is None:
+        if geometry.soil_settlement is None:
             return None, ()
-        half, free = geometry.base_half_width, self.magnify * geometry.bed_sinks
+        half, free = geometry.base_half_width, self.magnify * geometry.soil_settlement
         ends = np.array([(-half, 0.0), (half, 0.0)])
         place = at.block if geometry.cap is None else at.cap
         if geometry.lower:
@@ -411,11 +411,11 @@ def part_labels(parts: Parts, geometry: Geometry, units: ReaderUnits) -> dict[st
             found[f"stack {k - 1}" if k else "block"] = lines
     if parts.stack is not None and "pads" in found:  # pads are not drawn below a stack
         found["ground"] = found.pop("pads")
-    elif geometry.bed_sinks is None:
+    elif geometry.soil_settlement is None:
         found["ground"] = ["rigid ground", *_numbers(parts.components.get("ground"), units)]
     for number, (name, link) in enumerate(zip(link_labels(parts.links), parts.links, strict=True)):
         lines = [as_label(name), *_numbers(link, units, _DRAWN)]
-        if number < len(geometry.ties):
+        if number < len(geometry.links):
             found[f"tie {number}"] = lines[:1] if link is parts.wall else lines
         elif isinstance(link, Load):  # not drawn, therefore listed with its body
             body = link.si.on_body - 1

@@ -27,8 +27,8 @@ from rockframe.plot._response import (
 from rockframe.plot._runs import Window, runs_of, verdict_of_case
 from rockframe.plot._scene import Moving
 from rockframe.proposals import proposing
-from rockframe.results.outcome import LEAST_SLIP
-from rockframe.results.variables.variable import words_of_flags
+from rockframe.results.outcome import MIN_REPORTED_SLIP
+from rockframe.results.variables.variable import flag_words
 from rockframe.signals.arrays import Array
 from rockframe.units import ACCELERATION, ANGLE, LENGTH
 from rockframe.units.shown import UnitsLike, raised
@@ -324,7 +324,7 @@ def _slips(run: xr.Dataset) -> list[tuple[str, xr.DataArray]]:
     elif OF_CAP in run:
         found |= {"slip of the cap": run[OF_CAP]}
     far = {name: float(np.abs(one).max()) for name, one in found.items()}
-    shown = sorted((name for name in far if far[name] >= LEAST_SLIP), key=far.__getitem__)
+    shown = sorted((name for name in far if far[name] >= MIN_REPORTED_SLIP), key=far.__getitem__)
     return [(name, one) for name, one in found.items() if name in shown[-_MOST_SLIPS:]]
 
 
@@ -356,7 +356,7 @@ def _strip(state: xr.DataArray, words: str) -> dict[str, Any]:
     """Return the instants at which contact changes, and the state after each."""
     values, time = state.to_numpy(), state["time"].to_numpy()
     changes = np.flatnonzero(np.diff(values, prepend=values[0] - 1))
-    names = words_of_flags(state.attrs)
+    names = flag_words(state.attrs)
     return {"words": words, "times": [round(float(time[k]), 6) for k in changes],
             "states": [names[int(values[k])] for k in changes]}  # fmt: skip
 

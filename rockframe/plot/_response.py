@@ -34,8 +34,8 @@ from rockframe.plot._axes import (
 from rockframe.plot._checks import RUN, draws, overturning_angles
 from rockframe.plot._panels import Axes, AxesLike, Panels, sheet
 from rockframe.plot._runs import Run, RunsLike, Window, runs_of, runs_title
-from rockframe.results.outcome import LEAST_SLIP
-from rockframe.results.variables.variable import words_of_flags
+from rockframe.results.outcome import MIN_REPORTED_SLIP
+from rockframe.results.variables.variable import flag_words
 from rockframe.units import ACCELERATION, ANGLE, LENGTH
 from rockframe.units.shown import ReaderUnits, UnitsLike
 
@@ -69,7 +69,7 @@ def draw_contact_legend(axes: Axes, state: xr.DataArray) -> None:
     """Write the legend of the colours below the strip."""
     from matplotlib.patches import Patch
 
-    names = words_of_flags(state.attrs).values()
+    names = flag_words(state.attrs).values()
     axes.legend(
         handles=[Patch(facecolor=CONTACT_COLOURS[name], label=name) for name in names],
         loc="upper center", bbox_to_anchor=(0.5, -1.6), ncols=len(names),
@@ -84,7 +84,7 @@ def mixed_colours(state: xr.DataArray, columns: int) -> Any:
     time, values = state["time"].to_numpy(), state.to_numpy()
     edges = np.linspace(time[0], time[-1], columns + 1)
     colours = np.zeros((columns, 3))
-    for value, name in words_of_flags(state.attrs).items():
+    for value, name in flag_words(state.attrs).items():
         held = np.concatenate([[0.0], np.cumsum(np.diff(time) * (values[:-1] == value))])
         share = np.diff(np.interp(edges, time, held)) / np.diff(edges)
         colours += share[:, np.newaxis] * np.array(to_rgb(CONTACT_COLOURS[name]))
@@ -126,7 +126,7 @@ def draw_events(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
         drawn = relative(rotation, *angles) if unit is None else unit.of(rotation)
         when = dataset["event_time"].to_numpy()
         kinds = dataset["event_kind"].to_numpy()
-        for value, name in words_of_flags(dataset["event_kind"].attrs).items():
+        for value, name in flag_words(dataset["event_kind"].attrs).items():
             chosen = kinds == value
             if name not in MARKS or not chosen.any():
                 continue
@@ -288,7 +288,7 @@ def relative(rotation: Any, left: float, right: float) -> Any:
 def has_slid(run: xr.Dataset) -> bool:
     """Whether any body of a run slid enough for a panel of its slip."""
     slips = (run[name] for name in SLIPS if name in run)
-    return any(float(np.abs(slip).max()) >= LEAST_SLIP for slip in slips)
+    return any(float(np.abs(slip).max()) >= MIN_REPORTED_SLIP for slip in slips)
 
 
 def usual_panels(runs: list[Run]) -> tuple[str, ...]:

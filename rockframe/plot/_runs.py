@@ -12,7 +12,7 @@ from rockframe.errors import ComponentError, shown
 from rockframe.plot._axes import colour_of, labels_of_names, style_of
 from rockframe.plot._checks import checked_run
 from rockframe.results.outcome import verdict_of
-from rockframe.results.variables.variable import unit_behind, words_of_flags
+from rockframe.results.variables.variable import flag_words, unit_suffix
 from rockframe.units import TIME, QuantityLike, to_si
 from rockframe.units.shown import ReaderUnits
 
@@ -90,7 +90,7 @@ def verdict_of_case(run: xr.Dataset, units: ReaderUnits) -> str:
         return units.of_sentence(str(run.attrs.get("verdict", "")))
     fell = verdict_of(run)
     if fell is None:
-        words = words_of_flags(run["status"].attrs)[run["status"].item()]
+        words = flag_words(run["status"].attrs)[run["status"].item()]
         text = f"no verdict, {words.replace('_', ' ')}"
     elif fell:
         text = f"overturned at {float(run['overturning_time']):.4g} s"
@@ -107,7 +107,7 @@ def _labels_of(run: xr.Dataset) -> str:
     names = [name for name in ("motion", *axes) if name in run.coords and not run[name].dims]
     labels = [(name.replace("_", " "), run[name].item(), run[name].attrs) for name in names]
     words = [
-        f"{name} {f'{one:.6g}' if isinstance(one, float) else one}{unit_behind(attrs)}"
+        f"{name} {f'{one:.6g}' if isinstance(one, float) else one}{unit_suffix(attrs)}"
         for name, one, attrs in labels
     ]
     return ", ".join(words) or "case of a sweep"

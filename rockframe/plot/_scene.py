@@ -15,7 +15,7 @@ from rockframe.plot._checks import RUN, above_zero, checked_run, draws, refuse, 
 from rockframe.plot._panels import Axes, AxesLike, single
 from rockframe.plot._response import CONTACT_OF_BODIES
 from rockframe.results.points import UPRIGHT, Placement
-from rockframe.simulation.plan import points_of
+from rockframe.simulation.plan import read_body_points
 from rockframe.simulation.system import System
 from rockframe.system.geometry import Geometry, geometry_of
 from rockframe.units import ANGLE, LENGTH, TIME, QuantityLike, to_si
@@ -91,7 +91,7 @@ def scene(
     at = Placement(drawer.geometry, UPRIGHT, system.restraint)
     named = truth(legend, owner="rf.plot.scene", name="legend")
     faults: list[str] = []
-    marked = points_of(points, faults, owner="rf.plot.scene")
+    marked = read_body_points(points, faults, owner="rf.plot.scene")
     if faults:
         msg = f"rf.plot.scene: {'; '.join(faults)}"
         raise ComponentError(msg)
@@ -186,7 +186,7 @@ class Moving:
             *_FOLLOWED[:4],
             *((*_OF_BODIES, CONTACT_OF_BODIES) if self.geometry.lower else ()),
         )
-        if self.geometry.ties and run.get(_BROKEN_COUNT, 0) > 0:
+        if self.geometry.links and run.get(_BROKEN_COUNT, 0) > 0:
             needed += (_OF_TIES,)
         missing = [name for name in needed if name not in run]
         if missing:
@@ -232,7 +232,7 @@ class Moving:
             broken = frozenset(np.flatnonzero(self._broken[place]).tolist())
             if self.geometry.columns:  # in each column there are all tendons
                 all_broke = 0 < self.run.sizes["restrainer"] == len(broken)
-                broken = frozenset(range(len(self.geometry.ties)) if all_broke else ())
+                broken = frozenset(range(len(self.geometry.links)) if all_broke else ())
         return Placement(self.geometry, values, self.system.restraint, bodies, broken, contacts)
 
     def nearest(self, time: object) -> int:
@@ -264,5 +264,5 @@ class Moving:
 def figure_size(drawer: Drawer, *, wide: bool) -> tuple[float, float]:
     """Return the size of a figure for a scene [in]."""
     geometry = drawer.geometry
-    tall = (geometry.level + geometry.height) / (2.0 * drawer.reach)
+    tall = (geometry.base_level + geometry.height) / (2.0 * drawer.reach)
     return (5.6 if wide else 4.2), float(np.clip(3.6 * tall, 3.2, 5.6))

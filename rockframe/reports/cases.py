@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from rockframe.reports import page
 from rockframe.reports.values import column_head, number_in, value_of
-from rockframe.results.outcome import overturned_by
+from rockframe.results.outcome import overturned_from_status
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.variable import TIME
 from rockframe.units import Unit
@@ -99,7 +99,7 @@ def _verdict(dataset: xr.Dataset, place: int) -> str:
     one = status.isel(dict.fromkeys(status.dims, 0)).copy()
     one.values = status.to_numpy().ravel()[place]
     if one.item() != RunStatus.COMPLETED:
-        return "overturned" if overturned_by(one.to_numpy()) == 1.0 else value_of(one)
+        return "overturned" if overturned_from_status(one.to_numpy()) == 1.0 else value_of(one)
     passed = dataset["overturned"].to_numpy().ravel()[place] == 1
     return "overturned" if passed else "did not overturn"
 
@@ -188,7 +188,7 @@ def from_worst(dataset: xr.Dataset) -> np.ndarray:
     """Order cases with a result: by time of overturning, then by decreasing peak rotation."""
     share = dataset["peak_relative_rotation"].to_numpy().ravel()
     when = np.nan_to_num(dataset["overturning_time"].to_numpy().ravel(), nan=np.inf)
-    fallen = overturned_by(dataset["status"].to_numpy().ravel()) == 1.0
+    fallen = overturned_from_status(dataset["status"].to_numpy().ravel()) == 1.0
     order = np.lexsort((-np.nan_to_num(share, nan=-1.0), when, ~fallen))
     return order[np.isfinite(share[order])]
 

@@ -21,7 +21,7 @@ from rockframe.reports import page
 from rockframe.reports.limits import CERTIFIED, GENERAL, NOT_CERTIFIED, NOT_OF_STUDIES, limits_of
 from rockframe.reports.motions import Aim, record_rows, spectra_section
 from rockframe.reports.values import extremes_of, table_of, value_of
-from rockframe.results.outcome import LEAST_SLIP, verdict_of
+from rockframe.results.outcome import MIN_REPORTED_SLIP, verdict_of
 from rockframe.results.variables.runs import CERTIFICATE, PROOF
 from rockframe.simulation.certify.certificate import NEAR_WORDS
 from rockframe.simulation.provenance import motion_words
@@ -69,7 +69,7 @@ def outcome_of(dataset: xr.Dataset, units: ReaderUnits) -> str:
     """Return the verdict; its title says whether the body slid."""
     title, kind = page.BANNERS[verdict_of(dataset)]
     words = units.of_sentence(str(dataset.attrs.get("verdict", "")))
-    slid = float(slips_of_cases(dataset)) >= LEAST_SLIP
+    slid = float(slips_of_cases(dataset)) >= MIN_REPORTED_SLIP
     if "peak_slip" in dataset and words:
         title = _NUMBERS.split(words)[0]
     elif bool(dataset.get("would_slide", False)):

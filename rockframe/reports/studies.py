@@ -16,7 +16,7 @@ from rockframe.reports import page
 from rockframe.reports.cases import capacity_table, case_tables, from_worst, labels_at, labels_of
 from rockframe.reports.project import Project
 from rockframe.reports.values import table_of, value_of
-from rockframe.results.outcome import LEAST_SLIP, overturned_by
+from rockframe.results.outcome import MIN_REPORTED_SLIP, overturned_from_status
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.simulation.system import System
 from rockframe.studies import case, fragility
@@ -139,7 +139,7 @@ def _is_sweep(dataset: xr.Dataset) -> bool:
 def _banner(dataset: xr.Dataset, sentence: str) -> str:
     if "status" not in dataset:
         return page.banner("Result", raised(sentence), "")
-    fallen = overturned_by(dataset["status"].to_numpy())
+    fallen = overturned_from_status(dataset["status"].to_numpy())
     slid = _slid(dataset)
     if (fallen == 1.0).any():
         return page.banner(f"Some cases overturned{slid}", sentence, "bad")
@@ -150,7 +150,7 @@ def _banner(dataset: xr.Dataset, sentence: str) -> str:
 
 def _slid(dataset: xr.Dataset) -> str:
     """Write whether cases slid, or would slide; an empty text if none did."""
-    if (slips_of_cases(dataset) >= LEAST_SLIP).any():
+    if (slips_of_cases(dataset) >= MIN_REPORTED_SLIP).any():
         return ", some slid"
     would = dataset.get("would_slide")
     return ", some would slide" if would is not None and bool((would == 1.0).any()) else ""

@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import xarray as xr
 
-from rockframe.results.variables.variable import words_of_flags
+from rockframe.results.variables.variable import flag_words
 from rockframe.units import Unit
 from rockframe.units.shown import ReaderUnits, behind, in_degrees, raised
 
@@ -19,7 +19,7 @@ _GAP: Final = re.compile(r", NaN if .*$")
 def value_of(variable: xr.DataArray, units: ReaderUnits | None = None) -> str:
     """Write a scalar with its unit, and flags and truth values as words."""
     value: Any = variable.item()
-    if words := words_of_flags(variable.attrs):
+    if words := flag_words(variable.attrs):
         word = words.get(value, str(value))
         return _TRUTH.get(word, word.replace("_", " "))
     if variable.dtype == bool:

@@ -23,14 +23,14 @@ PARTS: Final = 8
 """Parts into which a step is divided for its peak. Steps resolve the fastest vibration, so that a
 parabola through three points an eighth of a step apart misses a peak by less than 1e-4."""
 FRACTIONS: Final = np.arange(1, PARTS) / PARTS
-LOOKED_INTO: Final = 32
+MAX_SEARCHED_STEPS: Final = 32
 """Most steps that are evaluated for each peak: of those in which, by values and curvature at their
 ends, the quantity may exceed the largest value at all ends, the ones with the highest bounds."""
-BULGE: Final = 0.25
+CURVATURE_SHARE: Final = 0.25
 """Share of its second difference by which a function may rise above both ends of a step: twice
 the share of a parabola."""
 
-KINK: Final = 2.0
+MAX_CURVATURE_RATIO: Final = 2.0
 """Largest ratio of the second differences at and beside a maximum for which it is smooth."""
 
 
@@ -55,7 +55,7 @@ class AlongSteps:
         shown = [quantity(self.shown) for quantity in quantities]
         if len(self.steps.time) < 2:  # no step was made
             return [(np.zeros(len(one)), np.full(len(one), np.nan)) for one in shown]
-        steps = [self._promising(one) for one in shown]
+        steps = [self._candidate_steps(one) for one in shown]
         every = np.unique(np.concatenate(steps))
         inside = self.inside(every)
         return [
@@ -70,7 +70,7 @@ class AlongSteps:
         inner = inside.reshape(len(shown), -1, len(FRACTIONS))[:, place]
         both_ends = shown[:, which - 1, None], shown[:, which, None]
         known = np.concatenate([both_ends[0], inner, both_ends[1]], axis=-1)
-        peak, top = _tops(known)
+        peak, top = _interpolated_maxima(known)
         row, best = np.arange(len(shown)), np.argmax(peak, axis=1)
         length = self.steps.length[which]
         time = (self.steps.time[which] - length)[best] + length[best] * top[row, best] / PARTS
@@ -97,14 +97,14 @@ class AlongSteps:
         begins = self.steps.time[which[0]] - length[0] + waits
         return float(begins), float(share @ length)
 
-    def _promising(self, shown: Array) -> Integers:
+    def _candidate_steps(self, shown: Array) -> Integers:
         """Find the steps in which a peak of some row may lie, by the rows of their ends."""
-        promise, length = np.empty_like(shown), np.ascontiguousarray(self.steps.length)
+        bounds, length = np.empty_like(shown), np.ascontiguousarray(self.steps.length)
         per_length = np.divide(1.0, length, out=np.full(len(length), np.nan), where=length > 0.0)
-        promise_of_steps(shown, length, per_length, promise)
+        step_bounds(shown, length, per_length, bounds)
         tops = np.fmax.reduce(shown, axis=1)
-        rows = zip(promise[:, 1:], tops, strict=True)
-        return np.unique(np.concatenate([1 + _largest(row, top) for row, top in rows]))
+        rows = zip(bounds[:, 1:], tops, strict=True)
+        return np.unique(np.concatenate([1 + _highest_bounds(row, top) for row, top in rows]))
 
 
 def _share_above(start: Array, end: Array, level: float) -> Array:
@@ -133,33 +133,33 @@ def slope_in(shown: Matrix, row: int, i: int, per_length: Vector) -> float:
 
 
 @background_entry
-def promise_of_steps(shown: Matrix, length: Vector, per_length: Vector, out: Matrix) -> None:
+def step_bounds(shown: Matrix, length: Vector, per_length: Vector, out: Matrix) -> None:
     """Fill a bound of each row in each step, from values at its ends and changes of slope there.
 
     Slopes across a jump, where steps begin anew and `per_length` is NaN, are left out.
     """
     for row in range(shown.shape[0]):
-        bend, slope = math.nan, slope_in(shown, row, 1, per_length)
+        curvature, slope = math.nan, slope_in(shown, row, 1, per_length)
         for i in range(1, len(length)):
             next_slope = slope_in(shown, row, i + 1, per_length)
-            next_bend = abs(next_slope - slope)
-            bulge = greater(bend, next_bend) * length[i]
+            next_change = abs(next_slope - slope)
+            bulge = greater(curvature, next_change) * length[i]
             if not bulge < math.inf:
                 bulge = 0.0
-            top = greater(shown[row, i - 1], shown[row, i]) + BULGE * bulge
+            top = greater(shown[row, i - 1], shown[row, i]) + CURVATURE_SHARE * bulge
             out[row, i] = top if length[i] > 0.0 else -math.inf
-            bend, slope = next_bend, next_slope
+            curvature, slope = next_change, next_slope
 
 
-def _largest(promise: Array, top: float) -> Integers:
+def _highest_bounds(bounds: Array, top: float) -> Integers:
     """Find the steps whose bounds reach the known peak `top`; of many those of highest bound."""
-    which = np.flatnonzero(~(promise < top))
-    if len(which) > LOOKED_INTO:
-        which = which[np.argsort(-promise[which], kind="stable")[:LOOKED_INTO]]
+    which = np.flatnonzero(~(bounds < top))
+    if len(which) > MAX_SEARCHED_STEPS:
+        which = which[np.argsort(-bounds[which], kind="stable")[:MAX_SEARCHED_STEPS]]
     return which
 
 
-def _tops(known: Array) -> tuple[Array, Array]:
+def _interpolated_maxima(known: Array) -> tuple[Array, Array]:
     """Return the maximum of each row of values, and its place: by a parabola where that fits.
 
     It does not where the second differences beside a maximum differ much from the one at it: there
@@ -169,20 +169,20 @@ def _tops(known: Array) -> tuple[Array, Array]:
     largest, row = np.argmax(known, axis=-1), np.arange(len(known))
     middle = np.minimum(np.maximum(largest, 1), known.shape[-1] - 2)
     with np.errstate(invalid="ignore"):
-        bends = known[:, :-2] - 2.0 * known[:, 1:-1] + known[:, 2:]
-    last = bends.shape[-1] - 1
+        second_differences = known[:, :-2] - 2.0 * known[:, 1:-1] + known[:, 2:]
+    last = second_differences.shape[-1] - 1
 
     a, b, c = known[row, middle - 1], known[row, middle], known[row, middle + 1]
-    before, bend, after = (
-        bends[row, np.minimum(np.maximum(middle - k, 0), last)] for k in (2, 1, 0)
+    before, curvature, after = (
+        second_differences[row, np.minimum(np.maximum(middle - k, 0), last)] for k in (2, 1, 0)
     )
     most = known[row, largest]
     with np.errstate(divide="ignore", invalid="ignore"):
         slope = 0.5 * (c - a)
-        beside = -slope / bend
+        beside = -slope / curvature
         top = b + 0.5 * slope * beside
-        smooth = np.minimum(before, after) >= KINK * bend
-        smooth &= np.maximum(before, after) <= bend / KINK
-        better = (bend < 0.0) & smooth & (np.abs(beside) <= 1.0) & (top > most)
+        smooth = np.minimum(before, after) >= MAX_CURVATURE_RATIO * curvature
+        smooth &= np.maximum(before, after) <= curvature / MAX_CURVATURE_RATIO
+        better = (curvature < 0.0) & smooth & (np.abs(beside) <= 1.0) & (top > most)
     tops, places = np.where(better, top, most), np.where(better, middle + beside, largest)
     return tops.reshape(shape), places.reshape(shape)

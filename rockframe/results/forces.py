@@ -16,19 +16,19 @@ from rockframe.results.outcome import Generic, sines_cosines
 from rockframe.signals.arrays import Array
 from rockframe.system.bodies import BaseLoad
 
-STACKED: Final = "rotation_on_cap"
+ROTATION_ON_CAP: Final = "rotation_on_cap"
 """A column of scenes in which a block stands on a cap."""
-ON_BASE: Final = (STACKED, "rotation_on_base")
+ROTATIONS_ON_BASE: Final = (ROTATION_ON_CAP, "rotation_on_base")
 """Columns of the rotation of a body on another one, of which a scene has one at most."""
-OF_SOIL_FRICTION: Final = (STACKED, "base_shear", "soil_reaction")
+SOIL_FRICTION_COLUMNS: Final = (ROTATION_ON_CAP, "base_shear", "soil_reaction")
 """Columns from which the friction between cap and soil follows, where a scene has them all."""
-OF_SETTLEMENT: Final = ("vertical_displacement", "rotation")
+SETTLEMENT_COLUMNS: Final = ("vertical_displacement", "rotation")
 """Columns from which the settlement of the base follows."""
-HALF: Final = 0.5
-ENOUGH: Final = 1.0
+DURATION_SHARE: Final = 0.5
+DURATION_COEFFICIENT: Final = 1.0
 """The duration of the friction demand is the time above half its peak, or above this coefficient
 if that is less: floors seldom have more."""
-NO_FORCE: Final = 1e-10
+FORCE_TOLERANCE: Final = 1e-10
 """Share of the weight below which a force is rounding; for an impulse, a share of the weight times
 the square root of h/g, h the height of the centre of mass."""
 
@@ -36,7 +36,9 @@ the square root of h/g, h the height of the centre of mass."""
 def force_histories(values: Values, ground: Array, load: BaseLoad) -> dict[str, Generic]:
     """Return absolute accelerations, :eq:`eq-base-moment`, and the friction demand."""
     small = load.options.small
-    on_base = next((values[name] for name in ON_BASE if name in values), values["rotation"])
+    on_base = next(
+        (values[name] for name in ROTATIONS_ON_BASE if name in values), values["rotation"]
+    )
     sine, cosine = sines_cosines(on_base, small=small)
     found: dict[str, Generic] = {
         "absolute_horizontal_acceleration": values["horizontal_acceleration"] + ground[:, 0],
@@ -48,37 +50,37 @@ def force_histories(values: Values, ground: Array, load: BaseLoad) -> dict[str, 
 
 def friction_demands(values: Values, load: BaseLoad) -> dict[str, Generic]:
     """Return the friction demand of the bases, by their names in the schema."""
-    least = NO_FORCE * load.weight
+    least = FORCE_TOLERANCE * load.weight
     found: dict[str, Generic] = {
         "friction_demand": friction_demand(
             values["horizontal_reaction"], values["vertical_reaction"], least
         )
     }
-    if all(name in values for name in OF_SOIL_FRICTION):
+    if all(name in values for name in SOIL_FRICTION_COLUMNS):
         found["soil_friction_demand"] = friction_demand(
             values["base_shear"], values["soil_reaction"], least
         )
     return found
 
 
-def friction_demand(thrust: Array, press: Array, least: float) -> Array:
+def friction_demand(tangential: Array, normal: Array, least: float) -> Array:
     """Return the coefficient of friction that holds a body, :eq:`eq-friction-demand`.
 
     A thrust or a pressing force up to `least` counts as zero.
     """
-    held = np.abs(thrust) > least
+    held = np.abs(tangential) > least
     with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = np.abs(thrust) / press
-    return np.where(held, np.where(press > least, ratio, math.inf), 0.0)
+        ratio = np.abs(tangential) / normal
+    return np.where(held, np.where(normal > least, ratio, math.inf), 0.0)
 
 
-def signed(name: str) -> Callable[[Values], Array]:
+def signed_demand(name: str) -> Callable[[Values], Array]:
     """Return a function that gives a friction demand the sign of its thrust.
 
     The magnitude of a thrust that reverses within a step is not linear there.
     """
-    thrust = "base_shear" if name == "soil_friction_demand" else "horizontal_reaction"
-    return lambda values: np.copysign(values[name], values[thrust])
+    tangential = "base_shear" if name == "soil_friction_demand" else "horizontal_reaction"
+    return lambda values: np.copysign(values[name], values[tangential])
 
 
 @dataclass(frozen=True)
@@ -92,7 +94,7 @@ class EventStates:
     before: Values  # columns and what follows from them, by their names in the schema
     after: Values
 
-    def those(self, kept: NDArray[np.bool_]) -> "EventStates":
+    def select(self, kept: NDArray[np.bool_]) -> "EventStates":
         """Return some of the events."""
         before, after = (
             {name: values[kept] for name, values in side.items()}
@@ -118,7 +120,7 @@ class EventStates:
         across, up = found["event_horizontal_impulse"], found["event_vertical_impulse"]
         if "vertical_velocity_on_base" in self.after:  # under a second stage nothing leans
             return across, up
-        on_base = next((self.after[name] for name in ON_BASE if name in self.after), None)
+        on_base = next((self.after[name] for name in ROTATIONS_ON_BASE if name in self.after), None)
         if on_base is None:
             return across, up
         lean = self.after["rotation"] - on_base
@@ -126,7 +128,7 @@ class EventStates:
         return cosine * across - sine * up, sine * across + cosine * up
 
 
-def peaks_along(
+def force_peaks(
     along: AlongSteps, events: EventStates, load: BaseLoad
 ) -> tuple[dict[str, float], dict[str, float]]:
     """Return peaks of forces with times and durations, and the peak settlement, by their names."""
@@ -134,10 +136,10 @@ def peaks_along(
         lambda values: np.stack([np.abs(values["base_shear"]), values["friction_demand"]]),
         lambda values: _settlement(values, load)[None],
     )
-    level = min(HALF * most, ENOUGH)
-    lasted = along.above(signed("friction_demand"), level)[1] if level > 0.0 else 0.0
+    level = min(DURATION_SHARE * most, DURATION_COEFFICIENT)
+    lasted = along.above(signed_demand("friction_demand"), level)[1] if level > 0.0 else 0.0
     fall = math.sqrt(load.body.centre_height / load.options.gravity)
-    struck = friction_demand(*events.impulses_on_base(load), NO_FORCE * load.weight * fall)
+    struck = friction_demand(*events.impulses_on_base(load), FORCE_TOLERANCE * load.weight * fall)
     forces = {
         "peak_friction_demand": float(most),
         "peak_friction_demand_time": float(when),
@@ -148,7 +150,7 @@ def peaks_along(
     return forces, {"peak_settlement": max(float(deepest), 0.0) + 0.0}
 
 
-def residuals(last: Values, load: BaseLoad) -> dict[str, float]:
+def residual_values(last: Values, load: BaseLoad) -> dict[str, float]:
     """Return residual rotation, settlement and displacement, by their names in the schema."""
     left = {
         "residual_rotation": float(last["rotation"][0]),
@@ -160,6 +162,6 @@ def residuals(last: Values, load: BaseLoad) -> dict[str, float]:
 
 
 def _settlement(values: Values, load: BaseLoad) -> Array:
-    """Return how much lower than at rest the middle of the base is, :eq:`eq-settlement`."""
-    small = load.options.small
-    return load.body.sunk(values["rotation"], values["vertical_displacement"], small=small)
+    """Return the settlement of the middle of the base from rest, :eq:`eq-settlement`."""
+    rotation, height = values["rotation"], values["vertical_displacement"]
+    return load.body.base_settlement(rotation, height, small=load.options.small)

@@ -11,13 +11,13 @@ import xarray as xr
 from rockframe.arguments import checked_dataset, iterates, truth
 from rockframe.errors import SchemaError, shown
 from rockframe.proposals import hinted
-from rockframe.results.schema import SCHEMA, dated, without_fill_values
+from rockframe.results.schema import SCHEMA, history_line, without_fill_values
 from rockframe.results.variables.bodies import BODY, RESTRAINER
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import AFTER_END, EVENT, TIME
 from rockframe.units import own_unit
 
-OF_ONE_RUN: Final = frozenset(
+RUN_ATTRIBUTES: Final = frozenset(
     {
         "verdict",
         "overturned",
@@ -43,7 +43,7 @@ OF_ONE_RUN: Final = frozenset(
 CASE_COUNT: Final = "case_count"
 """Attribute with the number of cases of one sweep; joined sweeps do not keep it."""
 
-OF_ITS_MOTIONS: Final = ("motion_names", "motions_json")
+MOTION_ATTRIBUTES: Final = ("motion_names", "motions_json")
 """Attributes that describe the motions of a sweep."""
 
 _OWNER: Final = "concat"
@@ -133,7 +133,7 @@ def concat(
     _refuse_unlike_units(rows)
     try:
         joined = xr.concat(
-            _with_motions(_with_all_places(rows, dim), dim),
+            _with_motions(_with_all_labels(rows, dim), dim),
             dim=dim,
             data_vars="minimal",
             coords="different",
@@ -146,7 +146,7 @@ def concat(
         raise SchemaError(msg) from problem
     _type_flags(joined)
     joined.attrs |= _as_one_sweep(data, dim, joined)
-    joined.attrs["history"] = dated(f"{joined.sizes[dim]} joined along {dim!r}")
+    joined.attrs["history"] = history_line(f"{joined.sizes[dim]} joined along {dim!r}")
     if labels is not None:
         joined = _labelled(joined, dim, labels)
     return without_fill_values(joined)
@@ -182,7 +182,7 @@ def _refuse_unlike_units(rows: Sequence[xr.Dataset]) -> None:
             raise SchemaError(msg)
 
 
-def _with_all_places(rows: Sequence[xr.Dataset], dim: str) -> list[xr.Dataset]:
+def _with_all_labels(rows: Sequence[xr.Dataset], dim: str) -> list[xr.Dataset]:
     """Extend rows to all bodies and restrainers that any of them has, with NaN."""
     places: dict[str, list[Any]] = {}
     for name in (*BODY, *RESTRAINER):
@@ -226,13 +226,13 @@ def _shared(values: Sequence[Mapping[Any, Any]], context: object = None) -> dict
     return {
         name: value
         for name, value in first.items()
-        if name not in {*OF_ONE_RUN, CASE_COUNT}
+        if name not in {*RUN_ATTRIBUTES, CASE_COUNT}
         and all(name in other and _same(value, other[name]) for other in others)
     }
 
 
-_OF_A_SWEEP: Final = (*OF_ITS_MOTIONS, "axes_json", "run_json", "study_sha256")
-_ALIKE: Final = (
+_SWEEP_ATTRIBUTES: Final = (*MOTION_ATTRIBUTES, "axes_json", "run_json", "study_sha256")
+_EQUAL_ATTRIBUTES: Final = (
     "axes_json", "run_json", "accuracy", "system_json", "function", "spectral_period",
     "rockframe_version",
 )  # fmt: skip
@@ -242,10 +242,10 @@ _ALIKE: Final = (
 def _as_one_sweep(values: Sequence[xr.Dataset], dim: str, joined: xr.Dataset) -> dict[str, Any]:
     """Return the attributes of one sweep to sweeps that differ only along `dim`; else none."""
     attributes = [run.attrs for run in values]
-    if not all(name in one for one in attributes for name in _OF_A_SWEEP):
+    if not all(name in one for one in attributes for name in _SWEEP_ATTRIBUTES):
         return {}
     first = attributes[0]
-    alike = _ALIKE if dim == MOTION else (*_ALIKE, *OF_ITS_MOTIONS)
+    alike = _EQUAL_ATTRIBUTES if dim == MOTION else (*_EQUAL_ATTRIBUTES, *MOTION_ATTRIBUTES)
     if any(one.get(name) != first.get(name) for one in attributes for name in alike):
         return {}
     axes = [axis["name"] for axis in json.loads(first["axes_json"])]
@@ -260,7 +260,7 @@ def _as_one_sweep(values: Sequence[xr.Dataset], dim: str, joined: xr.Dataset) ->
         return common
     motions = {
         name: json.dumps([motion for one in attributes for motion in json.loads(one[name])])
-        for name in OF_ITS_MOTIONS
+        for name in MOTION_ATTRIBUTES
     }
     names = json.loads(motions["motion_names"])
     return common | motions if len(set(names)) == len(names) else {}

@@ -35,13 +35,13 @@ from rockframe.system.setting import Setting, SlipRange
 from rockframe.system.words import angle_words
 from rockframe.units import ANGLE
 
-MOST_OF_IT: Final = 0.95
+LARGE_RESIDUAL_SHARE: Final = 0.95
 """Share of the peak slip below which a residual slip is told together with the peak."""
-NOTHING_OF_IT: Final = 1e-9
+ZERO_RESIDUAL_SHARE: Final = 1e-9
 """Share of the peak slip below which a residual slip is rounding."""
-SAME: Final = 1e-6
+EQUAL_SHARES: Final = 1e-6
 """Relative difference up to which two bodies came equally close to overturning."""
-LEAST_SLIP: Final = 1e-6
+MIN_REPORTED_SLIP: Final = 1e-6
 """Least slip that is reported; changes of the held point leave less [m]."""
 PEAK_SLIPS: Final = ("peak_slip", "peak_body_slip", "peak_cap_slip")
 """Peak slips of the block, of all bodies of a stack, and of a cap, where a scene has them."""
@@ -55,7 +55,7 @@ def peak_share(run: Summary, angles: OverturningAngles) -> float:
     return largest(own, run.other_rotation_ratio)
 
 
-def columns_of(name: str, count: int) -> tuple[str, ...]:
+def numbered_columns(name: str, count: int) -> tuple[str, ...]:
     """Name the columns of a quantity of all bodies, or of all restrainers."""
     return tuple(column_of(name, k) for k in range(count))
 
@@ -67,7 +67,7 @@ def body_histories(
     kept = {name: each for name, each in values.items() if name in SCHEMA}
 
     def of_each(name: str, count: int) -> Generic:
-        return np.array([values[each] for each in columns_of(name, count)])
+        return np.array([values[each] for each in numbered_columns(name, count)])
 
     if model.links:
         kept |= {name: of_each(name, model.links) for name in OF_EACH_LINK}
@@ -165,7 +165,9 @@ def energy_histories(
         "input_energy": work[:, 1] + lost[:, IMPULSIVE_INPUT],
     }
     if not slope.level:
-        raised = model.mass * slope.along_gravity * (displacement + _of_carrier(model, run))
+        raised = (
+            model.mass * slope.along_gravity * (displacement + _carrier_displacement(model, run))
+        )
         found["potential_energy"] = found["potential_energy"] + raised
         found["input_energy"] = found["input_energy"] + (raised - raised[0])
     return found
@@ -240,7 +242,7 @@ def scalars(
 def overturns(runs: xr.Dataset) -> xr.DataArray:
     """Return the verdicts of runs, from their status: 1 for overturned, 0 for not, NaN for none."""
     status = runs["status"]
-    return status.copy(data=overturned_by(status.to_numpy()), deep=False).drop_attrs()
+    return status.copy(data=overturned_from_status(status.to_numpy()), deep=False).drop_attrs()
 
 
 def verdict_of(run: xr.Dataset) -> bool | None:
@@ -249,7 +251,7 @@ def verdict_of(run: xr.Dataset) -> bool | None:
     return None if math.isnan(found) else bool(found)
 
 
-def overturned_by(status: Generic) -> Array:
+def overturned_from_status(status: Generic) -> Array:
     """Return the verdicts of statuses: 1, 0, or NaN where there is none."""
     found = np.full(np.shape(status), np.nan)
     for one in Status:
@@ -258,7 +260,7 @@ def overturned_by(status: Generic) -> Array:
     return found
 
 
-_ENDINGS = {
+_STOP_REASONS = {
     Status.STEP_LIMIT: "the limit of steps was reached",
     Status.STEP_TOO_SMALL: "no step was small enough for the accuracy asked for",
     Status.CHATTER: "contact changes followed one another without end",
@@ -279,12 +281,12 @@ def verdict(run: Summary, setting: Setting, model: ContactModel) -> str:
     peak = f"peak rotation {rotation:.4g} rad, {100.0 * share:.3g} % of the overturning angle{of}"
     if setting.leans and rotation > 0.0:
         peak += f" to the {side.name.lower()}"
-    if run.other_rotation_ratio > (1.0 + SAME) * share:
+    if run.other_rotation_ratio > (1.0 + EQUAL_SHARES) * share:
         peak += f", a lower body {100.0 * run.other_rotation_ratio:.3g} % of its own"
     if run.reached_limit:
-        text = f"{_overturned(run, setting, model)}, after {impacts}"
+        text = f"{_overturning_words(run, setting, model)}, after {impacts}"
     elif not run.status.finished:
-        text = f"Not finished: {_cut_off(run)}. Until then no overturning: {peak}; {impacts}"
+        text = f"Not finished: {_stop_words(run)}. Until then no overturning: {peak}; {impacts}"
     else:
         text = f"Did not overturn: {peak}; {impacts}"
     if not run.reached_limit and math.isnan(run.first_uplift_time):
@@ -294,8 +296,8 @@ def verdict(run: Summary, setting: Setting, model: ContactModel) -> str:
     if broken:
         text += f"; {', '.join([*broken[:-2], ' and '.join(broken[-2:])])} broke"
     if run.reached_limit and not run.status.finished:
-        text += f". Not finished: {_cut_off(run)}"
-    slid = [_slid(slips) for slips in setting.slips_of(run.ending)]
+        text += f". Not finished: {_stop_words(run)}"
+    slid = [_slip_words(slips) for slips in setting.slips_of(run.ending)]
     if len(slid) > 1:
         names = setting.sliding_bodies or [f"body {k}" for k in range(1, len(slid) + 1)]
         slid = [f"{names[k]} {words[0].lower()}{words[1:]}" for k, words in enumerate(slid)]
@@ -305,22 +307,22 @@ def verdict(run: Summary, setting: Setting, model: ContactModel) -> str:
     return text + "."
 
 
-def _slid(slips: SlipRange) -> str:
+def _slip_words(slips: SlipRange) -> str:
     """Say how far a body slid in the end, and at most where that is much more."""
-    if slips.peak < LEAST_SLIP:
+    if slips.peak < MIN_REPORTED_SLIP:
         return "Did not slide"
     most = Direction.RIGHT if slips.right > slips.left else Direction.LEFT
     side = Direction.RIGHT if slips.residual > 0.0 else Direction.LEFT
-    if abs(slips.residual) < NOTHING_OF_IT * slips.peak:
+    if abs(slips.residual) < ZERO_RESIDUAL_SHARE * slips.peak:
         return f"Slid {slips.peak:.3g} m to the {most.name.lower()} and back"
     text = f"Slid {abs(slips.residual):.3g} m to the {side.name.lower()}"
-    if abs(slips.residual) < MOST_OF_IT * slips.peak:
+    if abs(slips.residual) < LARGE_RESIDUAL_SHARE * slips.peak:
         other = "" if most is side else f"to the {most.name.lower()} "
         text += f" ({slips.peak:.3g} m {other}at most)"
     return text
 
 
-def _overturned(run: Summary, setting: Setting, model: ContactModel) -> str:
+def _overturning_words(run: Summary, setting: Setting, model: ContactModel) -> str:
     """Say when the overturning angle was passed and, if the run went on, how the body ended."""
     angles, side = setting.overturning_angles, Direction(run.overturning_direction)
     end = model.rotation_in(run.ending.state)
@@ -340,11 +342,11 @@ def _overturned(run: Summary, setting: Setting, model: ContactModel) -> str:
     return f"Passed the overturning angle {when}, and {ends} at the end"
 
 
-def _cut_off(run: Summary) -> str:
-    return f"stopped at {run.end_time:.6g} s, because {_ENDINGS[run.status]}"
+def _stop_words(run: Summary) -> str:
+    return f"stopped at {run.end_time:.6g} s, because {_STOP_REASONS[run.status]}"
 
 
-OF_WHAT_IT_STANDS_ON = ("cap_acceleration",)
+SUPPORT_ACCELERATIONS = ("cap_acceleration",)
 """Accelerations along the base in which a model includes the component of gravity."""
 
 
@@ -372,12 +374,12 @@ def ground_on_slope(ground: Array, slope: Incline) -> tuple[Array, Array]:
 def without_gravity(shown: Mapping[str, Generic], slope: Incline) -> dict[str, Generic]:
     """Subtract gravity from the absolute accelerations among a model's columns."""
     return {
-        name: values - slope.along_gravity if name in OF_WHAT_IT_STANDS_ON else values
+        name: values - slope.along_gravity if name in SUPPORT_ACCELERATIONS else values
         for name, values in shown.items()
     }
 
 
-def _of_carrier(model: ContactModel, run: Trajectory) -> Array | float:
+def _carrier_displacement(model: ContactModel, run: Trajectory) -> Array | float:
     """Return what a lower body adds to the mass-weighted displacement in the work of gravity."""
     from rockframe.dynamics.cascade.system import Cascade
     from rockframe.dynamics.coupled.system import Coupled

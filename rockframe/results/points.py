@@ -55,14 +55,14 @@ def point_histories(
     angular = values["angular_acceleration"]
     body, small = load.body, load.options.small
     places = np.array([(point.x, point.y) for point in points])[:, :, None]
-    right, up = body.arms(places[:, 0], places[:, 1], values)
+    right, up = body.relative_to_centre(places[:, 0], places[:, 1], values)
     sine, cosine = sines_cosines(rotation, small=small)
     # derivatives of the place about the centre of mass by the rotation
     across_rate, up_rate = up * cosine - right * sine, -right * cosine - up * sine
-    across_bend, up_bend = -right * cosine - up * sine, right * sine - up * cosine
+    across_second, up_second = -right * cosine - up * sine, right * sine - up * cosine
     if small:  # heights to second order, widths to first
         across_rate, up_rate = up + 0.0 * rotation, -right - up * rotation
-        across_bend, up_bend = np.zeros_like(up_rate), -up + 0.0 * rotation
+        across_second, up_second = np.zeros_like(up_rate), -up + 0.0 * rotation
     across, above = rotated_points(right, up, rotation, small_rotation=small)
     square = rate * rate
     x, y = values["horizontal_displacement"], values["vertical_displacement"]
@@ -71,8 +71,8 @@ def point_histories(
     return {
         "point_horizontal_displacement": x + across,
         "point_vertical_displacement": y + above,
-        "point_horizontal_acceleration": a_x + across_rate * angular + across_bend * square,
-        "point_vertical_acceleration": a_y + up_rate * angular + up_bend * square,
+        "point_horizontal_acceleration": a_x + across_rate * angular + across_second * square,
+        "point_vertical_acceleration": a_y + up_rate * angular + up_second * square,
     }
 
 
@@ -91,7 +91,7 @@ def point_peaks(
     }
 
 
-def _ends(state: float) -> tuple[bool, bool]:
+def _ends_in_contact(state: float) -> tuple[bool, bool]:
     """Return whether the left and whether the right end bears in a contact state."""
     full = state == ContactState.FULL
     return full or state == ContactState.LEFT, full or state == ContactState.RIGHT
@@ -124,7 +124,7 @@ class Placement:
         if self.geometry.columns:
             return self._about_corner(points)
         moves = values["horizontal_displacement"], values["vertical_displacement"]
-        return self._moved(points, self.geometry.moved, values["rotation"], moves)
+        return self._displaced(points, self.geometry.response_centre, values["rotation"], moves)
 
     def _about_corner(self, points: Array) -> Array:
         """Return where points of a column are, as if it stood in the middle of the frame.
@@ -149,7 +149,7 @@ class Placement:
     def lower(self, k: int, points: Array) -> Array:
         """Return where points of a body of a stack are, the `k`-th beneath the block."""
         rotation, right, up = np.zeros(3) if self.bodies is None else self.bodies[k + 1]
-        return self._moved(points, self.geometry.lower[k].centre, float(rotation), (right, up))
+        return self._displaced(points, self.geometry.lower[k].centre, float(rotation), (right, up))
 
     def cap(self, points: Array) -> Array:
         """Return where points of the cap are, as :meth:`block` does."""
@@ -157,7 +157,7 @@ class Placement:
             return self.block(points)
         half_width, height = self.geometry.cap
         rotation = self.values.get("cap_rotation", 0.0)
-        pin = half_width * self._held_side(rotation)
+        pin = half_width * self._pivot_side(rotation)
         # the centre of mass about the held point, which does not move, as in eq-kinematics
         across, _ = rotated_points(
             np.array(-pin), np.array(0.5 * height), np.array(rotation),
@@ -167,7 +167,7 @@ class Placement:
             float(across) + self.values.get("cap_slip", 0.0),
             self.values.get("cap_vertical_displacement", 0.0),
         )
-        return self._moved(points, (0.0, 0.5 * height), rotation, moves)
+        return self._displaced(points, (0.0, 0.5 * height), rotation, moves)
 
     @property
     def cap_rotation(self) -> float:
@@ -176,15 +176,15 @@ class Placement:
 
     def bearing(self, name: str = "contact_state") -> tuple[bool, bool]:
         """Return whether the left and whether the right end of a base bears."""
-        return _ends(self.values.get(name, float(ContactState.FULL)))
+        return _ends_in_contact(self.values.get(name, float(ContactState.FULL)))
 
     def bearing_of(self, body: int) -> tuple[bool, bool]:
         """Return the same for the base of a body of a stack, counted from 0 at the top."""
         if not self.geometry.lower:
             return self.bearing()
-        return _ends(ContactState.FULL if self.contacts is None else self.contacts[body])
+        return _ends_in_contact(ContactState.FULL if self.contacts is None else self.contacts[body])
 
-    def _held_side(self, rotation: float) -> float:
+    def _pivot_side(self, rotation: float) -> float:
         """Return -1, 0 or 1 for the left end, the middle or the right end of the cap's base."""
         left, right = self.bearing("soil_contact_state")
         if not (left or right):
@@ -193,7 +193,7 @@ class Placement:
         pivot = pivot_of(RESTRAINT_CODES[self.restraint], left, right, rotation, rate)
         return {PIVOT_LEFT: -1.0, PIVOT_RIGHT: 1.0}.get(pivot, 0.0)
 
-    def _moved(
+    def _displaced(
         self,
         points: Array,
         centre: tuple[float, float],

@@ -137,7 +137,7 @@ def build_dataset(
         attrs={
             "Conventions": CONVENTIONS,
             "title": title,
-            "history": dated("computed"),
+            "history": history_line("computed"),
             "source": f"rockframe {__version__}, {source}",
             "references": PAPER_TITLE,
             "rockframe_version": __version__,
@@ -171,7 +171,7 @@ def without_fill_values(dataset: xr.Dataset) -> xr.Dataset:
     return dataset
 
 
-def fitting(values: Mapping[str, Any], sizes: Mapping[str, int]) -> dict[str, NDArray[Any]]:
+def checked_results(values: Mapping[str, Any], sizes: Mapping[str, int]) -> dict[str, NDArray[Any]]:
     """Return results of users' functions as arrays; refuse shapes that differ from the schema."""
     sizes, found = dict(sizes), {name: np.asarray(value) for name, value in values.items()}
     for name, data in found.items():
@@ -183,7 +183,7 @@ def fitting(values: Mapping[str, Any], sizes: Mapping[str, int]) -> dict[str, ND
     return found
 
 
-def dated(done: str) -> str:
+def history_line(done: str) -> str:
     """Return a line for a dataset's history: when something was done, and by which version."""
     now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
     return f"{now} {done} by rockframe {__version__}"

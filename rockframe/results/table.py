@@ -15,7 +15,7 @@ from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.bodies import BODY, RESTRAINER
 from rockframe.results.variables.requests import POINT
 from rockframe.results.variables.studies import MOTION
-from rockframe.results.variables.variable import EVENT, TIME, TRUTH, words_of_flags
+from rockframe.results.variables.variable import EVENT, TIME, TRUTH, flag_words
 from rockframe.units import Unit
 from rockframe.units.shown import UnitsLike, reader_units
 
@@ -32,7 +32,7 @@ class Contents(StrEnum):
 
 
 _PLACES: Final = (POINT, BODY, RESTRAINER)
-_ALONG: Final = {Contents.HISTORIES: TIME[0], Contents.EVENTS: EVENT[0]}
+_DIMENSION_OF: Final = {Contents.HISTORIES: TIME[0], Contents.EVENTS: EVENT[0]}
 _MISSING: Final = {
     Contents.SCALARS: "rf.table(response, 'histories') and 'events' give what is along time",
     Contents.HISTORIES: "a run with outputs=None keeps none, nor does rf.concat unless asked to",
@@ -101,9 +101,9 @@ def table(
     kind = one_of_words(Contents, contents, owner=_OWNER, name="contents")
     chosen = reader_units(units, owner=_OWNER)
     if isinstance(runs, xr.Dataset):
-        run = _each_alone(chosen.of_all(runs), kind)
+        run = _split_places(chosen.of_all(runs), kind)
         if kind is Contents.SCALARS and not _dimensions(run, _names(run, kind)):
-            return _below_one_another([run], kind, _labels([run]))
+            return _stacked_rows([run], kind, _labels([run]))
         return _rows(run, kind)
     labels: pd.MultiIndex | pd.Index | None = None
     several: Any = runs
@@ -112,15 +112,15 @@ def table(
     elif not iterates(several) or isinstance(several, str | xr.DataArray):
         several = [several]
     items = [
-        _each_alone(chosen.of_all(checked_dataset(run, owner=_OWNER)), kind) for run in several
+        _split_places(chosen.of_all(checked_dataset(run, owner=_OWNER)), kind) for run in several
     ]
     if not items:
         msg = f"{_OWNER}: found no runs; expected one at least"
         raise SchemaError(msg)
-    return _below_one_another(items, kind, _labels(items) if labels is None else labels)
+    return _stacked_rows(items, kind, _labels(items) if labels is None else labels)
 
 
-def _each_alone(run: xr.Dataset, kind: Contents) -> xr.Dataset:
+def _split_places(run: xr.Dataset, kind: Contents) -> xr.Dataset:
     """Split scalars over points, bodies or restrainers into a variable for each of these."""
     if kind is not Contents.SCALARS or "status" not in run.data_vars:
         return run
@@ -135,9 +135,7 @@ def _each_alone(run: xr.Dataset, kind: Contents) -> xr.Dataset:
     return run.assign(alone)
 
 
-def _below_one_another(
-    runs: Sequence[xr.Dataset], kind: Contents, labels: pd.Index
-) -> pd.DataFrame:
+def _stacked_rows(runs: Sequence[xr.Dataset], kind: Contents, labels: pd.Index) -> pd.DataFrame:
     frames = [_rows(run, kind) for run in runs]
     dims = {_dimensions(run, _names(run, kind)) for run in runs}
     if len(dims) > 1:
@@ -166,7 +164,7 @@ def _labels(runs: Sequence[xr.Dataset]) -> pd.Index:
         levels[MOTION] = motions
     for name in runs[0].coords:
         if all(name in run.coords and not run[name].dims for run in runs):
-            levels[_head(name, runs[0].variables[name])] = [run[name].item() for run in runs]
+            levels[_heading(name, runs[0].variables[name])] = [run[name].item() for run in runs]
     if len(set(zip(*levels.values(), strict=True))) < len(runs):
         levels[_RUN] = list(range(len(runs)))
     if len(levels) == 1:
@@ -181,17 +179,17 @@ def _rows(run: xr.Dataset, kind: Contents) -> pd.DataFrame:
     if not names:
         msg = f"{_OWNER}: the dataset holds no {kind}; {_MISSING[kind]}"
         raise SchemaError(msg)
-    groups = _together(run, names)
+    groups = _dimension_groups(run, names)
     frames = [_rows_of(run, kind, group) for group in groups]
     if len(frames) == 1:
         return frames[0]
     below = pd.concat([frame.reset_index() for frame in frames], ignore_index=True)
-    heads = [_head(dim, run.variables[dim]) if dim in run.variables else dim
+    heads = [_heading(dim, run.variables[dim]) if dim in run.variables else dim
              for dim in _dimensions(run, names)]  # fmt: skip
     return below.set_index(heads)
 
 
-def _together(run: xr.Dataset, names: Sequence[str]) -> list[list[str]]:
+def _dimension_groups(run: xr.Dataset, names: Sequence[str]) -> list[list[str]]:
     """Divide variables into groups, in each of which one has all dimensions of the others.
 
     A variable that fits into several groups joins the one with the fewest rows.
@@ -213,26 +211,26 @@ def _rows_of(run: xr.Dataset, kind: Contents, names: list[str]) -> pd.DataFrame:
     variables = run.variables
     if not dims:
         single = pd.DataFrame({name: [variables[name].values.item()] for name in names})
-        return _headed(single, variables, names)
+        return _with_headings(single, variables, names)
     part = run[names]
     part = part.drop_vars([name for name in part.coords if not variables[name].dims])
     frame = part.to_dataframe(dim_order=dims)
-    if kind in _ALONG and len(dims) > 1:
+    if kind in _DIMENSION_OF and len(dims) > 1:
         # joined histories and events are as long as the longest of them
         floats = [name for name in names if variables[name].dtype.kind == "f"]
         frame = frame.dropna(how="all", subset=floats)
     beside = [str(name) for name in part.coords if name in frame.columns]
-    heads = [_head(n, variables[n]) if n in variables else n for n in frame.index.names]
+    heads = [_heading(n, variables[n]) if n in variables else n for n in frame.index.names]
     frame.index = frame.index.set_names(heads)
-    return _headed(frame, variables, [*beside, *names])
+    return _with_headings(frame, variables, [*beside, *names])
 
 
-def _headed(
+def _with_headings(
     frame: pd.DataFrame, variables: Mapping[Any, xr.Variable], names: Sequence[str]
 ) -> pd.DataFrame:
     """Give columns their units, and words for flags."""
     columns = {
-        _head(name, variables[name]): _in_words(frame[name], variables[name]) for name in names
+        _heading(name, variables[name]): _in_words(frame[name], variables[name]) for name in names
     }
     return pd.DataFrame(columns, index=frame.index)
 
@@ -240,8 +238,8 @@ def _headed(
 def _names(run: xr.Dataset, kind: Contents) -> list[str]:
     """Find the variables of a kind."""
     dims_of = {str(name): set(run.variables[name].dims) for name in run.data_vars}
-    if kind in _ALONG:
-        return [name for name, dims in dims_of.items() if _ALONG[kind] in dims]
+    if kind in _DIMENSION_OF:
+        return [name for name, dims in dims_of.items() if _DIMENSION_OF[kind] in dims]
     still = {name: dims for name, dims in dims_of.items() if not {*TIME, *EVENT} & dims}
     scalars = [dims for name, dims in still.items() if name in SCHEMA and not SCHEMA[name].dims]
     # the dimensions of many runs are those of their scalars; an answer without scalars, such
@@ -256,7 +254,7 @@ def _dimensions(run: xr.Dataset, names: Sequence[str]) -> tuple[Hashable, ...]:
     return tuple(sorted(dims, key=lambda dim: dim in (*TIME, *EVENT)))
 
 
-def _head(name: Hashable, values: xr.Variable) -> str:
+def _heading(name: Hashable, values: xr.Variable) -> str:
     return head(str(name), values.attrs.get("units", Unit.ONE))
 
 
@@ -272,7 +270,7 @@ def head(name: str, unit: object) -> str:
 
 def _in_words(column: Any, values: xr.Variable) -> pd.Series:
     """Return flags as words, and truth values with gaps as nullable booleans."""
-    words = words_of_flags(values.attrs)
+    words = flag_words(values.attrs)
     if values.dtype == bool or not words:
         return column
     if (*words.values(),) == TRUTH:

@@ -20,24 +20,24 @@ from rockframe.dynamics.protocol import Ending, Start
 from rockframe.errors import AssemblyError, ComponentError, RockframeError, nearest, shown
 from rockframe.motion import GroundMotion, HorizontalPair
 from rockframe.results.diagnostics import DIAGNOSTICS, Diagnostic
-from rockframe.results.forces import OF_SOIL_FRICTION
+from rockframe.results.forces import SOIL_FRICTION_COLUMNS
 from rockframe.results.outcome import verdict_of
 from rockframe.results.points import BodyPoint
 from rockframe.results.schema import ENERGIES, GROUPS, ON_REQUEST, SCHEMA, SCHEMA_VERSION
 from rockframe.results.variables.requests import POINT_TIME
 from rockframe.results.variables.variable import TIME as OVER_TIME
 from rockframe.simulation.run_arguments import PROVED, Certification, RunArguments
-from rockframe.simulation.soundness import has_limit
+from rockframe.simulation.soundness import has_friction_limit
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
 from rockframe.solve.integrate import STILL_INTERVAL
 from rockframe.system.assembly import Assembly
 from rockframe.system.options import Overturning, read_option
 from rockframe.units import LENGTH, POSITIVE, TIME, TIME_STEP, Measure, QuantityLike, to_si
 
-EXAMPLE: Final = 'points={"roof": ("0 m", "18 m")}'
+POINTS_EXAMPLE: Final = 'points={"roof": ("0 m", "18 m")}'
 
 
-def listed(outputs: object) -> list[object]:
+def as_list(outputs: object) -> list[object]:
     """Return the argument ``outputs`` as a list."""
     if outputs is None:
         return []
@@ -46,27 +46,27 @@ def listed(outputs: object) -> list[object]:
     return [outputs]
 
 
-def outputs_of(
+def read_outputs(
     outputs: object, points: object, faults: list[str]
 ) -> tuple[tuple[str, ...], tuple[Diagnostic, ...]]:
     """Read the argument ``outputs``: names of variables, groups and diagnostics.
 
     Gives variables and diagnostics, each in the order of their tables; unknown names become faults.
     """
-    wanted: set[str] = set()
+    names: set[str] = set()
     diagnostics: set[str] = set()
-    for value in listed(outputs):
+    for value in as_list(outputs):
         name = value if isinstance(value, str) else ""
         dims = SCHEMA[name].dims if name in SCHEMA else ()
         if dims == POINT_TIME:
             if not points:
-                faults.append(f"{name!r} is of points, and there are none; give {EXAMPLE}")
+                faults.append(f"{name!r} is of points, and there are none; give {POINTS_EXAMPLE}")
         elif name in GROUPS:
-            wanted.update(GROUPS[name])
+            names.update(GROUPS[name])
         elif name in DIAGNOSTICS:
             diagnostics.add(name)
         elif name in ON_REQUEST or dims == OVER_TIME:
-            wanted.add(name)
+            names.add(name)
         else:
             known = (*GROUPS, *ON_REQUEST, *DIAGNOSTICS)
             words = ", ".join(map(repr, known))
@@ -81,48 +81,48 @@ def outputs_of(
                     "rf.case(...).simulate() gives the others"
                 )
             faults.append(found)
-    requested = tuple(name for name in ON_REQUEST if name in wanted)
+    requested = tuple(name for name in ON_REQUEST if name in names)
     return requested, tuple(one for name, one in DIAGNOSTICS.items() if name in diagnostics)
 
 
-NEEDED: Final = {
+OUTPUT_REQUIREMENTS: Final = {
     "toe_pressure": (("toe_pressure",), "a WinklerSoil"),
-    "soil_friction_demand": (OF_SOIL_FRICTION, "a CushionCap between block and WinklerSoil"),
+    "soil_friction_demand": (SOIL_FRICTION_COLUMNS, "a CushionCap between block and WinklerSoil"),
 }
-"""For outputs that not all scenes have, the columns and the parts that they need."""
+"""Columns and parts that an output needs, for outputs that not all scenes have."""
 
 
-def lacking(system: Assembly, names: Iterable[str]) -> list[str]:
+def missing_output_faults(system: Assembly, names: Iterable[str]) -> list[str]:
     """Return a fault for each requested output that the scene does not have."""
-    depend = [name for name in names if name in NEEDED]
+    depend = [name for name in names if name in OUTPUT_REQUIREMENTS]
     if not depend:
         return []
     columns = {column.name for column in system.model.columns}
     of_stack = " and no Stack" if system.model.shows_bodies else ""
     return [
-        f"there is no {name!r} in this scene; it needs {NEEDED[name][1]}{of_stack}"
+        f"there is no {name!r} in this scene; it needs {OUTPUT_REQUIREMENTS[name][1]}{of_stack}"
         for name in depend
-        if not columns.issuperset(NEEDED[name][0])
+        if not columns.issuperset(OUTPUT_REQUIREMENTS[name][0])
     ]
 
 
-def points_of(
+def read_body_points(
     value: object, faults: list[str], *, owner: str = "simulate"
 ) -> tuple[BodyPoint, ...]:
     """Read the argument ``points``: names and places on the body; add what is wrong to faults."""
     if value is None:
         return ()
     if not isinstance(value, Mapping):
-        faults.append(f"points must name places, such as {EXAMPLE}, got {shown(value)}")
+        faults.append(f"points must name places, such as {POINTS_EXAMPLE}, got {shown(value)}")
         return ()
     points: list[BodyPoint] = []
     for name, place in value.items():
         if not (isinstance(name, str) and name.strip()):
-            faults.append(f"points needs names, such as {EXAMPLE}, got {shown(name)}")
+            faults.append(f"points needs names, such as {POINTS_EXAMPLE}, got {shown(name)}")
         elif not (isinstance(place, tuple | list) and len(place) == 2):
             faults.append(
                 f"point {name!r} needs two lengths, to the right of the middle of the base and "
-                f"above it, such as {EXAMPLE}, got {shown(place)}"
+                f"above it, such as {POINTS_EXAMPLE}, got {shown(place)}"
             )
         else:
             try:
@@ -139,19 +139,19 @@ END_STATE: Final = "end_state"
 """The attribute that holds the end of a run, so that a later run can begin with it."""
 
 
-Beginning: TypeAlias = InitialState | Ending
+InitialCondition: TypeAlias = InitialState | Ending
 """An initial state, or the end of another run of the same system."""
 
 
-def start_of(beginning: Beginning) -> Start | Ending:
+def start_of(initial: InitialCondition) -> Start | Ending:
     """Return a beginning as the integrator takes it."""
-    if isinstance(beginning, Ending):
-        return beginning
-    si = beginning.si
+    if isinstance(initial, Ending):
+        return initial
+    si = initial.si
     return Start(si.rotation, si.angular_velocity, si.vertical_displacement, si.vertical_velocity)
 
 
-def continuation_of(dataset: xr.Dataset, system: Assembly, faults: list[str]) -> Beginning:
+def read_continuation(dataset: xr.Dataset, system: Assembly, faults: list[str]) -> InitialCondition:
     """Read the end of a run from its dataset; add to faults if no run can continue from it."""
     attributes: Mapping[str, Any] = cast("Mapping[str, Any]", dataset.attrs)
     if END_STATE not in attributes or "system_json" not in attributes:
@@ -171,25 +171,25 @@ def continuation_of(dataset: xr.Dataset, system: Assembly, faults: list[str]) ->
     passed = not math.isnan(float(attributes.get("overturning_time", math.nan)))
     if json.loads(attributes["system_json"]) != system.to_dict():
         faults.append("initial is the end of a run of another system")
-    elif passed and not _came_back(dataset, system, ending):
+    elif passed and not _returned_within_limit(dataset, system, ending):
         faults.append("initial is the end of a run that overturned")
-    return ending if faults else _with_new_peaks(ending, system)
+    return ending if faults else _with_reset_peaks(ending, system)
 
 
-def _with_new_peaks(ending: Ending, system: Assembly) -> Ending:
-    """Reset the peak slips in the memory, as all peaks are at a start; the slip itself stays."""
+def _with_reset_peaks(ending: Ending, system: Assembly) -> Ending:
+    """Reset the peak slips in the memory, but not the slip itself."""
     if not system.setting.slides:
         return ending
     memory = ending.memory.copy()
     peaks = [k for k, name in enumerate(system.model.memory) if name.startswith("peak_slip_")]
     memory[peaks] = 0.0
-    begun = replace(ending, memory=memory)
-    slips = system.setting.slips_of(begun)
+    start = replace(ending, memory=memory)
+    slips = system.setting.slips_of(start)
     memory[peaks] = [side for one in slips for side in (one.left, one.right)]
-    return begun
+    return start
 
 
-def _came_back(dataset: xr.Dataset, system: Assembly, ending: Ending) -> bool:
+def _returned_within_limit(dataset: xr.Dataset, system: Assembly, ending: Ending) -> bool:
     """Whether a run passed the overturning angle but ended within it without overturning."""
     rotation = system.model.rotation_in(ending.state)
     within = abs(rotation) < system.setting.overturning_angles.on_side_of(rotation)
@@ -205,8 +205,8 @@ def ending_as_json(ending: Ending) -> dict[str, Any]:
     }
 
 
-MOST_SAMPLES = 1e8
-"""Samples of the histories beyond which a run is refused: some ten gigabytes."""
+MAX_SAMPLES = 1e8
+"""Largest number of samples of the histories of a run: some ten gigabytes."""
 _STILL_GROUND_OUTPUT_STEP: Final = 0.005
 """Spacing of the histories of a run without a ground motion [s]."""
 _REST: Final = InitialState()
@@ -225,11 +225,11 @@ class _Requested:
     points: tuple[BodyPoint, ...]
     stop_at_overturning: bool
 
-    def _described(self) -> dict[str, Any]:
+    def _shared_dict(self) -> dict[str, Any]:
         """Return these arguments as :meth:`rockframe.System.simulate` takes them, fit for JSON."""
         return {
             "accuracy": vars(self.accuracy),
-            "output_step": _time(self.output_step),
+            "output_step": _time_text(self.output_step),
             "outputs": [*self.requested, *(one.name for one in self.diagnostics)]
             if self.histories
             else None,
@@ -254,10 +254,10 @@ class RunRequest(_Requested):
     def to_dict(self) -> dict[str, Any]:
         """Return all arguments as :meth:`rockframe.System.simulate` takes them, fit for JSON."""
         return {
-            "duration": _time(self.duration),
-            "free_vibration": _time(self.free_vibration),
+            "duration": _time_text(self.duration),
+            "free_vibration": _time_text(self.free_vibration),
             "initial": None if isinstance(self.initial, xr.Dataset) else self.initial.to_dict(),
-            **self._described(),
+            **self._shared_dict(),
         }
 
 
@@ -271,7 +271,7 @@ class Plan(_Requested):
 
     motion: GroundMotion | None
     duration: float
-    initial: Beginning
+    initial: InitialCondition
 
     @property
     def energies(self) -> tuple[str, ...]:
@@ -288,7 +288,7 @@ class Plan(_Requested):
         """Whether the motion has a vertical component."""
         return self.motion is not None and self.motion.si.vertical is not None
 
-    def bare(self) -> "Plan":
+    def without_outputs(self) -> "Plan":
         """Return the same run without samples."""
         return replace(self, output_step=None, requested=(), diagnostics=(), points=())
 
@@ -299,11 +299,11 @@ class Plan(_Requested):
             if isinstance(self.initial, Ending)
             else self.initial.to_dict()
         )
-        own = {"duration": _time(self.duration), "initial": initial}
-        return json.dumps({**own, **self._described()})
+        own = {"duration": _time_text(self.duration), "initial": initial}
+        return json.dumps({**own, **self._shared_dict()})
 
 
-def _time(value: float | None) -> str | None:
+def _time_text(value: float | None) -> str | None:
     return None if value is None else f"{value!r} {TIME.unit}"
 
 
@@ -317,7 +317,7 @@ def plan_run(
         fault = f"motion must be a GroundMotion, got {shown(motion)}{_motion_hint(motion)}"
         raise AssemblyError([fault])
     arguments = read_arguments(faults, **requested)
-    plan = fit_plan(arguments, system, motion, faults)
+    plan = resolve_plan(arguments, system, motion, faults)
     if faults:
         raise AssemblyError(faults)
     return plan
@@ -332,10 +332,10 @@ def read_arguments(faults: list[str], **options: Unpack[RunArguments]) -> RunReq
     output_step = _read_time("output_step", options.get("output_step"), TIME_STEP)
     outputs, points = options.get("outputs", ()), options.get("points")
     accuracy = options.get("accuracy", AccuracyLevel.STANDARD)
-    verdict = options.get("overturning", Overturning.STOP)
-    course = read_option(Overturning, verdict, "overturning", faults)
-    initial = _initial(options.get("initial"), faults)
-    requested, diagnostics = outputs_of(outputs, points, faults)
+    value = options.get("overturning", Overturning.STOP)
+    overturning = read_option(Overturning, value, "overturning", faults)
+    initial = _read_initial(options.get("initial"), faults)
+    requested, diagnostics = read_outputs(outputs, points, faults)
     return RunRequest(
         duration=duration,
         free_vibration=free_vibration,
@@ -346,34 +346,34 @@ def read_arguments(faults: list[str], **options: Unpack[RunArguments]) -> RunReq
         histories=outputs is not None,
         requested=requested,
         diagnostics=diagnostics,
-        points=points_of(points, faults),
-        stop_at_overturning=course is Overturning.STOP,
+        points=read_body_points(points, faults),
+        stop_at_overturning=overturning is Overturning.STOP,
     )
 
 
-def fit_plan(
+def resolve_plan(
     arguments: RunRequest, system: Assembly, motion: GroundMotion | None, faults: list[str]
 ) -> Plan:
-    """Fit the arguments of a run to its system and its motion."""
-    beginning = _beginning(system, arguments.initial, faults)
+    """Combine the arguments of a run with its system and its motion."""
+    initial = _initial_condition(system, arguments.initial, faults)
     length = run_length(arguments, motion)
     if not length:
         faults.append("nothing to simulate: give a motion, or a duration for a still ground")
     step = None
-    if arguments.histories or arguments.points or has_limit(system):
+    if arguments.histories or arguments.points or has_friction_limit(system):
         step = arguments.output_step
         if step is None:
-            step = usual_output_step(motion)
-        if length / step > MOST_SAMPLES:
+            step = default_output_step(motion)
+        if length / step > MAX_SAMPLES:
             faults.append(
                 f"the histories would have {length / step:.3g} samples ({length:.6g} s in steps of "
                 f"{step:.6g} s); give a longer output_step, or outputs=None without points and "
                 "friction"
             )
-    faults += lacking(system, arguments.requested)
+    faults += missing_output_faults(system, arguments.requested)
     options = {name: getattr(arguments, name) for name in _Requested.__annotations__}
     options["output_step"] = step
-    return Plan(motion=motion, duration=length, initial=beginning, **options)
+    return Plan(motion=motion, duration=length, initial=initial, **options)
 
 
 def _read_time(name: str, value: QuantityLike | None, measure: Measure = TIME) -> float | None:
@@ -382,7 +382,7 @@ def _read_time(name: str, value: QuantityLike | None, measure: Measure = TIME) -
     return to_si(value, measure, owner="simulate", name=name, condition=POSITIVE)
 
 
-def _initial(value: object, faults: list[str]) -> "InitialState | xr.Dataset":
+def _read_initial(value: object, faults: list[str]) -> "InitialState | xr.Dataset":
     if value is None or isinstance(value, InitialState | xr.Dataset):
         return _REST if value is None else value
     hint = ""
@@ -405,12 +405,12 @@ def _motion_hint(value: object) -> str:
     return ""
 
 
-def _beginning(
+def _initial_condition(
     system: Assembly, value: "InitialState | xr.Dataset", faults: list[str]
-) -> Beginning:
+) -> InitialCondition:
     """Return the start of the run; add to faults what does not fit the system."""
     if isinstance(value, xr.Dataset):
-        return continuation_of(value, system, faults)
+        return read_continuation(value, system, faults)
     start = value.si
     vertical_start = start.vertical_displacement is not None or start.vertical_velocity != 0.0
     rotation = system.setting.rest_rotation if start.rotation is None else start.rotation
@@ -425,7 +425,7 @@ def _beginning(
     return value
 
 
-def usual_output_step(motion: GroundMotion | None) -> float:
+def default_output_step(motion: GroundMotion | None) -> float:
     """Return the default spacing of histories [s]."""
     return _STILL_GROUND_OUTPUT_STEP if motion is None else motion.si.time_step
 
@@ -437,7 +437,7 @@ def run_length(arguments: RunRequest, motion: GroundMotion | None) -> float:
     return (0.0 if motion is None else motion.si.duration) + (arguments.free_vibration or 0.0)
 
 
-def certification_of(value: object) -> Certification | Literal["proved"] | None:
+def read_certification(value: object) -> Certification | Literal["proved"] | None:
     """Read the argument ``certify`` of a run."""
     if value is False:
         return None

@@ -19,7 +19,7 @@ from rockframe.units import TIME, Unit
 
 _AFTER_END: Final = "_after_end"
 """Suffix of the names of samples of the motion that follow the histories."""
-_NEXT_STEP: Final = "; "
+_HISTORY_SEPARATOR: Final = "; "
 """Separator between the steps of the history of a motion."""
 
 
@@ -33,7 +33,7 @@ class Changes(StrEnum):
     ARGUMENT = "argument"
 
 
-OF_SCENES: Final = (Changes.PART, Changes.OPTION, Changes.ARGUMENT)
+SYSTEM_AXES: Final = (Changes.PART, Changes.OPTION, Changes.ARGUMENT)
 """What changes the system."""
 
 
@@ -47,23 +47,23 @@ def motion_attributes(motion: GroundMotion | None) -> dict[str, str | float | in
         "motion_time_step": motion.si.time_step,
         "motion_samples": len(motion),
         "motion_json": json.dumps(motion.to_dict()),
-        "motion_history": _NEXT_STEP.join(motion.history),
+        "motion_history": _HISTORY_SEPARATOR.join(motion.history),
     }
 
 
 def motion_words(attributes: Mapping[str, Any]) -> str:
     """Return the name of a result's motion, and the factor by which it was scaled."""
-    history = str(attributes.get("motion_history", "")).split(_NEXT_STEP)
+    history = str(attributes.get("motion_history", "")).split(_HISTORY_SEPARATOR)
     return shown_name(str(attributes["motion"]), history)
 
 
-def check_own_system(dataset: xr.Dataset) -> None:
+def check_unswept_system(dataset: xr.Dataset) -> None:
     """Refuse a case picked out of a sweep whose axes change the system that attributes describe."""
     axes = json.loads(dataset.attrs.get("axes_json", "[]"))
     changed = [
         str(axis["name"])
         for axis in axes
-        if axis["changes"] in OF_SCENES
+        if axis["changes"] in SYSTEM_AXES
         and axis["name"] in dataset.coords
         and not dataset[axis["name"]].dims
     ]
@@ -84,7 +84,7 @@ def motion_after_end(
     """
     if motion is None or motion.recipe is not None or "time" not in histories:
         return {}
-    count = _on_samples(histories["time"], motion.si.time_step)
+    count = _count_on_samples(histories["time"], motion.si.time_step)
     if count < min(len(histories["time"]) - 1, len(motion)) or count >= len(motion):
         return {}
     both = {"ground": motion.si.horizontal, "vertical_ground": motion.si.vertical}
@@ -95,7 +95,7 @@ def motion_after_end(
     }
 
 
-def _on_samples(time: NDArray[Any], step: float) -> int:
+def _count_on_samples(time: NDArray[Any], step: float) -> int:
     """Count the leading times of histories that coincide with samples of a motion."""
     same = time == np.arange(len(time)) * step
     return len(time) if bool(same.all()) else int(np.argmin(same))
@@ -127,7 +127,7 @@ def _from_histories(dataset: xr.Dataset) -> tuple[GroundMotion | None, str]:
     if "time" not in dataset or "ground_acceleration" not in dataset:
         return None, "it holds no history of the ground acceleration"
     time = dataset["time"].to_numpy()
-    common = min(count, _on_samples(time, step))
+    common = min(count, _count_on_samples(time, step))
     rest = f"ground_acceleration{_AFTER_END}"
     if common < min(count, len(time) - (rest in dataset)):
         return None, f"its times are not the motion's samples, {step:g} s apart from zero"

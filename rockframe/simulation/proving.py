@@ -15,7 +15,7 @@ from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
 from rockframe.proof.verdict import EXACT, Proof, Tolerances
 from rockframe.proposals import hinted
-from rockframe.simulation.plan import Beginning, Plan, plan_run, start_of
+from rockframe.simulation.plan import InitialCondition, Plan, plan_run, start_of
 from rockframe.simulation.system import System
 from rockframe.system.assembly import Assembly
 from rockframe.units import ANGLE, POSITIVE, Condition, QuantityLike, RatioLike, to_ratio, to_si
@@ -23,10 +23,10 @@ from rockframe.units import ANGLE, POSITIVE, Condition, QuantityLike, RatioLike,
 _OWNER: Final = "prove"
 _CRITICAL: Final = "prove_critical_scale"
 _WIDTH: Final = Condition("from 1e-14 to 0.1", lambda value: 1e-14 <= value <= 0.1)
-_PLACES: Final = (0.5, 0.25, 0.75, 0.4, 0.6, 0.1, 0.9)
-"""Places at which a bracket is divided, as shares of it; the next one where nothing is proved."""
+_DIVISION_POINTS: Final = (0.5, 0.25, 0.75, 0.4, 0.6, 0.1, 0.9)
+"""Points that divide a bracket, as shares of it; the next one is tried if nothing is proved."""
 _GROWTH: Final = 1.1
-_FARTHEST: Final = 100
+_MAX_SEARCH_STEPS: Final = 100
 _TOLERANCE: Final = Condition("from 0 to 0.1", lambda value: 0.0 <= value <= 0.1)
 
 
@@ -113,10 +113,10 @@ def prove(
     angle = to_si(
         angle_tolerance, ANGLE, owner=_OWNER, name="angle_tolerance", condition=_TOLERANCE
     )
-    most = whole_number(parts, owner=_OWNER, name="parts", lowest=1)
-    within = Tolerances(restitution, factors, angle, most)
-    assembly, plan = _planned(system, motion, initial, _OWNER)
-    return proof_of(assembly, plan, scale=factor, within=within)
+    max_parts = whole_number(parts, owner=_OWNER, name="parts", lowest=1)
+    within = Tolerances(restitution, factors, angle, max_parts)
+    assembly, plan = _plan_proof(system, motion, initial, _OWNER)
+    return prove_run(assembly, plan, scale=factor, within=within)
 
 
 @dataclass(frozen=True)
@@ -195,17 +195,17 @@ def prove_critical_scale(
     """
     share = to_ratio(width, owner=_CRITICAL, name="width", condition=_WIDTH)
     scale = to_ratio(start, owner=_CRITICAL, name="start", condition=POSITIVE)
-    assembly, plan = _planned(system, motion, initial, _CRITICAL)
+    assembly, plan = _plan_proof(system, motion, initial, _CRITICAL)
     undecided = 0
 
     def overturns(at: float) -> bool | None:
         nonlocal undecided
-        found = proof_of(assembly, plan, scale=at, owner=_CRITICAL).overturns
+        found = prove_run(assembly, plan, scale=at, owner=_CRITICAL).overturns
         undecided += found is None
         return found
 
     ends: dict[bool, float] = {}
-    for _ in range(_FARTHEST):
+    for _ in range(_MAX_SEARCH_STEPS):
         found = overturns(scale)
         if found is not None:
             ends[found] = scale
@@ -216,7 +216,7 @@ def prove_critical_scale(
         msg = f"{_CRITICAL}: no scale of another verdict was found up to {scale:.4g}; give a start"
         raise ComponentError(msg)
     while abs(ends[True] - ends[False]) > share * max(ends.values()):
-        for place in _PLACES:
+        for place in _DIVISION_POINTS:
             scale = ends[False] + place * (ends[True] - ends[False])
             found = None if scale in ends.values() else overturns(scale)
             if found is not None:
@@ -227,7 +227,7 @@ def prove_critical_scale(
     return ProvedBracket(ends[False], ends[True], undecided)
 
 
-def _planned(
+def _plan_proof(
     system: object, motion: GroundMotion | None, initial: InitialState | None, owner: str
 ) -> tuple[Assembly, Plan]:
     """Plan the run about which something is to be proved."""
@@ -240,7 +240,7 @@ def _planned(
     return assembly, plan_run(assembly, motion, initial=initial, outputs=None, duration=length)
 
 
-def proof_of(
+def prove_run(
     system: Assembly,
     plan: Plan,
     *,
@@ -270,7 +270,7 @@ def proof_of(
     else:
         mode, state, _ = model.initial(start)
     law, slope, limits = model.system, system.options.slope, system.setting.overturning_angles
-    told: dict[str, Any] = {
+    context: dict[str, Any] = {
         "analytic": motion.si.analytic,
         "gravity": system.options.gravity,
         "start": _start_in_words(plan.initial),
@@ -279,16 +279,16 @@ def proof_of(
         from rockframe.proof.pads.verdict import prove_pads
 
         found = prove_pads(law, mode, state, motion.si, slope, limits, scale=scale, within=within)
-        return replace(found, **told)
+        return replace(found, **context)
     assert isinstance(law, BlockOnRigidGround)  # noqa: S101
     from rockframe.proof.rocking import prove_block
 
     begin = float(state[0]), float(state[1])
     found = prove_block(law, motion.si, slope, limits, begin, scale=scale, within=within)
-    return replace(found, **told)
+    return replace(found, **context)
 
 
-def _start_in_words(initial: Beginning) -> str:
+def _start_in_words(initial: InitialCondition) -> str:
     """Write the state at the start of a run, with all digits of its numbers."""
     if isinstance(initial, Ending):
         return "the state in which the run before it ended"

@@ -12,17 +12,23 @@ from rockframe.proposals import hinted
 from rockframe.results.diagnostics import DIAGNOSTICS, Diagnostic, add_diagnostic
 from rockframe.results.schema import GROUPS, SCHEMA
 from rockframe.results.variables.variable import EVENT, TIME, Variable
-from rockframe.system.assembly import add_scene, twin_of
+from rockframe.system.assembly import add_scene, scene_of_same_parts
 from rockframe.system.links import OwnLink
 from rockframe.system.own_base import OwnAnswers, OwnBase
 from rockframe.system.own_scene import OwnScene
-from rockframe.system.parts import RESTRAINER, SHIPPED, Kind, add_kind, slot_of_kind
+from rockframe.system.parts import (
+    BUILTIN_SLOTS,
+    RESTRAINER,
+    PartKind,
+    add_part_class,
+    slot_of_class,
+)
 from rockframe.units import Unit
 
 _OWNER: Final = "register"
-SLOTS: Final = ("pads", "soil")
+USER_BASE_SLOTS: Final = ("pads", "soil")
 """Slots that bases of users' own can fill."""
-_OF_A_RUN: Final = (*TIME, *EVENT)
+_RUN_DIMENSIONS: Final = (*TIME, *EVENT)
 """Dimensions that every run has."""
 
 
@@ -75,7 +81,10 @@ def register(
     if isinstance(kind, Diagnostic) or (callable(kind) and not isinstance(kind, type)):
         _register_diagnostic(kind, columns, name, unit, long_name)
         return
-    faults = [*_faults_of(kind), *(fault for row in columns for fault in _faults_in(row, columns))]
+    faults = [
+        *_class_faults(kind),
+        *(fault for row in columns for fault in _column_faults(row, columns)),
+    ]
     names = [getattr(row, "name", None) for row in columns]
     faults += [f"two columns are called {name!r}" for name in {*names} if names.count(name) > 1]
     faults += [
@@ -92,14 +101,14 @@ def register(
         )
     _refuse(faults)
     if issubclass(kind, OwnBase):
-        add_kind(kind, Kind(kind.slot, kind.support))
+        add_part_class(kind, PartKind(kind.slot, kind.support))
     elif issubclass(kind, OwnLink):
-        add_kind(kind, Kind(RESTRAINER))
+        add_part_class(kind, PartKind(RESTRAINER))
     else:
         add_scene(kind)
         for slot, part in kind.made_of.items():
-            if slot not in SHIPPED:
-                add_kind(part, Kind(slot))
+            if slot not in BUILTIN_SLOTS:
+                add_part_class(part, PartKind(slot))
     SCHEMA.update({row.name: row for row in columns})
 
 
@@ -120,7 +129,7 @@ def _register_diagnostic(
         value = Diagnostic(
             value, called, cast("str", unit), words if long_name is None else long_name
         )
-    faults += _faults_in_diagnostic(value)
+    faults += _diagnostic_faults(value)
     _refuse(faults)
     add_diagnostic(value)
 
@@ -131,11 +140,11 @@ def _refuse(faults: list[str]) -> None:
         raise ComponentError(msg)
 
 
-def _faults_of(kind: Any) -> list[str]:
+def _class_faults(kind: Any) -> list[str]:
     if isinstance(kind, type) and issubclass(kind, OwnBase):
-        return _faults_of_base(kind)
+        return _base_faults(kind)
     if isinstance(kind, type) and issubclass(kind, OwnScene):
-        return _faults_of_scene(kind)
+        return _scene_faults(kind)
     if isinstance(kind, type) and issubclass(kind, OwnLink):
         return [] if kind.law is not OwnLink.law else [f"{kind.__name__} has no method law(mass)"]
     return [
@@ -144,19 +153,23 @@ def _faults_of(kind: Any) -> list[str]:
     ]
 
 
-def _faults_of_base(kind: type[OwnBase]) -> list[str]:
+def _base_faults(kind: type[OwnBase]) -> list[str]:
     faults: list[str] = []
-    if kind.slot not in SLOTS:
-        known = " or ".join(repr(slot) for slot in SLOTS)
+    if kind.slot not in USER_BASE_SLOTS:
+        known = " or ".join(repr(slot) for slot in USER_BASE_SLOTS)
         faults.append(f"{kind.__name__}.slot must be {known}, got {shown(kind.slot)}")
     if kind.support is OwnBase.support:
         faults.append(f"{kind.__name__} has no method support(load)")
     return faults
 
 
-def _faults_of_scene(kind: type[OwnScene]) -> list[str]:
+def _scene_faults(kind: type[OwnScene]) -> list[str]:
     missing = getattr(kind, "__abstractmethods__", frozenset())
-    faults = [f"{kind.__name__} has no {_ASKED[name]}" for name in _ASKED if name in missing]
+    faults = [
+        f"{kind.__name__} has no {_REQUIRED_MEMBERS[name]}"
+        for name in _REQUIRED_MEMBERS
+        if name in missing
+    ]
     made_of: Any = kind.made_of
     if not (isinstance(made_of, Mapping) and made_of):
         return [
@@ -164,23 +177,23 @@ def _faults_of_scene(kind: type[OwnScene]) -> list[str]:
             f"{kind.__name__}.made_of must name slots and classes of parts, such as "
             f"{{'block': Block, 'floor': Floor}}, got {shown(made_of)}",
         ]
-    of_parts = [fault for row in made_of.items() for fault in _faults_of_part(kind.__name__, *row)]
+    of_parts = [fault for row in made_of.items() for fault in _part_faults(kind.__name__, *row)]
     if of_parts:
         return [*faults, *of_parts]
     if not any(issubclass(part, Block) for part in made_of.values()):
         faults.append(f"{kind.__name__} has no Block among its parts, of which the response is")
-    if not set(made_of) - set(SHIPPED):
+    if not set(made_of) - set(BUILTIN_SLOTS):
         faults.append(
             f"{kind.__name__} is made of rockframe's own parts alone, and so could not be told "
             "from its scenes; add a part of your own"
         )
-    twin = twin_of(kind)
+    twin = scene_of_same_parts(kind)
     if twin is not None:
         faults.append(f"{kind.__name__} is made of the same parts as {twin}")
     return faults
 
 
-_ASKED: Final = {
+_REQUIRED_MEMBERS: Final = {
     "model": "name model, such as model = 'slide-rock'",
     "contact_model": "method contact_model(), which gives its equations",
     "words": "method words(), which describe() tells",
@@ -188,42 +201,42 @@ _ASKED: Final = {
 """What the class of a scene must define."""
 
 
-def _faults_of_part(owner: str, slot: Any, part: Any) -> list[str]:
+def _part_faults(owner: str, slot: Any, part: Any) -> list[str]:
     """Say what is wrong with a part of a scene and its slot."""
     where = f"{owner}.made_of[{slot!r}]"
     if not (isinstance(slot, str) and slot.isidentifier()):
         return [f"{where}: a slot is called by a name such as 'floor'"]
     if not (isinstance(part, type) and issubclass(part, Component)):
         return [f"{where} must be a class of components, got {shown(part)}"]
-    fills = slot_of_kind(part)
+    fills = slot_of_class(part)
     if fills is not None and fills != slot:
         return [f"{where}: {part.__name__} fills the slot {fills!r}"]
-    if fills is None and slot in SHIPPED:
+    if fills is None and slot in BUILTIN_SLOTS:
         return [f"{where}: the slot is one of rockframe's own parts; give {part.__name__} another"]
     return []
 
 
-def _faults_in(row: Any, columns: Sequence[Any]) -> list[str]:
+def _column_faults(row: Any, columns: Sequence[Any]) -> list[str]:
     if not isinstance(row, Variable):
         return [f"columns must be Variables, got {shown(row)}"]
-    faults = _faults_in_name(row.name, "a column")
+    faults = _name_faults(row.name, "a column")
     labels = {one.name for one in columns if isinstance(one, Variable) and one.dims == (one.name,)}
     faults += [
         f"column {row.name!r} over {row.dims}: nothing labels {dim!r}; declare a column {dim!r} "
         f"over ({dim!r},)"
         for dim in row.dims
-        if dim not in _OF_A_RUN and dim not in labels
+        if dim not in _RUN_DIMENSIONS and dim not in labels
     ]
     if SCHEMA.get(row.name, row) != row:
         faults.append(f"there is a variable {row.name!r} of another meaning")
-    return [*faults, *_faults_in_unit(row.unit, f"column {row.name!r}")]
+    return [*faults, *_unit_faults(row.unit, f"column {row.name!r}")]
 
 
-def _faults_in_diagnostic(value: Diagnostic) -> list[str]:
+def _diagnostic_faults(value: Diagnostic) -> list[str]:
     name = cast("Any", value.name)
     if not isinstance(name, str):
         return [f"the name of a diagnostic must be a word, got {shown(name)}"]
-    faults = _faults_in_name(name, "a diagnostic")
+    faults = _name_faults(name, "a diagnostic")
     if not callable(value.function):
         faults.append(f"diagnostic {name!r} needs a function, got {shown(value.function)}")
     if not isinstance(cast("Any", value.long_name), str) or not value.long_name:
@@ -235,15 +248,15 @@ def _faults_in_diagnostic(value: Diagnostic) -> list[str]:
     )
     taken += [name] if name in GROUPS else []
     faults += [f"there is a variable {one!r} of another meaning" for one in taken]
-    return [*faults, *_faults_in_unit(value.unit, f"diagnostic {name!r}")]
+    return [*faults, *_unit_faults(value.unit, f"diagnostic {name!r}")]
 
 
-def _faults_in_name(name: str, what: str) -> list[str]:
+def _name_faults(name: str, what: str) -> list[str]:
     fault = f"{what} is called {name!r}; expected one such as 'left_set'"
     return [] if name.isidentifier() else [fault]
 
 
-def _faults_in_unit(unit: Any, owner: str) -> list[str]:
+def _unit_faults(unit: Any, owner: str) -> list[str]:
     if unit is None or isinstance(unit, Unit):
         return []
     try:

@@ -26,38 +26,40 @@ from rockframe.results.outcome import (
 )
 from rockframe.results.schema import build_dataset, schema_row
 from rockframe.results.variables.runs import Direction
-from rockframe.simulation.answers import Answers, answers_of, ground_at, or_missing
 from rockframe.simulation.certify.certificate import certify
 from rockframe.simulation.certify.run_summary import RunSummary, run_summary
 from rockframe.simulation.certify.second_look import doubts, peak_error, second_look
 from rockframe.simulation.plan import END_STATE, Plan, ending_as_json, start_of
 from rockframe.simulation.provenance import motion_after_end, motion_attributes
-from rockframe.simulation.proving import proof_of
+from rockframe.simulation.proving import prove_run
 from rockframe.simulation.run_arguments import PROVED, Certification
+from rockframe.simulation.run_outputs import RunOutputs, compute_or_note, compute_outputs, ground_at
 from rockframe.simulation.soundness import (
     STILL_MOVING,
-    ambiguities,
     doubtful_residual,
+    energy_caution,
     friction_words,
     may_overturn_later,
-    slips,
-    unbalanced,
+    nonunique_motions,
+    sliding_cautions,
 )
 from rockframe.solve.accuracy import LEVELS, AccuracyLevel
 from rockframe.solve.integrate import STILL_INTERVAL, integrate
 from rockframe.solve.trajectory import Summary, Trajectory
 from rockframe.system.assembly import Assembly
 
-ADAPTIVE = "Dormand-Prince 5(4) from sample to sample, with event location"
-FIXED = "Nystrom method of order 3 in fixed sub-steps from sample to sample, with event location"
-_LEAVES: Final = "the block would leave the rigid ground, which this model cannot show"
+ADAPTIVE_METHOD = "Dormand-Prince 5(4) from sample to sample, with event location"
+FIXED_METHOD = (
+    "Nystrom method of order 3 in fixed sub-steps from sample to sample, with event location"
+)
+_SEPARATES: Final = "the block would leave the rigid ground, which this model cannot show"
 NONE: Final = "none"
 """Value of the attribute `cautions` where there are none."""
-_SAMPLES: Final = "histories, and the peaks of forces and at points,"
-_SECOND: Final = "a second run with more steps"
-_FRICTION: Final = "whether the base has the friction that is needed"
-_LEAVING: Final = "whether the block would leave the ground"
-TENSION: Final = 1e-9
+_SAMPLED_OUTPUTS: Final = "histories, and the peaks of forces and at points,"
+_REPEATED_RUN: Final = "a second run with more steps"
+_FRICTION_CHECK: Final = "whether the base has the friction that is needed"
+_SEPARATION_CHECK: Final = "whether the block would leave the ground"
+TENSION_TOLERANCE: Final = 1e-9
 """Share of the largest reaction below which a tensile reaction is rounding."""
 
 Caution: TypeAlias = tuple[type[RockframeWarning], str]
@@ -75,7 +77,7 @@ class Response:
     system: Assembly
     plan: Plan
     trajectory: Trajectory
-    answers: Answers
+    outputs: RunOutputs
     missing: list[str] = field(default_factory=list[str])
 
     @cached_property
@@ -86,8 +88,8 @@ class Response:
     @cached_property
     def scalars(self) -> dict[str, Generic | float | int | bool]:
         """All scalars, and peaks at points, by their names in the schema."""
-        scalars = scalars_of(self.system, self.trajectory, self.missing)
-        return {**scalars, **self.answers.scalars}
+        scalars = run_scalars(self.system, self.trajectory, self.missing)
+        return {**scalars, **self.outputs.scalars}
 
     @cached_property
     def in_motion(self) -> bool:
@@ -95,12 +97,12 @@ class Response:
         return in_motion(self.system, self.trajectory, self.missing)
 
     @cached_property
-    def ambiguities(self) -> tuple[dict[str, int], list[str]]:
+    def nonunique_motions(self) -> tuple[dict[str, int], list[str]]:
         """Counts of events after which motion is not unique, and cautions about them."""
         model = self.system.model
         if not isinstance(model.system, RigidChain):
             return {}, []
-        return ambiguities(model, model.system, self.trajectory)
+        return nonunique_motions(model, model.system, self.trajectory)
 
     def summary(self) -> RunSummary:
         """Return the summary of the run that certificates are made from."""
@@ -108,8 +110,8 @@ class Response:
         shown = run_summary(
             self.trajectory, self.events, share, self.plan.duration, in_motion=self.in_motion
         )
-        slidings = self.answers.slidings
-        slides = float(any(each.slides for each in slidings)) if slidings else math.nan
+        sliding_checks = self.outputs.sliding_checks
+        slides = float(any(each.slides for each in sliding_checks)) if sliding_checks else math.nan
         slips = self.system.setting.slips_of(self.trajectory.ending)
         slip = max((one.peak for one in slips), default=math.nan)
         return replace(shown, slides=slides, slip=slip)
@@ -119,22 +121,28 @@ class Response:
         summary, plan, missing = self.trajectory, self.plan, self.missing
         setting = self.system.setting
         moving = [STILL_MOVING] if self.in_motion else []
-        audit = or_missing(
-            lambda: unbalanced(
+        audit = compute_or_note(
+            lambda: energy_caution(
                 self.system, plan, summary, self.summary,
-                lambda other: summary_of(self.system, other),
+                lambda other: compute_summary(self.system, other),
             ),
             None, "whether another run agrees with this one", missing,
         )  # fmt: skip
-        values, falls = self.answers.values, summary.overturning_time
-        leaving = [] if setting.flies else or_missing(
-            lambda: list(_leaving(self.system, plan.motion, values, falls)), [], _LEAVING, missing
+        values, falls = self.outputs.values, summary.overturning_time
+        separating = [] if setting.flies else compute_or_note(
+            lambda: list(_separation_cautions(self.system, plan.motion, values, falls)),
+            [], _SEPARATION_CHECK, missing,
         )  # fmt: skip
-        slipping = or_missing(lambda: list(slips(self.answers.slidings)), [], _FRICTION, missing)
+        sliding = compute_or_note(
+            lambda: list(sliding_cautions(self.outputs.sliding_checks)),
+            [],
+            _FRICTION_CHECK,
+            missing,
+        )
         _ = self.scalars  # computed first: what fails is added to `missing`
         cut_off = [] if summary.status.finished else [verdict(summary, setting, self.system.model)]
         beyond = setting.beyond_edges(summary.ending)
-        of_model = [*self.ambiguities[1], *beyond, *leaving, *slipping]
+        of_model = [*self.nonunique_motions[1], *beyond, *separating, *sliding]
         return [
             *((SolverWarning, text) for text in (*cut_off, *moving, *filter(None, [audit]))),
             *((ModelWarning, text) for text in of_model),
@@ -145,15 +153,15 @@ class Response:
 def in_motion(system: Assembly, summary: Summary, missing: list[str]) -> bool:
     """Whether a body that has not overturned may do so later; False where that is unknown."""
     what = "whether the body still has the energy to overturn"
-    return or_missing(lambda: may_overturn_later(system, summary), False, what, missing)
+    return compute_or_note(lambda: may_overturn_later(system, summary), False, what, missing)
 
 
-def scalars_of(
+def run_scalars(
     system: Assembly, summary: Summary, missing: list[str]
 ) -> dict[str, Generic | float | int | bool]:
     """Return the scalars of a run by their names in the schema, without those of its samples."""
     setting = system.setting
-    uplift = or_missing(lambda: setting.uplift_angle, math.nan, "the uplift angle", missing)
+    uplift = compute_or_note(lambda: setting.uplift_angle, math.nan, "the uplift angle", missing)
     found = scalars(summary, setting, uplift_angle=uplift)
     if system.model.links:
         found["broken_restrainer_count"] = len(broken_links(system.model, summary.ending))
@@ -165,29 +173,34 @@ def run(
     plan: Plan,
     certification: Certification | Literal["proved"] | None = None,
     *,
-    look_again: bool = False,
+    repeat_run: bool = False,
 ) -> xr.Dataset:
     """Integrate as planned and label the result."""
     for column in () if system.model.selects else system.model.columns:
         schema_row(column.name)  # before the run
-    proof = proof_of(system, plan, owner="simulate") if certification == PROVED else None
-    response = respond(system, plan)
+    proof = prove_run(system, plan, owner="simulate") if certification == PROVED else None
+    response = compute_response(system, plan)
     summary, missing = response.trajectory, response.missing
     attributes = _attributes(system, plan, summary, missing)
     attributes[END_STATE] = json.dumps(ending_as_json(summary.ending))
-    attributes |= response.ambiguities[0]
+    attributes |= response.nonunique_motions[0]
     if summary.status.finished and not system.setting.slides:
-        answers = response.answers
-        friction = or_missing(
-            lambda: friction_words(answers.scalars, answers.slidings), "", _FRICTION, missing
+        outputs = response.outputs
+        friction = compute_or_note(
+            lambda: friction_words(outputs.scalars, outputs.sliding_checks),
+            "",
+            _FRICTION_CHECK,
+            missing,
         )
         attributes["verdict"] = f"{attributes['verdict']}{friction}"
-    of_scene = or_missing(lambda: system.cautions, [], "what is unusual about the scene", missing)
+    of_scene = compute_or_note(
+        lambda: system.cautions, [], "what is unusual about the scene", missing
+    )
     cautions, before = response.cautions(), len(missing)
     values = {**response.events, **response.scalars}
-    if look_again and certification is None and plan.accuracy == LEVELS[AccuracyLevel.FAST]:
-        error, doubted = or_missing(
-            lambda: _looked_again(system, plan, summary), (math.nan, []), _SECOND, missing
+    if repeat_run and certification is None and plan.accuracy == LEVELS[AccuracyLevel.FAST]:
+        error, doubted = compute_or_note(
+            lambda: _repeated_run(system, plan, summary), (math.nan, []), _REPEATED_RUN, missing
         )
         values["peak_error_estimate"] = error
         cautions += doubted
@@ -203,18 +216,18 @@ def run(
     for kind, text in cautions:
         warn(text, kind)
     if isinstance(certification, Certification):
-        found = or_missing(
-            lambda: certify(system, plan, response.summary(), certification, summary_of),
+        found = compute_or_note(
+            lambda: certify(system, plan, response.summary(), certification, compute_summary),
             None, "the certificate", missing,
         )  # fmt: skip
         attributes |= {"certificate": "Not known."} if found is None else found.attributes()
         values |= {} if found is None else found.values()
-    of_samples = {**response.answers.values, **response.answers.points}
-    dataset = or_missing(
+    of_samples = {**response.outputs.values, **response.outputs.points}
+    dataset = compute_or_note(
         lambda: build_dataset(
             {**values, **of_samples, **motion_after_end(plan.motion, of_samples)}, attributes
         ),
-        None, _SAMPLES, missing,
+        None, _SAMPLED_OUTPUTS, missing,
     )  # fmt: skip
     if dataset is None:
         dataset = build_dataset(values, attributes)
@@ -226,25 +239,25 @@ def run(
     return dataset
 
 
-def _looked_again(system: Assembly, plan: Plan, summary: Summary) -> tuple[float, list[Caution]]:
+def _repeated_run(system: Assembly, plan: Plan, summary: Summary) -> tuple[float, list[Caution]]:
     """Return the error of the peak from a second run with more steps, and the doubts it raises."""
-    second = respond(system, second_look(system, plan)).trajectory
+    second = compute_response(system, second_look(system, plan)).trajectory
     found = doubts(system.setting, plan, summary, second)
     return peak_error(summary, second), [(SolverWarning, text) for text in found]
 
 
-def summary_of(system: Assembly, plan: Plan) -> RunSummary:
+def compute_summary(system: Assembly, plan: Plan) -> RunSummary:
     """Integrate as planned, and give the summary of the run that certificates are made from."""
-    return respond(system, plan).summary()
+    return compute_response(system, plan).summary()
 
 
-def respond(system: Assembly, plan: Plan) -> Response:
+def compute_response(system: Assembly, plan: Plan) -> Response:
     """Integrate as planned; give the run before it is labelled."""
     sampled = plan.output_step is not None
     # a run without histories is sampled at its start and end only
     output_step = plan.duration if sampled and not plan.histories else plan.output_step
     missing: list[str] = []
-    answers = Answers()
+    outputs = RunOutputs()
     motion, slope = None if plan.motion is None else plan.motion.si, system.options.slope
     if not slope.level:  # along and normal to the base
         motion = slope.resolved(motion, duration=plan.duration, interval=STILL_INTERVAL)
@@ -256,16 +269,19 @@ def respond(system: Assembly, plan: Plan) -> Response:
             keep_steps=sampled,
         )  # fmt: skip
         if sampled:
-            answers = or_missing(
-                lambda: answers_of(system, plan, trajectory, missing), answers, _SAMPLES, missing
+            outputs = compute_or_note(
+                lambda: compute_outputs(system, plan, trajectory, missing),
+                outputs,
+                _SAMPLED_OUTPUTS,
+                missing,
             )
-    return Response(system, plan, trajectory, answers, missing)
+    return Response(system, plan, trajectory, outputs, missing)
 
 
 def _attributes(
     system: Assembly, plan: Plan, summary: Summary, missing: list[str]
 ) -> dict[str, str | float | int]:
-    description = or_missing(lambda: system.description, "", "the words of the model", missing)
+    description = compute_or_note(lambda: system.description, "", "the words of the model", missing)
     coupling = {"coupling": str(system.options.coupling)} if system.scene.coupling else {}
     return {
         "verdict": verdict(summary, system.setting, system.model),
@@ -279,15 +295,17 @@ def _attributes(
         **coupling,
         "model_description": description,
         "accuracy": plan.accuracy_name,
-        "solver_method": ADAPTIVE if plan.accuracy.substeps is None else FIXED,
+        "solver_method": ADAPTIVE_METHOD if plan.accuracy.substeps is None else FIXED_METHOD,
         "solver_rtol": plan.accuracy.rtol or math.nan,
         "solver_substeps": summary.substeps,
         "solver_steps": summary.step_count,
         "solver_rejected_steps": summary.rejected_count,
         "solver_end_time": summary.end_time,
-        **or_missing(lambda: motion_attributes(plan.motion), {}, "the motion's origin", missing),
-        "system_json": or_missing(lambda: system.json, "", "the parts as text", missing),
-        "run_json": or_missing(plan.to_json, "", "the arguments as text", missing),
+        **compute_or_note(
+            lambda: motion_attributes(plan.motion), {}, "the motion's origin", missing
+        ),
+        "system_json": compute_or_note(lambda: system.json, "", "the parts as text", missing),
+        "run_json": compute_or_note(plan.to_json, "", "the arguments as text", missing),
     }
 
 
@@ -296,7 +314,7 @@ def has_no_cautions(system: Assembly, summary: Summary) -> bool:
     return summary.status.finished and summary.energy_residual <= doubtful_residual(system)
 
 
-def _leaving(
+def _separation_cautions(
     system: Assembly,
     motion: GroundMotion | None,
     values: Mapping[str, Generic],
@@ -313,16 +331,16 @@ def _leaving(
             which = "vertical" if slope.level else "normal"
             found = f"the {which} ground acceleration falls to {lowest:.4g} m s^-2, beyond gravity"
             unless = "unless links press it on, " if links else ""
-            yield f"{found}: {unless}{_LEAVES}{system.setting.to_fly}"
+            yield f"{found}: {unless}{_SEPARATES}{system.setting.to_fly}"
     if "left_reaction" not in values:
         return
     stands = ~(values["time"] > overturning_time)  # the fall after overturning does not count
     reaction = (values["left_reaction"] + values["right_reaction"])[stands]
     lowest = float(np.min(reaction))
-    if lowest < -TENSION * float(np.max(np.abs(reaction))):
+    if lowest < -TENSION_TOLERANCE * float(np.max(np.abs(reaction))):
         when = float(values["time"][np.argmin(reaction)])
         found = (
             f"the ground would have to pull at the bearing corner, with {-lowest:.4g} N at "
             f"{when:.4g} s"
         )
-        yield f"{found}: {_LEAVES}{system.setting.to_fly}"
+        yield f"{found}: {_SEPARATES}{system.setting.to_fly}"

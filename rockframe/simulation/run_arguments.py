@@ -14,15 +14,15 @@ from rockframe.solve.accuracy import AccuracyLevel
 from rockframe.system.options import AccuracyLike, Overturning, OverturningLike, PointsLike
 from rockframe.units import Condition, QuantityLike, to_ratio
 
-START: Final = Argument(
+INITIAL_ARGUMENT: Final = Argument(
     None, "InitialState, optional", "Where the runs start; at rest unless given."
 )
-HOW_ACCURATE: Final = Argument(
+ACCURACY_ARGUMENT: Final = Argument(
     AccuracyLevel.STANDARD,
     '{"fast", "standard", "reference"}, float or Accuracy, optional',
     "How accurate, and so how costly, the runs are.",
 )
-VERDICT: Final = Argument(
+OVERTURNING_ARGUMENT: Final = Argument(
     Overturning.STOP,
     '{"stop", "continue"}, optional',
     "What is called overturning: that the rotation reaches the overturning angle, where the run "
@@ -34,7 +34,7 @@ _STEPS: Final = (
     "the steps of the integration are its own, as fine as accuracy asks for; output_step is the "
     "spacing of the histories"
 )
-NO_ARGUMENTS: Final = {
+FOREIGN_ARGUMENTS: Final = {
     "damping": "dampers belong to the parts, such as TwoSpringSupport(damping_ratio=0.1) or "
     "WinklerSoil(damping_ratio=0.2); a block on rigid ground loses energy in impacts, by "
     "RigidGround(restitution=...)",
@@ -54,7 +54,7 @@ OutputStep: TypeAlias = Annotated[
         "Spacing of the histories; the time step of the motion unless given [s].",
     ),
 ]
-CourseLike: TypeAlias = Annotated[OverturningLike, VERDICT]
+OverturningArgument: TypeAlias = Annotated[OverturningLike, OVERTURNING_ARGUMENT]
 
 
 class LengthArguments(TypedDict, total=False):
@@ -102,21 +102,21 @@ class ScaleArguments(LengthArguments, total=False):
             "system starts them where that one ended.",
         ),
     ]
-    accuracy: Annotated[AccuracyLike, HOW_ACCURATE]
-    overturning: CourseLike
+    accuracy: Annotated[AccuracyLike, ACCURACY_ARGUMENT]
+    overturning: OverturningArgument
 
 
 class ComparedArguments(LengthArguments, total=False):
     """Arguments of runs by which models and accuracies are compared."""
 
-    initial: Annotated[InitialState | None, START]
+    initial: Annotated[InitialState | None, INITIAL_ARGUMENT]
     output_step: OutputStep
 
 
 _SMALL: Final = Condition("above 0 and at most 0.1", lambda value: 0.0 < value <= 0.1)
 _REACH: Final = Condition("from 0.01 to 0.9", lambda value: 0.01 <= value <= 0.9)
-FEWEST_RUNS: Final = 60
-MOST_RUNS: Final = 100_000
+MIN_RUNS: Final = 60
+MAX_RUNS: Final = 100_000
 
 
 @proposing
@@ -160,7 +160,7 @@ class Certification:
         for name, (value, condition) in values.items():
             ratio = to_ratio(value, owner=owner, name=name, condition=condition)
             object.__setattr__(self, name, ratio)
-        most = whole_number(runs, owner=owner, name="runs", lowest=FEWEST_RUNS, highest=MOST_RUNS)
+        most = whole_number(runs, owner=owner, name="runs", lowest=MIN_RUNS, highest=MAX_RUNS)
         object.__setattr__(self, "runs", most)
 
 

@@ -25,8 +25,8 @@ from rockframe.dynamics.events import (
 )
 from rockframe.dynamics.protocol import ContactModel, Ending, Ground
 from rockframe.results.along_steps import AlongSteps, Values
-from rockframe.results.forces import signed
-from rockframe.results.outcome import LEAST_SLIP, Generic
+from rockframe.results.forces import signed_demand
+from rockframe.results.outcome import MIN_REPORTED_SLIP, Generic
 from rockframe.signals.arrays import Array
 from rockframe.solve.accuracy import LEVELS, AccuracyLevel
 from rockframe.solve.trajectory import Summary, Trajectory
@@ -37,60 +37,60 @@ if TYPE_CHECKING:
     from rockframe.simulation.certify.run_summary import RunSummary
     from rockframe.simulation.plan import Plan
 
-BY_TOLERANCE: Final = 1e-3
+MAX_ADAPTIVE_RESIDUAL: Final = 1e-3
 """Energy residual beyond which steps by tolerance give no solution; sound runs are below 1e-5."""
-FIXED: Final = 0.5
+MAX_FIXED_STEP_RESIDUAL: Final = 0.5
 """Energy residual beyond which fixed steps give no solution; their works on springs are less exact
 than their motion."""
-DOUBTFUL: Final = 1e-2
+DOUBTFUL_RESIDUAL: Final = 1e-2
 """Energy residual of fixed steps beyond which the run is compared with one by tolerance."""
-DOUBTFUL_ON_SPRINGS: Final = 0.04
+DOUBTFUL_RESIDUAL_ON_SPRINGS: Final = 0.04
 """This residual on a base that is not rigid, where works are less exact: of 40 000 random runs none
 reached it, and runs with half of it were wrong no more often than runs without residual."""
-PEAK: Final = 0.01
+PEAK_TOLERANCE: Final = 0.01
 """Relative difference up to which the peak rotation agrees with that of a run by tolerance."""
 
-NEGLIGIBLE: Final = 1e-4
+NEGLIGIBLE_PEAK: Final = 1e-4
 """Share of the overturning angle up to which a peak rotation is negligible for the verdict: the
 energies of such small motion are no larger than the errors that a step may have."""
 
 
 def doubtful_residual(system: Assembly) -> float:
     """Return the energy residual beyond which fixed steps are compared with steps by tolerance."""
-    return DOUBTFUL if system.setting.settlement is None else DOUBTFUL_ON_SPRINGS
+    return DOUBTFUL_RESIDUAL if system.setting.settlement is None else DOUBTFUL_RESIDUAL_ON_SPRINGS
 
 
-def unbalanced(
+def energy_caution(
     system: Assembly,
     plan: "Plan",
     summary: Summary,
     base: "Callable[[], RunSummary]",
     run: "Callable[[Plan], RunSummary]",
 ) -> str | None:
-    """Say that a run is not a solution, if its energies show it; `run` makes another run."""
+    """Warn if the energies of a run show that it is no solution; `run` makes another run."""
     residual, by_tolerance = summary.energy_residual, plan.accuracy.substeps is None
-    if residual <= (BY_TOLERANCE if by_tolerance else doubtful_residual(system)):
+    if residual <= (MAX_ADAPTIVE_RESIDUAL if by_tolerance else doubtful_residual(system)):
         return None
     shown = base()
     if shown.overturned is None:
         return None
-    negligible = shown.peak_share <= NEGLIGIBLE
+    negligible = shown.peak_share <= NEGLIGIBLE_PEAK
     if negligible and by_tolerance:
         return None
     found = f"the energies are out of balance by {residual:.2g} of the largest"
     if by_tolerance:
         return f"{found}: this is no solution; repeat the run with a tighter tolerance"
     remedy = f"repeat the run with accuracy='{AccuracyLevel.STANDARD}'"
-    if residual > FIXED and not negligible:
+    if residual > MAX_FIXED_STEP_RESIDUAL and not negligible:
         return f"{found}: this is no solution; {remedy}"
     standard = LEVELS[AccuracyLevel.STANDARD]
-    other = run(replace(plan.bare(), accuracy=standard))
+    other = run(replace(plan.without_outputs(), accuracy=standard))
     if other.overturned is None:
         return None
     difference = abs(other.peak - shown.peak)
-    if shown.alike(other) and difference <= PEAK * other.peak:
+    if shown.alike(other) and difference <= PEAK_TOLERANCE * other.peak:
         return None
-    if negligible and other.overturned is False and other.peak_share <= NEGLIGIBLE:
+    if negligible and other.overturned is False and other.peak_share <= NEGLIGIBLE_PEAK:
         return None
     ends = "overturns" if other.overturned else f"has a peak rotation of {other.peak:.4g} rad"
     return (
@@ -99,7 +99,7 @@ def unbalanced(
     )
 
 
-AT_REST: Final = 0.2
+AT_REST_SHARE: Final = 0.2
 """Share of the overturning angle, and of the typical size of each velocity, below which a body has
 too little energy to overturn: at that angle at rest, about a third of it, 1 - (1 - 0.2)^2."""
 
@@ -122,21 +122,21 @@ def may_overturn_later(system: Assembly, summary: Summary) -> bool:
     rotation, size = model.rotation_in(ending.state), model.system.coordinates()
     rates, sizes = ending.state[size : 2 * size], model.scales[size : 2 * size]
     others = model.other_share_in(ending.state)
-    upright = abs(rotation) < AT_REST * setting.overturning_angle and others < AT_REST
+    upright = abs(rotation) < AT_REST_SHARE * setting.overturning_angle and others < AT_REST_SHARE
     beyond = abs(rotation) >= setting.overturning_angles.on_side_of(rotation) or others >= 1.0
     held = upright or (beyond and bool(setting.link_names))
-    if held and bool(np.all(np.abs(rates) < AT_REST * sizes)):
+    if held and bool(np.all(np.abs(rates) < AT_REST_SHARE * sizes)):
         return False
     # user-defined scenes have no `wholes`
-    if beyond or (setting.wholes and _whole_may_fall(system, ending)):
+    if beyond or (setting.wholes and _lower_body_may_overturn(system, ending)):
         return True
     kinetic, needed = _kinetic_energy(system, ending), setting.overturning_energy
-    if kinetic + most_stored(system, rotation) < needed:
+    if kinetic + max_stored_energy(system, rotation) < needed:
         return False
     return 0.0 < needed <= kinetic + stored_energy(setting, rotation)
 
 
-def most_stored(system: Assembly, rotation: float) -> float:
+def max_stored_energy(system: Assembly, rotation: float) -> float:
     """Return an upper bound of the energy stored at a rotation, which is costly to compute [J].
 
     The restoring moment on a level base is at most the weight times its distance from a corner.
@@ -149,7 +149,7 @@ def most_stored(system: Assembly, rotation: float) -> float:
     return body.mass * setting.gravity * max(body.left, body.right) * abs(rotation)
 
 
-def _whole_may_fall(system: Assembly, ending: Ending) -> bool:
+def _lower_body_may_overturn(system: Assembly, ending: Ending) -> bool:
     """Whether a lower body, with all above it as one rigid body, has the energy to fall."""
     size = len(system.model.rotation_weights)
     weights = system.model.other_limits.reshape(-1, 2 + size)[:, 2:]
@@ -175,11 +175,11 @@ def _kinetic_energy(system: Assembly, ending: Ending) -> float:
     return 0.5 * (body.mass * square + body.inertia * found["angular_velocity"] ** 2)
 
 
-_STANDS: Final = ("flies", "on its left corner", "on its right corner", "in full contact")
+_CONTACTS: Final = ("flies", "on its left corner", "on its right corner", "in full contact")
 _ONE_OF: Final = "what follows is one of several motions"
 
 
-def ambiguities(
+def nonunique_motions(
     model: ContactModel, chain: RigidChain, run: Trajectory
 ) -> tuple[dict[str, int], list[str]]:
     """Count changes of contact after which motion on rigid bases is not unique, and say so."""
@@ -195,26 +195,27 @@ def ambiguities(
     unsure = slips & (sets != 1.0)
     cautions = list[str]()
 
-    def tell(which: NDArray[np.bool_], words: Callable[[int], str]) -> None:
+    def add_caution(which: NDArray[np.bool_], words: Callable[[int], str]) -> None:
         """Add a caution about the first of some events."""
         for i in np.flatnonzero(which)[:1].tolist():
             cautions.append(f"at {events.time[i]:.6g} s {words(i)}")
 
-    tell(several, lambda i: (
+    add_caution(several, lambda i: (
         f"an impact has {int(sets[i])} modes: taken is that which loses the least energy, "
-        f"{_named(int(taken[i]), rigid)}; the next is {_named(int(other[i]), rigid)}; of such "
-        f"impacts there are {several.sum()}: {_ONE_OF}"
+        f"{_contact_words(int(taken[i]), rigid)}; the next is "
+        f"{_contact_words(int(other[i]), rigid)}; of such impacts there are "
+        f"{several.sum()}: {_ONE_OF}"
     ))  # fmt: skip
-    tell(none, lambda i: (
+    add_caution(none, lambda i: (
         "an impact has no mode, and is computed with every closed contact held along itself: "
-        f"{_named(int(taken[i]), rigid)}; of such impacts there are {none.sum()}: {_ONE_OF}"
+        f"{_contact_words(int(taken[i]), rigid)}; of such impacts there are {none.sum()}: {_ONE_OF}"
     ))  # fmt: skip
-    tell(unsure, lambda i: (
+    add_caution(unsure, lambda i: (
         f"a slip begins or ends, and there are {int(sets[i]) or 'no'} ways to bear and to slip "
-        f"then: taken is one with {_named(int(taken[i]), rigid)}; of such changes there are "
-        f"{unsure.sum()}: {_ONE_OF}"
+        f"then: taken is one with {_contact_words(int(taken[i]), rigid)}; of such changes there "
+        f"are {unsure.sum()}: {_ONE_OF}"
     ))  # fmt: skip
-    tell(held, lambda _: (
+    add_caution(held, lambda _: (
         "a corner is held though it does not press, since it would come back at once if it were "
         f"let go; this happens {held.sum()} times"
     ))  # fmt: skip
@@ -226,15 +227,15 @@ def ambiguities(
     return counts, cautions
 
 
-def _named(corners: int, rigid: Sequence[int]) -> str:
+def _contact_words(corners: int, rigid: Sequence[int]) -> str:
     """Say which corners of bodies on rigid bases bear, from the top down."""
-    return ", ".join(f"body {k + 1} {_STANDS[corners >> 2 * k & 3]}" for k in rigid)
+    return ", ".join(f"body {k + 1} {_CONTACTS[corners >> 2 * k & 3]}" for k in rigid)
 
 
-_BLOCK: Final = "friction_demand"
-_CAP: Final = "soil_friction_demand"
+_BLOCK_DEMAND: Final = "friction_demand"
+_CAP_DEMAND: Final = "soil_friction_demand"
 DIGITS: Final = 3
-MOST_DIGITS: Final = 15
+MAX_DIGITS: Final = 15
 """Digits of coefficients in messages: DIGITS, or more where both would look equal."""
 
 
@@ -245,8 +246,8 @@ class SlidingCheck:
     body: str  # name of what stands on the base
     friction: float  # coefficient of friction that the base has [1]
     needed: float  # largest friction demand [1]
-    first: float  # time from which on the demand exceeds the coefficient, NaN if never [s]
-    lasted: float  # total time for which it does [s]
+    first: float  # time at which the demand first exceeds the coefficient, NaN if never [s]
+    duration: float  # total time for which it does [s]
 
     @property
     def slides(self) -> bool:
@@ -258,26 +259,28 @@ class SlidingCheck:
         """The check in words, without the name of the body."""
         digits, both = DIGITS, (self.needed, self.friction)
         needed, friction = (f"{one:.{digits}g}" for one in both)
-        while needed == friction and digits <= MOST_DIGITS:
+        while needed == friction and digits <= MAX_DIGITS:
             digits += 1
             needed, friction = (f"{one:.{digits}g}" for one in both)
         slides = f"would slide from {self.first:.4g} s on: needs"
         if not math.isfinite(self.needed):
             return (
                 f"{slides} more than any floor has, and more than {friction} for "
-                f"{self.lasted:.3g} s in all"
+                f"{self.duration:.3g} s in all"
             )
         if not self.slides:
             return f"would not slide: needs {needed} of {friction}"
-        return f"{slides} {needed} of {friction}, and more than that for {self.lasted:.3g} s in all"
+        return (
+            f"{slides} {needed} of {friction}, and more than that for {self.duration:.3g} s in all"
+        )
 
 
-def has_limit(system: Assembly) -> bool:
+def has_friction_limit(system: Assembly) -> bool:
     """Whether a base has a coefficient of friction that its runs are checked against."""
     return any(True for _ in _frictions(system))
 
 
-def slidings(system: Assembly, along: AlongSteps) -> list[SlidingCheck]:
+def sliding_checks(system: Assembly, along: AlongSteps) -> list[SlidingCheck]:
     """Check for each base with a coefficient of friction whether it holds what stands on it."""
     return [
         _sliding(along, name, friction, body)
@@ -291,10 +294,10 @@ def _sliding(along: AlongSteps, name: str, friction: float, body: str) -> Slidin
         return values[name][None]
 
     (needed,), (when,) = along.largest(demand)
-    first, lasted = along.above(signed(name), friction)
+    first, duration = along.above(signed_demand(name), friction)
     if needed > friction and math.isnan(first):  # within a step
         first = when
-    return SlidingCheck(body, friction, float(needed), float(first), lasted)
+    return SlidingCheck(body, friction, float(needed), float(first), duration)
 
 
 def sliding_scalars(found: Sequence[SlidingCheck]) -> dict[str, float | bool]:
@@ -305,7 +308,7 @@ def sliding_scalars(found: Sequence[SlidingCheck]) -> dict[str, float | bool]:
     return {
         "would_slide": bool(slides),
         "sliding_time": min((each.first for each in slides), default=math.nan),
-        "sliding_duration": max(each.lasted for each in found),
+        "sliding_duration": max(each.duration for each in found),
     }
 
 
@@ -322,21 +325,21 @@ def friction_words(scalars: Mapping[str, Generic | float], found: Sequence[Slidi
         return f" {words[0].upper()}{words[1:]}."
     if "peak_friction_demand" not in scalars:
         return ""
-    most, when, lasted = (
+    peak, when, duration = (
         float(scalars[f"peak_friction_demand{what}"]) for what in ("", "_time", "_duration")
     )
-    if not math.isfinite(most):
+    if not math.isfinite(peak):
         return (
             " Friction needed: more than any, where the base holds without pressing "
-            f"(at {when:.4g} s); more than 1 for {lasted:.3g} s in all."
+            f"(at {when:.4g} s); more than 1 for {duration:.3g} s in all."
         )
-    if most == 0.0:
+    if peak == 0.0:
         return ""
-    level = "more than 1" if most > 2.0 else "more than half of it"
-    return f" Friction needed: {most:.3g}, {level} for {lasted:.3g} s in all."
+    level = "more than 1" if peak > 2.0 else "more than half of it"
+    return f" Friction needed: {peak:.3g}, {level} for {duration:.3g} s in all."
 
 
-def slips(found: Sequence[SlidingCheck]) -> Iterator[str]:
+def sliding_cautions(found: Sequence[SlidingCheck]) -> Iterator[str]:
     """Return a caution for each base that has less friction than a run needs."""
     for each in found:
         if each.slides:
@@ -345,19 +348,19 @@ def slips(found: Sequence[SlidingCheck]) -> Iterator[str]:
 
 def share_words(would_slide: Generic, *, runs: str = "runs") -> str:
     """Say in how many runs of an analysis the block would slide, though its model holds it."""
-    slide, hold = counts_of_slides(would_slide)
+    slide, hold = count_slides(would_slide)
     some = f"in {slide or 'none'} of {slide + hold} {runs}"
     return f"{some} the block would slide first" if slide + hold else ""
 
 
 def slip_words(slips: Generic, *, runs: str = "runs") -> str:
     """Say in how many runs of an analysis a body slid, and how far at most."""
-    slid = slips[slips > LEAST_SLIP]
+    slid = slips[slips > MIN_REPORTED_SLIP]
     some = f"in {slid.size} of {np.isfinite(slips).sum()} {runs}"
     return f"{some} a body slid, by {slid.max():.3g} m at most" if slid.size else ""
 
 
-def counts_of_slides(would_slide: Generic) -> tuple[int, int]:
+def count_slides(would_slide: Generic) -> tuple[int, int]:
     """Return how many runs slide and how many do not; NaN counts as neither."""
     return int((would_slide == 1.0).sum()), int((would_slide == 0.0).sum())
 
@@ -368,12 +371,12 @@ def _frictions(system: Assembly) -> Iterator[tuple[str, float, str]]:
     if system.setting.slides:
         return
     under = (
-        (parts.ground, _BLOCK),
-        (parts.pads, _BLOCK),
-        (parts.soil, _CAP if system.setting.stacked else _BLOCK),
+        (parts.ground, _BLOCK_DEMAND),
+        (parts.pads, _BLOCK_DEMAND),
+        (parts.soil, _CAP_DEMAND if system.setting.stacked else _BLOCK_DEMAND),
     )
     for part, name in under:
         friction = None if part is None else getattr(part.si, "friction", None)
         if friction is not None:
             body = "the frame" if parts.frame is not None else "the block"
-            yield name, friction, "the cap" if name == _CAP else body
+            yield name, friction, "the cap" if name == _CAP_DEMAND else body

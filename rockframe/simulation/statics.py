@@ -11,7 +11,7 @@ from rockframe.errors import AssemblyError, ComponentError, shown
 from rockframe.results.outcome import Generic, slope_attributes
 from rockframe.results.schema import SCHEMA, build_dataset
 from rockframe.system.assembly import Assembly
-from rockframe.system.statics import modes_of
+from rockframe.system.statics import vibration_modes
 from rockframe.units import ANGLE, to_si_values
 
 
@@ -68,7 +68,7 @@ def frequencies(system: Assembly) -> xr.Dataset:
     motion = system.setting.small_motion()
     if motion is None:
         raise AssemblyError([system.setting.without_small_motion()])
-    modes = modes_of(motion)
+    modes = vibration_modes(motion)
     rate = np.array([mode.angular_frequency for mode in modes])
     values: dict[str, Generic] = {
         "mode": np.arange(1, len(modes) + 1),

@@ -15,12 +15,12 @@ from rockframe.errors import ComponentError, ModelWarning, SchemaError, warn
 from rockframe.motion import GroundMotion
 from rockframe.proposals import hinted, proposing
 from rockframe.simulation.provenance import (
-    check_own_system,
+    check_unswept_system,
     description_by_names,
     motion_from_dataset,
     parts_and_options,
 )
-from rockframe.simulation.run_arguments import NO_ARGUMENTS, Certification
+from rockframe.simulation.run_arguments import FOREIGN_ARGUMENTS, Certification
 from rockframe.simulation.value import SystemValue
 from rockframe.solve.accuracy import AccuracyLevel
 from rockframe.system.assembly import assemble
@@ -106,7 +106,7 @@ class System(SystemValue):
             inclination=inclination, sliding=sliding,
         )  # fmt: skip
         self._assembly = assembly
-        for caution in assembly.doubts:
+        for caution in assembly.setting_cautions:
             warn(caution, ModelWarning)
 
     def describe(self) -> str:
@@ -126,7 +126,7 @@ class System(SystemValue):
         """
         return self._assembly.description
 
-    @hinted(**NO_ARGUMENTS)
+    @hinted(**FOREIGN_ARGUMENTS)
     def simulate(
         self,
         motion: GroundMotion | None = None,
@@ -209,7 +209,7 @@ class System(SystemValue):
         >>> f"{float(run.peak_relative_rotation):.2f}, overturned: {bool(run.overturned)}"
         '0.28, overturned: False'
         """
-        from rockframe.simulation.plan import certification_of, plan_run
+        from rockframe.simulation.plan import plan_run, read_certification
         from rockframe.simulation.run import run
 
         plan = plan_run(
@@ -225,7 +225,7 @@ class System(SystemValue):
             overturning=overturning,
         )
         again = truth(second_look, owner="simulate", name="second_look")
-        return run(self._assembly, plan, certification_of(certify), look_again=again)
+        return run(self._assembly, plan, read_certification(certify), repeat_run=again)
 
     def to_opensees(self, motion: GroundMotion, path: str | Path, **options: Any) -> Path:
         """Write the system and a motion as a Python file that OpenSees runs.
@@ -423,7 +423,7 @@ class System(SystemValue):
         'sine pulse, 2.5 m/s^2, 1 Hz, cycles: 1'
         """
         dataset = checked_dataset(dataset, owner=f"{cls.__name__}.from_dataset")
-        check_own_system(dataset)
+        check_unswept_system(dataset)
         text = dataset.attrs.get("system_json")
         if not isinstance(text, str):
             msg = "the dataset has no attribute 'system_json'; expected a result of simulate()"

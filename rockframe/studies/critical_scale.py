@@ -20,9 +20,9 @@ from rockframe.signals.motion import extrema_of
 from rockframe.simulation.certify.run_summary import RunSummary
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.provenance import motion_attributes
-from rockframe.simulation.run import run, summary_of
+from rockframe.simulation.run import compute_summary, run
 from rockframe.simulation.run_arguments import ScaleArguments
-from rockframe.simulation.soundness import STILL_MOVING, has_limit
+from rockframe.simulation.soundness import STILL_MOVING, has_friction_limit
 from rockframe.simulation.system import System, check_system
 from rockframe.studies.flips import Followed, flips_sentence, follow, least_overturning, unfinished
 from rockframe.studies.intensities import ScaledIntensity, of_study
@@ -169,7 +169,7 @@ def critical_scale(
         return replace(plan, motion=motion.scaled(scale))
 
     # samples are needed here only for warnings of friction
-    rubs = has_limit(system.assembly)
+    rubs = has_friction_limit(system.assembly)
     step = plan.output_step if rubs else None
 
     with bar_of(progress, owner=_OWNER, unit="run") as bar:
@@ -182,7 +182,7 @@ def critical_scale(
                 bar.name("more scales")
             if number >= len(row):
                 bar.expect(1)
-            shown = summary_of(system.assembly, replace(plan_at(scale), output_step=step))
+            shown = compute_summary(system.assembly, replace(plan_at(scale), output_step=step))
             bar.update(1)
             return shown
 
@@ -224,7 +224,7 @@ def _uplift_scale(system: System, plan: Plan) -> float:
     values = np.concatenate([pieces[:, 0], pieces.sum(axis=1), between])
     # ground that is accelerated to the right tips the block to the left
     peaks = float(values.max()), -float(values.min())
-    scales = zip(setting.moving_accelerations, peaks, strict=True)
+    scales = zip(setting.onset_accelerations, peaks, strict=True)
     return min((uplift / peak for uplift, peak in scales if peak > 0.0), default=math.inf)
 
 
@@ -245,7 +245,7 @@ def _cautions(
         )
         warn(cautions[-1], SolverWarning)
     telling = critical
-    if math.isnan(critical) and has_limit(system.assembly):
+    if math.isnan(critical) and has_friction_limit(system.assembly):
         telling = max(found.shown)  # if none falls, it needs the most friction
     if not math.isnan(telling):
         again = run(system.assembly, plan_at(telling))

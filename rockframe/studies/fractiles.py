@@ -14,7 +14,7 @@ from rockframe.proposals import hinted
 from rockframe.results.outcome import Generic, overturns
 from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.studies import MOTION
-from rockframe.results.variables.variable import unit_behind
+from rockframe.results.variables.variable import unit_suffix
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import read_shares
 from rockframe.studies.fragility.trials import attributes_of_system
@@ -310,7 +310,7 @@ def _sentence(lines: Sequence[_Line], low: float, high: float, measure: xr.DataA
         [(max(first, low), last) for first, last in one.falls if last >= low and first <= high]
         for one in lines
     ]
-    unit = unit_behind(measure.attrs)
+    unit = unit_suffix(measure.attrs)
     motions = f"{len(lines)} motion{'s' if len(lines) > 1 else ''}"
     text = f"Of {motions} {sum(map(bool, falls))} overturned at some "
     text += f"{str(measure.name).replace('_', ' ')} from {low:.4g} to {high:.4g}{unit}"

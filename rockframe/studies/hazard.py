@@ -14,7 +14,7 @@ from rockframe.errors import ComponentError, ModelWarning, SchemaError, UnitsErr
 from rockframe.proposals import hinted
 from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
-from rockframe.results.variables.variable import unit_behind
+from rockframe.results.variables.variable import unit_suffix
 from rockframe.signals.arrays import Array
 from rockframe.studies.fragility.likelihood import log_shares
 from rockframe.studies.fragility.words import in_own_units, measures_of
@@ -375,7 +375,7 @@ def _of_curve(probability: xr.DataArray, along: xr.DataArray, curve: HazardCurve
 
 def _warn_beyond_curve(found: xr.Dataset, curve: HazardCurve) -> None:
     """Warn if a part of the rate lies beyond the ends of the hazard curve."""
-    unit = unit_behind(found["quantile_intensity"].attrs)
+    unit = unit_suffix(found["quantile_intensity"].attrs)
     ends = {"below": curve.intensities[0], "above": curve.intensities[-1]}
     lacking: list[str] = []
     for side, end in ends.items():
@@ -403,7 +403,7 @@ def _sentence(found: xr.Dataset) -> str:
     if not len(known):
         return f"There is no fragility against {state}, and so no rate."
     measure = measure_words(str(found.attrs["intensity"]), found.attrs.get(PERIOD_OF))
-    unit = unit_behind(found["quantile_intensity"].attrs)
+    unit = unit_suffix(found["quantile_intensity"].attrs)
     if len(known) > 1:
         return f"Annual rate of {state}: from {known.min():.3g} to {known.max():.3g}."
     if known[0] == 0.0:

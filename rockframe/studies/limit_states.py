@@ -15,7 +15,7 @@ from rockframe.results.outcome import Generic, overturns
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.bodies import BODIES, RESTRAINERS
 from rockframe.results.variables.requests import FORCE_SCALARS, POINT_PEAKS
-from rockframe.results.variables.variable import TIME, unit_behind
+from rockframe.results.variables.variable import TIME, unit_suffix
 from rockframe.studies.confidence import SHARE
 from rockframe.studies.sweeps.axes import in_unit, in_units_of_schema
 from rockframe.units import NOT_NEGATIVE, Condition, Measure, Unit, to_ratio, to_si
@@ -57,7 +57,7 @@ class LimitState:
             return named.get(self.rotation, f"rotation {self.rotation:g}")
         words = [self.variable.replace("_", " "), self.label]
         if not math.isnan(self.value):
-            unit = unit_behind(SCHEMA[self.variable].attributes())
+            unit = unit_suffix(SCHEMA[self.variable].attributes())
             words.append(f"{self.value:g}{unit}")
         return " ".join(filter(None, words))
 

@@ -21,7 +21,7 @@ from rockframe.shared_arguments import takes
 from rockframe.signals import Motion, Signal
 from rockframe.signals.arrays import Array
 from rockframe.signals.motion import COEFFICIENTS
-from rockframe.simulation.certify.perturbations import cut
+from rockframe.simulation.certify.perturbations import divide_intervals
 from rockframe.simulation.run import NONE
 from rockframe.simulation.system import System, check_system
 from rockframe.studies.limit_states import overturns
@@ -166,7 +166,8 @@ def _of_one_step(motions: list[GroundMotion]) -> list[GroundMotion]:
         )
         raise ComponentError(msg)
     return [
-        one if count == 1 else cut(one, count) for one, count in zip(motions, parts, strict=True)
+        one if count == 1 else divide_intervals(one, count)
+        for one, count in zip(motions, parts, strict=True)
     ]
 
 

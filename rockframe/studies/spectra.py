@@ -51,7 +51,7 @@ class BlockSizes:
     ) -> None:
         check_system(system, owner)
         self.system = _by_shape_factor(system, owner)
-        si = self.system.parts.the_block
+        si = self.system.parts.block_si
         periods = read_rising(periods, PERIOD, "periods", owner=owner)
         entries = [si.height / si.width] if slenderness is None else slenderness
         slenderness = read_rising(entries, _SLENDER, "slenderness", owner=owner)

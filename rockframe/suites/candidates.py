@@ -12,7 +12,7 @@ from rockframe.arguments import one_of_words, several
 from rockframe.errors import ComponentError, shown
 from rockframe.measures import rotated_spectrum
 from rockframe.measures.common import read_inputs
-from rockframe.measures.response import checked_periods, shortest_of, spectra_of
+from rockframe.measures.response import checked_periods, shortest_positive_period, spectra_of
 from rockframe.motion.processing.samples import warn_of_coarse_samples
 from rockframe.motion.quantities import ArrayLike
 from rockframe.signals.arrays import Array
@@ -85,7 +85,7 @@ def candidates_of(
     if periods is not None or conditioned_on is not None:
         every_period = fixed if periods is None else every
         signals = [motion.si.horizontal for motion in suite.values()]
-        warn_of_coarse_samples(signals, shortest_of(every_period), owner=owner)
+        warn_of_coarse_samples(signals, shortest_positive_period(every_period), owner=owner)
     goal = np.log(target.at_seconds(every, owner=owner))
     labels, spectra, events = _spectra(suite, kind, every, target.damping_ratio, owner)
     still = [label for label, row in zip(labels, spectra, strict=True) if not (row > 0.0).all()]
@@ -139,8 +139,8 @@ def _spectra(
 ) -> tuple[list[str], Array, list[str]]:
     with_unit = (seconds, str(PERIOD.unit))
     if kind is Combination.EACH:
-        looked = read_inputs(suite, "horizontal", owner=owner)
-        found = spectra_of(looked, seconds, np.array([damping_ratio]))[
+        inputs = read_inputs(suite, "horizontal", owner=owner)
+        found = spectra_of(inputs, seconds, np.array([damping_ratio]))[
             "pseudo_spectral_acceleration"
         ]
         motions = dict(suite)

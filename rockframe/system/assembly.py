@@ -9,16 +9,21 @@ from typing import Final
 from rockframe.components import Component, RigidGround
 from rockframe.dynamics.protocol import ContactModel
 from rockframe.errors import AssemblyError
-from rockframe.system.alone import AloneSetting, SlidingAloneSetting
-from rockframe.system.bodies import BaseLoad, load_of, one_body
-from rockframe.system.fitting import (
-    HELD,
-    SMALL_SLIDING,
-    contradictions,
-    friction_under,
-    misfits,
-    missizes,
-    unused,
+from rockframe.system.block_on_cap import (
+    BlockOnCapSetting,
+    CascadeSetting,
+    CoupledSetting,
+    SlidingCoupledSetting,
+)
+from rockframe.system.bodies import BaseLoad, block_with_cap, load_of
+from rockframe.system.compatibility import (
+    NO_SLIP,
+    SLIDING_AT_SMALL_ROTATION,
+    base_friction,
+    combination_faults,
+    depth_and_point_cautions,
+    size_faults,
+    unused_option_cautions,
 )
 from rockframe.system.options import (
     Coupling,
@@ -26,7 +31,7 @@ from rockframe.system.options import (
     Restraint,
     Rotation,
     Sliding,
-    read_measured,
+    read_number,
     read_option,
 )
 from rockframe.system.own_base import OwnBase
@@ -35,15 +40,10 @@ from rockframe.system.parts import RESTRAINER, Parts, sort_parts, support_of
 from rockframe.system.rear_wall import rear_wall_setting
 from rockframe.system.rocking_frame import rocking_frame_setting
 from rockframe.system.setting import Setting
+from rockframe.system.single_body import SingleBodySetting, SlidingBodySetting
 from rockframe.system.sliding_ground import rigid_ground_setting
-from rockframe.system.sliding_stack import stack_on, tied_on_ground
+from rockframe.system.sliding_stack import restrained_setting, sliding_stack_setting
 from rockframe.system.stack import StackSetting, refuse_options, stack_setting
-from rockframe.system.stacked import (
-    CascadeSetting,
-    CoupledSetting,
-    SlidingCoupledSetting,
-    StackedSetting,
-)
 from rockframe.system.words import describe
 
 
@@ -70,101 +70,105 @@ class Scene:
         )
 
 
-def _held(slot: str, parts: Parts, options: Options) -> AloneSetting:
-    """Put a block on the base in a slot, which holds it; block and cap on soil are one body."""
+def _block_on_base(slot: str, parts: Parts, options: Options) -> SingleBodySetting:
+    """Put a block on a base without slip; block and cap on soil are one body."""
     if slot != "soil" or parts.cap is None:
-        load = load_of(parts.the_block, options)
-        return AloneSetting(load, support_of(parts[slot], load))
-    cap = parts.the_cap
-    load = BaseLoad(one_body(parts.the_block, cap), options)
+        load = load_of(parts.block_si, options)
+        return SingleBodySetting(load, support_of(parts[slot], load))
+    cap = parts.cap_si
+    load = BaseLoad(block_with_cap(parts.block_si, cap), options)
     offset = cap.half_height - load.body.centre_height
-    return AloneSetting(load, support_of(parts[slot], load), cap_offset=offset)
+    return SingleBodySetting(load, support_of(parts[slot], load), cap_offset=offset)
 
 
-def _alone(slot: str, parts: Parts, options: Options) -> AloneSetting:
-    """Put a block on the base in a slot, on which it slips where that has friction."""
-    held, friction = _held(slot, parts, options), friction_under(parts[slot], options)
+def _single_body(slot: str, parts: Parts, options: Options) -> SingleBodySetting:
+    """Put a block on a base, on which it slips if that has friction."""
+    held, friction = _block_on_base(slot, parts, options), base_friction(parts[slot], options)
     if friction is None:
         return held
     if options.small:
-        raise AssemblyError([SMALL_SLIDING])
-    return SlidingAloneSetting(held.load, held.support, friction, cap_offset=held.cap_offset)
+        raise AssemblyError([SLIDING_AT_SMALL_ROTATION])
+    return SlidingBodySetting(held.load, held.support, friction, cap_offset=held.cap_offset)
 
 
-def _refuse_twins(parts: Parts, upper: AloneSetting, lower: AloneSetting) -> None:
+def _refuse_shared_columns(
+    parts: Parts, upper: SingleBodySetting, lower: SingleBodySetting
+) -> None:
     """Refuse two bases with a column of the same name: one column would be lost."""
-    shown = [
+    names = [
         {column.name for column in each.support.base_numbers.columns} for each in (upper, lower)
     ]
-    twins = sorted(shown[0] & shown[1])
-    if twins:
+    shared = sorted(names[0] & names[1])
+    if shared:
         pads, soil = (type(parts[slot]).__name__ for slot in ("pads", "soil"))
-        fault = f"{pads} and {soil} both show {' and '.join(twins)}; give those of one other names"
+        fault = f"{pads} and {soil} both show {' and '.join(shared)}; give those of one other names"
         raise AssemblyError([fault])
 
 
-def _stacked(kind: type[StackedSetting], parts: Parts, options: Options) -> StackedSetting:
+def _block_on_cap(
+    kind: type[BlockOnCapSetting], parts: Parts, options: Options
+) -> BlockOnCapSetting:
     """Put a block on pads on a cap on soil."""
-    upper, lower = (_held(slot, parts, options) for slot in ("pads", "soil"))
-    _refuse_twins(parts, upper, lower)
-    return kind(upper.load, upper, lower, parts.the_cap)
+    upper, lower = (_block_on_base(slot, parts, options) for slot in ("pads", "soil"))
+    _refuse_shared_columns(parts, upper, lower)
+    return kind(upper.load, upper, lower, parts.cap_si)
 
 
-def _coupled(parts: Parts, options: Options) -> StackedSetting:
+def _coupled_block_on_cap(parts: Parts, options: Options) -> BlockOnCapSetting:
     """Put a block on pads on a cap on soil; block and cap slip where their bases have friction."""
-    held, bases = _stacked(CoupledSetting, parts, options), (parts["pads"], parts["soil"])
-    pads, soil = (friction_under(base, options) for base in bases)
+    held, bases = _block_on_cap(CoupledSetting, parts, options), (parts["pads"], parts["soil"])
+    pads, soil = (base_friction(base, options) for base in bases)
     own = any(isinstance(base, OwnBase) for base in bases)  # these do not slip
     if own or (pads is None and soil is None):
         return held
     if options.small:
-        raise AssemblyError([SMALL_SLIDING])
+        raise AssemblyError([SLIDING_AT_SMALL_ROTATION])
     return SlidingCoupledSetting(
-        held.load, held.upper, held.lower, held.cap, frictions=(pads or HELD, soil or HELD)
+        held.load, held.upper, held.lower, held.cap, frictions=(pads or NO_SLIP, soil or NO_SLIP)
     )
 
 
-def _upon_one_another(slot: str, parts: Parts, options: Options) -> StackSetting:
+def _stack(slot: str, parts: Parts, options: Options) -> StackSetting:
     """Put a stack, or a block with restrainers, on the base in a slot."""
     base, stack = parts.components.get(slot, RigidGround()), parts.stack
     if stack is None:
         refuse_options("a block with restrainers", options, small=False)
-        blocks, offsets, bases = (parts.the_block,), (0.0,), (base,)
+        blocks, offsets, bases = (parts.block_si,), (0.0,), (base,)
     else:
         refuse_options("a Stack", options, small=not parts.links)
         blocks, offsets, bases = stack.si.bodies, stack.si.offsets, (*stack.interfaces, base)
     held = stack_setting(blocks, offsets, bases, options, parts.links)
     if stack is None and isinstance(base, RigidGround):
-        return tied_on_ground(base, held)
-    return stack_on(bases, held)
+        return restrained_setting(base, held)
+    return sliding_stack_setting(bases, held)
 
 
-_STACK = frozenset({"block", "pads", "cap", "soil"})
+_BLOCK_ON_CAP = frozenset({"block", "pads", "cap", "soil"})
 
-_SHIPPED: Final = (
+_BUILTIN_SCENES: Final = (
     Scene(
         "Block (on rigid ground; RigidGround(...) to choose its restitution, or friction)",
         frozenset({"block"}),
         rigid_ground_setting,
     ),
     Scene("Block + RearWall (on rigid ground)", frozenset({"block", "wall"}), rear_wall_setting),
-    Scene("Block + TwoSpringSupport", frozenset({"block", "pads"}), partial(_alone, "pads")),
-    Scene("Block + WinklerSoil", frozenset({"block", "soil"}), partial(_alone, "soil")),
+    Scene("Block + TwoSpringSupport", frozenset({"block", "pads"}), partial(_single_body, "pads")),
+    Scene("Block + WinklerSoil", frozenset({"block", "soil"}), partial(_single_body, "soil")),
     Scene(
         "Block + CushionCap + WinklerSoil (block and cap as one body)",
         frozenset({"block", "cap", "soil"}),
-        partial(_alone, "soil"),
+        partial(_single_body, "soil"),
     ),
     Scene(
         "Block + TwoSpringSupport + CushionCap + WinklerSoil, coupling='coupled'",
-        _STACK,
-        _coupled,
+        _BLOCK_ON_CAP,
+        _coupled_block_on_cap,
         Coupling.COUPLED,
     ),
     Scene(
         "Block + TwoSpringSupport + CushionCap + WinklerSoil, coupling='cascade'",
-        _STACK,
-        partial(_stacked, CascadeSetting),
+        _BLOCK_ON_CAP,
+        partial(_block_on_cap, CascadeSetting),
         Coupling.CASCADE,
     ),
     Scene("RockingFrame (on rigid ground)", frozenset({"frame"}), rocking_frame_setting),
@@ -173,18 +177,18 @@ _SHIPPED: Final = (
         frozenset({"frame", RESTRAINER}),
         rocking_frame_setting,
     ),
-    Scene("Stack (on rigid ground)", frozenset({"stack"}), partial(_upon_one_another, "ground")),
+    Scene("Stack (on rigid ground)", frozenset({"stack"}), partial(_stack, "ground")),
     Scene(
         "Stack + TwoSpringSupport",
         frozenset({"stack", "pads"}),
-        partial(_upon_one_another, "pads"),
+        partial(_stack, "pads"),
     ),
-    Scene("Stack + WinklerSoil", frozenset({"stack", "soil"}), partial(_upon_one_another, "soil")),
+    Scene("Stack + WinklerSoil", frozenset({"stack", "soil"}), partial(_stack, "soil")),
     *(
         Scene(
             f"{upper} + {lower}Restrainer (one or several)",
             frozenset({slot, under, RESTRAINER}) - {"ground"},
-            partial(_upon_one_another, under),
+            partial(_stack, under),
         )
         for upper, slot in (("Block", "block"), ("Stack", "stack"))
         for lower, under in (
@@ -196,45 +200,45 @@ _SHIPPED: Final = (
 )
 
 
-_OWN: Final[dict[str, Scene]] = {}
-"""Scenes of users' own, by the full names of their classes."""
+_USER_SCENES: Final[dict[str, Scene]] = {}
+"""Scenes that users have registered, by the full names of their classes."""
 
 
 def scenes() -> tuple[Scene, ...]:
     """Return all scenes, user-defined scenes last."""
-    return (*_SHIPPED, *_OWN.values())
+    return (*_BUILTIN_SCENES, *_USER_SCENES.values())
 
 
 def add_scene(kind: type[OwnScene]) -> None:
     """Add a user-defined scene to the table; it replaces one whose class has the same full name."""
     title = " + ".join(part.__name__ for part in kind.made_of.values())
     name = f"{kind.__module__}.{kind.__qualname__}"
-    _OWN[name] = Scene(
+    _USER_SCENES[name] = Scene(
         f"{title} ({kind.__name__})",
         frozenset(kind.made_of),
-        partial(_own, kind),
+        partial(_user_scene, kind),
         made_of=kind.made_of,
     )
 
 
-def twin_of(kind: type[OwnScene]) -> str | None:
+def scene_of_same_parts(kind: type[OwnScene]) -> str | None:
     """Return the title of another scene that is made of the same parts, if there is one."""
     own = f"{kind.__module__}.{kind.__qualname__}"
     titles = (
         scene.title
-        for name, scene in _OWN.items()
+        for name, scene in _USER_SCENES.items()
         if name != own and scene.made_of == dict(kind.made_of)
     )
     return next(titles, None)
 
 
-def _own(kind: type[OwnScene], parts: Parts, options: Options) -> OwnScene:
+def _user_scene(kind: type[OwnScene], parts: Parts, options: Options) -> OwnScene:
     """Make the setting of a user-defined scene."""
-    found = kind(load_of(parts.the_block, options), parts)
-    faults = found.misfits()
+    setting = kind(load_of(parts.block_si, options), parts)
+    faults = setting.misfits()
     if faults:
         raise AssemblyError(faults)
-    return found
+    return setting
 
 
 @dataclass(frozen=True)
@@ -256,19 +260,19 @@ class Assembly:
         return self.setting.compile()
 
     @cached_property
-    def doubts(self) -> list[str]:
+    def setting_cautions(self) -> list[str]:
         """Warnings about the scene."""
         return [
             *self.setting.cautions(),
-            *contradictions(self.parts),
-            *unused(self.parts, self.options),
+            *depth_and_point_cautions(self.parts),
+            *unused_option_cautions(self.parts, self.options),
         ]
 
     @cached_property
     def cautions(self) -> list[str]:
         """Warnings about the scene and its parts, each once."""
         of_parts = [text for part in self.parts.structural() for text in part.cautions()]
-        return list(dict.fromkeys([*of_parts, *self.doubts]))
+        return list(dict.fromkeys([*of_parts, *self.setting_cautions]))
 
     @cached_property
     def description(self) -> str:
@@ -304,28 +308,28 @@ def assemble(
     faults: list[str] = []
     sorted_parts = sort_parts(parts, faults)
     options = Options(
-        read_option(Restraint, restraint, "restraint", wrong := []),
-        read_option(Rotation, rotation, "rotation", wrong),
-        read_option(Coupling, coupling, "coupling", wrong),
-        read_measured(gravity, "gravity", wrong),
-        read_measured(inclination, "inclination", wrong),
-        read_option(Sliding, sliding, "sliding", wrong),
+        read_option(Restraint, restraint, "restraint", option_faults := []),
+        read_option(Rotation, rotation, "rotation", option_faults),
+        read_option(Coupling, coupling, "coupling", option_faults),
+        read_number(gravity, "gravity", option_faults),
+        read_number(inclination, "inclination", option_faults),
+        read_option(Sliding, sliding, "sliding", option_faults),
     )
-    return assembly_of(sorted_parts, options, faults, wrong)
+    return assemble_parts(sorted_parts, options, faults, option_faults)
 
 
-def assembly_of(
-    parts: Parts, options: Options, faults: Sequence[str] = (), wrong: Sequence[str] = ()
+def assemble_parts(
+    parts: Parts, options: Options, faults: Sequence[str] = (), option_faults: Sequence[str] = ()
 ) -> Assembly:
     """Check sorted parts against one another, and find the scene they make."""
-    faults = [*faults, *misfits(parts)]
+    faults = [*faults, *combination_faults(parts)]
     scene = next((scene for scene in scenes() if scene.fits(parts, options.coupling)), None)
     if scene is None and not faults:
         names = " and ".join(type(part).__name__ for part in parts.structural())
         faults.append(f"no scene is made of {names} together")
     # the list of scenes helps where the parts make none, not where an option is wrong
     supported = [scene.title for scene in scenes()] if faults else []
-    faults += [*missizes(parts, options), *wrong]
+    faults += [*size_faults(parts, options), *option_faults]
     if faults or scene is None:
         raise AssemblyError(faults, supported)
     made = Assembly(parts, options, scene)

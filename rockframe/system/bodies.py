@@ -18,7 +18,7 @@ from rockframe.signals.arrays import Array
 from rockframe.system.options import RESTRAINT_CODES, Options
 
 ROUNDING = 1e-12
-"""Excess over the greatest restitution up to which it is rounding."""
+"""Excess over the greatest restitution that counts as rounding error."""
 
 
 class Restitutions(NamedTuple):
@@ -34,7 +34,7 @@ class Restitutions(NamedTuple):
         return f"{self.left:.6g} (onto the left corner), {self.right:.6g} (onto the right one)"
 
 
-def restitution_on(base: Component | None, greatest: Restitutions) -> Restitutions:
+def base_restitution(base: Component | None, greatest: Restitutions) -> Restitutions:
     """Return the restitutions on a base: eps_max of Eq. (4) unless the user chose one."""
     value = None if base is None else base.si.restitution
     return greatest if value is None else Restitutions(value, value)
@@ -42,13 +42,13 @@ def restitution_on(base: Component | None, greatest: Restitutions) -> Restitutio
 
 def restitution_cautions(chosen: Restitutions, greatest: Restitutions) -> list[str]:
     """Warn of a restitution above eps_max, Eq. (4)."""
-    excess, most, restitution = max(
+    excess, maximum, restitution = max(
         (one - max(limit, 0.0), limit, one) for one, limit in zip(chosen, greatest, strict=True)
     )
     if excess <= ROUNDING:
         return []
     return [
-        f"restitution {restitution:.6g} exceeds eps_max = {most:.6g} of Eq. (4), the greatest "
+        f"restitution {restitution:.6g} exceeds eps_max = {maximum:.6g} of Eq. (4), the greatest "
         "of a rigid block that rolls over from corner to corner without bouncing"
     ]
 
@@ -88,16 +88,15 @@ class SupportedBody(BodyGeometry):
         beside, lift = self.eccentricity * cosine, self.eccentricity * sine
         if small:  # widths to first order
             lift = np.zeros_like(sine)
-        press, thrust = values["vertical_reaction"], values["horizontal_reaction"]
-        moment = (self.centre_height * sine + beside) * press
-        moment = moment - (self.centre_height * cosine - lift) * thrust
+        moment = (self.centre_height * sine + beside) * values["vertical_reaction"]
+        moment = moment - (self.centre_height * cosine - lift) * values["horizontal_reaction"]
         # in a cascade, the acceleration of the second stage alone
-        spin = values.get("angular_acceleration_on_base", values["angular_acceleration"])
-        moment = moment - self.inertia * spin
+        angular = values.get("angular_acceleration_on_base", values["angular_acceleration"])
+        moment = moment - self.inertia * angular
         return moment + values[LINK_MOMENT] if LINK_MOMENT in values else moment
 
-    def sunk(self, rotation: Array, height: Array, *, small: bool) -> Array:
-        """Return how much lower than at rest the middle of the base is, :eq:`eq-settlement` [m].
+    def base_settlement(self, rotation: Array, height: Array, *, small: bool) -> Array:
+        """Return the settlement of the middle of the base from rest, :eq:`eq-settlement` [m].
 
         `height` is the rise of the centre of mass from rest.
         """
@@ -107,7 +106,9 @@ class SupportedBody(BodyGeometry):
             beside = self.eccentricity * np.sin(rotation) if self.eccentricity != 0.0 else beside
         return -height - beside - 2.0 * self.centre_height * half**2
 
-    def arms(self, x: Array, y: Array, values: Mapping[str, Any]) -> tuple[Array, Array]:
+    def relative_to_centre(
+        self, x: Array, y: Array, values: Mapping[str, Any]
+    ) -> tuple[Array, Array]:
         """Return x and y of points from the centre of mass, not from the middle of the base [m]."""
         return x - self.eccentricity, y - self.centre_height
 
@@ -127,28 +128,28 @@ class SupportedBody(BodyGeometry):
 
 
 @dataclass(frozen=True)
-class OnCorners(SupportedBody):
-    """A body on rigid ground on which forces act besides its weight and those of its base."""
+class CornerSupportedBody(SupportedBody):
+    """A body on the corners of its base on rigid ground, with other forces, as of a wall."""
 
     @property
-    def foot(self) -> float:
-        """Half the width of the base that bears [m]."""
+    def contact_half_width(self) -> float:
+        """Half the width of the base in contact [m]."""
         return self.half_width
 
     def base_moment(
         self, values: Mapping[str, Any], sine: Array, cosine: Array, *, small: bool
     ) -> Array:
-        """Return the moment of the base about its middle, by the corners that bear [N m]."""
+        """Return the moment of the base about its middle, of the corner reactions [N m]."""
         shift = values["right_reaction"] - values["left_reaction"]
         lift = 0.0 if small else values["horizontal_reaction"] * np.abs(sine)
-        return self.foot * (shift * cosine + lift)
+        return self.contact_half_width * (shift * cosine + lift)
 
-    def sunk(self, rotation: Array, height: Array, *, small: bool) -> Array:
-        """Return how much lower than at rest the middle of the base is [m].
+    def base_settlement(self, rotation: Array, height: Array, *, small: bool) -> Array:
+        """Return the settlement of the middle of the base from rest [m].
 
-        It is zero or negative, as the body rotates about a corner and the middle rises.
+        It is zero or negative: the body rotates about a corner, and the middle rises.
         """
-        return -self.foot * np.abs(rotation if small else np.sin(rotation))
+        return -self.contact_half_width * np.abs(rotation if small else np.sin(rotation))
 
 
 class OverturningAngles(NamedTuple):
@@ -172,7 +173,7 @@ class Cap:
     inertia: float
 
 
-def body_of_block(block: BlockSI, kind: type[SupportedBody] = SupportedBody) -> SupportedBody:
+def block_body(block: BlockSI, kind: type[SupportedBody] = SupportedBody) -> SupportedBody:
     """Return a block as a body."""
     return kind(
         block.half_width, block.centre_height, block.mass, block.inertia, block.shape_factor,
@@ -189,28 +190,28 @@ class PlacedMass(NamedTuple):
     y: float  # and above it
 
 
-def with_mass(body: SupportedBody, mass: float, x: float, y: float) -> SupportedBody:
+def with_point_mass(body: SupportedBody, mass: float, x: float, y: float) -> SupportedBody:
     """Return a body with an added point mass [kg] at x and y from the middle of its base [m]."""
     own = PlacedMass(body.mass, body.inertia, body.eccentricity, body.centre_height)
-    return joined_body(body.half_width, (own, PlacedMass(mass, 0.0, x, y)))
+    return combine_masses(body.half_width, (own, PlacedMass(mass, 0.0, x, y)))
 
 
-def cap_under(block: BlockSI, cap: CushionCapSI) -> Cap:
+def block_cap(block: BlockSI, cap: CushionCapSI) -> Cap:
     """Return a cap in SI units; it is as wide as the block unless its width is given."""
     width = cap.width if cap.width is not None else block.width
     return Cap(0.5 * width, 0.5 * cap.height, cap.mass_at(width), cap.inertia_at(width))
 
 
-def one_body(block: BlockSI, cap: Cap) -> SupportedBody:
+def block_with_cap(block: BlockSI, cap: Cap) -> SupportedBody:
     """Return block and cap as one body, :eq:`eq-one-body`."""
     block_height = 2.0 * cap.half_height + block.centre_height
     upper = PlacedMass(block.mass, block.inertia, block.eccentricity, block_height)
     lower = PlacedMass(cap.mass, cap.inertia, 0.0, cap.half_height)
-    return joined_body(cap.half_width, (upper, lower))
+    return combine_masses(cap.half_width, (upper, lower))
 
 
-def joined_body(half_width: float, masses: Sequence[PlacedMass]) -> SupportedBody:
-    """Return the body on a base that rigidly joined masses make."""
+def combine_masses(half_width: float, masses: Sequence[PlacedMass]) -> SupportedBody:
+    """Return rigidly connected masses as one body on a base."""
     # sums without math.fsum, since a mass may have a value in each of many cases
     mass = sum((one.mass for one in masses), 0.0)
     beside = sum((one.mass * one.x for one in masses), 0.0) / mass
@@ -222,8 +223,8 @@ def joined_body(half_width: float, masses: Sequence[PlacedMass]) -> SupportedBod
     return SupportedBody(half_width, height, mass, inertia, shape_factor, beside)
 
 
-_KEPT: Final = 64
-"""Size of the cache of loads, for sweeps that change the base under a block."""
+_CACHED_LOADS: Final = 64
+"""Size of the cache of loads, for sweeps that change only the base under a block."""
 
 
 @dataclass(frozen=True)
@@ -248,7 +249,7 @@ class BaseLoad:
 
     @property
     def thrust(self) -> float:
-        """Force of the base, along itself, that keeps the body at rest from sliding [N]."""
+        """Tangential force of the base that balances the weight of the body at rest [N]."""
         return self.body.mass * self.options.slope.along_gravity
 
     @cached_property
@@ -280,10 +281,10 @@ def load_of(block: BlockSI, options: Options) -> BaseLoad:
     """Return a block as a load; one object for all scenes that differ only in their bases."""
     numbers = (*vars(block).values(), options.gravity, options.inclination)
     if any(isinstance(number, Many) for number in numbers):
-        return BaseLoad(body_of_block(block), options)
-    return _kept_load(block, options)
+        return BaseLoad(block_body(block), options)
+    return _cached_load(block, options)
 
 
-@lru_cache(maxsize=_KEPT)
-def _kept_load(block: BlockSI, options: Options) -> BaseLoad:
-    return BaseLoad(body_of_block(block), options)
+@lru_cache(maxsize=_CACHED_LOADS)
+def _cached_load(block: BlockSI, options: Options) -> BaseLoad:
+    return BaseLoad(block_body(block), options)

@@ -1,4 +1,4 @@
-"""Geometry of a scene, upright and at rest: places and outlines of parts, also for notebooks."""
+"""Geometry of a scene, upright and at rest: positions and outlines of parts; notebook drawings."""
 
 from dataclasses import dataclass
 from typing import Final, NamedTuple
@@ -11,7 +11,7 @@ from rockframe.components.rocking_frame import column_places, frame_outlines
 from rockframe.notebook import Polygon, arguments_in_words, card, drawing
 from rockframe.signals.arrays import Array
 from rockframe.system.assembly import Assembly
-from rockframe.system.rocking_frame import TiedFrameSetting
+from rockframe.system.rocking_frame import TendonFrameSetting
 from rockframe.system.setting import Setting
 from rockframe.system.stack import StackSetting
 from rockframe.units.shown import in_degrees
@@ -46,34 +46,34 @@ class Geometry:
     centre: tuple[float, float]  # the block's centre of mass, from the middle of its own base
     # centre of mass of the body whose motion results give, from the middle of the lowest base: of
     # the block, or of block and cap where these are one body
-    moved: tuple[float, float]
+    response_centre: tuple[float, float]
     small_rotation: bool  # whether the kinematics are expanded in the rotation
     inclination: float = 0.0  # angle by which the base line rises to the right [rad]
     members: tuple[Array, ...] = ()  # outlines of a frame's members, from the block's base
     cap: tuple[float, float] | None = None  # half the width of the cap, and its height
     # settlements of pads and of soil under the weight, where the scene has them
-    pads_sink: float | None = None
-    bed_sinks: float | None = None
-    stacked: bool = False  # whether pads lie between block and cap, which then move apart
+    pad_settlement: float | None = None
+    soil_settlement: float | None = None
+    stacked: bool = False  # whether there are pads between block and cap
     lower: tuple[LowerBody, ...] = ()  # bodies of a stack beneath the block, from the top down
-    ties: tuple[LinkedPoints, ...] = ()  # points that restrainers link
+    links: tuple[LinkedPoints, ...] = ()  # points that restrainers link
     # places of the columns under a beam, to the right of the middle; the block is one column
     columns: tuple[float, ...] = ()
     beam: Array | None = None  # outline of the beam on the columns
     wall: Array | None = None  # outline of a wall behind the block
 
     @property
-    def level(self) -> float:
+    def base_level(self) -> float:
         """Height of the block's base above the lowest base [m]."""
         if self.lower:
             return float(self.lower[0].outline[:, 1].max())
         return 0.0 if self.cap is None else self.cap[1]
 
     @property
-    def place(self) -> Array:
+    def base_position(self) -> Array:
         """The middle of the block's base, shape (2,) [m]."""
-        beside = self.moved[0] - self.centre[0] if self.lower else 0.0
-        return np.array([beside, self.level])
+        beside = self.response_centre[0] - self.centre[0] if self.lower else 0.0
+        return np.array([beside, self.base_level])
 
     @property
     def height(self) -> float:
@@ -92,7 +92,7 @@ class Geometry:
     @property
     def block(self) -> Array:
         """Outline of the block, from the middle of the lowest base [m]."""
-        return self.outline + self.place
+        return self.outline + self.base_position
 
     @property
     def cap_outline(self) -> Array | None:
@@ -110,34 +110,34 @@ def geometry_of(scene: Assembly) -> Geometry:
     """Return the geometry of a scene."""
     parts, setting = scene.parts, scene.setting
     if parts.stack is not None:
-        return _of_stack(parts.stack, scene)
-    block, frame = parts.the_block, None if parts.frame is None else parts.frame.si
-    cap = None if parts.cap is None else parts.the_cap
+        return _stack_geometry(parts.stack, scene)
+    block, frame = parts.block_si, None if parts.frame is None else parts.frame.si
+    cap = None if parts.cap is None else parts.cap_si
     body, sinks = setting.body, [each.settlement for each in setting.supports]
     level = 2.0 * cap.half_height if setting.stacked and cap is not None else 0.0
     return Geometry(
         outline=rectangle(block.half_width, block.height),
-        members=members_of(parts.block),
+        members=member_outlines(parts.block),
         half_width=block.half_width,
         centre=(block.eccentricity, block.centre_height),
-        moved=(body.eccentricity, level + body.centre_height),
+        response_centre=(body.eccentricity, level + body.centre_height),
         cap=None if cap is None else (cap.half_width, 2.0 * cap.half_height),
-        pads_sink=None if parts.pads is None else sinks[0],
-        bed_sinks=None if parts.soil is None else sinks[-1],
+        pad_settlement=None if parts.pads is None else sinks[0],
+        soil_settlement=None if parts.soil is None else sinks[-1],
         stacked=setting.stacked,
         inclination=scene.options.inclination,
         small_rotation=scene.options.small,
-        ties=_ties_of(setting),
+        links=_linked_points(setting),
         columns=() if frame is None else tuple(column_places(frame)),
         beam=None if frame is None else np.array(frame_outlines(frame)[-1]),
-        wall=_of_wall(parts.wall, block),
+        wall=_wall_outline(parts.wall, block),
     )
 
 
-def _of_wall(
+def _wall_outline(
     wall: RearWall | None, body: BlockSI, place: tuple[float, float] = (0.0, 0.0)
 ) -> Array | None:
-    """Return the outline by which a wall is drawn: as high as its body, and as thick as its base.
+    """Return the outline of a wall in drawings: as high and as thick as its body.
 
     `place` is the middle of the body's base, from the middle of the lowest one.
     """
@@ -147,16 +147,16 @@ def _of_wall(
     return rectangle(body.half_width, body.height, place[0] + beside, place[1])
 
 
-def _ties_of(setting: Setting) -> tuple[LinkedPoints, ...]:
+def _linked_points(setting: Setting) -> tuple[LinkedPoints, ...]:
     """Return the points that restrainers link."""
-    if isinstance(setting, TiedFrameSetting):  # along the axis of each column
+    if isinstance(setting, TendonFrameSetting):  # along the axis of each column
         top = setting.frame.column.height + setting.frame.beam_height
         axes = column_places(setting.frame)
         return tuple(LinkedPoints(np.array([(x, top), (x, 0.0)]), (0, -1)) for x in axes)
     if not isinstance(setting, StackSetting):
         return ()
     found: list[LinkedPoints] = []
-    for one in setting.ties[: len(setting.link_names)]:
+    for one in setting.links[: len(setting.link_names)]:
         points = np.array(one.ends)
         if isinstance(one.part, Tendon):  # from the top of its body through it
             points[0, 1] += setting.bodies[one.on].centre_height + setting.tops[one.on]
@@ -164,7 +164,7 @@ def _ties_of(setting: Setting) -> tuple[LinkedPoints, ...]:
     return tuple(found)
 
 
-def _of_stack(stack: Stack, scene: Assembly) -> Geometry:
+def _stack_geometry(stack: Stack, scene: Assembly) -> Geometry:
     """Return the geometry of a stack; bases between its bodies are not drawn."""
     lower: list[LowerBody] = []
     beside = level = 0.0
@@ -183,16 +183,16 @@ def _of_stack(stack: Stack, scene: Assembly) -> Geometry:
         outline=rectangle(block.half_width, block.height),
         half_width=block.half_width,
         centre=(block.eccentricity, block.centre_height),
-        moved=(beside + block.eccentricity, level + block.centre_height),
-        bed_sinks=None if scene.parts.soil is None else scene.setting.supports[-1].settlement,
+        response_centre=(beside + block.eccentricity, level + block.centre_height),
+        soil_settlement=None if scene.parts.soil is None else scene.setting.supports[-1].settlement,
         small_rotation=scene.options.small,
         lower=tuple(lower),
-        ties=_ties_of(scene.setting),
-        wall=_of_wall(wall, bodies[k], place),
+        links=_linked_points(scene.setting),
+        wall=_wall_outline(wall, bodies[k], place),
     )
 
 
-def members_of(block: object) -> tuple[Array, ...]:
+def member_outlines(block: object) -> tuple[Array, ...]:
     """Return the outlines of a frame's members whose sizes are known [m]."""
     if not isinstance(block, FrameEquivalent):
         return ()
@@ -203,7 +203,7 @@ def members_of(block: object) -> tuple[Array, ...]:
     )
 
 
-_PAD: Final = 0.06
+_PAD_THICKNESS: Final = 0.06
 """Thickness of pads in drawings, over the width of the base."""
 
 
@@ -211,7 +211,7 @@ def system_html(scene: Assembly, name: str) -> str:
     """Return a drawing and the numbers of a scene as HTML."""
     setting, options = scene.setting, scene.options
     rows = {"model": setting.model}
-    pieces = [one for part in scene.parts.structural() for one in _pieces(part)]
+    pieces = [one for part in scene.parts.structural() for one in _named_parts(part)]
     for number, (words, part) in enumerate(pieces):
         alike = [other for other, _ in pieces[: number + 1]].count(words)
         numbers = arguments_in_words(part.to_dict())
@@ -227,10 +227,10 @@ def system_html(scene: Assembly, name: str) -> str:
         rows["inclination"] = in_degrees(options.inclination)
     if scene.parts.motion is not None:
         rows["motion"] = scene.parts.motion.name
-    return card(name, rows, drawing(shapes_of(geometry_of(scene))))
+    return card(name, rows, drawing(scene_polygons(geometry_of(scene))))
 
 
-def _pieces(part: Component) -> list[tuple[str, Component]]:
+def _named_parts(part: Component) -> list[tuple[str, Component]]:
     """Return the bodies and bases of which a part consists, then the part, each with its name."""
     found: list[tuple[str, Component]] = [(type(part).__name__, part)]
     if isinstance(part, RockingFrame):
@@ -242,15 +242,15 @@ def _pieces(part: Component) -> list[tuple[str, Component]]:
     return [*bodies, *bases, *found]
 
 
-def shapes_of(geometry: Geometry) -> list[Polygon]:
+def scene_polygons(geometry: Geometry) -> list[Polygon]:
     """Return the shapes of a scene's parts, upright and at rest, from back to front."""
     half, width = geometry.base_half_width, 2.0 * geometry.half_width
-    pad = 0.0 if geometry.pads_sink is None else _PAD * width
+    pad = 0.0 if geometry.pad_settlement is None else _PAD_THICKNESS * width
     lift = np.array([0.0, pad])
     below = 0.0 if geometry.stacked else pad
     reach, depth = 1.7 * half, 0.5 * half
     band = rectangle(reach, depth, y=-depth - below)
-    found = [("ground" if geometry.bed_sinks is None else "soil", band)]
+    found = [("ground" if geometry.soil_settlement is None else "soil", band)]
     if geometry.wall is not None:
         found.append(("ground", geometry.wall))
     if geometry.cap_outline is not None:
@@ -258,7 +258,7 @@ def shapes_of(geometry: Geometry) -> list[Polygon]:
     found += [("cap", one.outline) for one in geometry.lower]
     raised = lift if geometry.stacked else np.zeros(2)
     if pad:
-        level = geometry.level if geometry.stacked else -pad
+        level = geometry.base_level if geometry.stacked else -pad
         for side in (-0.83, 0.83):
             place = side * geometry.half_width
             found.append(("pad", rectangle(0.17 * geometry.half_width, pad, place, level)))
@@ -267,9 +267,9 @@ def shapes_of(geometry: Geometry) -> list[Polygon]:
         found.append(("member", geometry.beam))
     else:
         found.append(("block", geometry.block + raised))
-    level_up = geometry.place
-    found += [("member", member + level_up + raised) for member in geometry.members]
-    centres = [np.array([geometry.centre]) + level_up + raised]
+    base = geometry.base_position
+    found += [("member", member + base + raised) for member in geometry.members]
+    centres = [np.array([geometry.centre]) + base + raised]
     centres += [np.array([one.centre]) for one in geometry.lower]
     if geometry.stacked and geometry.cap is not None:
         centres.append(np.array([(0.0, 0.5 * geometry.cap[1])]))

@@ -62,7 +62,7 @@ class OwnLink(PointLink):
 
 Point = tuple[float, float]
 ROUNDING: Final = 1e-14
-"""Distance of two points that counts as zero, over their distance from the lowest base."""
+"""Distance of two points below which it is zero, over their distance from the lowest base."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ class PlacedLink:
     ends: tuple[tuple[float, float], tuple[float, float]]
 
     @property
-    def apart(self) -> tuple[float, float]:
+    def vector(self) -> tuple[float, float]:
         """Vector from the second point to the first [m]."""
         (x, y), (to_x, to_y) = self.ends
         return x - to_x, y - to_y
@@ -89,22 +89,22 @@ class PlacedLink:
     @property
     def length(self) -> float:
         """Distance of the points [m]."""
-        return math.hypot(*self.apart)
+        return math.hypot(*self.vector)
 
     def numbers(self, mass: float) -> LinkNumbers:
         """Return the law, per unit of a mass [kg]."""
         if isinstance(self.part, Restrainer | Tendon):
-            return tie_of(self.part, mass)
+            return tie_law(self.part, mass)
         if isinstance(self.part, OwnLink):
             return self.part.law(mass)
         if isinstance(self.part, RearWall):
             given = self.part.si
             stiffness, damping = given.stiffness / mass, (given.damping or 0.0) / mass
             return LinkNumbers(Bumper(stiffness, damping, given.gap or 0.0), stiffness, damping)
-        return LinkNumbers(SteadyForce(math.hypot(*self.steady) / mass), 0.0)
+        return LinkNumbers(SteadyForce(math.hypot(*self.constant_force) / mass), 0.0)
 
     @property
-    def steady(self) -> tuple[float, float]:
+    def constant_force(self) -> tuple[float, float]:
         """Constant force of a load, to the right and up; zero for any other link [N]."""
         if not isinstance(self.part, Load):
             return 0.0, 0.0
@@ -114,15 +114,16 @@ class PlacedLink:
         """Return the link as the equations take it."""
         to_point = self.to_point if self.to >= 0 else (0.0, 0.0)
         return ChainLink(
-            self.on, self.on_point, self.to, to_point, self.apart, self.numbers(mass), self.along
-        )
+            self.on, self.on_point, self.to, to_point, self.vector, self.numbers(mass),
+            self.fixed_direction,
+        )  # fmt: skip
 
     @property
-    def along(self) -> tuple[float, float]:
+    def fixed_direction(self) -> tuple[float, float]:
         """Fixed direction in which it acts; zero if it acts along the line between its points."""
         if isinstance(self.part, RearWall):
             return self.part.direction, 0.0
-        x, y = self.steady
+        x, y = self.constant_force
         size = math.hypot(x, y) or 1.0
         return -x / size, -y / size
 
@@ -130,7 +131,7 @@ class PlacedLink:
         """Describe which points it links, and by which law."""
         (x, y), (to_x, to_y) = self.ends
         if isinstance(self.part, Load):
-            right, up = self.steady
+            right, up = self.constant_force
             return (
                 f"on body {self.on + 1} at ({x:.6g}, {y:.6g}) m, {right:.6g} N to the right, "
                 f"{-up:.6g} N down"
@@ -148,11 +149,11 @@ class PlacedLink:
             f"{to_y:.6g}) m"
         ]
         if isinstance(self.part, Restrainer | Tendon):
-            found += tie_words(self.part)
+            found += tie_law_words(self.part)
         return ", ".join(found)
 
 
-def tie_words(part: Restrainer | Tendon) -> list[str]:
+def tie_law_words(part: Restrainer | Tendon) -> list[str]:
     """Describe the law of a restrainer or of a tendon."""
     numbers = part.si
     found = [f"{numbers.stiffness:.6g} N/m"]
@@ -170,30 +171,30 @@ def tie_words(part: Restrainer | Tendon) -> list[str]:
     return [*found, "pulls and pushes" if pushes else "pulls only"]
 
 
-def tie_of(part: Restrainer | Tendon, mass: float) -> LinkNumbers:
+def tie_law(part: Restrainer | Tendon, mass: float) -> LinkNumbers:
     """Return the law of a restrainer, :eq:`eq-tie`, or of a tendon, per unit of a mass [kg]."""
     numbers = part.si
     slack, damping = (getattr(numbers, name, None) or 0.0 for name in ("slack", "damping"))
     stiffness, damping = numbers.stiffness / mass, damping / mass
     free = slack - (numbers.preload or 0.0) / numbers.stiffness
-    most = math.inf if numbers.strength is None else numbers.strength / numbers.stiffness
+    limit = math.inf if numbers.strength is None else numbers.strength / numbers.stiffness
     breaking = getattr(numbers, "breaking_elongation", None)
     if breaking is not None:
-        most = breaking - free
+        limit = breaking - free
     pushes = float(getattr(numbers, "compression", False))
-    law = Tie(stiffness, damping, free, most, float(numbers.brittle), pushes)
-    size = most if math.isfinite(most) else 1.0
+    law = Tie(stiffness, damping, free, limit, float(numbers.brittle), pushes)
+    size = limit if math.isfinite(limit) else 1.0
     return LinkNumbers(law, stiffness, damping, (size,))
 
 
-def placed(
+def place_links(
     parts: Sequence[Link],
     bodies: Sequence[SupportedBody],
     tops: Sequence[float],
     offsets: Sequence[float],
 ) -> tuple[PlacedLink, ...]:
     """Return the places of links on stacked bodies; bodies are listed from the top down."""
-    names, faults = link_labels(parts), called_alike(parts)
+    names, faults = link_labels(parts), duplicate_name_faults(parts)
     found = list[PlacedLink]()
     for part, name in zip(parts, names, strict=True):
         on, to = part.si.on_body - 1, _other_body(part, len(bodies))
@@ -211,9 +212,9 @@ def placed(
         if isinstance(part, Load) and not (part.si.vertical or part.si.horizontal):
             continue  # its mass has been added to its body
         bases = [(0.0, 0.0) if k < 0 else base_of(k, bodies, tops, offsets) for k in (on, to)]
-        ends = _ends_of(part, bases[0], bases[1], bodies[on], tops[on])
+        ends = _end_points(part, bases[0], bases[1], bodies[on], tops[on])
         if math.dist(*ends) <= ROUNDING * max(abs(place) for end in ends for place in end):
-            ends = (ends[0], ends[0])  # only rounding of the heights has set them apart
+            ends = (ends[0], ends[0])  # they differ by rounding errors of the heights only
         points = [
             (x, y) if k < 0 else
             (x - base[0] - bodies[k].eccentricity, y - base[1] - bodies[k].centre_height)
@@ -239,7 +240,7 @@ def _other_body(part: Link, count: int) -> int:
     return part.si.on_body if isinstance(part, Tendon) and part.si.on_body < count else -1
 
 
-def _ends_of(
+def _end_points(
     part: Link, base: Point, other: Point, body: SupportedBody, top: float
 ) -> tuple[Point, Point]:
     """Return both points of a link from the middle of the lowest base [m].
@@ -269,21 +270,21 @@ def link_labels(parts: Sequence[Link]) -> list[str]:
     ]
 
 
-def in_one_word(name: str) -> str:
-    """Return the name of a link in axes: restrainer_1 for "restrainer 1"."""
+def axis_name(name: str) -> str:
+    """Return the name of a link in axes of sweeps: restrainer_1 for "restrainer 1"."""
     return re.sub(r"\W", "_", name)
 
 
-def called_alike(parts: Sequence[Link]) -> list[str]:
+def duplicate_name_faults(parts: Sequence[Link]) -> list[str]:
     """Return a fault for each name that several links have."""
-    by_word: dict[str, list[str]] = {}
+    by_axis: dict[str, list[str]] = {}
     for name in link_labels(parts):
-        by_word.setdefault(in_one_word(name), []).append(repr(name))
+        by_axis.setdefault(axis_name(name), []).append(repr(name))
     return [
-        f"two links are called {' and '.join(dict.fromkeys(alike))}"
-        + (f", both {word} as an axis names them" if len({*alike}) > 1 else "")
-        for word, alike in by_word.items()
-        if len(alike) > 1
+        f"two links are called {' and '.join(dict.fromkeys(names))}"
+        + (f", both {axis} as an axis of a sweep" if len({*names}) > 1 else "")
+        for axis, names in by_axis.items()
+        if len(names) > 1
     ]
 
 

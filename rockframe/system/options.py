@@ -64,18 +64,18 @@ PointsLike: TypeAlias = Mapping[str, tuple[QuantityLike, QuantityLike]]
 
 
 @dataclass(frozen=True)
-class Measured:
+class NumericOption:
     """An option that is a number."""
 
     measure: Measure  # kind of quantity
     condition: Condition  # range
-    words: str  # meaning
-    otherwise: float  # default, in SI units
+    description: str  # meaning
+    default: float  # default, in SI units
 
 
-MEASURED: Final = {
-    "gravity": Measured(ACCELERATION, POSITIVE, "acceleration of gravity", STANDARD_GRAVITY),
-    "inclination": Measured(
+NUMERIC_OPTIONS: Final = {
+    "gravity": NumericOption(ACCELERATION, POSITIVE, "acceleration of gravity", STANDARD_GRAVITY),
+    "inclination": NumericOption(
         ANGLE,
         Condition("between -90° and 90°", lambda angle: abs(angle) < 0.5 * math.pi),
         "angle by which the base rises to the right",
@@ -134,16 +134,16 @@ def read_option(kind: type[Option], value: object, name: str, faults: list[str])
         return next(iter(kind))
 
 
-def read_measured(argument: object, name: str, faults: list[str]) -> float:
+def read_number(argument: object, name: str, faults: list[str]) -> float:
     """Return an option that is a number; if it is wrong, add to faults and give the default."""
-    one = MEASURED[name]
+    one = NUMERIC_OPTIONS[name]
     if argument is None:
-        return one.otherwise
+        return one.default
     try:
         value = to_si(argument, one.measure, owner="System", name=name, condition=one.condition)
     except RockframeError as problem:
         faults.append(str(problem))
-        return one.otherwise
+        return one.default
     return value + 0.0  # no negative zero
 
 

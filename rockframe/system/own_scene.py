@@ -63,11 +63,11 @@ class OwnScene(OwnAnswers, Setting):
 
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
         """Return the quasi-static states at rotations [rad]; refused unless overridden."""
-        self._lacks("tells no quasi-static states", "curve(rotations)")
+        self._raise_undefined("tells no quasi-static states", "curve(rotations)")
 
     def equilibrium(self) -> dict[str, float]:
         """Return settlements and reactions at rest; refused unless overridden."""
-        self._lacks("tells nothing of rest", "equilibrium()")
+        self._raise_undefined("tells nothing of rest", "equilibrium()")
 
     def without_small_motion(self) -> str:
         """Say that the scene does not give equations of small motion."""
@@ -80,7 +80,7 @@ class OwnScene(OwnAnswers, Setting):
         sentence = "InitialState: vertical_displacement and vertical_velocity are no start of "
         return [f"{sentence}{self.model}"]
 
-    def _lacks(self, words: str, method: str) -> NoReturn:
+    def _raise_undefined(self, words: str, method: str) -> NoReturn:
         raise AssemblyError([f"{self.model} {words}; it is for its class to give {method}"])
 
     def compile(self) -> ContactModel:
@@ -92,15 +92,15 @@ class OwnScene(OwnAnswers, Setting):
             Sizes of the model do not fit its system; all faults are listed.
         """
         model = super().compile()
-        faults = _faults_of(model)
+        faults = _size_mismatches(model)
         if faults:
             raise AssemblyError([f"{type(self).__name__}: {fault}" for fault in faults])
         return model
 
 
-def _faults_of(model: ContactModel) -> list[str]:
+def _size_mismatches(model: ContactModel) -> list[str]:
     """Compare the sizes of a model's tables with what its system gives at the start."""
-    system, size, still = model.system, model.system.coordinates(), Ground(0.0, 0.0)
+    system, size, ground = model.system, model.system.coordinates(), Ground(0.0, 0.0)
     width = 2 * size + system.variables()
     mode, state, memory = model.initial(Start())
     faults: list[str] = []
@@ -113,20 +113,20 @@ def _faults_of(model: ContactModel) -> list[str]:
         ("rotation_weights", len(model.rotation_weights), size),
         ("guard_tolerance", len(model.guard_tolerance), system.guards()),
     ]
-    if not any(found != wanted for _, found, wanted in counts[:2]):
-        slope = system.accelerate(mode, state, still)
+    if not any(found != required for _, found, required in counts[:2]):
+        slope = system.accelerate(mode, state, ground)
         counts.append(("accelerate", len(slope), width - size + POWERS))
         if len(slope) == width - size + POWERS:
-            guards = system.guards_in(mode, state, slope, still)
-            shown = system.observe(mode, state, slope, still, memory)
+            guards = system.guards_in(mode, state, slope, ground)
+            columns = system.observe(mode, state, slope, ground, memory)
             counts += [
                 ("guards_in: values", len(guards.values), system.guards()),
                 ("guards_in: changes", len(guards.changes), system.guards()),
-                ("observe", len(shown), len(model.columns)),
+                ("observe", len(columns), len(model.columns)),
             ]
     faults += [
-        f"{what} has {found} numbers, but there must be {wanted}"
-        for what, found, wanted in counts
-        if found != wanted
+        f"{what} has {found} numbers, but there must be {required}"
+        for what, found, required in counts
+        if found != required
     ]
     return faults

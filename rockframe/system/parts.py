@@ -25,14 +25,14 @@ from rockframe.components.block_numbers import BlockSI
 from rockframe.components.parameters import Declared
 from rockframe.errors import LabelError, nearest, shown
 from rockframe.motion import GroundMotion
-from rockframe.system.bodies import BaseLoad, Cap, cap_under
+from rockframe.system.bodies import BaseLoad, Cap, block_cap
 from rockframe.system.own_base import OwnBase
 from rockframe.system.rigid_base import RigidBase
 from rockframe.system.support import Support, bed_under, pads_under
 
 
 @dataclass(frozen=True)
-class Kind:
+class PartKind:
     """The slot of a class of parts and, if it is a base, its support."""
 
     slot: str  # slot that its parts fill
@@ -40,76 +40,76 @@ class Kind:
     support: Callable[[Any, BaseLoad], Support] | None = None
 
 
-_KINDS: Final[dict[type, Kind]] = {
-    Block: Kind("block"),
-    FrameEquivalent: Kind("block"),
-    Stack: Kind("stack"),
-    RockingFrame: Kind("frame"),
-    TwoSpringSupport: Kind("pads", pads_under),
-    CushionCap: Kind("cap"),
-    WinklerSoil: Kind("soil", bed_under),
-    RigidGround: Kind("ground", lambda _, load: RigidBase(load)),
-    RearWall: Kind("wall"),
-    Restrainer: Kind("restrainer"),
-    Tendon: Kind("restrainer"),
-    Load: Kind("restrainer"),
-    GroundMotion: Kind("motion"),
+_KINDS: Final[dict[type, PartKind]] = {
+    Block: PartKind("block"),
+    FrameEquivalent: PartKind("block"),
+    Stack: PartKind("stack"),
+    RockingFrame: PartKind("frame"),
+    TwoSpringSupport: PartKind("pads", pads_under),
+    CushionCap: PartKind("cap"),
+    WinklerSoil: PartKind("soil", bed_under),
+    RigidGround: PartKind("ground", lambda _, load: RigidBase(load)),
+    RearWall: PartKind("wall"),
+    Restrainer: PartKind("restrainer"),
+    Tendon: PartKind("restrainer"),
+    Load: PartKind("restrainer"),
+    GroundMotion: PartKind("motion"),
 }
 
 RESTRAINER: Final = "restrainer"
 """The slot of links; further links of a scene have numbered slots."""
-SHIPPED: Final = tuple(dict.fromkeys(kind.slot for kind in _KINDS.values()))
+BUILTIN_SLOTS: Final = tuple(dict.fromkeys(kind.slot for kind in _KINDS.values()))
 """Slots of the package's own parts, in a fixed order; `motion` is the last."""
 
 
 def slots() -> tuple[str, ...]:
     """Return all slots in a fixed order: slots of user-defined scenes come before `motion`."""
-    own = sorted({kind.slot for kind in _KINDS.values()} - set(SHIPPED))
-    return (*SHIPPED[:-1], *own, SHIPPED[-1])
+    own = sorted({kind.slot for kind in _KINDS.values()} - set(BUILTIN_SLOTS))
+    return (*BUILTIN_SLOTS[:-1], *own, BUILTIN_SLOTS[-1])
 
 
-def add_kind(of: type, kind: Kind) -> None:
+def add_part_class(of: type, kind: PartKind) -> None:
     """Add a class of user-defined parts: a link, a base, or a part of a user-defined scene."""
     _KINDS[of] = kind
 
 
-def numbered(slot: str, number: int) -> str:
+def numbered_slot(slot: str, number: int) -> str:
     """Return the slot of the part with a number, from 1, among several parts of one slot."""
     return slot if number == 1 else f"{slot}_{number}"
 
 
-def kind_of_slot(slot: str) -> str:
+def unnumbered_slot(slot: str) -> str:
     """Return a slot without its number: `restrainer` for `restrainer_2`."""
     head, _, number = slot.rpartition("_")
     return head if head == RESTRAINER and number.isdigit() else slot
 
 
-def known_kind(of: type) -> type | None:
-    """Return the nearest class, among a class and its ancestors, that scenes know."""
+def registered_class(of: type) -> type | None:
+    """Return the nearest class, among a class and its ancestors, that is registered for scenes."""
     return next((kind for kind in of.__mro__ if kind in _KINDS), None)
 
 
-def slot_of_kind(of: type) -> str | None:
+def slot_of_class(of: type) -> str | None:
     """Return the slot that parts of a class fill; None if they are not parts."""
-    kind = known_kind(of)
+    kind = registered_class(of)
     return None if kind is None else _KINDS[kind].slot
 
 
-def usual_kind(slot: str) -> type:
+def default_class(slot: str) -> type:
     """Return the class of parts that fills a slot unless another is named."""
     return next(kind for kind, known in _KINDS.items() if known.slot == slot)
 
 
 def support_of(part: Component, load: BaseLoad) -> Support:
     """Return the support that a base forms under a body."""
-    kind = known_kind(type(part))
+    kind = registered_class(type(part))
     make = None if kind is None else _KINDS[kind].support
     if make is None:  # only bases are in the slots of bases
         raise TypeError
     return make(part, load)
 
 
-def _beyond_models(part: Component, known: type) -> list[str]:
+def _subclass_faults(part: Component, known: type) -> list[str]:
     """Return the faults of a part of a derived class whose additions no scene would use."""
     own = type(part)
     # declared parameters only: a property of the same name is none
@@ -129,22 +129,22 @@ def _beyond_models(part: Component, known: type) -> list[str]:
         ]
     between = own.__mro__[: own.__mro__.index(known)]
     if any("support" in vars(kind) for kind in between):
-        return [f"{own.__name__} carries a body in its own way, but {_to_register(own)}"]
+        return [f"{own.__name__} carries a body in its own way, but {_registration_hint(own)}"]
     return []
 
 
-def hint_for(part: object) -> str:
+def part_hint(part: object) -> str:
     """Say how to make a part of something that is not one; empty if that is not known."""
-    if isinstance(part, type) and known_kind(part) is not None:
+    if isinstance(part, type) and registered_class(part) is not None:
         return "; it is the class itself: call it with its values"
     if isinstance(part, OwnBase):
-        return f"; it {_to_register(type(part))}"
+        return f"; it {_registration_hint(type(part))}"
     if isinstance(part, Component):
         return "; no scene that is registered is made of it"
     return ""
 
 
-def _to_register(kind: type) -> str:
+def _registration_hint(kind: type) -> str:
     if issubclass(kind, OwnBase):
         return f"is not registered; call rockframe.register({kind.__name__}) first"
     return "is no OwnBase; derive it from rockframe.extension.OwnBase, and register it"
@@ -176,9 +176,9 @@ class Parts:
 
     def __post_init__(self) -> None:
         found = dict(self.filled)
-        vars(self).update({slot: found.get(slot) for slot in SHIPPED if slot != RESTRAINER})
+        vars(self).update({slot: found.get(slot) for slot in BUILTIN_SLOTS if slot != RESTRAINER})
         components = {slot: part for slot, part in found.items() if slot != "motion"}
-        kinds = {slot: kind_of_slot(slot) for slot in components}
+        kinds = {slot: unnumbered_slot(slot) for slot in components}
         stiff = self.wall if self.wall is not None and not self.wall.elastic else None
         links = [one for one in components.values() if isinstance(one, Link) and one is not stiff]
         signature = frozenset(kinds.values()) - {"ground"}
@@ -186,7 +186,9 @@ class Parts:
             signature = signature - {"wall"} | {RESTRAINER}
         vars(self).update(
             components=components,
-            own={slot: components[slot] for slot, kind in kinds.items() if kind not in SHIPPED},
+            own={
+                slot: components[slot] for slot, kind in kinds.items() if kind not in BUILTIN_SLOTS
+            },
             links=tuple(sorted(links, key=lambda part: isinstance(part, Load))),
             signature=signature,
         )
@@ -197,7 +199,7 @@ class Parts:
         order = {slot: i for i, slot in enumerate(slots())}
         values = [slot for slot, part in by_slot.items() if part is not None]
         # several parts of one slot keep their order
-        values.sort(key=lambda slot: order[kind_of_slot(slot)])
+        values.sort(key=lambda slot: order[unnumbered_slot(slot)])
         return cls(tuple((slot, by_slot[slot]) for slot in values))  # type: ignore[misc]
 
     def __getitem__(self, slot: str) -> Component:
@@ -217,21 +219,21 @@ class Parts:
     def __len__(self) -> int:
         return len(self.filled)
 
-    def changed(self, **by_slot: Component | GroundMotion | None) -> "Parts":
-        """Return the parts with others in some slots."""
+    def replace(self, **by_slot: Component | GroundMotion | None) -> "Parts":
+        """Return the parts with others in the given slots; None empties a slot."""
         return Parts.of({**dict(self.filled), **by_slot})
 
     def structural(self) -> list[Component]:
         """Return the parts other than motions, in a fixed order."""
         return list(self.components.values())
 
-    def standing(self) -> "Parts":
-        """Return the parts with the rigid ground on which bodies stand when no base is given."""
+    def with_ground(self) -> "Parts":
+        """Return the parts, with rigid ground if no base is given."""
         bases = {"pads", "soil", "ground"}.intersection(self.components)
-        return self if bases or self.own else self.changed(ground=RigidGround())
+        return self if bases or self.own else self.replace(ground=RigidGround())
 
     @property
-    def the_block(self) -> BlockSI:
+    def block_si(self) -> BlockSI:
         """The numbers of the block; of the highest block of a stack, or of a column of a frame."""
         if self.stack is not None:
             return self.stack.si.bodies[0]
@@ -242,30 +244,30 @@ class Parts:
         return self.block.si
 
     @property
-    def the_cap(self) -> Cap:
+    def cap_si(self) -> Cap:
         """The cap in SI units, in a scene that has one."""
         if self.cap is None:
             raise TypeError
-        return cap_under(self.the_block, self.cap.si)
+        return block_cap(self.block_si, self.cap.si)
 
 
 def sort_parts(values: Sequence[object], faults: list[str]) -> Parts:
     """Put each part in its slot; duplicates, and objects that are not parts, become faults."""
     found: dict[str, Any] = {}
     for part in values:
-        kind = known_kind(type(part))
+        kind = registered_class(type(part))
         if kind is None:
-            faults.append(f"{shown(part)} is not a part of a system{hint_for(part)}")
+            faults.append(f"{shown(part)} is not a part of a system{part_hint(part)}")
             continue
         slot = _KINDS[kind].slot
         if slot == RESTRAINER:
-            count = sum(kind_of_slot(one) == RESTRAINER for one in found)
-            slot = numbered(slot, count + 1)
+            count = sum(unnumbered_slot(one) == RESTRAINER for one in found)
+            slot = numbered_slot(slot, count + 1)
         elif slot in found:
             name = type(part).__name__
             faults.append(f"{name} is given twice: {shown(found[slot])} and {shown(part)}")
             continue
         found[slot] = part
         if kind is not type(part) and isinstance(part, Component):
-            faults += _beyond_models(part, kind)
+            faults += _subclass_faults(part, kind)
     return Parts.of(found)

@@ -12,18 +12,18 @@ from rockframe.dynamics.protocol import ContactModel
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import (
     BaseLoad,
-    OnCorners,
+    CornerSupportedBody,
     OverturningAngles,
     Restitutions,
     SupportedBody,
-    body_of_block,
-    restitution_on,
+    base_restitution,
+    block_body,
 )
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import RigidGroundSetting
 from rockframe.system.statics import Statics
-from rockframe.system.words import TO_ROCK, Words
+from rockframe.system.words import FRICTION_TO_ROCK, Words
 
 _INTO_WALL: Final = "is into the RearWall"
 IMPACT_TIME: Final = 1e-3
@@ -70,7 +70,7 @@ class RearWallSetting(RigidGroundSetting):
     def friction_to_rock(self) -> dict[str, float]:
         """Return the friction below which it slides before it rocks away from the wall."""
         half = self.body.right if self.direction > 0.0 else self.body.left
-        return {f"{TO_ROCK} b/h": half / self.body.centre_height}
+        return {f"{FRICTION_TO_ROCK} b/h": half / self.body.centre_height}
 
     def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
         """Return the faults of an initial state; a rotation into the wall is one."""
@@ -146,17 +146,17 @@ class RearWallSetting(RigidGroundSetting):
 
 def rear_wall_setting(parts: Parts, options: Options) -> RearWallSetting:
     """Resolve the parts of a block in front of a wall."""
-    load = BaseLoad(body_of_block(parts.the_block, OnCorners), options)
+    load = BaseLoad(block_body(parts.block_si, CornerSupportedBody), options)
     wall = cast("RearWall", parts.wall)
-    restitution = restitution_on(parts.ground, load.body.maximum_restitution)
+    restitution = base_restitution(parts.ground, load.body.maximum_restitution)
     if not load.options.slope.level:
         raise AssemblyError(["RearWall: a wall stands on level ground, without inclination"])
-    height = parts.the_block.height
-    rebound = _rebound(wall, load.body, restitution, height)
+    height = parts.block_si.height
+    rebound = _rebound_ratio(wall, load.body, restitution, height)
     return RearWallSetting(load, restitution, wall, rebound, height)
 
 
-def _rebound(
+def _rebound_ratio(
     wall: RearWall, body: SupportedBody, restitution: Restitutions, height: float
 ) -> float:
     """Return the ratio of the angular velocities at an impact, :eq:`eq-wall-impact`."""
@@ -165,44 +165,47 @@ def _rebound(
         return -restitution.left * restitution.right * float(wall.given.wall_restitution)
     if law is not WallImpact.SORRENTINO:
         return float(law)
-    found = restitution.left * restitution.right * wall_factor(body, wall.given.side, height)
-    if found < 0.0:
-        return found
+    factor = wall_impact_factor(body, wall.given.side, height)
+    ratio = restitution.left * restitution.right * factor
+    if ratio < 0.0:
+        return ratio
     slenderness = 0.5 * height / body.half_width
     raise AssemblyError([
         f'RearWall: by the law "sorrentino" a block of H/B = {slenderness:.4g} does not rebound: '
-        f"the ratio would be {found:.4g}, and is negative for H/B above sqrt(2) of a solid "
+        f"the ratio would be {ratio:.4g}, and is negative for H/B above sqrt(2) of a solid "
         "rectangle; give a ratio, such as restitution=0"
     ])  # fmt: skip
 
 
-class YieldingWall(NamedTuple):
+class EquivalentWall(NamedTuple):
     """An elastic wall from which a block rebounds as from a stiff one."""
 
-    share: float  # angular velocity after over before the impact [1]
+    rebound: float  # angular velocity after over before the impact [1]
     stiffness: float  # [N m^-1]
     damping: float  # [N s m^-1]
 
 
-def yielding_wall(wall: RearWall, block: BlockSI) -> YieldingWall:
+def equivalent_wall(wall: RearWall, block: BlockSI) -> EquivalentWall:
     """Return the elastic wall of an impact of :data:`IMPACT_TIME`, :eq:`eq-yielding-wall`."""
-    law, body = wall.given.restitution, body_of_block(block)
-    share = -law if isinstance(law, float) else -wall_factor(body, wall.given.side, block.height)
+    law, body = wall.given.restitution, block_body(block)
+    rebound = (
+        -law if isinstance(law, float) else -wall_impact_factor(body, wall.given.side, block.height)
+    )
     if law is WallImpact.NEWTON:
-        share = float(wall.given.wall_restitution)
-    share = abs(max(share, 0.0))
+        rebound = float(wall.given.wall_restitution)
+    rebound = abs(max(rebound, 0.0))
     mass = (body.inertia + body.mass * body.centre_height**2) / block.height**2
-    lost = -math.log(share) if share > 0.0 else math.inf
-    ratio = lost / math.hypot(math.pi, lost) if math.isfinite(lost) else 1.0
+    decrement = -math.log(rebound) if rebound > 0.0 else math.inf
+    ratio = decrement / math.hypot(math.pi, decrement) if math.isfinite(decrement) else 1.0
     # half a period of the damped vibration; for critical damping, of the undamped one
-    half = IMPACT_TIME * (math.sqrt(1.0 - ratio * ratio) if ratio < 1.0 else 1.0)
-    frequency = math.pi / half
-    return YieldingWall(share, mass * frequency**2, 2.0 * ratio * mass * frequency)
+    damped = IMPACT_TIME * (math.sqrt(1.0 - ratio * ratio) if ratio < 1.0 else 1.0)
+    frequency = math.pi / damped
+    return EquivalentWall(rebound, mass * frequency**2, 2.0 * ratio * mass * frequency)
 
 
-def wall_factor(body: SupportedBody, side: WallSide, height: float) -> float:
+def wall_impact_factor(body: SupportedBody, side: WallSide, height: float) -> float:
     """Return the ratio from rocking about the rear base corner to that about the rear top one."""
     beside = body.left if side is WallSide.LEFT else body.right
     below, inertia = height - body.centre_height, body.inertia / body.mass
-    kept = inertia + beside * beside - body.centre_height * below
-    return kept / (inertia + beside * beside + below * below)
+    before = inertia + beside * beside - body.centre_height * below
+    return before / (inertia + beside * beside + below * below)

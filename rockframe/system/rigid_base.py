@@ -1,4 +1,4 @@
-"""Rigid bases under bodies of a stack: their words, law and statics, with joints that may lift."""
+"""Rigid bases under bodies of a stack: their words, law and statics, with uplift of joints."""
 
 import math
 from collections.abc import Sequence
@@ -64,44 +64,44 @@ class RigidBase(Support):
 REACTIONS: tuple[str, ...] = ("left_reaction", "right_reaction")
 
 
-class Pressed(NamedTuple):
+class RigidBaseLoad(NamedTuple):
     """The load on a rigid base in full contact, and the couples at which a corner lifts."""
 
-    force: float  # normal force [N]
-    to_left: float  # couple on the bodies above, to the left, at which the right corner lifts [N m]
-    to_right: float  # likewise to the right
-    along: float  # force of links on the bodies above, to the right, which the base must hold [N]
+    normal: float  # normal force [N]
+    left_limit: float  # couple to the left, on the bodies above, that lifts the right corner [N m]
+    right_limit: float  # couple to the right that lifts the left corner [N m]
+    shear: float  # force of links on the bodies above, to the right, that the base must resist [N]
 
-    def bears(self, couple: float) -> bool:
-        """Whether both corners press under a couple to the right [N m]."""
-        return -self.to_left <= couple <= self.to_right
+    def in_full_contact(self, couple: float) -> bool:
+        """Whether both corners are in compression under a couple to the right [N m]."""
+        return -self.left_limit <= couple <= self.right_limit
 
 
-def pressed(setting: "StackSetting", k: int, tied: Sequence[LinkForce]) -> Pressed:
+def rigid_base_load(setting: "StackSetting", k: int, tied: Sequence[LinkForce]) -> RigidBaseLoad:
     """Return the load on the rigid base under body `k`, :eq:`eq-link-rest`.
 
     It carries all bodies above it, and the forces of links on them in the upright position.
     """
     load = setting.bases[k].load
-    force, couple, along = load.weight, 0.0, 0.0
-    level = setting.base_of(k)
-    foot = level[0] + load.body.eccentricity  # below the centre of mass
-    for one, pull in zip(setting.ties, tied, strict=True):
+    normal, couple, shear = load.weight, 0.0, 0.0
+    x_base, y_base = setting.base_of(k)
+    x_centre = x_base + load.body.eccentricity
+    for one, pull in zip(setting.links, tied, strict=True):
         for body, end, sign in ((one.on, one.ends[0], -1.0), (one.to, one.ends[1], 1.0)):
             if 0 <= body <= k:
                 x, y = sign * setting.body.mass * pull.force * pull.direction
-                force, along = force - y, along + x
-                couple += x * (end[1] - level[1]) - y * (end[0] - foot)
-    lifts = force * load.body.left + couple, force * load.body.right - couple
-    return Pressed(force, *lifts, along)
+                normal, shear = normal - y, shear + x
+                couple += x * (end[1] - y_base) - y * (end[0] - x_centre)
+    limits = normal * load.body.left + couple, normal * load.body.right - couple
+    return RigidBaseLoad(normal, *limits, shear)
 
 
-class Lifting(NamedTuple):
-    """What lifts a corner of a rigid base, on which everything above then rocks as one."""
+class UpliftLimits(NamedTuple):
+    """Limits at which all bodies above a rigid base begin to rock as one."""
 
-    tipping_left: float  # ground acceleration, to the right, that tips it to the left [m s^-2]
-    tipping_right: float  # likewise to the left [m s^-2]
-    friction: float  # below which it slides before either corner lifts [1]
+    to_left: float  # ground acceleration, to the right, that tips them to the left [m s^-2]
+    to_right: float  # ground acceleration, to the left, that tips them to the right [m s^-2]
+    friction: float  # coefficient below which they slide before a corner lifts [1]
 
     def words(self) -> str:
         """Write the accelerations; one if both sides are equal."""
@@ -111,28 +111,28 @@ class Lifting(NamedTuple):
         return f"{left} to the right, which tips it to the left, or {right} to the left"
 
 
-def lifting(setting: "StackSetting", k: int, tied: Sequence[LinkForce]) -> Lifting:
-    """Return what lifts a corner of the rigid base under body `k`, with link forces at rest.
+def uplift_limits(setting: "StackSetting", k: int, tied: Sequence[LinkForce]) -> UpliftLimits:
+    """Return the uplift limits of the rigid base under body `k`, with link forces at rest.
 
     Without links it is :eq:`eq-rigid-together`, and the friction b/h.
     """
-    carried, body = pressed(setting, k, tied), setting.bases[k].load.body
-    shears = carried.to_left / body.centre_height, carried.to_right / body.centre_height
-    needed = min(abs(shears[0] - carried.along), abs(shears[1] + carried.along))
-    return Lifting(shears[0] / body.mass, shears[1] / body.mass, needed / carried.force)
+    load, body = rigid_base_load(setting, k, tied), setting.bases[k].load.body
+    left, right = load.left_limit / body.centre_height, load.right_limit / body.centre_height
+    needed = min(abs(left - load.shear), abs(right + load.shear))
+    return UpliftLimits(left / body.mass, right / body.mass, needed / load.normal)
 
 
 def rocking_moment(
     setting: "StackSetting", k: int, rotation: float
 ) -> tuple[float, list[LinkForce]]:
-    """Return the restoring moment [N m] of all above base `k`, rotated as one, and its ties."""
-    load, (middle, foot) = setting.bases[k].load, setting.base_of(k)
+    """Return the restoring moment [N m] of all above base `k`, rotated as one, and the links."""
+    load, (middle, level) = setting.bases[k].load, setting.base_of(k)
     side, half = (1.0, load.body.right) if rotation > 0.0 else (-1.0, load.body.left)
     sine, versine = math.sin(abs(rotation)), 2.0 * math.sin(0.5 * rotation) ** 2
     arm = half * (1.0 - versine) - load.body.centre_height * sine
-    ends = [one.ends for one in setting.ties]
-    pivot = (middle + side * load.body.half_width, foot)
-    tied = links_of_rocking_bodies(setting.chain_ties, ends, k, pivot, rotation)
+    ends = [one.ends for one in setting.links]
+    pivot = (middle + side * load.body.half_width, level)
+    tied = links_of_rocking_bodies(setting.chain_links, ends, k, pivot, rotation)
     pull = sum(float(one.loads[0]) for one in tied)
     return side * load.weight * arm - setting.body.mass * pull, tied
 
@@ -141,22 +141,22 @@ def rocking_energy(setting: "StackSetting", k: int) -> float:
     """Return the energy that overturns all above the base of body `k` as one [J]."""
     left, right = setting.bases[k].load.body.overturning_angles
     return min(
-        work_against(lambda some: [rocking_moment(setting, k, one)[0] for one in some], end)
+        work_against(lambda angles: [rocking_moment(setting, k, a)[0] for a in angles], end)
         for end in (-left, right)
     )
 
 
-def rocked_statics(setting: "StackSetting", rotation: float) -> Statics:
-    """Return the equilibrium on rigid bases only: everything above the weakest one rocks."""
+def rocking_statics(setting: "StackSetting", rotation: float) -> Statics:
+    """Return the equilibrium on rigid bases only: all bodies above the weakest base rock."""
     right, mass = rotation > 0.0, setting.body.mass
     side = 1.0 if right else -1.0
-    tied = links_at_rest(setting.chain_ties)
+    tied = links_at_rest(setting.chain_links)
     capacities = [
-        of.to_right if right else of.to_left
-        for of in (pressed(setting, j, tied) for j in range(len(setting.bases)))
+        load.right_limit if right else load.left_limit
+        for load in (rigid_base_load(setting, j, tied) for j in range(len(setting.bases)))
     ]
     k = capacities.index(min(capacities))
-    (middle, foot), half_width = setting.base_of(k), setting.bases[k].load.body.half_width
+    (middle, pivot_level), half_width = setting.base_of(k), setting.bases[k].load.body.half_width
     corner = middle + side * half_width
     sine, versine = math.sin(abs(rotation)), 2.0 * math.sin(0.5 * rotation) ** 2
     moment = 0.0
@@ -168,31 +168,31 @@ def rocked_statics(setting: "StackSetting", rotation: float) -> Statics:
         one, (place, level) = setting.bodies[j], setting.base_of(j)
         across, up = place + one.eccentricity, level + one.centre_height
         if j <= k and rotation != 0.0:
-            away, above = side * (corner - across), up - foot
+            away, above = side * (corner - across), up - pivot_level
             across = corner - side * (away * (1.0 - versine) - above * sine)
             rise = away * sine - above * versine
         base_moment += setting.gravity * one.mass * across
     down = math.fsum(setting.gravity * one.mass for one in setting.bodies)
-    for one, pull in zip(setting.ties, tied, strict=True):  # ties to the ground act from outside
+    for one, pull in zip(setting.links, tied, strict=True):  # links to the ground are external
         if one.to < 0:
             x, y = -mass * pull.force * pull.direction
             across, up = one.ends[0] + pull.displacement
             base_moment += x * up - y * across
             down -= y
-    alone = len(setting.bodies) == 1
+    single = len(setting.bodies) == 1
     state = "full" if rotation == 0.0 or k > 0 else "right" if right else "left"
     shift = base_moment / setting.bodies[-1].half_width
     reactions = (0.5 * (down - shift), 0.5 * (down + shift))
     if rotation != 0.0:
         reactions = (0.0, down) if right else (down, 0.0)
     shown: dict[str, float] = dict(zip(REACTIONS, map(float, reactions), strict=True))
-    return Statics(rise, float(base_moment), float(moment), state, shown if alone else {})
+    return Statics(rise, float(base_moment), float(moment), state, shown if single else {})
 
 
-def beyond_lift(
+def statics_beyond_uplift(
     setting: "StackSetting", rotations: Sequence[float], closed: Sequence[Statics | None]
 ) -> list[Statics | None]:
-    """Return the equilibria with the highest body held at rotations, where joints may lift.
+    """Return the equilibria with the highest body held at rotations, with uplift of joints.
 
     `closed` are the equilibria with all rigid bases in full contact. Beyond the rotation at which
     a corner first lifts from a rigid base, all bodies above rotate about the other corner.
@@ -204,11 +204,11 @@ def beyond_lift(
         here = [i for i, each in enumerate(rotations) if math.copysign(1.0, each) == side]
         for i in sorted(here, key=lambda i: abs(rotations[i])):
             if lifted is None:
-                lifted = _first_lift(joints, before, rotations[i])
+                lifted = _first_uplift(joints, before, rotations[i])
                 if lifted is None:
                     before, found[i] = rotations[i], closed[i]
                     continue
-                path = EquilibriumPath(lifted.rotation, lifted.place)
+                path = EquilibriumPath(lifted.rotation, lifted.equilibrium)
             if path is None:
                 break
             path, poses = lifted.bodies.chain.held_at(path, rotations[i])
@@ -216,27 +216,27 @@ def beyond_lift(
     return found
 
 
-class _Lift(NamedTuple):
+class _Uplift(NamedTuple):
     """The state at which a corner lifts from a rigid base."""
 
     bodies: StandingBodies  # all bodies, those above the base on its other corner
     rotation: float  # rotation of the highest body [rad]
-    place: ChainEquilibrium  # equilibrium of the bodies
+    equilibrium: ChainEquilibrium  # of the bodies
 
 
-def _first_lift(joints: "Sequence[_Joint]", before: float, rotation: float) -> _Lift | None:
+def _first_uplift(joints: "Sequence[_Joint]", before: float, rotation: float) -> _Uplift | None:
     """Return the first lift between two rotations of the highest body, if there is one."""
     from scipy.optimize import brentq
 
-    first: _Lift | None = None
+    first: _Uplift | None = None
     for joint in joints:
-        if joint.spare(rotation) >= 0.0:
+        if joint.uplift_margin(rotation) >= 0.0:
             continue
         at = before
-        if joint.spare(before) > 0.0:
-            at = cast("float", brentq(joint.spare, before, rotation))
+        if joint.uplift_margin(before) > 0.0:
+            at = cast("float", brentq(joint.uplift_margin, before, rotation))
         if first is None or abs(at) < abs(first.rotation):
-            first = _Lift(joint.bodies, at, joint.lifted_from(at))
+            first = _Uplift(joint.bodies, at, joint.equilibrium_at_uplift(at))
     return first
 
 
@@ -245,34 +245,34 @@ class _Joint:
 
     def __init__(self, setting: "StackSetting", k: int, side: int) -> None:
         self.closed = setting.standing.chain
-        whole = [*setting.groups]
-        self.place = next((i for i, some in enumerate(whole) if k in some), len(whole))
-        if self.place == len(whole):  # the bodies below rest on rigid ground
-            whole.append(range(whole[-1][-1] + 1, k + 1))
+        groups = [*setting.groups]
+        self.index = next((i for i, group in enumerate(groups) if k in group), len(groups))
+        if self.index == len(groups):  # the bodies below stand on rigid ground
+            groups.append(range(groups[-1][-1] + 1, k + 1))
         else:
-            some = whole[self.place]
-            whole[self.place : self.place + 1] = [range(some[0], k + 1), range(k + 1, some[-1] + 1)]
-        self.bodies = setting.standing_in(whole, k, side)
+            first, last = groups[self.index][0], groups[self.index][-1]
+            groups[self.index : self.index + 1] = [range(first, k + 1), range(k + 1, last + 1)]
+        self.bodies = setting.statics_of_groups(groups, k, side)
         self.side = side
 
     def rotations(self, poses: Sequence[Pose]) -> list[float]:
         """Return the rotations of all bodies on their bases; 0 for the body on this base."""
         found = [one.state.rotation for one in poses]
-        return [*found[: self.place], 0.0, *found[self.place :]]
+        return [*found[: self.index], 0.0, *found[self.index :]]
 
-    def lifted_from(self, rotation: float) -> ChainEquilibrium:
+    def equilibrium_at_uplift(self, rotation: float) -> ChainEquilibrium:
         """Return the equilibrium in which the corner lifts."""
         chain, (poses,) = self.bodies.chain, self.closed.curve([rotation])
         found = chain.poses_at(self.rotations(poses or [])) or []
         return ChainEquilibrium.from_poses(chain, found)
 
-    def spare(self, rotation: float) -> float:
-        """Return how much the couple that holds the highest body lacks to lift a corner."""
+    def uplift_margin(self, rotation: float) -> float:
+        """Return by how much the couple on the highest body is below that which lifts a corner."""
         (poses,) = self.closed.curve([rotation])
         if poses is None:
             return math.inf  # there is no equilibrium with this joint closed
         here = self.bodies.chain.poses_at(self.rotations(poses))
         if here is None:
             return math.inf
-        lifts = self.bodies.chain.moments(here)[self.place]
+        lifts = self.bodies.chain.moments(here)[self.index]
         return self.side * (self.closed.moments(poses)[0] - lifts)

@@ -48,14 +48,14 @@ class RigidGroundSetting(Setting):
 
         Ground that is accelerated to the right tips the block to the left.
         """
-        return self._reached_at(*self.tangents)
+        return self._accelerations_at_slopes(*self.corner_tangents)
 
     @property
-    def moving_accelerations(self) -> tuple[float, float]:
-        """Ground accelerations at which a block at rest moves, as for uplift [m s^-2]."""
+    def onset_accelerations(self) -> tuple[float, float]:
+        """Ground accelerations at which a block at rest starts to move, as for uplift [m s^-2]."""
         return self.uplift_accelerations
 
-    def _reached_at(self, left: float, right: float) -> tuple[float, float]:
+    def _accelerations_at_slopes(self, left: float, right: float) -> tuple[float, float]:
         """Return the ground accelerations at which the resultant force has some slopes [m s^-2].
 
         `left` and `right` are tangents of its angle to the normal of the base.
@@ -70,7 +70,7 @@ class RigidGroundSetting(Setting):
         return left, right
 
     @property
-    def tangents(self) -> tuple[float, float]:
+    def corner_tangents(self) -> tuple[float, float]:
         """Tan theta of the left and of the right corner; theta for small rotation."""
         left, right = self.body.overturning_angles
         if self.options.small:
@@ -113,10 +113,10 @@ class RigidGroundSetting(Setting):
 
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
         """Return the quasi-static states at rotations [rad]."""
-        return [self._held(rotation) for rotation in rotations]
+        return [self._statics_at(rotation) for rotation in rotations]
 
-    def _held(self, rotation: float) -> Statics:
-        """Return the equilibrium at a rotation: the bearing corner carries the weight."""
+    def _statics_at(self, rotation: float) -> Statics:
+        """Return the equilibrium at a rotation: the corner in contact carries the weight."""
         body, weight, thrust = self.body, self.load.weight, self.load.thrust
         if rotation == 0.0:
             # the moments of weight and reactions about the middle of the base
@@ -126,7 +126,7 @@ class RigidGroundSetting(Setting):
                 body.base_ratio * moment,
                 0.0,
                 "full",
-                dict(zip(REACTIONS, self.shares, strict=True)),
+                dict(zip(REACTIONS, self.rest_reactions, strict=True)),
             )
         side = math.copysign(1.0, rotation)
         theta, lean = body.overturning_angles.on_side_of(rotation), abs(rotation)
@@ -153,13 +153,13 @@ class RigidGroundSetting(Setting):
     def equilibrium(self) -> dict[str, float]:
         """Return the reactions at rest and the moment at uplift, by their names in the schema."""
         uplift = self.load.weight * self.body.half_width * self.body.base_ratio
-        shares = dict(zip(REACTIONS, self.shares, strict=True))
-        return {"uplift_moment": uplift, **static_values(shares)}
+        rest_reactions = dict(zip(REACTIONS, self.rest_reactions, strict=True))
+        return {"uplift_moment": uplift, **static_values(rest_reactions)}
 
     @property
-    def shares(self) -> tuple[float, float]:
+    def rest_reactions(self) -> tuple[float, float]:
         """Reactions of the left and of the right corner at rest [N]."""
-        (left, right), half = self.tangents, 0.5 * self.load.weight
+        (left, right), half = self.corner_tangents, 0.5 * self.load.weight
         tilt = half * (left - right) / (left + right)
         shift = tilt - self.load.thrust / (left + right)
         return half - shift, half + shift
@@ -231,10 +231,10 @@ class RigidGroundSetting(Setting):
 
 def refuse_fall(setting: RigidGroundSetting) -> None:
     """Refuse a block whose weight acts outside of its base, :eq:`eq-incline-standing`."""
-    slope, tangents = setting.slope, setting.tangents
+    slope, (left, right) = setting.slope, setting.corner_tangents
     if slope.level:
         return
-    side, downhill = ("left", tangents[0]) if slope.inclination > 0.0 else ("right", tangents[1])
+    side, downhill = ("left", left) if slope.inclination > 0.0 else ("right", right)
     if abs(slope.along_gravity) >= slope.normal_gravity * downhill:
         raise AssemblyError([
             f"the block falls to the {side} by its own weight: the ground is inclined by "

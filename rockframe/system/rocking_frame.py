@@ -14,19 +14,19 @@ from rockframe.dynamics.links import LinkNumbers, Stretch
 from rockframe.dynamics.protocol import ContactModel
 from rockframe.errors import AssemblyError
 from rockframe.signals.arrays import Array
-from rockframe.system.bodies import BaseLoad, OnCorners, Restitutions, restitution_on
-from rockframe.system.links import called_alike, link_labels, tie_of, tie_words
+from rockframe.system.bodies import BaseLoad, CornerSupportedBody, Restitutions, base_restitution
+from rockframe.system.links import duplicate_name_faults, link_labels, tie_law, tie_law_words
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import RigidGroundSetting, refuse_fall
 from rockframe.system.stack import refuse_options
 from rockframe.system.statics import Statics
-from rockframe.system.words import TO_ROCK, Words
+from rockframe.system.words import FRICTION_TO_ROCK, Words
 
 
 @dataclass(frozen=True)
-class FrameBody(OnCorners):
-    """The equivalent body, which rocks as columns under a beam do, :eq:`eq-rocking-frame-body`.
+class FrameBody(CornerSupportedBody):
+    """The single body equivalent to columns under a beam, :eq:`eq-rocking-frame-body`.
 
     Its mass and its centre of mass are those of columns and beam together.
     """
@@ -37,27 +37,29 @@ class FrameBody(OnCorners):
     def maximum_restitution(self) -> Restitutions:
         """eps_max of columns and beam, not of a single body, :eq:`eq-rocking-frame-impact`."""
         column, beam = self.frame.column, self.frame.beam_mass
-        swung = self.frame.columns * column.mass + 4.0 * beam
+        mass = self.frame.columns * column.mass + 4.0 * beam
         corner = self.mass * self.gyration_square_about(self.half_width)
-        ratio = 1.0 - 2.0 * swung * column.half_width * (column.half_width / corner)
+        ratio = 1.0 - 2.0 * mass * column.half_width * (column.half_width / corner)
         return Restitutions(ratio, ratio)
 
     @property
     def base_ratio(self) -> float:
         """Half the width of a column over that of the body [1]."""
-        return self.foot / self.half_width
+        return self.contact_half_width / self.half_width
 
     @property
-    def foot(self) -> float:
+    def contact_half_width(self) -> float:
         """Half the width of a column [m]."""
         return self.frame.column.half_width
 
-    def arms(self, x: Array, y: Array, values: Mapping[str, Any]) -> tuple[Array, Array]:
+    def relative_to_centre(
+        self, x: Array, y: Array, values: Mapping[str, Any]
+    ) -> tuple[Array, Array]:
         """Return x and y of points of a column, or of the beam, from the centre of mass [m].
 
         Points above the top of the columns belong to the beam, which moves with the upper corner
-        that bears it. The side follows from the corners that bear: where rocking begins and at
-        impacts the rotation is zero.
+        in contact. The side follows from the corners in contact, since the rotation is zero where
+        rocking begins and at impacts.
         """
         half, height = self.frame.column.half_width, self.frame.column.height
         side = 1.0 * (values["right_reaction"] != 0.0) - (values["left_reaction"] != 0.0)
@@ -67,7 +69,7 @@ class FrameBody(OnCorners):
         return right + side * (self.half_width - half), up - self.centre_height
 
 
-def body_of_frame(si: RockingFrameSI) -> FrameBody:
+def frame_body(si: RockingFrameSI) -> FrameBody:
     """Return columns and beam as a body, :eq:`eq-rocking-frame-body`."""
     column, beam = si.column, si.beam_mass
     columns = si.columns * column.mass
@@ -125,7 +127,7 @@ class RockingFrameSetting(RigidGroundSetting):
 
 
 @dataclass(frozen=True)
-class TiedFrameSetting(RockingFrameSetting):
+class TendonFrameSetting(RockingFrameSetting):
     """Columns under a beam on rigid ground, with tendons along the axes of the columns."""
 
     tendons: tuple[Tendon, ...]
@@ -141,50 +143,49 @@ class TiedFrameSetting(RockingFrameSetting):
         return tuple(link_labels(self.tendons))
 
     @cached_property
-    def laws(self) -> tuple[LinkNumbers, ...]:
+    def tendon_laws(self) -> tuple[LinkNumbers, ...]:
         """The tendons as the equations take them."""
-        return tuple(tie_of(one, self.body.mass) for one in self.tendons)
+        return tuple(tie_law(one, self.body.mass) for one in self.tendons)
 
     def contact_model(self) -> ContactModel:
         """Return the equations of the columns and their tendons."""
         from rockframe.dynamics.tendons import frame_with_tendons
 
         half, columns = self.frame.column.half_width, self.frame.columns
-        return frame_with_tendons(
-            super().contact_model(), self.laws, half_width=half, columns=columns
-        )
+        laws = self.tendon_laws
+        return frame_with_tendons(super().contact_model(), laws, half_width=half, columns=columns)
 
-    def forces(self, rotation: float) -> list[float]:
+    def tendon_forces(self, rotation: float) -> list[float]:
         """Return the force of each tendon, :eq:`eq-rocking-frame-tendon` [N]."""
-        longer = 4.0 * self.frame.column.half_width * math.sin(0.5 * abs(rotation))
-        stretch, found = Stretch(longer, 0.0, 0.0, 0.0, 0.0), list[float]()
-        for one in self.laws:
+        elongation = 4.0 * self.frame.column.half_width * math.sin(0.5 * abs(rotation))
+        stretch, found = Stretch(elongation, 0.0, 0.0, 0.0, 0.0), list[float]()
+        for one in self.tendon_laws:
             law, own = one.law, np.zeros(one.law.variables())
             force = law.force(law.starting(stretch, own), stretch, own)
             found.append(self.body.mass * force)
         return found
 
-    def pull(self, rotation: float) -> float:
+    def total_tendon_force(self, rotation: float) -> float:
         """Return the force of all tendons of all columns [N]."""
-        return self.frame.columns * math.fsum(self.forces(rotation))
+        return self.frame.columns * math.fsum(self.tendon_forces(rotation))
 
     @property
     def uplift_accelerations(self) -> tuple[float, float]:
         """Ground accelerations at which it begins to rock, against the preload [m s^-2]."""
-        held = 2.0 * self.frame.column.half_width * self.pull(0.0)
-        more = held / (self.body.mass * self.body.centre_height)
+        moment = 2.0 * self.frame.column.half_width * self.total_tendon_force(0.0)
+        more = moment / (self.body.mass * self.body.centre_height)
         left, right = super().uplift_accelerations
         return left + more, right + more
 
     def friction_to_rock(self) -> dict[str, float]:
         """Return friction below which the columns slide before they rock against the preload."""
-        pressed = self.body.mass * self.gravity + self.pull(0.0)
-        return {TO_ROCK: self.body.mass * self.uplift_acceleration / pressed}
+        normal_force = self.body.mass * self.gravity + self.total_tendon_force(0.0)
+        return {FRICTION_TO_ROCK: self.body.mass * self.uplift_acceleration / normal_force}
 
-    def _held(self, rotation: float) -> Statics:
+    def _statics_at(self, rotation: float) -> Statics:
         """Return the equilibrium at a rotation, with the tendons."""
-        found, half = super()._held(rotation), self.frame.column.half_width
-        pull, cosine = self.pull(rotation), math.cos(0.5 * rotation)
+        found, half = super()._statics_at(rotation), self.frame.column.half_width
+        pull, cosine = self.total_tendon_force(rotation), math.cos(0.5 * rotation)
         side = math.copysign(1.0, rotation) if rotation else 0.0
         shares = (0.5 * (1.0 - side), 0.5 * (1.0 + side))
         return replace(
@@ -200,13 +201,13 @@ class TiedFrameSetting(RockingFrameSetting):
 
     def equilibrium(self) -> dict[str, Any]:
         """Return reactions, moment at uplift, and the tendons at rest."""
-        pull, found = self.pull(0.0), super().equilibrium()
+        pull, found = self.total_tendon_force(0.0), super().equilibrium()
         found["uplift_moment"] += pull * self.frame.column.half_width
         for name in ("static_left_reaction", "static_right_reaction"):
             found[name] += 0.5 * pull
         return found | {
             "restrainer": list(self.link_names),
-            "static_restrainer_force": self.forces(0.0),
+            "static_restrainer_force": self.tendon_forces(0.0),
             "static_restrainer_elongation": [0.0] * len(self.tendons),
         }
 
@@ -229,7 +230,7 @@ class TiedFrameSetting(RockingFrameSetting):
             ],
             numbers=[
                 *inherited.numbers,
-                *((name, f"along the axis of each column, {', '.join(tie_words(one))}")
+                *((name, f"along the axis of each column, {', '.join(tie_law_words(one))}")
                   for name, one in zip(self.link_names, self.tendons, strict=True)),
             ],
         )  # fmt: skip
@@ -238,20 +239,20 @@ class TiedFrameSetting(RockingFrameSetting):
 def rocking_frame_setting(parts: Parts, options: Options) -> RockingFrameSetting:
     """Resolve the parts of a frame on rigid ground."""
     frame = cast("RockingFrame", parts.frame).si
-    load = BaseLoad(body_of_frame(frame), options)
+    load = BaseLoad(frame_body(frame), options)
     greatest = load.body.maximum_restitution
     if greatest.left <= 0.0:
         raise AssemblyError([
             f"RockingFrame: the columns are so squat that the frame cannot rock: its greatest "
             f"restitution is {greatest.left:.4g}"
         ])  # fmt: skip
-    restitution = restitution_on(parts.ground, greatest)
+    restitution = base_restitution(parts.ground, greatest)
     setting = RockingFrameSetting(load, restitution, frame)
     refuse_fall(setting)
     if not parts.links:
         return setting
     refuse_options("a RockingFrame with tendons", options, small=False)
-    if faults := called_alike(parts.links):
+    if faults := duplicate_name_faults(parts.links):
         raise AssemblyError(faults)
     tendons = tuple(one for one in parts.links if isinstance(one, Tendon))
-    return TiedFrameSetting(load, restitution, frame, tendons)
+    return TendonFrameSetting(load, restitution, frame, tendons)

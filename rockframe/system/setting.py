@@ -14,7 +14,7 @@ from rockframe.system.options import Options
 from rockframe.system.rigid_base import NO_VERTICAL_START
 from rockframe.system.statics import SmallMotion, Statics, least_overturning_energy, required_states
 from rockframe.system.support import Support
-from rockframe.system.words import TO_ROCK, Words
+from rockframe.system.words import FRICTION_TO_ROCK, Words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.chain.slips import SlippingBodies
@@ -175,7 +175,7 @@ class Setting(ABC):
     def friction_to_rock(self) -> dict[str, float]:
         """Return the coefficient of friction below which a base slides before it rocks, by name."""
         body = self.body
-        return {f"{TO_ROCK} b/h": min(body.left, body.right) / body.centre_height}
+        return {f"{FRICTION_TO_ROCK} b/h": min(body.left, body.right) / body.centre_height}
 
     def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
         """Return the faults of an initial state, by the rotation and the base of the body.
@@ -192,9 +192,12 @@ class Setting(ABC):
 
     def cautions(self) -> list[str]:
         """Return warnings about values near or beyond the model's validity."""
-        return [*(text for each in self.supports for text in each.cautions()), *self._leaning()]
+        return [
+            *(text for each in self.supports for text in each.cautions()),
+            *self._lean_cautions(),
+        ]
 
-    def _leaning(self) -> list[str]:
+    def _lean_cautions(self) -> list[str]:
         """Return a warning about a body that leans far at rest."""
         lean = abs(self.rest_rotation)
         share = lean / self.overturning_angles.on_side_of(self.rest_rotation)

@@ -8,8 +8,8 @@ from rockframe.components.bases import Impact
 from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.errors import AssemblyError
 from rockframe.many import largest, python_number
-from rockframe.system.bodies import SupportedBody, load_of, restitution_on
-from rockframe.system.fitting import SMALL_SLIDING, BaseFriction, friction_under
+from rockframe.system.bodies import SupportedBody, base_restitution, load_of
+from rockframe.system.compatibility import SLIDING_AT_SMALL_ROTATION, BaseFriction, base_friction
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import RigidGroundSetting, refuse_fall
@@ -40,10 +40,10 @@ class SlidingSetting(RigidGroundSetting):
         return min(self.restitution) <= 0.0
 
     @property
-    def moving_accelerations(self) -> tuple[float, float]:
+    def onset_accelerations(self) -> tuple[float, float]:
         """Ground accelerations at which it rocks or slides; 0 if its weight moves it [m s^-2]."""
-        left, right = (min(self.friction.static, one) for one in self.tangents)
-        left, right = self._reached_at(left, right)
+        left, right = (min(self.friction.static, one) for one in self.corner_tangents)
+        left, right = self._accelerations_at_slopes(left, right)
         return max(left, 0.0), max(right, 0.0)
 
     def contact_model(self) -> ContactModel:
@@ -102,15 +102,15 @@ class SlidingSetting(RigidGroundSetting):
 
 def rigid_ground_setting(parts: Parts, options: Options) -> RigidGroundSetting:
     """Resolve the parts of a scene on rigid ground."""
-    load = load_of(parts.the_block, options)
+    load = load_of(parts.block_si, options)
     ground = parts.ground
-    restitution = restitution_on(ground, load.body.maximum_restitution)
+    restitution = base_restitution(ground, load.body.maximum_restitution)
     setting = RigidGroundSetting(load, restitution)
-    friction = None if ground is None else friction_under(ground, options)
+    friction = None if ground is None else base_friction(ground, options)
     if ground is not None and friction is not None:
-        faults = ill_posed(load.body, friction.kinetic)
+        faults = jamming_faults(load.body, friction.kinetic)
         if options.small:
-            faults.append(SMALL_SLIDING)
+            faults.append(SLIDING_AT_SMALL_ROTATION)
         if faults:
             raise AssemblyError(faults)
         setting = SlidingSetting(load, restitution, friction, ground.si.impact)
@@ -178,7 +178,7 @@ def impact_words(impact: Impact) -> str:
     return "the corner that strikes slips as far as the kinetic friction lets it"
 
 
-def ill_posed(body: SupportedBody, kinetic: float) -> list[str]:
+def jamming_faults(body: SupportedBody, kinetic: float) -> list[str]:
     """Return a fault for friction with which a slipping corner may jam, :eq:`eq-slide-painleve`."""
     from rockframe.dynamics.slide_rock import ill_posed_friction
 

@@ -8,23 +8,28 @@ from rockframe.components import Component, RigidGround, Tendon, TwoSpringSuppor
 from rockframe.components.bases import Impact
 from rockframe.dynamics.protocol import MAX_MODES, ContactModel, Ending
 from rockframe.errors import AssemblyError
-from rockframe.system.fitting import HELD, SMALL_SLIDING, BaseFriction, friction_under
+from rockframe.system.compatibility import (
+    NO_SLIP,
+    SLIDING_AT_SMALL_ROTATION,
+    BaseFriction,
+    base_friction,
+)
 from rockframe.system.options import Sliding
 from rockframe.system.setting import SlipRange, chain_slips
 from rockframe.system.sliding_ground import (
     friction_to_roll_over,
-    ill_posed,
     impact_words,
+    jamming_faults,
     slide_rock_of,
     slips_on_ground,
 )
 from rockframe.system.stack import StackSetting
-from rockframe.system.words import HELD_BY_FRICTION, SLIPS, Words, sliding_words
+from rockframe.system.words import HELD_BY_FRICTION, SLIP_EQUATION, Words, sliding_words
 
-LEAST_OVERHANG: Final = 0.1
-"""Overhang of a body beyond an edge from which on a warning is given, over half its base width.
+MIN_OVERHANG: Final = 0.1
+"""Least overhang of a body beyond an edge that gives a warning, over half its base width.
 
-The edge bears in place of the corner, and its lever is shorter by this share."""
+The edge bears in place of the corner, and its lever arm is shorter by this share."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +46,7 @@ class SlidingStackSetting(StackSetting):
     def cautions(self) -> list[str]:
         """Return warnings, also about bodies that slide at rest under their restrainers."""
         names = [f"body {k}" for k in range(1, len(self.bodies) + 1)]
-        return [*super().cautions(), *self.slides_at_rest(*names)]
+        return [*super().cautions(), *self.rest_slip_cautions(*names)]
 
     def words(self) -> Words:
         """Describe bodies, bases and friction."""
@@ -57,61 +62,61 @@ class SlidingStackSetting(StackSetting):
     def beyond_edges(self, ending: Ending) -> list[str]:
         """Warn of bodies that slipped beyond an edge of the body below, which is not modelled."""
         pairs = zip(self.bodies, self.bodies[1:], self.offsets, self.slips_of(ending), strict=False)
-        found = (
-            beyond_edge(
+        cautions = (
+            overhang_caution(
                 slips, offset, upper.half_width, lower.half_width, (f"body {k}", f"body {k + 1}")
             )
             for k, (upper, lower, offset, slips) in enumerate(pairs, 1)
         )
-        return [text for text in found if text]
+        return [text for text in cautions if text]
 
 
-def beyond_edge(
+def overhang_caution(
     slips: SlipRange, offset: float, upper: float, lower: float, names: Sequence[str]
 ) -> str:
     """Warn of a body that slipped beyond an edge of the one below; empty if it did not.
 
     `upper` and `lower` are half the widths of both [m].
     """
-    over = max(slips.right + offset, slips.left - offset) - (lower - upper)
-    if over <= LEAST_OVERHANG * upper:
+    overhang = max(slips.right + offset, slips.left - offset) - (lower - upper)
+    if overhang <= MIN_OVERHANG * upper:
         return ""
     return (
-        f"{names[0]} slides {over:.3g} m beyond the edge of {names[1]}, whose top goes "
+        f"{names[0]} slides {overhang:.3g} m beyond the edge of {names[1]}, whose top goes "
         "on without end in the model: it would tip about that edge sooner"
     )
 
 
-def stack_on(bases: Sequence[Component], held: StackSetting) -> StackSetting:
+def sliding_stack_setting(bases: Sequence[Component], held: StackSetting) -> StackSetting:
     """Return the setting of stacked bodies: one with slip where bases have friction."""
     slips = any(getattr(one.si, "friction", None) is not None for one in bases)
     _refuse_many_modes(bases, slips)
     if not slips:
         return held
-    found = [friction_under(one, held.options) for one in bases]
+    frictions = [base_friction(one, held.options) for one in bases]
     faults = list[str]()
     if held.options.sliding is Sliding.CHECKED and len(held.bodies) == 1:
         return held
     if held.options.sliding is Sliding.CHECKED:
         faults.append("friction in a Stack is computed: give no sliding='checked', or no friction")
     elif any(held.rigid):
-        faults += sheared(held)
-    for k, friction in enumerate(found):
+        faults += sheared_tendon_faults(held)
+    for k, friction in enumerate(frictions):
         if friction is not None and held.rigid[k]:
             faults += [
-                f"body {k + 1}: {one}" for one in ill_posed(held.bodies[k], friction.kinetic)
+                f"body {k + 1}: {one}" for one in jamming_faults(held.bodies[k], friction.kinetic)
             ]
     if held.options.small:
-        faults.append(SMALL_SLIDING)
+        faults.append(SLIDING_AT_SMALL_ROTATION)
     if faults:
         raise AssemblyError(faults)
-    frictions = tuple(HELD if one is None else one for one in found)
-    return SlidingStackSetting(**_same(held), frictions=frictions)
+    given = tuple(NO_SLIP if one is None else one for one in frictions)
+    return SlidingStackSetting(**_shared_fields(held), frictions=given)
 
 
-def _same(held: StackSetting) -> dict[str, Any]:
+def _shared_fields(held: StackSetting) -> dict[str, Any]:
     """Return the fields that settings of the same bodies, bases and links share."""
-    names = ("load", "bodies", "tops", "offsets", "bases", "ties")
+    names = ("load", "bodies", "tops", "offsets", "bases", "links")
     return {name: getattr(held, name) for name in names}
 
 
@@ -134,24 +139,24 @@ def _refuse_many_modes(bases: Sequence[Component], slips: bool) -> None:
         ])  # fmt: skip
 
 
-def sheared(held: StackSetting) -> list[str]:
+def sheared_tendon_faults(setting: StackSetting) -> list[str]:
     """Return faults for tendons without depth below a joint: a slip would shear them there."""
     return [
         f"{one.name}: a Tendon is bent over the edges of a duct that goes through, and a block "
         "that slides shears it there: give the depth below the base at which it is held"
-        for one in held.ties
+        for one in setting.links
         if isinstance(one.part, Tendon) and one.part.si.depth == 0.0
     ]
 
 
 @dataclass(frozen=True)
-class TiedSetting(StackSetting):
+class RestrainedSetting(StackSetting):
     """A block with links on rigid ground, which holds it against sliding."""
 
     @property
     def friction(self) -> BaseFriction:
         """Friction of the ground."""
-        return self.frictions[0] if self.frictions else HELD
+        return self.frictions[0] if self.frictions else NO_SLIP
 
     def contact_model(self) -> ContactModel:
         """Return the equations of slip, rotation and rise, with links."""
@@ -159,14 +164,14 @@ class TiedSetting(StackSetting):
         from rockframe.dynamics.tied_slide_rock import tied_slide_rock
 
         self._rest  # noqa: B018 - refuses a block that its links tip over
-        bare = slide_rock_of(self.body, self.friction, self.body.maximum_restitution, self.gravity)
-        if not self.chain_ties:  # all links are loads that are masses
-            return slide_rock(bare, mass=self.body.mass)
-        return tied_slide_rock(bare, self.chain_ties, mass=self.body.mass)
+        block = slide_rock_of(self.body, self.friction, self.body.maximum_restitution, self.gravity)
+        if not self.chain_links:  # all links are loads that are masses
+            return slide_rock(block, mass=self.body.mass)
+        return tied_slide_rock(block, self.chain_links, mass=self.body.mass)
 
 
 @dataclass(frozen=True)
-class TiedSlidingSetting(TiedSetting):
+class SlidingRestrainedSetting(RestrainedSetting):
     """A block with links on rigid ground, on which it slides."""
 
     impact: Impact = Impact.COULOMB  # law of its impacts
@@ -179,7 +184,7 @@ class TiedSlidingSetting(TiedSetting):
 
     def cautions(self) -> list[str]:
         """Return warnings, also about a block that slides at rest under its restrainers."""
-        return [*super().cautions(), *self.slides_at_rest("the block")]
+        return [*super().cautions(), *self.rest_slip_cautions("the block")]
 
     def words(self) -> Words:
         """Describe the block, its links and its friction."""
@@ -197,7 +202,7 @@ class TiedSlidingSetting(TiedSetting):
                  "on its whole base"),
                 ("left, right", "it rocks about the corner that bears while friction holds that, "
                  "and slips on it otherwise"),
-                SLIPS,
+                SLIP_EQUATION,
                 ("flight", "nothing bears: N = 0"),
                 ("impact", f"{self.impact}: {impact_words(self.impact)}; restrainers, whose forces "
                  "are finite, have no part in it"),
@@ -210,13 +215,15 @@ class TiedSlidingSetting(TiedSetting):
         return (slips_on_ground(ending),)
 
 
-def tied_on_ground(ground: RigidGround, held: StackSetting) -> StackSetting:
+def restrained_setting(ground: RigidGround, held: StackSetting) -> StackSetting:
     """Return the setting of a block with links: one with sliding where the ground has friction."""
-    found = friction_under(ground, held.options)
-    if found is None:
-        return TiedSetting(**_same(held))
-    faults = sheared(held)
-    faults += ill_posed(held.body, found.kinetic)
+    friction = base_friction(ground, held.options)
+    if friction is None:
+        return RestrainedSetting(**_shared_fields(held))
+    faults = sheared_tendon_faults(held)
+    faults += jamming_faults(held.body, friction.kinetic)
     if faults:
         raise AssemblyError(faults)
-    return TiedSlidingSetting(**_same(held), frictions=(found,), impact=ground.si.impact)
+    return SlidingRestrainedSetting(
+        **_shared_fields(held), frictions=(friction,), impact=ground.si.impact
+    )

@@ -21,33 +21,35 @@ from rockframe.system.bodies import (
     BaseLoad,
     PlacedMass,
     SupportedBody,
-    body_of_block,
-    joined_body,
-    with_mass,
+    block_body,
+    combine_masses,
+    with_point_mass,
 )
-from rockframe.system.fitting import BaseFriction
-from rockframe.system.links import PlacedLink, base_of, placed
+from rockframe.system.compatibility import BaseFriction
+from rockframe.system.links import PlacedLink, base_of, place_links
 from rockframe.system.options import Options, restraint_words
 from rockframe.system.parts import support_of
 from rockframe.system.rigid_base import (
     REACTIONS,
     RigidBase,
-    beyond_lift,
-    lifting,
-    pressed,
-    rocked_statics,
+    rigid_base_load,
     rocking_energy,
+    rocking_statics,
+    statics_beyond_uplift,
+    uplift_limits,
 )
 from rockframe.system.setting import Setting
 from rockframe.system.statics import SmallMotion, Statics, least_overturning_energy, static_values
 from rockframe.system.support import StandingBodies, Support
-from rockframe.system.words import TO_ROCK, Words
+from rockframe.system.words import FRICTION_TO_ROCK, Words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.chain.model import AtRest
 
-NO_REST: Final = "the bodies find no rest under their weight: their bases are too soft for them"
-PULLED: Final = ", or their restrainers or loads pull them over"
+NO_EQUILIBRIUM: Final = (
+    "the bodies find no rest under their weight: their bases are too soft for them"
+)
+PULLED_OVER: Final = ", or their restrainers or loads pull them over"
 
 
 @dataclass(frozen=True)
@@ -59,14 +61,14 @@ class StackSetting(Setting):
     # how far the middle of each base is to the right of that of the body below [m]
     offsets: tuple[float, ...]
     bases: tuple[Support, ...]  # base under each body, with all bodies above it as its load
-    ties: tuple[PlacedLink, ...] = ()  # links between points, called ties here
+    links: tuple[PlacedLink, ...] = ()  # links between points
     frictions: tuple[BaseFriction, ...] = ()  # friction of each base; empty where all bases hold
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        # bodies, offsets, ties or a slope make left and right differ
+        # bodies, offsets, links or a slope make left and right differ
         eccentric = any(body.eccentricity != 0.0 for body in self.bodies)
-        leans = bool(self.ties) or eccentric or any(self.offsets) or not self.slope.level
+        leans = bool(self.links) or eccentric or any(self.offsets) or not self.slope.level
         vars(self).update(leans=leans)
 
     @property
@@ -74,7 +76,7 @@ class StackSetting(Setting):
         """Name of the model."""
         if len(self.bodies) == 1:
             return f"{self.bases[0].model}-restrained"
-        return "stack-restrained" if self.ties else "stack"
+        return "stack-restrained" if self.links else "stack"
 
     @cached_property
     def wholes(self) -> tuple[SupportedBody, ...]:
@@ -109,24 +111,24 @@ class StackSetting(Setting):
                 first = k + 1
         return tuple(found)
 
-    def slides_at_rest(self, *names: str) -> list[str]:
-        """Warn of bodies on rigid bases, with these names, that slide at rest under their ties."""
+    def rest_slip_cautions(self, *names: str) -> list[str]:
+        """Warn of bodies on rigid bases, with these names, that slide at rest under their links."""
         found = list[str]()
         for k, (name, friction) in enumerate(zip(names, self.frictions, strict=True)):
             if self.rigid[k] and math.isfinite(friction.static):
-                carried = pressed(self, k, self._tied_at_rest)
-                if abs(carried.along) > friction.static * carried.force:
+                load = rigid_base_load(self, k, self._link_states_at_rest)
+                if abs(load.shear) > friction.static * load.normal:
                     found.append(
                         f"{name} slides under its restrainers and loads: at rest it needs a "
-                        f"friction of {abs(carried.along) / carried.force:.4g}, and has "
+                        f"friction of {abs(load.shear) / load.normal:.4g}, and has "
                         f"{friction.static:.4g}"
                     )
         return found
 
     @property
     def link_names(self) -> tuple[str, ...]:
-        """Names of the ties in results, without loads."""
-        return tuple(one.name for one in self.ties if not isinstance(one.part, Load))
+        """Names of the links in results, without loads."""
+        return tuple(one.name for one in self.links if not isinstance(one.part, Load))
 
     def cautions(self) -> list[str]:
         """Return the warnings of all bases, each with the number of the body on it."""
@@ -135,7 +137,7 @@ class StackSetting(Setting):
             for k, base in enumerate(self.bases, 1)
             for text in base.cautions()
         ]
-        return [*found, *self._leaning()]
+        return [*found, *self._lean_cautions()]
 
     def friction_to_rock(self) -> dict[str, float]:
         """Return the friction to rock of all bodies above each base, as one.
@@ -144,11 +146,13 @@ class StackSetting(Setting):
         """
         found = dict[str, float]()
         for k, (rigid, body) in enumerate(zip(self.rigid, (self.body, *self.wholes), strict=True)):
-            name = TO_ROCK if len(self.bodies) == 1 else f"base {k + 1}: {TO_ROCK}"
-            if not self.ties:
+            name = (
+                FRICTION_TO_ROCK if len(self.bodies) == 1 else f"base {k + 1}: {FRICTION_TO_ROCK}"
+            )
+            if not self.links:
                 found[f"{name} b/h"] = min(body.left, body.right) / body.centre_height
             elif rigid:
-                found[name] = lifting(self, k, self._tied_at_rest).friction
+                found[name] = uplift_limits(self, k, self._link_states_at_rest).friction
         return found
 
     def words(self) -> Words:
@@ -160,17 +164,17 @@ class StackSetting(Setting):
             size = f"{2.0 * body.half_width:.6g} m wide, centre of mass {body.centre_height:.6g} m"
             numbers.append((f"body {k}", f"{size} above its base, {body.mass:.6g} kg"))
             if self.rigid[k - 1]:
-                starts = lifting(self, k - 1, self._tied_at_rest).words()
+                starts = uplift_limits(self, k - 1, self._link_states_at_rest).words()
                 numbers.append((f"base {k}: rigid, all above rocks as one at xg'' of", starts))
             numbers += [(f"base {k}: {name}", words) for name, words in of_base.numbers]
             left_out += [one for one in of_base.left_out if one not in left_out]
-        numbers += [(one.name, one.words()) for one in self.ties]
+        numbers += [(one.name, one.words()) for one in self.links]
         laws = list(dict.fromkeys(base.words().law for base in self.bases))
-        projected = (
+        rigid_impacts = (
             "on rigid bases plastic, by projection on the contacts that are admissible; of "
             "several the one that loses the least energy"
         )
-        pulled = [
+        restrainers = [
             ("restrainers", "a force along each, between its points; slack, taut, yielding, broken")
         ]
         return Words(
@@ -179,8 +183,8 @@ class StackSetting(Setting):
                  f"that is held; {' and '.join(laws)}, along the normal of what a body stands on"),
                 ("flight", "free fall of a body and all above it, apart or together"),
                 ("impact", "an impulse between two bodies; the velocities of all of them answer"),
-                *([("", projected)] if any(self.rigid) else []),
-                *(pulled if self.ties else ()),
+                *([("", rigid_impacts)] if any(self.rigid) else []),
+                *(restrainers if self.links else ()),
             ],
             restraint=f"of every body on what it stands on; {restraint_words(self.options)}",
             numbers=numbers,
@@ -188,7 +192,7 @@ class StackSetting(Setting):
         )  # fmt: skip
 
     @cached_property
-    def links(self) -> tuple[ChainBody, ...]:
+    def chain_bodies(self) -> tuple[ChainBody, ...]:
         """The bodies as the equations take them, per unit mass of the highest one."""
         found, carried, mass = list[ChainBody](), 0.0, self.body.mass
         below = (*(body.eccentricity for body in self.bodies[1:]), 0.0)
@@ -203,16 +207,16 @@ class StackSetting(Setting):
         return tuple(found)
 
     @cached_property
-    def chain_ties(self) -> tuple[ChainLink, ...]:
-        """The ties as the equations take them."""
-        return tuple(one.chain_link(self.body.mass) for one in self.ties)
+    def chain_links(self) -> tuple[ChainLink, ...]:
+        """The links as the equations take them."""
+        return tuple(one.chain_link(self.body.mass) for one in self.links)
 
     @cached_property
     def standing(self) -> StandingBodies:
         """Statics of the bodies: those that rigid bases join are one body on a deformable base."""
-        return self.standing_in(self.groups)
+        return self.statics_of_groups(self.groups)
 
-    def standing_in(
+    def statics_of_groups(
         self, groups: Sequence[range], lifted: int = -1, side: int = 0
     ) -> StandingBodies:
         """Return the statics of groups of joined bodies; one may have lifted from a rigid base.
@@ -221,15 +225,15 @@ class StackSetting(Setting):
         """
         found, numbers = list[StandingBody](), list[BaseNumbers]()
         mass = self.body.mass
-        for some in groups:
-            body, lowest = self._joined(some), some[-1]
+        for group in groups:
+            body, lowest = self._combined_group(group), group[-1]
             # how far its centre of mass is beside that of what it stands on
             beside = self.offsets[lowest] + body.eccentricity
             for below in groups:
                 if below[0] == lowest + 1:
                     shift = math.fsum(self.offsets[below[0] : below[-1]])
-                    beside += shift - self._joined(below).eccentricity
-            height = math.fsum(self.bodies[k].centre_height + self.tops[k] for k in some)
+                    beside += shift - self._combined_group(below).eccentricity
+            height = math.fsum(self.bodies[k].centre_height + self.tops[k] for k in group)
             law = BaseLoad(body, self.options).law(mass)
             carried = math.fsum(one.mass for one in self.bodies[: lowest + 1])
             numbers.append(self.bases[lowest].law(law, mass, carried))
@@ -239,20 +243,20 @@ class StackSetting(Setting):
                 small = min(one.settlement for one in self.standing.chain.bodies)
                 link = link._replace(corner=side, settlement=small)
             found.append(link)
-        ties = tuple(self._between_groups(one, groups) for one in self.ties)
-        chain = StandingChain(tuple(found), self.slope.along_gravity, ties)
+        links = tuple(self._link_between_groups(one, groups) for one in self.links)
+        chain = StandingChain(tuple(found), self.slope.along_gravity, links)
         return StandingBodies(chain, mass, tuple(numbers))
 
-    def _between_groups(self, tie: PlacedLink, groups: Sequence[range]) -> ChainLink:
-        """Return a tie between groups of joined bodies; a point on the ground stays there."""
-        found = tie.chain_link(self.body.mass)
+    def _link_between_groups(self, link: PlacedLink, groups: Sequence[range]) -> ChainLink:
+        """Return a link between groups of joined bodies; a point on the ground stays there."""
+        found = link.chain_link(self.body.mass)
         if not any(self.rigid):
             return found
         which, points = [-1, -1], [(0.0, 0.0), (0.0, 0.0)]
-        for i, (body, (x, y)) in enumerate(zip((tie.on, tie.to), tie.ends, strict=True)):
-            for number, some in enumerate(groups):
-                if body in some:
-                    one, (place, level) = self._joined(some), self.base_of(some[-1])
+        for i, (body, (x, y)) in enumerate(zip((link.on, link.to), link.ends, strict=True)):
+            for number, group in enumerate(groups):
+                if body in group:
+                    one, (place, level) = self._combined_group(group), self.base_of(group[-1])
                     which[i] = number
                     points[i] = (x - place - one.eccentricity, y - level - one.centre_height)
         return found._replace(on=which[0], on_point=points[0], to=which[1], to_point=points[1])
@@ -261,10 +265,10 @@ class StackSetting(Setting):
         """Return the middle of the base of upright body `k`, from that of the lowest one [m]."""
         return base_of(k, self.bodies, self.tops, self.offsets)
 
-    def _joined(self, some: range) -> SupportedBody:
-        """Return the one body that a range of joined bodies makes."""
-        first, last = some[0], some[-1] + 1
-        if len(some) == 1:
+    def _combined_group(self, group: range) -> SupportedBody:
+        """Return a range of joined bodies as one body."""
+        first, last = group[0], group[-1] + 1
+        if len(group) == 1:
             return self.bodies[first]
         return combined_body(
             self.bodies[first:last], self.tops[first:last], self.offsets[first:last]
@@ -274,11 +278,14 @@ class StackSetting(Setting):
     def _rest(self) -> list[Pose]:
         found = self.standing.rest if self.groups else []
         if found is None:
-            raise AssemblyError([NO_REST + (PULLED if self.ties else "")])
+            raise AssemblyError([NO_EQUILIBRIUM + (PULLED_OVER if self.links else "")])
         faults = list[str]()
         for k, rigid in enumerate(self.rigid):
-            if rigid and not (carried := pressed(self, k, self._tied_at_rest)).bears(0.0):
-                side = "right" if carried.to_right < 0.0 else "left"
+            if not rigid:
+                continue
+            load = rigid_base_load(self, k, self._link_states_at_rest)
+            if not load.in_full_contact(0.0):
+                side = "right" if load.right_limit < 0.0 else "left"
                 faults.append(
                     f"weights and restrainers tip body {k + 1} to the {side}, off its rigid base"
                 )
@@ -286,19 +293,19 @@ class StackSetting(Setting):
             raise AssemblyError(faults)
         return found
 
-    def _placed_at_rest(self) -> "list[AtRest]":
-        """Return where each body is at rest on its base; on rigid bases, in full contact."""
+    def _rest_positions(self) -> "list[AtRest]":
+        """Return the position of each body at rest on its base; full contact on rigid bases."""
         from rockframe.dynamics.chain.model import AtRest
 
-        placed = [AtRest(0.0, 0.0) for _ in self.bodies]
-        for some, pose in zip(self.groups, self._rest, strict=True):
-            lowest, rotation, vertical = some[-1], pose.state.rotation, pose.state.vertical
-            if len(some) > 1:  # from the joined body's centre of mass to that of the lowest one
-                body = self.links[lowest].body
+        positions = [AtRest(0.0, 0.0) for _ in self.bodies]
+        for group, pose in zip(self.groups, self._rest, strict=True):
+            lowest, rotation, vertical = group[-1], pose.state.rotation, pose.state.vertical
+            if len(group) > 1:  # from the joined body's centre of mass to that of the lowest one
+                body = self.chain_bodies[lowest].body
                 attitude = body.attitude(rotation)
                 vertical = pose.line.left - attitude.rise - body.left * attitude.sine
-            placed[lowest] = AtRest(rotation, vertical)
-        return placed
+            positions[lowest] = AtRest(rotation, vertical)
+        return positions
 
     @cached_property
     def rest_rotation(self) -> float:
@@ -308,12 +315,12 @@ class StackSetting(Setting):
     @cached_property
     def uplift_angle(self) -> float:
         """Uplift angle of the highest body; NaN if links act on it and bodies are below [rad]."""
-        if self.rigid[0] or all(0 not in (one.on, one.to) for one in self.ties):
+        if self.rigid[0] or all(0 not in (one.on, one.to) for one in self.links):
             return self.bases[0].uplift_angle
         if len(self.bodies) > 1:
             return math.nan
-        found = (abs(self.standing.chain.uplift_rotation(side)) for side in (1.0, -1.0))
-        return min((one for one in found if not math.isnan(one)), default=math.nan)
+        angles = (abs(self.standing.chain.uplift_rotation(side)) for side in (1.0, -1.0))
+        return min((one for one in angles if not math.isnan(one)), default=math.nan)
 
     def small_motion(self) -> SmallMotion | None:
         """Return the equations of small motion about rest, of each body relative to its base."""
@@ -325,7 +332,7 @@ class StackSetting(Setting):
                 ("vertical_displacement", "rotation"), *(one[::-1, ::-1] for one in found)
             )
         names = ("body_rotation", "body_vertical_displacement") * len(self.groups)
-        which = tuple(some[-1] + 1 for some in self.groups)
+        which = tuple(group[-1] + 1 for group in self.groups)
         return SmallMotion(names, *self.standing.small_motion(self._rest), bodies=which)
 
     def without_small_motion(self) -> str:
@@ -351,23 +358,23 @@ class StackSetting(Setting):
         With rigid and deformable bases, also where a corner has lifted from a rigid base.
         """
         if not self.groups:
-            return [rocked_statics(self, rotation) for rotation in rotations]
+            return [rocking_statics(self, rotation) for rotation in rotations]
         found = self.standing.held(rotations)
         if len(self.bodies) == 1:
             return found
         if any(self.rigid):
-            found = beyond_lift(self, rotations, found)
+            found = statics_beyond_uplift(self, rotations, found)
         return [None if one is None else replace(one, reactions={}) for one in found]
 
     def equilibrium(self) -> dict[str, Any]:
-        """Return the values of ties and, of a single body, of its base at rest, by schema names."""
+        """Return the values of links and, of a single body, of its base at rest, by names."""
         found = dict[str, Any]()
         if len(self.bodies) == 1 and not self.groups:
-            carried = pressed(self, 0, self._tied_at_rest)
+            load = rigid_base_load(self, 0, self._link_states_at_rest)
             left, right = self.body.left, self.body.right
-            reactions = (carried.to_right / (left + right), carried.to_left / (left + right))
+            reactions = (load.right_limit / (left + right), load.left_limit / (left + right))
             found = {
-                "uplift_moment": carried.force * self.body.half_width,
+                "uplift_moment": load.normal * self.body.half_width,
                 **static_values(dict(zip(REACTIONS, reactions, strict=True))),
             }
         elif len(self.bodies) == 1:
@@ -375,7 +382,7 @@ class StackSetting(Setting):
             found = {base.settlement_name: base.settlement, **static_values(shown)}
         if not self.link_names:
             return found
-        tied = self._tied_at_rest[: len(self.link_names)]
+        tied = self._link_states_at_rest[: len(self.link_names)]
         return found | {
             "restrainer": list(self.link_names),
             "static_restrainer_force": [self.body.mass * one.force for one in tied],
@@ -383,29 +390,30 @@ class StackSetting(Setting):
         }
 
     @cached_property
-    def _tied_at_rest(self) -> list[LinkForce]:
-        """Elongations and forces of the ties at rest."""
+    def _link_states_at_rest(self) -> list[LinkForce]:
+        """Elongations and forces of the links at rest."""
         if not self.groups:
-            return links_at_rest(self.chain_ties)
+            return links_at_rest(self.chain_links)
         return self.standing.chain.link_forces(self.standing.rest or [])
 
     def contact_model(self) -> ContactModel:
         """Return the equations of stacked bodies."""
         from rockframe.dynamics.chain.model import chain_model
 
-        rest = self._placed_at_rest()
+        rest = self._rest_positions()
         limits = [whole.overturning_angles for whole in self.wholes]
+        one_linked_body = bool(self.links) and len(self.bodies) == 1 and bool(self.groups)
         return chain_model(
-            self.links, self.body.mass, rest if self.leans else None, limits, self.chain_ties,
-            self._held_height if self.ties and len(self.bodies) == 1 and self.groups else None,
+            self.chain_bodies, self.body.mass, rest if self.leans else None, limits,
+            self.chain_links, self._equilibrium_height if one_linked_body else None,
             self.frictions,
         )  # fmt: skip
 
-    def _held_height(self, rotation: float) -> float:
-        """Return the height at which a single body with ties starts at a rotation [m]."""
+    def _equilibrium_height(self, rotation: float) -> float:
+        """Return the height at which a single body with links starts at a rotation [m]."""
         poses = self.standing.chain.poses_at([rotation])
         if poses is None:
-            raise AssemblyError([NO_REST + PULLED])
+            raise AssemblyError([NO_EQUILIBRIUM + PULLED_OVER])
         return poses[0].state.vertical
 
 
@@ -423,7 +431,7 @@ def combined_body(
         PlacedMass(body.mass, body.inertia, x + body.eccentricity, level)
         for body, level, x in places
     ]
-    return joined_body(lowest.half_width, masses)
+    return combine_masses(lowest.half_width, masses)
 
 
 def refuse_options(what: str, options: Options, *, small: bool) -> None:
@@ -445,11 +453,11 @@ def stack_setting(
     links: Sequence[Link],
 ) -> StackSetting:
     """Return the setting of stacked blocks, listed from the top down, on bases and with links."""
-    found = [body_of_block(one) for one in blocks]
+    found = [block_body(one) for one in blocks]
     for link in links:  # masses of loads are added to their bodies
         k = link.si.on_body - 1
         if isinstance(link, Load) and link.si.moving_mass and k < len(found):
-            found[k] = with_mass(found[k], link.si.moving_mass, *link.si.at)
+            found[k] = with_point_mass(found[k], link.si.moving_mass, *link.si.at)
     bodies = tuple(found)
     tops = tuple(one.height - body.centre_height for one, body in zip(blocks, found, strict=True))
     load = BaseLoad(bodies[0], options)
@@ -458,7 +466,7 @@ def stack_setting(
         for k in range(len(bodies))
     ]  # fmt: skip
     bases = tuple(support_of(part, load) for part, load in zip(standing_on, loads, strict=True))
-    bent = [  # on a deformable base both edges of the joint do not meet
+    faults = [  # on a deformable base both edges of the joint do not meet
         f"a Tendon through body {link.si.on_body} is bent at a base that gives way: give the depth "
         "below the base at which it is held"
         for link in links
@@ -467,7 +475,7 @@ def stack_setting(
         and link.si.on_body <= len(bases)
         and not isinstance(bases[link.si.on_body - 1], RigidBase)
     ]
-    if bent:
-        raise AssemblyError(bent)
-    ties = placed(links, bodies, tops, offsets)
-    return StackSetting(load, bodies, tops, offsets, bases, ties)
+    if faults:
+        raise AssemblyError(faults)
+    placed = place_links(links, bodies, tops, offsets)
+    return StackSetting(load, bodies, tops, offsets, bases, placed)

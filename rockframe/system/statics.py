@@ -63,7 +63,7 @@ def required_states(rotations: Sequence[float], states: Sequence[Statics | None]
 
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(12)
-_PLACES: Final[list[tuple[float, float]]] = [
+_GAUSS_RULE: Final[list[tuple[float, float]]] = [
     (0.5 + 0.5 * float(point), 0.5 * float(weight))
     for point, weight in zip(_POINTS, _WEIGHTS, strict=True)
 ]
@@ -72,23 +72,27 @@ _PLACES: Final[list[tuple[float, float]]] = [
 
 def stored_energy(setting: "Setting", rotation: float) -> float:
     """Return the work that slowly brings a body from upright to a rotation [rad] [J]."""
-    found = _restoring(setting, [at * rotation for at, _ in _PLACES])
-    return rotation * sum(of * one for (_, of), one in zip(_PLACES, found, strict=True))
+    moments = _restoring_moments(setting, [point * rotation for point, _ in _GAUSS_RULE])
+    terms = (weight * moment for (_, weight), moment in zip(_GAUSS_RULE, moments, strict=True))
+    return rotation * sum(terms)
 
 
 def least_overturning_energy(setting: "Setting") -> float:
     """Return the work against the restoring moment up to overturning, to the weaker side [J]."""
     ends = setting.overturning_rotations
-    return min(work_against(lambda some: _restoring(setting, some), end) for end in ends)
+    return min(work_against(lambda some: _restoring_moments(setting, some), end) for end in ends)
 
 
 def work_against(moments: Callable[[list[float]], list[float]], end: float) -> float:
     """Return the work against restoring moments, a function of rotations, up to a rotation [J]."""
-    found = moments([at * end for at, _ in _PLACES])
-    return sum(of * max(end * moment, 0.0) for (_, of), moment in zip(_PLACES, found, strict=True))
+    values = moments([point * end for point, _ in _GAUSS_RULE])
+    return sum(
+        weight * max(end * moment, 0.0)
+        for (_, weight), moment in zip(_GAUSS_RULE, values, strict=True)
+    )
 
 
-def _restoring(setting: "Setting", rotations: list[float]) -> list[float]:
+def _restoring_moments(setting: "Setting", rotations: list[float]) -> list[float]:
     """Return restoring moments at rotations [N m]; zero where there is no equilibrium."""
     states = setting.curve(rotations)
     return [0.0 if state is None else state.restoring_moment for state in states]
@@ -115,7 +119,7 @@ class VibrationMode:
     shape: Array
 
 
-def modes_of(motion: SmallMotion) -> list[VibrationMode]:
+def vibration_modes(motion: SmallMotion) -> list[VibrationMode]:
     """Return the modes of linear equations, from slow to fast; unstable ones first."""
     size = len(motion.coordinates)
     transition = np.block(
@@ -139,19 +143,19 @@ def modes_of(motion: SmallMotion) -> list[VibrationMode]:
         elif rate.imag == 0.0:
             real.append(i)
     real.sort(key=lambda i: float(rates[i].real), reverse=True)
-    for first, second in _pairs(real, np.real(vectors[:size]), motion.mass):
+    for first, second in _pair_real_eigenvalues(real, np.real(vectors[:size]), motion.mass):
         shape = _shape(vectors[:size, first])
-        slow, quick = float(rates[first].real), float(rates[second].real)
-        if slow * quick <= 0.0:
+        slow, fast = float(rates[first].real), float(rates[second].real)
+        if slow * fast <= 0.0:
             modes.append(VibrationMode(math.nan, math.nan, shape))
             continue
-        frequency = math.sqrt(slow * quick)
-        modes.append(VibrationMode(frequency, -0.5 * (slow + quick) / frequency, shape))
+        frequency = math.sqrt(slow * fast)
+        modes.append(VibrationMode(frequency, -0.5 * (slow + fast) / frequency, shape))
     return sorted(modes, key=lambda mode: (not math.isnan(mode.angular_frequency),
                                            mode.angular_frequency))  # fmt: skip
 
 
-def _pairs(real: list[int], shapes: Array, mass: Array) -> list[tuple[int, int]]:
+def _pair_real_eigenvalues(real: list[int], shapes: Array, mass: Array) -> list[tuple[int, int]]:
     """Pair real eigenvalues whose shapes are most alike, in the inner product of the mass."""
     scaled = {i: shapes[:, i] / math.sqrt(shapes[:, i] @ mass @ shapes[:, i]) for i in real}
     alike = sorted(

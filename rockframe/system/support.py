@@ -20,19 +20,14 @@ from rockframe.dynamics.single_body import eccentricity_of
 from rockframe.dynamics.statics import StandingChain
 from rockframe.many import sqrt
 from rockframe.signals.arrays import Array
-from rockframe.system.bodies import (
-    BaseLoad,
-    Restitutions,
-    restitution_cautions,
-    restitution_on,
-)
+from rockframe.system.bodies import BaseLoad, Restitutions, base_restitution, restitution_cautions
 from rockframe.system.statics import Statics, required_states, static_values
 from rockframe.system.words import uplift_words, vibration_words
 
-LEAST: Final = 2.0**-20
+LINEAR_ROTATION: Final = 2.0**-20
 """Rotation, over the one that the settlement allows, below which moments are taken as linear in it:
 the difference of the forces at both ends loses too many digits there."""
-SMALL: Final = 2.0**-6
+SLOPE_ROTATION: Final = 2.0**-6
 """Rotation, over the same, at which the slope of the moments is found."""
 
 
@@ -58,7 +53,11 @@ class StandingBodies:
         """Return states with the highest body held at rotations [rad]; None where none exists."""
         curve = self.chain.curve(rotations)
         found = [None if poses is None else self.statics_of(poses) for poses in curve]
-        least = LEAST * self.chain.bodies[0].allowed_rotation if self.chain.rests_upright else 0.0
+        least = (
+            LINEAR_ROTATION * self.chain.bodies[0].allowed_rotation
+            if self.chain.rests_upright
+            else 0.0
+        )
         for i, (rotation, state) in enumerate(zip(rotations, found, strict=True)):
             if state is not None and abs(rotation) < least:
                 found[i] = self._near_upright(rotation, state)
@@ -66,7 +65,7 @@ class StandingBodies:
 
     def _near_upright(self, rotation: float, state: Statics) -> Statics:
         """Return a state with moments free of cancellation, by their slope, to fourth order."""
-        step = SMALL * self.chain.bodies[0].allowed_rotation
+        step = SLOPE_ROTATION * self.chain.bodies[0].allowed_rotation
         near, far = required_states((step, 2.0 * step), self.held((step, 2.0 * step)))
         share = rotation / (6.0 * step)
         return replace(
@@ -343,7 +342,7 @@ def pads_under(pads: TwoSpringSupport, load: BaseLoad) -> PadSupport:
         damping = numbers.damping_ratio * body.mass * vertical
     # the restitution of a body too squat to rock from corner to corner is zero
     greatest = Restitutions(*(max(one, 0.0) for one in body.maximum_restitution))
-    return PadSupport(load, stiffness, damping, restitution_on(pads, greatest))
+    return PadSupport(load, stiffness, damping, base_restitution(pads, greatest))
 
 
 _SEPARATION = {

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from rockframe.system.parts import Parts
     from rockframe.system.setting import Setting
 
-SLIPS = (
+SLIP_EQUATION = (
     "slip",
     "H = -s mu_k N at the point that would be held, s = sgn(slip'); held while |H| <= mu_s N",
 )
@@ -50,7 +50,7 @@ class Words:
 def sliding_words(held: Words, *frictions: tuple[str, str], restraint: str | None = None) -> Words:
     """Return description of a scene that slips from that of the held one, with its frictions."""
     return Words(
-        equations=[*held.equations, SLIPS],
+        equations=[*held.equations, SLIP_EQUATION],
         restraint=held.restraint if restraint is None else restraint,
         numbers=[*held.numbers, *frictions],
         left_out=[one for one in held.left_out if one != "sliding"],
@@ -88,7 +88,7 @@ def describe(
     `written` has names and words for the parts, in place of their notation in Python.
     """
     words, theta = setting.words(), angle_words(setting.overturning_angle)
-    angles = _of_both_sides(setting) if setting.leans else [(_THETA, theta)]
+    angles = _asymmetric_rows(setting) if setting.leans else [(_OVERTURNING_ANGLE, theta)]
     sections = {
         "Parts": [("", repr(part)) for part in parts] if written is None else [*written],
         "Contact states and their equations": words.equations,
@@ -105,14 +105,16 @@ def describe(
     return "\n".join([f"Model: {setting.model}", *lines])
 
 
-_THETA: Final = "overturning angle theta, Eq. (1)"
-TO_ROCK: Final = "friction to rock, at least"
+_OVERTURNING_ANGLE: Final = "overturning angle theta, Eq. (1)"
+FRICTION_TO_ROCK: Final = "friction to rock, at least"
 
 
-def _of_both_sides(setting: "Setting") -> list[tuple[str, str]]:
+def _asymmetric_rows(setting: "Setting") -> list[tuple[str, str]]:
     """Describe rotation at rest and overturning angles of a body whose sides differ."""
     body, slope, (left, right) = setting.body, setting.slope, setting.overturning_angles
-    rows = [(_THETA, f"to the left {angle_words(left)}, to the right {angle_words(right)}")]
+    rows = [
+        (_OVERTURNING_ANGLE, f"to the left {angle_words(left)}, to the right {angle_words(right)}")
+    ]
     if not slope.level:
         higher = "right" if slope.inclination > 0.0 else "left"
         inclined = (

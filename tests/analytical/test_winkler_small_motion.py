@@ -13,7 +13,7 @@ from scipy.linalg import expm
 
 import rockframe as rf
 from rockframe.errors import ModelWarning
-from rockframe.system.statics import SmallMotion, modes_of
+from rockframe.system.statics import SmallMotion, vibration_modes
 
 pytestmark = pytest.mark.analytical
 
@@ -81,7 +81,7 @@ def test_overdamped_modes_keep_their_own_rates():
     root = np.sqrt(mass)
     stiffness = root @ shapes @ np.diag(frequencies**2) @ shapes.T @ root
     damping = root @ shapes @ np.diag(2.0 * ratios * frequencies) @ shapes.T @ root
-    modes = modes_of(SmallMotion(("a", "b", "c", "d"), mass, damping, stiffness))
+    modes = vibration_modes(SmallMotion(("a", "b", "c", "d"), mass, damping, stiffness))
     np.testing.assert_allclose([mode.angular_frequency for mode in modes], frequencies, rtol=1e-9)
     np.testing.assert_allclose([mode.damping_ratio for mode in modes], ratios, rtol=1e-9)
 
@@ -99,7 +99,7 @@ def test_a_strongly_damped_bed_has_the_frequencies_of_its_springs():
 def test_a_mode_that_nothing_brings_back_has_no_frequency():
     """Neither stable nor unstable: stiffness and gravity balance exactly."""
     one = np.eye(1)
-    (mode,) = modes_of(SmallMotion(("rotation",), one, 0.5 * one, 0.0 * one))
+    (mode,) = vibration_modes(SmallMotion(("rotation",), one, 0.5 * one, 0.0 * one))
     assert math.isnan(mode.angular_frequency)
     assert math.isnan(mode.damping_ratio)
 

@@ -19,8 +19,8 @@ from benchmarks.certified_scenes import Case, cases
 
 import rockframe as rf
 from rockframe.errors import RockframeWarning
-from rockframe.simulation.certify.perturbations import cut, parameters
-from rockframe.simulation.run import respond
+from rockframe.simulation.certify.perturbations import divide_intervals, parameters
+from rockframe.simulation.run import compute_response
 
 DISTANCES = tuple(10.0**-k for k in range(2, 8))
 NUDGES = 12
@@ -53,7 +53,9 @@ def contradictions(case: Case, scale: float, fell: bool, count: int = NUDGES) ->
         for _ in range(count):
             _, scene_at = every[int(rng.integers(len(every)))]
             scene = scene_at(float(rng.uniform(-1e-3, 1e-3)))
-            found += scene is not None and respond(scene, plan).trajectory.overturned != fell
+            found += (
+                scene is not None and compute_response(scene, plan).trajectory.overturned != fell
+            )
     return found
 
 
@@ -96,7 +98,7 @@ def true_margin(fell: bool, scanned: np.ndarray) -> float:
 
 def peak_error(case: Case, scale: float, run) -> tuple[float, float]:
     """Return the error of a peak, and its estimate, over the overturning angle."""
-    motion = cut(case.motion, TRUTH_CUT) if case.base == "cascade" else case.motion
+    motion = divide_intervals(case.motion, TRUTH_CUT) if case.base == "cascade" else case.motion
     exact = case.summary(scale, TRUTH, motion)
     theta = float(run.overturning_angle)
     error = abs(exact.peak_rotation - float(run.peak_rotation)) / theta

@@ -15,7 +15,7 @@ from extremes.scenes import GRAVITY, shake, usual
 import rockframe as rf
 from rockframe.errors import ModelWarning, RockframeError, RockframeWarning
 from rockframe.simulation.plan import Plan, plan_run
-from rockframe.simulation.run import respond
+from rockframe.simulation.run import compute_response
 
 TIME_STEPS = (0.005, 0.01, 0.02)
 FREE = 2.0
@@ -53,7 +53,7 @@ class Case:
 
     def summary(self, scale: float = 1.0, accuracy="standard", motion=None):
         """Run; give what became of it."""
-        return respond(self.system.assembly, self.plan(scale, accuracy, motion)).trajectory
+        return compute_response(self.system.assembly, self.plan(scale, accuracy, motion)).trajectory
 
     def certified(self, scale: float = 1.0, accuracy="standard", certify=True):
         """Run with a certificate."""

@@ -25,7 +25,7 @@ from rockframe.errors import RockframeWarning
 from rockframe.signals.motion import absolute_peak
 from rockframe.simulation.certify.run_summary import RunSummary
 from rockframe.simulation.plan import plan_run
-from rockframe.simulation.run import summary_of
+from rockframe.simulation.run import compute_summary
 from rockframe.studies.flips import follow
 
 DENSE = 2048
@@ -100,7 +100,7 @@ def dense(kind: str, system: rf.System, motion: rf.GroundMotion) -> Dense:
     )  # fmt: skip
     scales = LARGEST * np.arange(DENSE + 1) / DENSE
     runs = [
-        summary_of(system.assembly, replace(plan, motion=motion.scaled(scale)))
+        compute_summary(system.assembly, replace(plan, motion=motion.scaled(scale)))
         for scale in scales.tolist()
     ]
     start = 0

@@ -22,9 +22,9 @@ from records import records_folder
 
 import rockframe as rf
 from rockframe.errors import RockframeWarning
-from rockframe.simulation.certify.second_look import OFF, doubts, second_look
+from rockframe.simulation.certify.second_look import MAX_PEAK_ERROR, doubts, second_look
 from rockframe.simulation.plan import plan_run
-from rockframe.simulation.run import respond
+from rockframe.simulation.run import compute_response
 
 RECORDS = (
     "ElCentro1940_Peknold.AT2",
@@ -83,14 +83,16 @@ def arguments(scene, duration):
 def timed(system, plan):
     """Run; give what became of it, and the time."""
     start = time.perf_counter()
-    found = respond(system.assembly, plan).trajectory
+    found = compute_response(system.assembly, plan).trajectory
     return found, time.perf_counter() - start
 
 
 def judged(system, motion, asked):
     """Tell what is wrong with a run at "fast", whether it says so, and what the looks cost."""
     plan = plan_run(system.assembly, motion, accuracy="fast", **asked)
-    respond(system.assembly, plan)  # what is computed once for a scene is no cost of either
+    compute_response(
+        system.assembly, plan
+    )  # what is computed once for a scene is no cost of either
     first, cost = timed(system, plan)
     second, more = timed(system, second_look(system.assembly, plan))
     exact = plan_run(system.assembly, motion, accuracy="reference", outputs=None, **asked)
@@ -98,7 +100,7 @@ def judged(system, motion, asked):
     told = bool(list(doubts(system.setting, plan, first, second)))
     if first.overturned != truth.overturned:
         kind = "other verdict"
-    elif abs(first.peak_rotation - truth.peak_rotation) > OFF * truth.peak_rotation:
+    elif abs(first.peak_rotation - truth.peak_rotation) > MAX_PEAK_ERROR * truth.peak_rotation:
         kind = "peak off"
     elif first.verdict_direction != truth.verdict_direction or (
         abs(first.verdict_time - truth.verdict_time) > OTHER_FALL * truth.verdict_time

@@ -15,7 +15,7 @@ import rockframe as rf
 from rockframe.errors import ModelWarning
 from rockframe.signals.motion import absolute_peak
 from rockframe.simulation.plan import Plan, plan_run
-from rockframe.simulation.run import respond
+from rockframe.simulation.run import compute_response
 
 RADII = (0.08, 0.8)
 RESTITUTIONS = (0.7, 0.995)
@@ -69,7 +69,7 @@ class Shaking:
         """Whether a block overturns; one that the motion cannot lift is not run."""
         if self.peak <= system.setting.uplift_acceleration:
             return False
-        overturned = respond(system.assembly, self.plan).trajectory.overturned
+        overturned = compute_response(system.assembly, self.plan).trajectory.overturned
         if overturned is None:
             msg = f"a run was not finished: {system.describe()}"
             raise RuntimeError(msg)

@@ -21,7 +21,7 @@ import numpy as np
 
 import rockframe as rf
 from rockframe.dynamics.protocol import Start
-from rockframe.simulation import answers, run
+from rockframe.simulation import run, run_outputs
 from rockframe.solve import integrate
 from rockframe.solve.accuracy import LEVELS
 
@@ -30,8 +30,8 @@ ROUNDS = 40
 SHOWN = ("fast", "standard")
 STEP, SAMPLES, FADE = 0.005, 12_000, 1000
 PARTS = {
-    "columns": (answers, "_Observed"),
-    "peaks": (answers, "peaks_along"),
+    "columns": (run_outputs, "_ObservedRun"),
+    "peaks": (run_outputs, "force_peaks"),
     "dataset": (run, "build_dataset"),
 }
 """What is timed by itself: what the model shows along steps and at samples, the peaks found along

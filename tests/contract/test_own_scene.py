@@ -63,7 +63,7 @@ class TestSystem:
         assert "from rockframe." not in text
 
     def test_parts_in_any_order_make_it(self, system, ground):
-        assert rf.System(ground, BLOCK, PULSE).parts.changed(motion=None) == system.parts
+        assert rf.System(ground, BLOCK, PULSE).parts.replace(motion=None) == system.parts
         assert hash(rf.System(ground, BLOCK)) == hash(system)
         assert rf.System(BLOCK, ground.replace(friction=0.4)) != system
 

@@ -15,7 +15,7 @@ from benchmarks.certificates import (
 from benchmarks.certified_scenes import cases
 
 import rockframe as rf
-from rockframe.simulation.certify.perturbations import cut
+from rockframe.simulation.certify.perturbations import divide_intervals
 
 pytestmark = pytest.mark.wide
 
@@ -74,7 +74,9 @@ def exact_peak(name):
     """Return the peak of a hard scene by steps far finer than those of any run."""
     system, motion = HARD[name]
     fine = rf.Accuracy(rtol=1e-12, steps_per_period=100.0)
-    return float(system.simulate(cut(motion, 64), accuracy=fine, **REST).peak_relative_rotation)
+    return float(
+        system.simulate(divide_intervals(motion, 64), accuracy=fine, **REST).peak_relative_rotation
+    )
 
 
 @pytest.mark.parametrize(

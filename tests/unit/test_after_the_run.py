@@ -16,11 +16,11 @@ BLOCK = rf.Block(width="0.5 m", height="2 m", mass="400 kg")
 PULSE = rf.GroundMotion.sine_pulse("3 m/s^2", "1.5 Hz")
 ASKED = {"free_vibration": "1 s", "output_step": "0.1 s"}
 STEPS = {
-    "answers_of": "peaks of forces",
+    "compute_outputs": "peaks of forces",
     "may_overturn_later": "energy to overturn",
-    "unbalanced": "another run agrees",
-    "_leaving": "leave the ground",
-    "slips": "friction that is needed",
+    "energy_caution": "another run agrees",
+    "_separation_cautions": "leave the ground",
+    "sliding_cautions": "friction that is needed",
     "friction_words": "friction that is needed",
     "motion_attributes": "origin",
     "certify": "certificate",
@@ -70,19 +70,19 @@ def test_a_run_tells_what_could_not_be_computed(failing):
     assert "ZeroDivisionError: left out on purpose" in found.attrs["cautions"]
     assert again.attrs["verdict"].startswith("Did not overturn")
     assert float(again.peak_rotation) > 0.0
-    assert ("rotation" in again) == (failing != "answers_of")
+    assert ("rotation" in again) == (failing != "compute_outputs")
     assert math.isnan(float(again.uplift_angle)) == (failing == "uplift_angle")
 
 
 def test_columns_that_the_schema_does_not_have_cost_the_histories_alone(monkeypatch):
-    answers = running.answers_of
+    answers = running.compute_outputs
 
     def with_another(*given):
         found = answers(*given)
         found.values["unheard_of"] = found.values["rotation"]
         return found
 
-    monkeypatch.setattr(running, "answers_of", with_another)
+    monkeypatch.setattr(running, "compute_outputs", with_another)
     with pytest.warns(SolverWarning, match="'unheard_of' is not in the schema"):
         found = rf.System(BLOCK).simulate(PULSE, **ASKED)
     assert float(found.peak_rotation) > 0.0

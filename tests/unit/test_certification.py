@@ -29,9 +29,14 @@ from rockframe.simulation.certify.certificate import (
     RESOLUTION,
     SAFETY,
     Certificate,
-    settles,
+    confirms_verdict,
 )
-from rockframe.simulation.certify.perturbations import CUTS, SHORTER, cut, shortened
+from rockframe.simulation.certify.perturbations import (
+    DIVISIONS,
+    SHORTER,
+    divide_intervals,
+    with_shorter_steps,
+)
 from rockframe.simulation.certify.run_summary import RunSummary
 from rockframe.simulation.certify.scan import NOT_TRIED, Scan, scan
 from rockframe.solve.accuracy import accuracy_of
@@ -90,12 +95,14 @@ def test_the_sentence_says_what_the_numbers_say():
         doubt = text.startswith("Near the boundary: ")
         assert doubt or (found.converged and found.robust), text
         assert doubt != (" also with " in text)
-        sure = found.converged and found.robust and not margin <= max(NEAR, found.wanted.nudge)
+        sure = (
+            found.converged and found.robust and not margin <= max(NEAR, found.certification.nudge)
+        )
         assert doubt != sure, text
         if not doubt and not math.isnan(margin):
             assert f"tried from {1.0 - margin:.6g} to {1.0 + margin:.6g}" in text
             assert found.along.followed != ("were too few to extend" in text)
-        if found.along.tried and margin <= max(NEAR, found.wanted.nudge):
+        if found.along.tried and margin <= max(NEAR, found.certification.nudge):
             assert found.along.followed or "to resolve the dependence" in text or scaled in text
         stops = found.plan.stop_at_overturning
         words = ("overturns", "stands") if stops else ("falls flat", "does not fall flat")
@@ -330,10 +337,10 @@ MOTIONS = {
 
 
 @pytest.mark.parametrize("name", MOTIONS)
-@pytest.mark.parametrize("parts", CUTS)
+@pytest.mark.parametrize("parts", DIVISIONS)
 def test_a_motion_cut_finer_is_the_same_function_of_time(name, parts):
     motion = MOTIONS[name]
-    finer = cut(motion, parts)
+    finer = divide_intervals(motion, parts)
     time = np.linspace(0.0, motion.si.duration, 997)
     size = motion.si.peak
     assert finer.si.time_step == motion.si.time_step / parts
@@ -348,7 +355,7 @@ def test_a_motion_cut_finer_is_the_same_function_of_time(name, parts):
 def test_shorter_steps_are_shorter(accuracy):
     run = SYSTEM.simulate(PULSE, free_vibration="4 s", accuracy=accuracy)
     step = run.attrs["solver_end_time"] / run.attrs["solver_steps"]
-    settings = shortened(accuracy_of(accuracy), SYSTEM.assembly, step, PULSE.si.time_step)
+    settings = with_shorter_steps(accuracy_of(accuracy), SYSTEM.assembly, step, PULSE.si.time_step)
     finer = SYSTEM.simulate(PULSE, free_vibration="4 s", accuracy=settings)
     assert finer.attrs["solver_steps"] > 2.0 * run.attrs["solver_steps"]
 
@@ -362,8 +369,8 @@ def test_a_verdict_is_settled_only_if_all_that_it_hangs_on_is():
         ((1.0, 0.7), False),
         ((0.6, 0.3), False),
     ):
-        assert settles(falls, replace(falls, clearances=clearances)) is sure
-    assert not settles(falls, replace(falls, direction=-1))
+        assert confirms_verdict(falls, replace(falls, clearances=clearances)) is sure
+    assert not confirms_verdict(falls, replace(falls, direction=-1))
 
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
@@ -398,7 +405,7 @@ def test_the_page_says_what_is_done():
     assert said(page, "at most `rf.Certification(runs=...)`, # unless given") == [200]
     assert said(page, "steps # times shorter than they were on average") == [SHORTER]
     assert said(page, "three with every interval of the motion divided into #, # and #") == list(
-        CUTS
+        DIVISIONS
     )
     assert "is three times the largest difference of their peaks" in read(page).replace("\n  ", " ")
     assert SAFETY == 3.0

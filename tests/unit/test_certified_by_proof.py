@@ -49,12 +49,12 @@ def test_a_run_that_ends_too_early_is_told(system):
 
 
 def test_a_contradiction_is_told_loudly(system, monkeypatch):
-    given = proving.proof_of
+    given = proving.prove_run
 
     def wrong(*arguments, **options):
         return replace(given(*arguments, **options), verdict="safe for ever")
 
-    monkeypatch.setattr("rockframe.simulation.run.proof_of", wrong)
+    monkeypatch.setattr("rockframe.simulation.run.prove_run", wrong)
     with pytest.warns(SolverWarning, match="the run is wrong, or the proof is"):
         run = system.simulate(pulse(3.6), free_vibration="10 s", certify="proved", outputs=None)
     assert not bool(run.verdict_proved)
@@ -72,14 +72,14 @@ def test_a_contradiction_is_told_loudly(system, monkeypatch):
 )
 def test_another_instant_of_overturning_is_told(base, peak, away, monkeypatch):
     """The verdict is proved, but the run is of another course."""
-    given = proving.proof_of
+    given = proving.prove_run
 
     def later(*arguments, **options):
         proof = given(*arguments, **options)
         return replace(proof, earliest=proof.earliest + away, latest=proof.latest + away)
 
     standing = rf.System(rf.Block(width="1 m", height="5 m", mass="10 t"), base)
-    monkeypatch.setattr("rockframe.simulation.run.proof_of", later)
+    monkeypatch.setattr("rockframe.simulation.run.prove_run", later)
     with pytest.warns(SolverWarning, match=r"in the run at .* s, which is off by 0\.3 s"):
         run = standing.simulate(pulse(peak), free_vibration="10 s", certify="proved", outputs=None)
     assert bool(run.verdict_proved)

@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 import rockframe as rf
 from rockframe.errors import AssemblyError, ComponentError
 from rockframe.system.geometry import geometry_of
-from rockframe.system.rear_wall import yielding_wall
+from rockframe.system.rear_wall import equivalent_wall
 
 BLOCK = rf.Block(width="1 m", height="4 m", mass="4 t")
 PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
@@ -109,9 +109,9 @@ def test_the_wall_that_a_refusal_names_throws_back_as_the_stiff_one(given, share
 
 
 def test_a_wall_that_stops_the_body_has_critical_damping():
-    found = yielding_wall(rf.RearWall(restitution=0), BLOCK.si)
+    found = equivalent_wall(rf.RearWall(restitution=0), BLOCK.si)
     mass = (BLOCK.si.inertia + BLOCK.si.mass * BLOCK.si.centre_height**2) / BLOCK.si.height**2
-    assert found.share == 0.0
+    assert found.rebound == 0.0
     assert found.damping == pytest.approx(2.0 * math.sqrt(found.stiffness * mass))
 
 

@@ -9,7 +9,7 @@ import pytest
 import rockframe as rf
 from rockframe.compiled import COMPILED
 from rockframe.errors import ModelWarning, SolverWarning
-from rockframe.simulation.soundness import most_stored
+from rockframe.simulation.soundness import max_stored_energy
 from rockframe.studies.sweeps import study
 from rockframe.system.statics import stored_energy
 
@@ -217,16 +217,16 @@ TALL = rf.Block(width="0.5 m", height="2 m", mass="400 kg", eccentricity="0.05 m
 def test_no_more_is_stored_than_its_bound(system, share):
     rotation = share * system.assembly.setting.overturning_angle
     stored = stored_energy(system.assembly.setting, rotation)
-    assert stored <= most_stored(system.assembly, rotation) * (1.0 + 1e-9)
+    assert stored <= max_stored_energy(system.assembly, rotation) * (1.0 + 1e-9)
 
 
 def test_the_bound_of_what_is_stored_is_one():
     """Uphill, and under a load, more is stored than the weight alone would: there is no bound."""
-    level = most_stored(rf.System(BLOCK, PADS).assembly, 0.01)
+    level = max_stored_energy(rf.System(BLOCK, PADS).assembly, 0.01)
     for system, rotation in (
         (rf.System(BLOCK, PADS, inclination="5 deg"), -0.01),
         (rf.System(BLOCK, PADS, inclination="5 deg"), 0.01),
         (rf.System(BLOCK, PADS, rf.Load(at=("0 m", "2 m"), vertical="9 kN")), 0.01),
     ):
-        assert most_stored(system.assembly, rotation) == math.inf
+        assert max_stored_energy(system.assembly, rotation) == math.inf
     assert 0.0 < level < math.inf

@@ -10,7 +10,7 @@ from plainly import plainly
 
 import rockframe as rf
 from rockframe.errors import SchemaError, SolverWarning
-from rockframe.results.joining import OF_ONE_RUN
+from rockframe.results.joining import RUN_ATTRIBUTES
 
 pytestmark = pytest.mark.unit
 
@@ -35,7 +35,7 @@ def row(runs, *scales):
 
 
 def of_one_run(dataset):
-    return OF_ONE_RUN & set(dataset.attrs)
+    return RUN_ATTRIBUTES & set(dataset.attrs)
 
 
 def test_the_names_are_those_of_what_differs_between_a_run_that_stands_and_one_that_falls():
@@ -59,7 +59,7 @@ def test_the_names_are_those_of_what_differs_between_a_run_that_stands_and_one_t
     of_stacks = {"impacts_of_several_modes", "impacts_of_no_mode", "corners_held_without_pressing"}
     of_proofs = {"proof", "proof_bits", "proof_verdict"}
     not_here = {"solver_substeps"} | of_stacks | of_proofs
-    assert differing - asked - settings == OF_ONE_RUN - not_here
+    assert differing - asked - settings == RUN_ATTRIBUTES - not_here
 
 
 def test_no_order_of_joining_leaves_the_verdict_of_one_run(runs):
@@ -107,7 +107,7 @@ def test_one_step_of_plain_xarray_tells_no_mixed_verdict_and_no_caution_of_one(r
     for chosen in (row(runs, STANDS, FALLS), [runs[STANDS], warned], [warned, runs[FALLS]]):
         bare = [one.drop_dims(["time", "event"]) for one in chosen]
         joined = xr.concat(bare, "run", data_vars="all", combine_attrs="drop_conflicts")
-        for name in OF_ONE_RUN & set(joined.attrs):
+        for name in RUN_ATTRIBUTES & set(joined.attrs):
             values = {str(one.attrs[name]) for one in chosen}
             assert len(values) == 1, name
         assert ("cautions" in joined.attrs) == all(

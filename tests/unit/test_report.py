@@ -19,7 +19,7 @@ from rockframe.reports.limits import LIMITS
 from rockframe.reports.values import value_of
 from rockframe.results.schema import SCHEMA
 from rockframe.simulation.certify import certificate
-from rockframe.simulation.run_arguments import FEWEST_RUNS
+from rockframe.simulation.run_arguments import MIN_RUNS
 from rockframe.units.shown import ReaderUnits
 
 pytestmark = [pytest.mark.unit, pytest.mark.usefixtures("no_pictures")]
@@ -29,7 +29,7 @@ pytestmark = [pytest.mark.unit, pytest.mark.usefixtures("no_pictures")]
 def short_certificates(monkeypatch):
     """Have certificates that a report makes try as few runs as they may."""
     defaults = inspect.unwrap(rf.Certification.__init__).__kwdefaults__
-    monkeypatch.setitem(defaults, "runs", FEWEST_RUNS)
+    monkeypatch.setitem(defaults, "runs", MIN_RUNS)
 
 
 class Page(HTMLParser):

@@ -9,9 +9,15 @@ import pytest
 
 import rockframe as rf
 from rockframe.simulation.certify.certificate import SAFETY
-from rockframe.simulation.certify.second_look import MORE, OFF, doubts, peak_error, second_look
+from rockframe.simulation.certify.second_look import (
+    ADDED_STEPS,
+    MAX_PEAK_ERROR,
+    doubts,
+    peak_error,
+    second_look,
+)
 from rockframe.simulation.plan import plan_run
-from rockframe.simulation.run import respond
+from rockframe.simulation.run import compute_response
 from rockframe.solve.workspace import Status
 
 SYSTEM = rf.System(
@@ -40,7 +46,7 @@ def test_a_sure_run_says_nothing_and_estimates_the_error_of_its_peak():
     run, said = fast()
     assert said == []
     substeps = run.attrs["solver_substeps"]
-    finer = rf.Accuracy(substeps=substeps + math.ceil(MORE * substeps))
+    finer = rf.Accuracy(substeps=substeps + math.ceil(ADDED_STEPS * substeps))
     again = SYSTEM.simulate(PULSE, free_vibration="4 s", outputs=None, accuracy=finer)
     exact = SYSTEM.simulate(PULSE, free_vibration="4 s", outputs=None, accuracy="reference")
     told = float(run.peak_error_estimate)
@@ -66,7 +72,7 @@ def test_a_run_that_is_wrong_says_so(number, ratio, words):
     exact = system.simulate(motion, outputs=None, accuracy="reference")
     other = bool(run.overturned) != bool(exact.overturned)
     off = abs(float(run.peak_rotation) - float(exact.peak_rotation))
-    assert other or off > OFF * float(exact.peak_rotation)
+    assert other or off > MAX_PEAK_ERROR * float(exact.peak_rotation)
     assert other == (words == "the verdict is not sure")
     assert any(words in one for one in said)
     assert words in run.attrs["cautions"]
@@ -98,7 +104,7 @@ def test_it_can_be_switched_off_and_belongs_to_fast_alone(monkeypatch):
 @pytest.fixture(scope="module")
 def base():
     plan = plan_run(SYSTEM.assembly, PULSE, free_vibration="4 s", accuracy="fast", outputs=None)
-    return plan, respond(SYSTEM.assembly, plan).trajectory
+    return plan, compute_response(SYSTEM.assembly, plan).trajectory
 
 
 def told(base, first, second):
@@ -138,7 +144,9 @@ def test_what_is_said(base):
     assert "stands, its peak 98 % of the overturning angle: the verdict is not sure" in close
 
 
-@pytest.mark.parametrize(("off", "said"), [(0.9 * OFF / SAFETY, 0), (1.1 * OFF / SAFETY, 1)])
+@pytest.mark.parametrize(
+    ("off", "said"), [(0.9 * MAX_PEAK_ERROR / SAFETY, 0), (1.1 * MAX_PEAK_ERROR / SAFETY, 1)]
+)
 def test_a_peak_is_not_sure_where_its_estimated_error_is_large(base, off, said):
     first, second = (
         {**STANDS, "peak_left": 0.0, "peak_right": at} for at in (0.1, 0.1 + 0.1 * off)

@@ -294,8 +294,8 @@ def test_options_that_a_scene_has_no_use_for_are_told(option, chosen, useless, u
         rf.System(*useless, **{option: chosen})
     assert len(caught) == 1
     assert caught[0].filename == __file__
-    assert rf.System(*useful, **{option: chosen}).assembly.doubts == []
-    assert rf.System(*useless).assembly.doubts == []
+    assert rf.System(*useful, **{option: chosen}).assembly.setting_cautions == []
+    assert rf.System(*useless).assembly.setting_cautions == []
 
 
 @pytest.mark.parametrize(
@@ -309,5 +309,5 @@ def test_a_tie_without_strength_that_would_break_or_yield_is_told(tie):
     with pytest.warns(ModelWarning, match=f"brittle={tie.brittle} changes nothing") as caught:
         rf.System(block(), tie)
     assert len(caught) == 1
-    assert rf.System(block(), tie.replace(strength="20 kN")).assembly.doubts == []
-    assert rf.System(block(), tie.replace(brittle=not tie.brittle)).assembly.doubts == []
+    assert rf.System(block(), tie.replace(strength="20 kN")).assembly.setting_cautions == []
+    assert rf.System(block(), tie.replace(brittle=not tie.brittle)).assembly.setting_cautions == []

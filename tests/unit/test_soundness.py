@@ -10,13 +10,13 @@ from rockframe.errors import SolverWarning
 from rockframe.simulation import soundness
 from rockframe.simulation.certify.run_summary import RunSummary
 from rockframe.simulation.plan import plan_run
-from rockframe.simulation.run import respond
+from rockframe.simulation.run import compute_response
 from rockframe.simulation.soundness import (
-    BY_TOLERANCE,
-    DOUBTFUL,
-    DOUBTFUL_ON_SPRINGS,
-    FIXED,
-    unbalanced,
+    DOUBTFUL_RESIDUAL,
+    DOUBTFUL_RESIDUAL_ON_SPRINGS,
+    MAX_ADAPTIVE_RESIDUAL,
+    MAX_FIXED_STEP_RESIDUAL,
+    energy_caution,
 )
 
 SYSTEM, MOTION = Scene().system, Scene().motion
@@ -35,20 +35,20 @@ def said(accuracy, residual, other=STOOD, base=STOOD, system=SYSTEM):
         outputs=None,
         overturning="stop",
     )
-    summary = replace(respond(system.assembly, plan).trajectory, energy_residual=residual)
+    summary = replace(compute_response(system.assembly, plan).trajectory, energy_residual=residual)
     tried = []
 
     def run(beside):
         tried.append(beside.accuracy)
         return other
 
-    return unbalanced(system.assembly, plan, summary, lambda: base, run), tried
+    return energy_caution(system.assembly, plan, summary, lambda: base, run), tried
 
 
 @pytest.mark.parametrize("accuracy", ["standard", "reference", 1e-6])
 def test_steps_by_tolerance_are_judged_by_their_balance(accuracy):
-    assert said(accuracy, 0.5 * BY_TOLERANCE) == (None, [])
-    text, tried = said(accuracy, 2.0 * BY_TOLERANCE)
+    assert said(accuracy, 0.5 * MAX_ADAPTIVE_RESIDUAL) == (None, [])
+    text, tried = said(accuracy, 2.0 * MAX_ADAPTIVE_RESIDUAL)
     assert "out of balance by 0.002 of the largest" in text
     assert "this is no solution; repeat the run with a tighter tolerance" in text
     assert not tried
@@ -58,10 +58,10 @@ def test_steps_by_tolerance_are_judged_by_their_balance(accuracy):
 def test_fixed_steps_are_judged_by_a_run_by_tolerance_where_their_balance_leaves_it_open(accuracy):
     standard = rf.Accuracy(rtol=2e-8)
     rigid = rf.System(SYSTEM.parts.block)
-    for system, limit in ((SYSTEM, DOUBTFUL_ON_SPRINGS), (rigid, DOUBTFUL)):
+    for system, limit in ((SYSTEM, DOUBTFUL_RESIDUAL_ON_SPRINGS), (rigid, DOUBTFUL_RESIDUAL)):
         assert said(accuracy, 0.5 * limit, system=system) == (None, [])
         assert said(accuracy, 2.0 * limit, system=system) == (None, [standard])
-    text, tried = said(accuracy, 2.0 * FIXED)
+    text, tried = said(accuracy, 2.0 * MAX_FIXED_STEP_RESIDUAL)
     assert text.endswith("this is no solution; repeat the run with accuracy='standard'")
     assert not tried
 
@@ -75,7 +75,7 @@ def test_fixed_steps_are_judged_by_a_run_by_tolerance_where_their_balance_leaves
     ],
 )
 def test_another_course_is_said(other, words):
-    text, _ = said("fast", 2.0 * DOUBTFUL_ON_SPRINGS, other)
+    text, _ = said("fast", 2.0 * DOUBTFUL_RESIDUAL_ON_SPRINGS, other)
     assert words in text
     assert "repeat the run with accuracy='standard'" in text
 
@@ -83,11 +83,11 @@ def test_another_course_is_said(other, words):
 def test_a_run_that_was_cut_off_is_not_judged():
     cut_off = RunSummary(None, 0.1)
     assert said("fast", 1.0, base=cut_off) == (None, [])
-    assert said("fast", 2.0 * DOUBTFUL_ON_SPRINGS, other=cut_off)[0] is None
+    assert said("fast", 2.0 * DOUBTFUL_RESIDUAL_ON_SPRINGS, other=cut_off)[0] is None
 
 
 def test_a_run_that_is_no_solution_warns_and_says_so_in_its_cautions(monkeypatch):
-    monkeypatch.setattr(soundness, "BY_TOLERANCE", 1e-30)
+    monkeypatch.setattr(soundness, "MAX_ADAPTIVE_RESIDUAL", 1e-30)
     with pytest.warns(SolverWarning, match="out of balance"):
         run = SYSTEM.simulate(MOTION)
     assert "this is no solution" in run.attrs["cautions"]
@@ -116,9 +116,12 @@ def test_a_block_that_hardly_stirs_is_no_wrong_solution(scale):
 
 def test_motion_that_is_not_felt_is_compared_all_the_same():
     still = replace(STOOD, peak=1e-6, peak_share=1e-5)
-    assert said("standard", 2.0 * BY_TOLERANCE, base=still) == (None, [])
-    assert said("fast", 2.0 * FIXED, base=still, other=replace(still, peak=2e-6))[0] is None
+    assert said("standard", 2.0 * MAX_ADAPTIVE_RESIDUAL, base=still) == (None, [])
+    assert (
+        said("fast", 2.0 * MAX_FIXED_STEP_RESIDUAL, base=still, other=replace(still, peak=2e-6))[0]
+        is None
+    )
     for other in (STOOD, replace(STOOD, overturned=True, time=1.0)):
-        text, tried = said("fast", 2.0 * FIXED, base=still, other=other)
+        text, tried = said("fast", 2.0 * MAX_FIXED_STEP_RESIDUAL, base=still, other=other)
         assert "adaptive steps give another course" in text
         assert len(tried) == 1

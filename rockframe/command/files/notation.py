@@ -4,7 +4,7 @@ import re
 from typing import Final
 
 from rockframe.components.registry import kinds
-from rockframe.system.parts import slot_of_kind, usual_kind
+from rockframe.system.parts import default_class, slot_of_class
 
 _TEXT: Final = r"(?:'[^']*'|\"[^\"]*\")"
 _TUPLE: Final = re.compile(rf"(?<!\w)\((?P<values>{_TEXT}(?:, {_TEXT})+)\)")
@@ -43,11 +43,11 @@ def _table(call: re.Match[str]) -> str:
         return f"{_OBJECTS[kind]} = {{ {', '.join(given) or '...'} }}"
     slot = _SYSTEM.get(kind)
     if kind in kinds():
-        slot = slot_of_kind(kinds()[kind])
+        slot = slot_of_class(kinds()[kind])
     if slot is None:
         return call[0]
     if call["way"] is not None:
         given.insert(0, f'constructor = "{call["way"]}"')
-    if kind in kinds() and usual_kind(slot).__name__ != kind:
+    if kind in kinds() and default_class(slot).__name__ != kind:
         given.insert(0, f'type = "{kind}"')
     return f"[{slot}] with {', '.join(given)}" if given else f"[{slot}]"

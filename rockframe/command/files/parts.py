@@ -10,7 +10,7 @@ from rockframe.components import Component, RockingFrame, Stack
 from rockframe.components.registry import kinds
 from rockframe.errors import nearest, shown
 from rockframe.proposals import hints_of
-from rockframe.system.parts import RESTRAINER, slot_of_kind, slots, usual_kind
+from rockframe.system.parts import RESTRAINER, default_class, slot_of_class, slots
 
 TYPE: Final = "type"
 CONSTRUCTOR: Final = "constructor"
@@ -123,8 +123,8 @@ def _inner(file: TomlFile, where: Place, wanted: InnerParts, table: dict[str, An
 
 def classes_in(slot: str) -> dict[str, type[Component]]:
     """Return the classes of parts that a table may describe, the usual one first."""
-    usual = usual_kind(slot)
-    fitting = {name: kind for name, kind in kinds().items() if slot_of_kind(kind) == slot}
+    usual = default_class(slot)
+    fitting = {name: kind for name, kind in kinds().items() if slot_of_class(kind) == slot}
     return {usual.__name__: fitting[usual.__name__], **fitting}
 
 

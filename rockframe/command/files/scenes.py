@@ -18,11 +18,11 @@ from rockframe.motion import GroundMotion
 from rockframe.motion.description import CONSTRUCTORS, OPERATIONS
 from rockframe.proposals import hints_of
 from rockframe.reports.project import CHECKS, project_json
-from rockframe.simulation.plan import certification_of, read_arguments
+from rockframe.simulation.plan import read_arguments, read_certification
 from rockframe.simulation.run_arguments import Certification
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import Accuracy
-from rockframe.system.parts import slot_of_kind
+from rockframe.system.parts import slot_of_class
 
 _FILE: Final = "file"
 MOTIONS: Final = (*CONSTRUCTORS, "example")
@@ -243,7 +243,7 @@ def _read_project(**values: Any) -> str:
 
 def _read_arguments(**values: Any) -> None:
     """Check the arguments of a run before it begins, so that faults have their lines."""
-    certification_of(values.pop("certify", False))
+    read_certification(values.pop("certify", False))
     faults: list[str] = []
     read_arguments(faults, **values)
     if faults:
@@ -253,7 +253,7 @@ def _read_arguments(**values: Any) -> None:
 def _unknown_table(file: TomlFile, name: str) -> None:
     letters = name.replace("_", "").casefold()
     kind = next((kind for one, kind in kinds().items() if one.casefold() == letters), None)
-    slot = None if kind is None else slot_of_kind(kind)
+    slot = None if kind is None else slot_of_class(kind)
     if kind is None or slot is None:
         file.unknown((), name, keys())
     else:

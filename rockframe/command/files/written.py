@@ -8,7 +8,7 @@ from typing import Any, Final
 from rockframe.command.files.parts import CONSTRUCTOR, TYPE, constructors, inner_parts
 from rockframe.components import Component
 from rockframe.components.registry import kinds
-from rockframe.system.parts import RESTRAINER, slot_of_kind, usual_kind
+from rockframe.system.parts import RESTRAINER, default_class, slot_of_class
 
 _POINT: Final = re.compile(r"\((?P<numbers>[^()]+)\) (?P<unit>\S+)")
 """A point as parts write it, (-0.5, 3.0) m."""
@@ -22,13 +22,13 @@ def tables_of(parts: Iterable[Component]) -> list[tuple[str, list[str]]]:
     One below the other they are a file of the same parts.
     """
     found = [*parts]
-    several = sum(slot_of_kind(type(part)) == RESTRAINER for part in found) > 1
+    several = sum(slot_of_class(type(part)) == RESTRAINER for part in found) > 1
     return [row for part in found for row in _tables(part, several=several)]
 
 
 def _tables(part: Component, *, several: bool) -> Iterator[tuple[str, list[str]]]:
     """Return the table of a part, and those of the parts of which it consists."""
-    slot, inner = slot_of_kind(type(part)) or type(part).__name__, inner_parts(type(part))
+    slot, inner = slot_of_class(type(part)) or type(part).__name__, inner_parts(type(part))
     values: dict[str, Any] = dict(part.to_dict())
     head = f"[[{slot}]]" if several and slot == RESTRAINER else f"[{slot}]"
     own = {name: value for name, value in values.items() if name not in inner}
@@ -44,7 +44,7 @@ def _keys(values: Mapping[str, Any], slot: str) -> list[str]:
     """Write the keys of a table with their values; the class only where it is not the usual one."""
     rest = dict(values)
     kind = str(rest.pop(TYPE))
-    keys: dict[str, Any] = {} if kind == usual_kind(slot).__name__ else {TYPE: kind}
+    keys: dict[str, Any] = {} if kind == default_class(slot).__name__ else {TYPE: kind}
     part = kinds()[kind]
     if _FROM_MEMBERS in constructors(part) and not rest.keys() <= part.declared().keys():
         keys[CONSTRUCTOR] = _FROM_MEMBERS  # the only one whose arguments a part keeps

@@ -83,12 +83,12 @@ class Variable:
         return attributes
 
 
-def unit_behind(attributes: Mapping[Any, Any]) -> str:
+def unit_suffix(attributes: Mapping[Any, Any]) -> str:
     """Return the unit of values as it follows a number; empty where it is 1."""
     return behind(str(attributes.get("units", Unit.ONE)))
 
 
-def words_of_flags(attributes: Mapping[Any, Any]) -> dict[Any, str]:
+def flag_words(attributes: Mapping[Any, Any]) -> dict[Any, str]:
     """Return the words of a variable's flags, by their values; none for other variables."""
     values = np.atleast_1d(attributes.get("flag_values", ())).tolist()
     return dict(zip(values, str(attributes.get("flag_meanings", "")).split(), strict=True))

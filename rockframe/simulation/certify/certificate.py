@@ -35,11 +35,11 @@ RESOLUTION: Final = 0.004
 """Length of an interval of scales, over its distance from 1, below which it is not divided."""
 NUDGE_RESOLUTION: Final = 0.06
 """Length of an interval of values of a parameter, over its distance from the parameter's own."""
-INSIDE: Final = (0.5, 1.0)
+FIRST_NUDGES: Final = (0.5, 1.0)
 """First changes of a parameter, as shares of the nudge."""
-PER_PARAMETER: Final = (4, 14)
+RUNS_PER_PARAMETER: Final = (4, 14)
 """Smallest and largest number of runs for one parameter."""
-FOR_PARAMETERS: Final = 0.6
+PARAMETER_SHARE: Final = 0.6
 """Largest share of all further runs that change parameters."""
 
 
@@ -47,7 +47,7 @@ FOR_PARAMETERS: Final = 0.6
 class Certificate:
     """A run and its further runs; without any if the run was not finished."""
 
-    wanted: Certification  # the further runs to make
+    certification: Certification  # the further runs to make
     plan: Plan  # the run's arguments
     base: RunSummary  # the run
     finer: Sequence[tuple[str, RunSummary]] = ()  # runs of higher accuracy, each with what is finer
@@ -62,7 +62,7 @@ class Certificate:
     @property
     def converged(self) -> bool:
         """Whether runs of higher accuracy have the same verdict, with a margin above the error."""
-        return self.finished and all(settles(self.base, other) for _, other in self.finer)
+        return self.finished and all(confirms_verdict(self.base, other) for _, other in self.finer)
 
     @property
     def robust(self) -> bool:
@@ -71,7 +71,7 @@ class Certificate:
         Changes between those that were tried must be unlikely to have one, too.
         """
         followed = all(found.flip is None and found.followed for _, found in self.nudged)
-        least = min(self.wanted.nudge, self.wanted.reach)
+        least = min(self.certification.nudge, self.certification.reach)
         return self.finished and followed and not self.margin < least
 
     @property
@@ -87,14 +87,16 @@ class Certificate:
     @property
     def peak_error(self) -> float:
         """Largest difference of peaks from runs of higher accuracy, times a safety factor [rad]."""
-        return SAFETY * self._farthest([other for _, other in self.finer])
+        return SAFETY * self._largest_peak_difference([other for _, other in self.finer])
 
     @property
     def peak_sensitivity(self) -> float:
         """Largest difference of peak rotations with a nudged parameter [rad]."""
-        return self._farthest([shown for _, found in self.nudged for shown in found.tried.values()])
+        return self._largest_peak_difference(
+            [shown for _, found in self.nudged for shown in found.tried.values()]
+        )
 
-    def _farthest(self, others: list[RunSummary]) -> float:
+    def _largest_peak_difference(self, others: list[RunSummary]) -> float:
         """Return the largest difference of peak rotations; NaN if a run was not finished [rad]."""
         apart = [
             math.nan if one.overturned is None else abs(one.peak - self.base.peak)
@@ -112,12 +114,12 @@ class Certificate:
         """Which further runs were made and what they showed, in words."""
         if not self.finished:
             return "No certificate: the run was not finished."
-        ends = _Ends(self)
-        near, flip = _near(self, ends), _nearest(self)
-        doubts = [*_unsettled(self, ends), *_fragile(self, ends), *near]
+        ends = _OutcomeWords(self)
+        near, flip = _scale_doubts(self, ends), _nearest_flip_words(self)
+        doubts = [*_accuracy_doubts(self, ends), *_parameter_doubts(self, ends), *near]
         if doubts:
             text = f"{NEAR_WORDS}: the body {ends.verdict}, but {'; '.join(doubts)}."
-            near_scale = near and _scaled_a_little(self)
+            near_scale = near and _flip_is_near(self)
             return text if near_scale or not flip else f"{text} {flip.capitalize()}."
         means = [tolerance_words(self.plan.accuracy), f"steps {SHORTER:g} times shorter"]
         if self.plan.motion is not None:
@@ -127,9 +129,9 @@ class Certificate:
             body = "To the end of the run, where it can still overturn, the body"
         text = (
             f"{body} {ends.verdict} also with {', '.join(means[:-1])} and {means[-1]}, and with "
-            f"every parameter up to {100.0 * self.wanted.nudge:g} % larger or smaller"
+            f"every parameter up to {100.0 * self.certification.nudge:g} % larger or smaller"
         )
-        scales = "; ".join(filter(None, [_tried(self), flip]))
+        scales = "; ".join(filter(None, [_scanned_range_words(self), flip]))
         return f"{text}. {scales}." if scales else f"{text}."
 
     def values(self) -> dict[str, float | bool]:
@@ -147,40 +149,42 @@ class Certificate:
         """Return the attributes of a dataset that describe the certificate."""
         return {
             "certificate": self.sentence,
-            "certificate_nudge": self.wanted.nudge,
-            "certificate_reach": self.wanted.reach,
+            "certificate_nudge": self.certification.nudge,
+            "certificate_reach": self.certification.reach,
             "certificate_resolution": RESOLUTION,
             "certificate_runs": self.runs,
         }
 
 
 def certify(
-    system: Assembly, plan: Plan, base: RunSummary, wanted: Certification, run: Run
+    system: Assembly, plan: Plan, base: RunSummary, certification: Certification, run: Run
 ) -> Certificate:
     """Make the certificate of a run."""
     if base.overturned is None:
-        return Certificate(wanted, plan, base)
-    bare = plan.bare()
+        return Certificate(certification, plan, base)
+    bare = plan.without_outputs()
     with warnings.catch_warnings():
         # the run itself has given them
         warnings.simplefilter("ignore", ModelWarning)
         finer = [
             (words, run(system, other)) for words, other in finer_plans(system, bare, base.step)
         ]
-        nudged = _nudged(system, bare, base, wanted, run)
-        most = max(wanted.runs - len(finer) - _number_of_runs(nudged), wanted.runs // 4)
-        along = _scaled(system, bare, base, wanted, run, most)
-    return Certificate(wanted, plan, base, finer, nudged, along)
+        nudged = _nudged(system, bare, base, certification, run)
+        most = max(
+            certification.runs - len(finer) - _number_of_runs(nudged), certification.runs // 4
+        )
+        along = _scaled(system, bare, base, certification, run, most)
+    return Certificate(certification, plan, base, finer, nudged, along)
 
 
 def _nudged(
-    system: Assembly, plan: Plan, base: RunSummary, wanted: Certification, run: Run
+    system: Assembly, plan: Plan, base: RunSummary, certification: Certification, run: Run
 ) -> list[tuple[str, Scan]]:
     """Change every parameter up and down, at the nudge and inside it."""
     every = list(parameters(system))
-    fewest, most = PER_PARAMETER
-    share = int(FOR_PARAMETERS * wanted.runs) // max(len(every), 1)
-    row = [share * wanted.nudge for share in INSIDE]
+    fewest, most = RUNS_PER_PARAMETER
+    share = int(PARAMETER_SHARE * certification.runs) // max(len(every), 1)
+    row = [share * certification.nudge for share in FIRST_NUDGES]
     count = min(max(share, fewest), most)
 
     def along(scene_at: SceneAt) -> Scan:
@@ -188,13 +192,18 @@ def _nudged(
             scene = scene_at(change)
             return None if scene is None else _perturbed_run(scene, plan, run)
 
-        return scan(look, base, row, most=count, resolution=NUDGE_RESOLUTION, close_in=False)
+        return scan(look, base, row, most=count, resolution=NUDGE_RESOLUTION, refine_flip=False)
 
     return [(words, along(scene_at)) for words, scene_at in every]
 
 
 def _scaled(
-    system: Assembly, plan: Plan, base: RunSummary, wanted: Certification, run: Run, most: int
+    system: Assembly,
+    plan: Plan,
+    base: RunSummary,
+    certification: Certification,
+    run: Run,
+    most: int,
 ) -> Scan:
     """Scale the motion or, without one, the start."""
     limits = system.setting.overturning_angles
@@ -203,7 +212,7 @@ def _scaled(
         other = scaled_plan(plan, 1.0 + change, limits)
         return None if other is None else run(system, other)
 
-    row = scales(wanted.nudge, wanted.reach)
+    row = scales(certification.nudge, certification.reach)
     return scan(look, base, row, most=most, resolution=RESOLUTION)
 
 
@@ -217,7 +226,7 @@ def _perturbed_run(system: Assembly, plan: Plan, run: Run) -> RunSummary | None:
         return None
 
 
-def settles(base: RunSummary, finer: RunSummary) -> bool:
+def confirms_verdict(base: RunSummary, finer: RunSummary) -> bool:
     """Whether a run of higher accuracy has the same verdict, with a margin above the error."""
     if not base.alike(finer):
         return False
@@ -232,10 +241,10 @@ def _number_of_runs(nudged: Sequence[tuple[str, Scan]]) -> int:
 NEAR: Final = 0.01
 """Margin up to which a verdict is called near the boundary [1]."""
 NEAR_WORDS: Final = "Near the boundary"
-"""Beginning of the sentence about such a verdict."""
+"""InitialCondition of the sentence about such a verdict."""
 
 
-class _Ends:
+class _OutcomeWords:
     """How runs end, in words: with overturning as the run's arguments define it."""
 
     def __init__(self, found: Certificate) -> None:
@@ -254,7 +263,7 @@ class _Ends:
         return f"it {self._words[shown.overturned]}"
 
 
-def _unsettled(found: Certificate, ends: _Ends) -> Iterator[str]:
+def _accuracy_doubts(found: Certificate, ends: _OutcomeWords) -> Iterator[str]:
     """Say which runs of higher accuracy have another verdict, or come too near to another one."""
     if found.converged:
         return
@@ -262,7 +271,7 @@ def _unsettled(found: Certificate, ends: _Ends) -> Iterator[str]:
     others = [(words, other) for words, other in found.finer if other.overturned != verdict]
     if others:
         words, other = others[0]
-        yield f"with {words}{_more(others)} {ends.of(other)}"
+        yield f"with {words}{_and_more(others)} {ends.of(other)}"
     elif not found.base.within_the_angle:
         yield f"runs of higher accuracy {ends.beyond} in another way, or only just"
     else:
@@ -272,47 +281,47 @@ def _unsettled(found: Certificate, ends: _Ends) -> Iterator[str]:
         )
 
 
-def _fragile(found: Certificate, ends: _Ends) -> Iterator[str]:
+def _parameter_doubts(found: Certificate, ends: _OutcomeWords) -> Iterator[str]:
     """Say which parameters change the verdict."""
     changed = [(words, scan) for words, scan in found.nudged if scan.flip is not None]
     if changed:
         words, scan = changed[0]
         flip, ended = scan.flip or 0.0, scan.ended or found.base
-        yield f"with the {words} {100.0 * flip:+.3g} %{_more(changed)} {ends.of(ended)}"
+        yield f"with the {words} {100.0 * flip:+.3g} %{_and_more(changed)} {ends.of(ended)}"
         return
     lost = [words for words, scan in found.nudged if not scan.followed]
     if lost:
-        yield f"the dependence of the verdict on the {lost[0]}{_more(lost)} was not resolved"
+        yield f"the dependence of the verdict on the {lost[0]}{_and_more(lost)} was not resolved"
 
 
-def _near(found: Certificate, ends: _Ends) -> list[str]:
+def _scale_doubts(found: Certificate, ends: _OutcomeWords) -> list[str]:
     """Say that a slightly different scale changes the verdict, or may change it."""
-    margin, along, what = found.margin, found.along, _driver(found.plan)
-    if not margin <= _little(found) or (along.followed and along.flip is None):
+    margin, along, what = found.margin, found.along, _excitation(found.plan)
+    if not margin <= _near_margin(found) or (along.followed and along.flip is None):
         return []
-    if along.ended is not None and _scaled_a_little(found):
+    if along.ended is not None and _flip_is_near(found):
         change = found.flip - 1.0
         way = "up" if change > 0.0 else "down"
-        return [f"with {what} scaled {way} by {_share(abs(change))} {ends.of(along.ended)}"]
+        return [f"with {what} scaled {way} by {_percent(abs(change))} {ends.of(along.ended)}"]
     return [
-        f"{found.wanted.runs} runs were too few to resolve the dependence of the verdict on the "
-        f"scale of {what} beyond {_share(margin)}"
+        f"{found.certification.runs} runs were too few to resolve the dependence of the verdict on "
+        f"the scale of {what} beyond {_percent(margin)}"
     ]
 
 
-def _little(found: Certificate) -> float:
+def _near_margin(found: Certificate) -> float:
     """Return the change of scale up to which a flip is near."""
-    return max(NEAR, found.wanted.nudge)
+    return max(NEAR, found.certification.nudge)
 
 
-def _scaled_a_little(found: Certificate) -> bool:
+def _flip_is_near(found: Certificate) -> bool:
     """Whether the known change of the verdict is at a scale near to 1."""
-    return abs(found.flip - 1.0) <= 2.0 * _little(found)
+    return abs(found.flip - 1.0) <= 2.0 * _near_margin(found)
 
 
-def _tried(found: Certificate) -> str:
+def _scanned_range_words(found: Certificate) -> str:
     """Say at which scales no other verdict was found; empty where none was tried."""
-    margin, along, what = found.margin, found.along, _driver(found.plan)
+    margin, along, what = found.margin, found.along, _excitation(found.plan)
     if math.isnan(margin):
         return ""
     low, high = (f"{1.0 + sign * margin:.6g}" for sign in (-1.0, 1.0))
@@ -320,25 +329,25 @@ def _tried(found: Certificate) -> str:
         f"No other verdict was found at the {along.within(margin)} scales of {what} tried from "
         f"{low} to {high}"
     )
-    lost = f"; {found.wanted.runs} runs were too few to extend this range"
+    lost = f"; {found.certification.runs} runs were too few to extend this range"
     return text if along.followed else f"{text}{lost}"
 
 
-def _nearest(found: Certificate) -> str:
+def _nearest_flip_words(found: Certificate) -> str:
     """Say which is the nearest scale with another verdict; empty where none is known."""
     flip = found.flip
     if math.isnan(flip):
         return ""
-    return f"the nearest scale of {_driver(found.plan)} with another verdict is {flip:.6g}"
+    return f"the nearest scale of {_excitation(found.plan)} with another verdict is {flip:.6g}"
 
 
-def _share(change: float) -> str:
+def _percent(change: float) -> str:
     return f"{100.0 * change:.3g} %"
 
 
-def _more(all_of: Sequence[object]) -> str:
+def _and_more(all_of: Sequence[object]) -> str:
     return f" (and {len(all_of) - 1} more)" if len(all_of) > 1 else ""
 
 
-def _driver(plan: Plan) -> str:
+def _excitation(plan: Plan) -> str:
     return "the motion" if plan.motion is not None else "the start"

@@ -11,15 +11,15 @@ from rockframe.motion import GroundMotion
 from rockframe.motion.processing.samples import divided_signal
 from rockframe.simulation.plan import Plan
 from rockframe.solve.accuracy import LEVELS, Accuracy, AccuracyLevel
-from rockframe.system.assembly import Assembly, assembly_of
+from rockframe.system.assembly import Assembly, assemble_parts
 from rockframe.system.bodies import OverturningAngles
 from rockframe.system.links import link_labels
 
-QUARTERS: Final = (0.25, 0.5)
+FIRST_SHARES: Final = (0.25, 0.5)
 """First changes of scale, as shares of the nudge."""
-RATIO: Final = 1.25
+SCALE_RATIO: Final = 1.25
 """Ratio of each further change of scale to the one before it, a geometric sequence."""
-LONGEST: Final = 0.04
+MAX_SPACING: Final = 0.04
 """Largest distance between two changes of scale, over the reach."""
 
 SceneAt = Callable[[float], Assembly | None]
@@ -33,7 +33,7 @@ def parameters(system: Assembly) -> Iterator[tuple[str, SceneAt]]:
         def at(change: float) -> Assembly | None:
             try:
                 part = parts[slot].with_scaled(name, 1.0 + change)
-                return assembly_of(parts.changed(**{slot: part}, motion=None), system.options)
+                return assemble_parts(parts.replace(**{slot: part}, motion=None), system.options)
             except RockframeError:
                 return None
 
@@ -51,11 +51,11 @@ def parameters(system: Assembly) -> Iterator[tuple[str, SceneAt]]:
 
 def scales(nudge: float, reach: float) -> list[float]:
     """Return the first changes of scale to try, from a share of the nudge up to the reach."""
-    row = [share * nudge for share in QUARTERS if share * nudge < reach]
+    row = [share * nudge for share in FIRST_SHARES if share * nudge < reach]
     place = min(nudge, reach)
     while place < reach:
         row.append(place)
-        place += min((RATIO - 1.0) * place, LONGEST * reach)
+        place += min((SCALE_RATIO - 1.0) * place, MAX_SPACING * reach)
     if len(row) > 1 and reach - row[-1] < 0.5 * (row[-1] - row[-2]):
         row.pop()
     return [*row, reach]
@@ -89,10 +89,10 @@ TIGHTEST: Final = 1e-13
 SHORTER: Final = 2.7
 """Step of the run over the longest step of a finer one; not an integer, so that steps do not end
 at the same times."""
-CUTS: Final = (3, 4, 8)
+DIVISIONS: Final = (3, 4, 8)
 """Numbers of parts into which the intervals of the motion are divided."""
-MOST_SUBSTEPS: Final = 10**6
-MOST_PER_PERIOD: Final = 1e4
+MAX_SUBSTEPS: Final = 10**6
+MAX_STEPS_PER_PERIOD: Final = 1e4
 
 
 def finer_plans(system: Assembly, plan: Plan, step: float) -> Iterator[tuple[str, Plan]]:
@@ -101,16 +101,16 @@ def finer_plans(system: Assembly, plan: Plan, step: float) -> Iterator[tuple[str
     `step` is the mean step of the run itself [s].
     """
     accuracy = plan.accuracy
-    yield tolerance_words(accuracy), replace(plan, accuracy=tightened(accuracy))
+    yield tolerance_words(accuracy), replace(plan, accuracy=with_tighter_tolerance(accuracy))
     yield (
         f"steps {SHORTER:g} times shorter",
-        replace(plan, accuracy=shortened(accuracy, system, step, plan.interval)),
+        replace(plan, accuracy=with_shorter_steps(accuracy, system, step, plan.interval)),
     )
     if plan.motion is None:
         return
-    for parts in CUTS:
+    for parts in DIVISIONS:
         try:
-            motion = cut(plan.motion, parts)
+            motion = divide_intervals(plan.motion, parts)
         except RockframeError:  # more samples than a motion may have
             continue
         yield f"every interval of the motion divided into {parts}", replace(plan, motion=motion)
@@ -125,25 +125,27 @@ def tolerance_words(accuracy: Accuracy) -> str:
     return f"a tolerance {min(1.0 / TIGHTER, accuracy.rtol / TIGHTEST):.3g} times tighter"
 
 
-def tightened(accuracy: Accuracy) -> Accuracy:
+def with_tighter_tolerance(accuracy: Accuracy) -> Accuracy:
     """Return settings with a tighter tolerance, or with a tolerance instead of fixed sub-steps."""
     if accuracy.rtol is None:
         return LEVELS[AccuracyLevel.STANDARD]
     return replace(accuracy, rtol=max(TIGHTER * accuracy.rtol, TIGHTEST))
 
 
-def shortened(accuracy: Accuracy, system: Assembly, step: float, interval: float) -> Accuracy:
+def with_shorter_steps(
+    accuracy: Accuracy, system: Assembly, step: float, interval: float
+) -> Accuracy:
     """Return settings with shorter steps than the mean one of a run; interval of its motion [s]."""
     wanted = step / SHORTER
     if accuracy.substeps is not None:
         value = accuracy.substeps if isinstance(accuracy.substeps, int) else 1
         substeps = math.ceil(max(interval / wanted, SHORTER * value))
-        return replace(accuracy, substeps=min(substeps, MOST_SUBSTEPS))
+        return replace(accuracy, substeps=min(substeps, MAX_SUBSTEPS))
     period = 2.0 * math.pi / system.model.fastest_frequency
     per_period = max(period / wanted, SHORTER * accuracy.steps_per_period)
-    return replace(accuracy, steps_per_period=min(per_period, MOST_PER_PERIOD))
+    return replace(accuracy, steps_per_period=min(per_period, MAX_STEPS_PER_PERIOD))
 
 
-def cut(motion: GroundMotion, parts: int) -> GroundMotion:
+def divide_intervals(motion: GroundMotion, parts: int) -> GroundMotion:
     """Return the same function of time, with each interval divided into parts."""
     return GroundMotion(motion.si.each(lambda one: divided_signal(one, parts)), name=motion.name)

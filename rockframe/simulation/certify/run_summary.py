@@ -16,11 +16,11 @@ from rockframe.solve.trajectory import Summary
 from rockframe.solve.workspace import Status
 from rockframe.system.assembly import Assembly
 
-LATER: Final = 0.05
+TIME_TOLERANCE: Final = 0.05
 """Relative difference of the times of two overturnings from which on their swings differ."""
-OTHER: Final = 0.2
+HISTORY_TOLERANCE: Final = 0.2
 """Difference of two courses, over their largest element, beyond which the courses are different."""
-PARTS: Final = 6
+INSTANTS: Final = 6
 """Number of instants, spread evenly over a run, about which its course is summed up."""
 
 
@@ -71,13 +71,13 @@ class RunSummary:
         if self.overturned is None or self.overturned != other.overturned:
             return False
         pairs = list(zip(self.course, other.course, strict=True))
-        if pairs and max(abs(a - b) for a, b in pairs) > OTHER * max(map(max, pairs)):
+        if pairs and max(abs(a - b) for a, b in pairs) > HISTORY_TOLERANCE * max(map(max, pairs)):
             return False
         if len(self.clearances) != len(other.clearances):  # one of them passed the angle
             return False
         if not self.overturned:
             return True
-        apart = abs(self.time - other.time) > LATER * max(self.time, other.time)
+        apart = abs(self.time - other.time) > TIME_TOLERANCE * max(self.time, other.time)
         return self.direction == other.direction and not apart
 
 
@@ -119,6 +119,6 @@ def run_summary(
 
 def _course(place: Array, rates: Array) -> tuple[float, ...]:
     """Sum up squared rates about some instants, with weights that fall with distance in time."""
-    instants = np.arange(PARTS)[:, None] / (PARTS - 1)
-    weights = np.clip(1.0 - (PARTS - 1) * np.abs(place - instants), 0.0, None)
+    instants = np.arange(INSTANTS)[:, None] / (INSTANTS - 1)
+    weights = np.clip(1.0 - (INSTANTS - 1) * np.abs(place - instants), 0.0, None)
     return tuple(np.sqrt(weights @ rates**2).tolist())

@@ -14,24 +14,24 @@ from typing import Final
 
 from rockframe.simulation.certify.run_summary import RunSummary
 
-STEEPER: Final = 2.0
+SLOPE_FACTOR: Final = 2.0
 """Largest slope of a clearance assumed between two runs, over the slopes found around it."""
-BENT: Final = 2.0
+CURVATURE_FACTOR: Final = 2.0
 """Ratio of a clearance to its departure from a straight line below which an interval is halved."""
-EVEN: Final = 2.0
+STRAIGHT_RATIO: Final = 2.0
 """Ratio of two slopes up to which they belong to a straight line."""
-CROWD: Final = 2
+MIN_ROUGH_INTERVALS: Final = 2
 """Number of intervals between runs of different course that makes all around them doubtful."""
-AROUND: Final = 8.0
+ROUGH_DISTANCE: Final = 8.0
 """Distance up to which it does, over the length of an interval."""
-AS_LONG: Final = 1.4
+EQUAL_LENGTH_RATIO: Final = 1.4
 """Ratio of the lengths of two intervals up to which they count as equally long."""
-AHEAD: Final = 2.0
+EXTRAPOLATION: Final = 2.0
 """Distance, over the length of an interval, up to which its slope is used for the next one."""
-LEAST: Final = 1e-15
+MIN_LENGTH: Final = 1e-15
 """Length of an interval below which changes are rounding."""
 
-Look = Callable[[float], RunSummary | None]
+RunAt = Callable[[float], RunSummary | None]
 """A function that makes the run with a change; None where that is not possible."""
 
 
@@ -77,14 +77,14 @@ class Side:
             if not self.shown[near].alike(self.shown[far]):
                 self.rough.append((0.5 * (near + far), far - near))
 
-    def crowded(self, near: float, far: float) -> bool:
+    def is_rough(self, near: float, far: float) -> bool:
         """Whether several intervals of about this length nearby are between different courses."""
         length, middle = far - near, 0.5 * (near + far)
         count = 0
         for place, other in self.rough:
-            as_long = length / AS_LONG < other < AS_LONG * length
-            count += as_long and abs(place - middle) <= AROUND * length
-        return count >= CROWD
+            as_long = length / EQUAL_LENGTH_RATIO < other < EQUAL_LENGTH_RATIO * length
+            count += as_long and abs(place - middle) <= ROUGH_DISTANCE * length
+        return count >= MIN_ROUGH_INTERVALS
 
     def intervals(self) -> Iterator[tuple[float, float]]:
         """Return the ends of all intervals, from near to far."""
@@ -100,25 +100,25 @@ class Side:
 
 
 def scan(
-    look: Look,
+    run_at: RunAt,
     base: RunSummary,
-    row: Sequence[float],
+    first_changes: Sequence[float],
     *,
     most: int,
     resolution: float,
-    close_in: bool = True,
+    refine_flip: bool = True,
 ) -> Scan:
     """Try changes of both signs, from small to large ones.
 
     `row` are the sizes of the first changes, the last of which is the reach. Intervals are halved
     until their length is `resolution` times their far end; an interval in which the verdict changes
-    is halved only if `close_in`.
+    is halved only if `refine_flip`.
     """
     sides = [Side(sign, {0.0: base}) for sign in (-1.0, 1.0)]
     tried: dict[float, RunSummary] = {}
 
     def try_at(side: Side, place: float) -> bool:
-        shown = look(side.sign * place)
+        shown = run_at(side.sign * place)
         if shown is None:
             side.closed = True
             return False
@@ -127,7 +127,7 @@ def scan(
         return shown.overturned == base.overturned
 
     reached = 0.0
-    for place in row:
+    for place in first_changes:
         if len(tried) + 1 >= most:
             break
         same = [try_at(side, place) or side.closed for side in sides if not side.closed]
@@ -138,13 +138,13 @@ def scan(
     while True:
         # the interval that may contain the nearest flip is the one that begins first
         nearest = min(_flips(sides), key=lambda one: one[1:], default=None)
-        if nearest is not None and not close_in:
+        if nearest is not None and not refine_flip:
             doubtful, end = None, nearest[1]
             break
         end = reached if nearest is None else nearest[1]
-        doubtful = _first_doubt(sides, end, resolution)
+        doubtful = _nearest_doubtful_interval(sides, end, resolution)
         task = doubtful
-        if nearest is not None and _wide(*nearest[1:], resolution):
+        if nearest is not None and _is_wide(*nearest[1:], resolution):
             task = nearest
         if task is None or len(tried) >= most:
             break
@@ -156,7 +156,7 @@ def scan(
         margin=end if doubtful is None else doubtful[1],
         flip=flip,
         ended=None if flip is None else tried[flip],
-        followed=doubtful is None and (nearest is not None or reached == row[-1]),
+        followed=doubtful is None and (nearest is not None or reached == first_changes[-1]),
         tried=tried,
     )
 
@@ -168,18 +168,20 @@ def _flips(sides: Sequence[Side]) -> list[_Task]:
     return [(side, *flip) for side in sides if (flip := side.flip()) is not None]
 
 
-def _wide(near: float, far: float, resolution: float) -> bool:
-    return far - near > max(resolution * far, LEAST)
+def _is_wide(near: float, far: float, resolution: float) -> bool:
+    return far - near > max(resolution * far, MIN_LENGTH)
 
 
-def _first_doubt(sides: Sequence[Side], end: float, resolution: float) -> _Task | None:
+def _nearest_doubtful_interval(
+    sides: Sequence[Side], end: float, resolution: float
+) -> _Task | None:
     """Return the nearest interval, up to an end, in which the verdict might change to and fro."""
     found: list[_Task] = []
     for side, other in zip(sides, reversed(sides), strict=True):
         for number, (near, far) in enumerate(side.intervals()):
             if near >= end or side.shown[far].overturned != side.shown[0.0].overturned:
                 break
-            if _wide(near, far, resolution) and may_change_between(side, number, other):
+            if _is_wide(near, far, resolution) and may_change_between(side, number, other):
                 found.append((side, near, far))
                 break
     return min(found, key=lambda one: one[1], default=None)
@@ -189,7 +191,7 @@ def may_change_between(side: Side, number: int, other: Side | None = None) -> bo
     """Whether a clearance might go to zero between two runs of the same verdict."""
     near, far = side.places[number], side.places[number + 1]
     first, last = side.shown[near], side.shown[far]
-    if not first.alike(last) or side.crowded(near, far):
+    if not first.alike(last) or side.is_rough(near, far):
         return True
     length, here = far - near, _slopes(side, number)
     if number > 0:
@@ -200,7 +202,7 @@ def may_change_between(side: Side, number: int, other: Side | None = None) -> bo
     beside = [one for one in (before, after) if one.of]
     for k, slope in enumerate(here.of):
         start, end = first.clearances[k], last.clearances[k]
-        spans = [min(length, AHEAD * one.length) for one in beside]
+        spans = [min(length, EXTRAPOLATION * one.length) for one in beside]
         steep = max(
             [abs(one.of[k]) * span for one, span in zip(beside, spans, strict=True)]
             + [abs(slope) * length]
@@ -208,11 +210,13 @@ def may_change_between(side: Side, number: int, other: Side | None = None) -> bo
         bent = max(
             [abs(slope - one.of[k]) * span for one, span in zip(beside, spans, strict=True)] + [0.0]
         )
-        if start + end > STEEPER * steep and min(start, end) > BENT * bent:
+        if start + end > SLOPE_FACTOR * steep and min(start, end) > CURVATURE_FACTOR * bent:
             continue
         # before a change of the verdict a clearance goes to zero, linearly or like a square root
         even = (
-            bool(before.of) and before.of[k] <= 0.0 and EVEN * slope <= before.of[k] <= slope / EVEN
+            bool(before.of)
+            and before.of[k] <= 0.0
+            and STRAIGHT_RATIO * slope <= before.of[k] <= slope / STRAIGHT_RATIO
         )
         if not after.of and even:
             continue

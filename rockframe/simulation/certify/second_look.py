@@ -14,17 +14,17 @@ from rockframe.solve.trajectory import Summary
 from rockframe.system.assembly import Assembly
 from rockframe.system.setting import Setting
 
-MORE: Final = 0.5
+ADDED_STEPS: Final = 0.5
 """Additional steps of the second run, as a share of those of the first."""
-OTHER_COURSE: Final = 0.05
+IMPACT_COUNT_TOLERANCE: Final = 0.05
 """Relative difference of the numbers of impacts beyond which two runs took different courses."""
-SAME_PEAK: Final = 0.01
+PEAK_TOLERANCE: Final = 0.01
 """Relative error of the peak up to which two runs without overturning took the same course."""
-SAME_FALL: Final = 0.1
+ENERGY_TOLERANCE: Final = 0.1
 """Relative error of the energy at overturning up to which two runs took the same course."""
-OFF: Final = 0.05
+MAX_PEAK_ERROR: Final = 0.05
 """Estimated relative error of a peak rotation beyond which a run warns."""
-STILL: Final = 1e-9
+ROUNDED_PEAK: Final = 1e-9
 """Share of the overturning angle up to which a peak rotation is rounding, as after an uplift by a
 ground acceleration that hardly exceeds what the body resists."""
 _AGAIN: Final = "with 1.5 times as many steps"
@@ -61,7 +61,9 @@ def look_at(setting: Setting, summary: Summary, duration: float) -> Look:
 def second_look(system: Assembly, plan: Plan) -> Plan:
     """Return plan of the second run: more steps in each interval of the motion, at least one."""
     value = max(substeps_of(plan.accuracy, system.model, plan.interval), 1)
-    return replace(plan.bare(), accuracy=Accuracy(substeps=value + math.ceil(MORE * value)))
+    return replace(
+        plan.without_outputs(), accuracy=Accuracy(substeps=value + math.ceil(ADDED_STEPS * value))
+    )
 
 
 def is_sure(first: Look, second: Look) -> bool:
@@ -79,16 +81,16 @@ def is_together(first: Look, second: Look) -> bool:
         return False
     if first.overturned:
         apart = 2.0 * first.frequency * SAFETY * abs(first.time - second.time)
-        close = apart < SAME_FALL
+        close = apart < ENERGY_TOLERANCE
     else:
-        close = SAFETY * abs(first.share - second.share) <= SAME_PEAK * first.share
+        close = SAFETY * abs(first.share - second.share) <= PEAK_TOLERANCE * first.share
     return close or not _other_impacts(first, second)
 
 
 def _other_impacts(first: Look, second: Look) -> bool:
     """Whether the numbers of impacts show that two runs took different courses."""
     apart = abs(first.impacts - second.impacts)
-    return apart > OTHER_COURSE * max(first.impacts, second.impacts)
+    return apart > IMPACT_COUNT_TOLERANCE * max(first.impacts, second.impacts)
 
 
 def is_clear(first: Look, second: Look) -> bool:
@@ -120,12 +122,15 @@ def doubts(setting: Setting, plan: Plan, first: Summary, second: Summary) -> Ite
     if first.overturned is None:
         return
     mine, other = (look_at(setting, one, plan.duration) for one in (first, second))
-    if mine.overturned is other.overturned is False and max(mine.share, other.share) <= STILL:
+    if (
+        mine.overturned is other.overturned is False
+        and max(mine.share, other.share) <= ROUNDED_PEAK
+    ):
         return
     if not is_together(mine, other):
         yield f"{_AGAIN} {_ends(other)}: the verdict is not sure; {_REMEDY}"
     error = peak_error(first, second)
-    if error > OFF * first.peak_rotation:
+    if error > MAX_PEAK_ERROR * first.peak_rotation:
         yield (
             f"{_AGAIN} its peak rotation is {second.peak_rotation:.4g} rad, not "
             f"{first.peak_rotation:.4g}: it is not sure; {_REMEDY}"

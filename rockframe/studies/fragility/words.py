@@ -10,7 +10,7 @@ import xarray as xr
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.analyses import LIMIT_STATE, FragilityStatus
-from rockframe.results.variables.variable import unit_behind
+from rockframe.results.variables.variable import unit_suffix
 from rockframe.signals.arrays import Array
 from rockframe.studies.fragility.likelihood import Bands
 from rockframe.studies.intensities import PERIOD_OF, measure_words
@@ -143,7 +143,7 @@ def _fit(last: xr.Dataset, status: Generic, fitted: Generic) -> str:
     rest = f"; to {int((~fitted).sum())} of them none fits" if not fitted.all() else ""
     if len(names) > 1:
         return f"Capacity against {head} fitted over {over}{rest}."
-    unit = unit_behind(last["median_intensity"].attrs)
+    unit = unit_suffix(last["median_intensity"].attrs)
     median, dispersion = (
         _range(last[name].to_numpy().ravel()[fitted], digits)
         for name, digits in zip(("median_intensity", "dispersion"), _DIGITS, strict=True)
@@ -164,7 +164,7 @@ def _separation(last: xr.Dataset) -> str:
     if list(status) != [FragilityStatus.SEPARATED] or "separation_lower_intensity" not in last:
         return ""
     low, high = (last[f"separation_{end}_intensity"].item() for end in ("lower", "upper"))
-    unit = unit_behind(last["median_intensity"].attrs)
+    unit = unit_suffix(last["median_intensity"].attrs)
     words = f" None exceeded up to {low:.4g}{unit}, all did from {high:.4g} on: so the "
     words += "dispersion is not known, only that it may be small"
     ends = [

@@ -6,7 +6,12 @@ from typing import Annotated, Final, TypedDict
 
 from rockframe.components import InitialState
 from rockframe.shared_arguments import Argument
-from rockframe.simulation.run_arguments import HOW_ACCURATE, START, CourseLike, LengthArguments
+from rockframe.simulation.run_arguments import (
+    ACCURACY_ARGUMENT,
+    INITIAL_ARGUMENT,
+    LengthArguments,
+    OverturningArgument,
+)
 from rockframe.solve.accuracy import AccuracyLevel
 from rockframe.system.options import SweepAccuracyLike
 
@@ -14,18 +19,18 @@ from rockframe.system.options import SweepAccuracyLike
 class CourseArguments(TypedDict, total=False):
     """How each run goes."""
 
-    initial: Annotated[InitialState | None, START]
+    initial: Annotated[InitialState | None, INITIAL_ARGUMENT]
     accuracy: Annotated[
         SweepAccuracyLike,
         Argument(
             AccuracyLevel.STANDARD,
-            HOW_ACCURATE.kind.replace('"reference"', '"reference", "screen"'),
-            f'{HOW_ACCURATE.words} ``"screen"`` runs all cases at ``"fast"``, and those near a '
-            'flip of their verdict again at ``"standard"``, :eq:`eq-screened`; all at '
+            ACCURACY_ARGUMENT.kind.replace('"reference"', '"reference", "screen"'),
+            f'{ACCURACY_ARGUMENT.words} ``"screen"`` runs all cases at ``"fast"``, and those near '
+            'a flip of their verdict again at ``"standard"``, :eq:`eq-screened`; all at '
             '``"standard"`` where that costs less, as on rigid ground and under pulses.',
         ),
     ]
-    overturning: CourseLike
+    overturning: OverturningArgument
 
 
 class ExecutionArguments(TypedDict, total=False):

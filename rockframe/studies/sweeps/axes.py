@@ -17,7 +17,7 @@ from rockframe.errors import ComponentError, UnitsError, shown
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import CASE, MOTION
-from rockframe.simulation.provenance import OF_SCENES as OF_SCENES
+from rockframe.simulation.provenance import SYSTEM_AXES as SYSTEM_AXES
 from rockframe.simulation.provenance import Changes as Changes
 from rockframe.units import (
     Measure,

@@ -21,7 +21,7 @@ from rockframe.proposals import hinted, proposing
 from rockframe.results.variables.studies import MOTION, REPEATED
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import LEVELS, Accuracy
-from rockframe.studies.sweeps.axes import OF_SCENES, Axis, Changes, in_unit, number_of
+from rockframe.studies.sweeps.axes import SYSTEM_AXES, Axis, Changes, in_unit, number_of
 from rockframe.studies.sweeps.chunk import AGAIN
 from rockframe.studies.sweeps.motions import full_name, motion_number, motion_of_case, named_motions
 from rockframe.studies.sweeps.scenes import SweptScene, scene_of
@@ -155,7 +155,7 @@ def case(
     name = _value(dataset, MOTION, place)
     motion = unscaled_motions(attributes, [name], motions, kept)[name]
     swept = _scene(None if scene is None else scene_of(scene), attributes, _OWNER)
-    of_scene = {axis: one for axis, one in values.items() if axis.changes in OF_SCENES}
+    of_scene = {axis: one for axis, one in values.items() if axis.changes in SYSTEM_AXES}
     system = swept.system(of_scene)
     motion = system.motion if motion is None else motion
     options = json.loads(attributes["run_json"])
@@ -176,7 +176,7 @@ def system_of_case(dataset: xr.Dataset, *, owner: str) -> System:
     """Return the system of a sweep, with the values of those axes along which one was selected."""
     values: dict[Axis, Any] = {}
     for described in json.loads(dataset.attrs["axes_json"]):
-        if described["changes"] not in OF_SCENES:
+        if described["changes"] not in SYSTEM_AXES:
             continue
         along = _along(dataset, described["name"], owner)
         if along.size == 1:

@@ -10,8 +10,8 @@ from rockframe.many import Many, Places
 from rockframe.motion import GroundMotion
 from rockframe.motion.operations.scaling import multiplied
 from rockframe.signals import Motion
-from rockframe.simulation.plan import Plan, fit_plan
-from rockframe.studies.sweeps.axes import OF_SCENES, Axis, Changes
+from rockframe.simulation.plan import Plan, resolve_plan
+from rockframe.studies.sweeps.axes import SYSTEM_AXES, Axis, Changes
 from rockframe.studies.sweeps.motions import FACTOR, motion_of_case
 from rockframe.studies.sweeps.scenes import SystemScene
 from rockframe.studies.sweeps.study import SweepJob
@@ -31,7 +31,7 @@ class CasesOfJob:
         self._numbers = {axis.name: each for axis, each in job.axes if each.dtype.kind == "f"}
         self._scale, self._start, self._of_scene = (
             [(axis, each) for axis, each in axes if axis.changes in kinds]
-            for kinds in ((Changes.MOTION,), (Changes.START,), OF_SCENES)
+            for kinds in ((Changes.MOTION,), (Changes.START,), SYSTEM_AXES)
         )
         self._scenes: dict[tuple[Any, ...], tuple[Assembly, list[str]]] = {}
         self._motion: tuple[object, GroundMotion | None] = (None, None)
@@ -144,7 +144,7 @@ class CasesOfJob:
         arguments = self.job.arguments
         if start and isinstance(arguments.initial, InitialState):
             arguments = replace(arguments, initial=arguments.initial.with_si(start))
-        plan = fit_plan(arguments, system, motion, faults)
+        plan = resolve_plan(arguments, system, motion, faults)
         if faults:
             raise AssemblyError(faults)
         return plan if self._change is None else self._change(system, plan)

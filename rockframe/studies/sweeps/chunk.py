@@ -21,7 +21,7 @@ from rockframe.results.variables.studies import REPEATED, VERDICT_CHANGED
 from rockframe.results.variables.variable import TIME
 from rockframe.simulation.certify.second_look import Look, is_sure, look_at, second_look
 from rockframe.simulation.plan import run_length
-from rockframe.simulation.run import NONE, in_motion, respond, scalars_of
+from rockframe.simulation.run import NONE, compute_response, in_motion, run_scalars
 from rockframe.simulation.soundness import STILL_MOVING
 from rockframe.solve.accuracy import LEVELS, AccuracyLevel
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
@@ -141,7 +141,7 @@ def each_run(
             return
         try:
             system, messages, plan = cases.planned(case)
-            response = respond(system, plan)
+            response = compute_response(system, plan)
             if (fault := faults.get(case)) is not None:  # that it alone does not have
                 words = f"its run beside others failed ({type(fault).__name__}: {fault})"
                 messages = [*messages, f"{words}, and it ran alone: {PLEASE_REPORT}"]
@@ -207,7 +207,7 @@ def _told(run: Finished) -> tuple[list[str], Mapping[str, Generic | float]]:
         cautions = [text for _, text in run.response.cautions()]
         return cautions, {DRIVER: driver, **run.response.scalars}
     missing: list[str] = []
-    scalars = scalars_of(run.system, run.summary, missing)
+    scalars = run_scalars(run.system, run.summary, missing)
     moving = [STILL_MOVING] if in_motion(run.system, run.summary, missing) else []
     return [*moving, *missing], {DRIVER: Driver.IN_LANES, **scalars}
 
@@ -247,8 +247,8 @@ class _Collector(CollectedResults):
             self._clear(case)
             return
         self._put_scalars(case, scalars)
-        if self._kept is not None and response is not None and response.answers.values:
-            self._put_histories(case, response.answers.values, self._kept)
+        if self._kept is not None and response is not None and response.outputs.values:
+            self._put_histories(case, response.outputs.values, self._kept)
 
     def _finish_lanes(self, run: FinishedTogether) -> None:
         if np.any(self._status[run.cases] != RunStatus.NOT_RUN):  # of a first run

@@ -17,7 +17,7 @@ from rockframe.results.outcome import Generic
 from rockframe.signals import Motion
 from rockframe.simulation.certify.second_look import Look, look_at
 from rockframe.simulation.plan import Plan, run_length, start_of
-from rockframe.simulation.run import Response, has_no_cautions, in_motion, scalars_of
+from rockframe.simulation.run import Response, has_no_cautions, in_motion, run_scalars
 from rockframe.simulation.soundness import STILL_MOVING
 from rockframe.solve.equations import is_called
 from rockframe.solve.integrate import run_start
@@ -306,7 +306,7 @@ def _summed_up(cases: CasesOfJob, some: Places, summary: Summary) -> FinishedTog
     missing: list[str] = []
     if not has_no_cautions(system, summary):
         raise OnlyAlone
-    scalars = scalars_of(system, summary, missing)
+    scalars = run_scalars(system, summary, missing)
     moving = in_motion(system, summary, missing)
     duration = run_length(cases.job.arguments, cases.unscaled(int(some[0])))
     look = look_at(system.setting, summary, duration)

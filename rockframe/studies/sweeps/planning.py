@@ -20,10 +20,10 @@ from rockframe.results.variables.studies import MOTION, SWEEP
 from rockframe.results.variables.variable import EVENT, FLIP, TIME
 from rockframe.simulation.plan import (
     RunRequest,
-    listed,
+    as_list,
+    default_output_step,
     read_arguments,
     run_length,
-    usual_output_step,
 )
 from rockframe.studies.sweeps.axes import MOST_CASES, OWNER, Axis, Changes, Grid, faults_of_values
 from rockframe.studies.sweeps.chunk import AGAIN, FIRST, SCREEN
@@ -37,8 +37,8 @@ from rockframe.studies.sweeps.scenes import (
     scene_of,
 )
 from rockframe.studies.sweeps.study import Histories, Study
-from rockframe.system.alone import AloneSetting
 from rockframe.system.assembly import Assembly
+from rockframe.system.single_body import SingleBodySetting
 from rockframe.units import PERIOD, POSITIVE, QuantityLike, own_unit, to_si
 
 
@@ -51,7 +51,7 @@ def kept_histories(
     """Find the histories that are kept, and the times that those of all cases have."""
     if not arguments.histories:
         return None
-    named = [str(name) for name in listed(outputs)]
+    named = [str(name) for name in as_list(outputs)]
     names = tuple(dict.fromkeys(one for name in named for one in GROUPS.get(name, (name,))))
     wrong = [name for name in names if SCHEMA[name].dims not in (TIME, requests.POINT_TIME)]
     if wrong:
@@ -63,7 +63,7 @@ def kept_histories(
         raise StudyError(msg)
     step = arguments.output_step
     if step is None:
-        steps = {usual_output_step(motion) for motion in motions.values()}
+        steps = {default_output_step(motion) for motion in motions.values()}
         step = min(steps)
         if len(steps) > 1:
             msg = (
@@ -162,7 +162,7 @@ def plan_study(
         faults.found.append("nothing to simulate: give motions, or a duration for a still ground")
     of_runs = arguments
     histories = faults.tried(lambda: kept_histories(made, named, of_runs, outputs), None)
-    if histories is not None and len({*map(usual_output_step, named.values())}) > 1:
+    if histories is not None and len({*map(default_output_step, named.values())}) > 1:
         arguments = replace(arguments, output_step=histories.step)  # at the times that are kept
     numbers = numbers_of_case(arguments, histories, screened=screened)
     way_out = LAZILY if kept else remedies(arguments, histories, may_be_kept=kept is False)
@@ -215,7 +215,7 @@ def _pays_to_screen(system: Assembly, motions: Iterable[GroundMotion | None]) ->
     """
     if not system.setting.steps_cost_most:
         return False
-    return not isinstance(system.setting, AloneSetting) or any(
+    return not isinstance(system.setting, SingleBodySetting) or any(
         one is None or one.recipe is None for one in motions
     )
 

@@ -29,9 +29,9 @@ from rockframe.studies.sweeps.axes import (
 )
 from rockframe.studies.sweeps.identity import name_of
 from rockframe.studies.sweeps.motions import TARGETS, full_name, named_motions
-from rockframe.system.assembly import Assembly, assembly_of
-from rockframe.system.links import in_one_word, link_labels
-from rockframe.system.options import MEASURED, Coupling, Restraint, Rotation, Sliding
+from rockframe.system.assembly import Assembly, assemble_parts
+from rockframe.system.links import axis_name, link_labels
+from rockframe.system.options import NUMERIC_OPTIONS, Coupling, Restraint, Rotation, Sliding
 from rockframe.units import Measure, Unit, quantity
 
 STARTS: Final = {
@@ -53,7 +53,7 @@ _CHOICES: Final[dict[str, tuple[type[StrEnum], str]]] = {
     "coupling": (Coupling, "how block, pads, cap and soil are joined"),
     "sliding": (Sliding, "what friction does"),
 }
-_OPTIONS: Final = (*_CHOICES, *MEASURED)
+_OPTIONS: Final = (*_CHOICES, *NUMERIC_OPTIONS)
 _SYSTEM: Final = System.__name__
 
 
@@ -127,11 +127,11 @@ class SystemScene:
         parts = self.assembly.parts
         if all(axis.slot in ("", *parts.components) for axis in axes):
             return self
-        return SystemScene(assembly_of(parts.standing(), self.assembly.options))
+        return SystemScene(assemble_parts(parts.with_ground(), self.assembly.options))
 
     def _parts(self) -> dict[str, Component]:
         """Return the parts whose parameters axes may name, by their slots."""
-        return self.assembly.parts.standing().components
+        return self.assembly.parts.with_ground().components
 
     def assembled(self, values: Values) -> Assembly:
         """Return the system with the values of a case in the place of its own."""
@@ -148,7 +148,7 @@ class SystemScene:
         }
         # options that no axis changes stay the same object, by which loads are shared
         options = replace(options, **other) if other else options
-        found = assembly_of(parts.changed(**changed, motion=None), options)
+        found = assemble_parts(parts.replace(**changed, motion=None), options)
         for caution in found.setting.cautions():
             warn(caution, ModelWarning)
         return found
@@ -178,7 +178,7 @@ class SystemScene:
         labels = zip(links, link_labels(links), strict=True)
         own = [name for one, name in labels if one is part]
         kinds = [kind for kind in type(part).__mro__ if issubclass(kind, Component)]
-        words = map(in_one_word, own)
+        words = map(axis_name, own)
         return [*words, *own, *(kind.__name__ for kind in kinds if kind != Component)]
 
     def _not_one(self, name: str, parameter: str, having: list[Component]) -> str:
@@ -344,9 +344,9 @@ def _of_numbers(
 
 
 def _of_option(name: str, option: str, value: object) -> Axis:
-    if option in MEASURED:
-        one = MEASURED[option]
-        return _of_numbers(name, value, one.measure, one.words, Changes.OPTION, option)
+    if option in NUMERIC_OPTIONS:
+        one = NUMERIC_OPTIONS[option]
+        return _of_numbers(name, value, one.measure, one.description, Changes.OPTION, option)
     kind, words = _CHOICES[option]
     values = words_of(value, lambda word: one_of_words(kind, word, owner=OWNER, name=name))
     return Axis(name, values, None, words, Changes.OPTION, option)
@@ -355,7 +355,7 @@ def _of_option(name: str, option: str, value: object) -> Axis:
 def _option(name: str, value: Any) -> Any:
     if name in _CHOICES:
         return _CHOICES[name][0](value)
-    one = MEASURED[name]
+    one = NUMERIC_OPTIONS[name]
     if not one.condition.holds(value):
         msg = f"{name} must be {one.condition.words}, got {value!r} {one.measure.unit}"
         raise StudyError(msg)

@@ -21,7 +21,7 @@ from rockframe.errors import StudyError
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
 from rockframe.results.points import BodyPoint
-from rockframe.results.schema import SOURCE, dated
+from rockframe.results.schema import SOURCE, history_line
 from rockframe.studies.sweeps.axes import Axis, Chunk, Grid, chunks_of
 from rockframe.studies.sweeps.chunk import CaseResults
 from rockframe.studies.sweeps.identity import difference
@@ -356,7 +356,7 @@ def _make(path: Path, study: Study, chunk: int) -> None:
     head = {
         "format": IN_FOLDERS if many else FORMAT,
         "rockframe_version": __version__,
-        "history": dated("begun"),
+        "history": history_line("begun"),
         "study_sha256": study.digest,
         "cases": study.grid.count,
         "cases_of_a_chunk": chunk,

@@ -11,8 +11,8 @@ from rockframe.compiled import COMPILED
 from rockframe.errors import collected_warnings
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
-from rockframe.simulation.plan import RunRequest, run_length, usual_output_step
-from rockframe.studies.sweeps.axes import OF_SCENES, Axis, Grid
+from rockframe.simulation.plan import RunRequest, default_output_step, run_length
+from rockframe.studies.sweeps.axes import SYSTEM_AXES, Axis, Grid
 from rockframe.studies.sweeps.identity import description_of, digest_of
 from rockframe.studies.sweeps.scenes import FunctionScene, SweptScene, SystemScene
 from rockframe.system.assembly import Assembly
@@ -145,7 +145,7 @@ class Study:
         found: list[Assembly | Exception] = []
         for case in sorted({*spread, count - 1}):
             axes = self.grid.of_cases(range(case, case + 1))
-            values = {axis: each.item() for axis, each in axes if axis.changes in OF_SCENES}
+            values = {axis: each.item() for axis, each in axes if axis.changes in SYSTEM_AXES}
             try:
                 with collected_warnings():
                     found.append(self.scene.assembled(values))
@@ -176,7 +176,7 @@ class Study:
     def _time_of_case(self) -> float:
         """Estimate the time of a case alone, in machine code [s]."""
         intervals = max(
-            run_length(self.arguments, motion) / usual_output_step(motion)
+            run_length(self.arguments, motion) / default_output_step(motion)
             for motion in self.motions.values()
         )
         tolerance = self.arguments.accuracy.rtol

@@ -17,7 +17,7 @@ from rockframe.components import InitialState
 from rockframe.errors import ModelWarning, SolverWarning, StudyError, shown, warn
 from rockframe.proposals import hinted
 from rockframe.shared_arguments import documented_by
-from rockframe.simulation.run import respond
+from rockframe.simulation.run import compute_response
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import AccuracyLevel
 from rockframe.studies.sweeps.arguments import SweepArguments
@@ -295,8 +295,8 @@ def _runs_as_python(study: Study) -> bool:
         own = any(isinstance(part, OwnBase) for part in system.parts.structural())
         if not own and not isinstance(system.setting, OwnScene):
             return False
-        glimpse = replace(plan.bare(), duration=_GLIMPSE * plan.duration)
-        return respond(system, glimpse).trajectory.as_python
+        glimpse = replace(plan.without_outputs(), duration=_GLIMPSE * plan.duration)
+        return compute_response(system, glimpse).trajectory.as_python
     except Exception:  # of which its run tells
         return False
 

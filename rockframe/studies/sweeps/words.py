@@ -11,12 +11,12 @@ import xarray as xr
 
 from rockframe.errors import ModelWarning, SolverWarning, warn
 from rockframe.results.joining import CASE_COUNT
-from rockframe.results.outcome import LEAST_SLIP, PEAK_SLIPS, Generic, overturned_by
+from rockframe.results.outcome import MIN_REPORTED_SLIP, PEAK_SLIPS, Generic, overturned_from_status
 from rockframe.results.schema import with_variables
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.studies import MESSAGE, REPEATED, VERDICT_CHANGED
 from rockframe.simulation.run import NONE
-from rockframe.simulation.soundness import counts_of_slides
+from rockframe.simulation.soundness import count_slides
 from rockframe.studies.sweeps.axes import OWNER
 
 SCREENED: Final = (REPEATED, VERDICT_CHANGED)
@@ -56,7 +56,7 @@ def cases_sentence(runs: xr.Dataset, these: str) -> str:
     found, farthest = Counter[str](), 0.0
     for part in _parts_of(runs):
         slips = slips_of_cases(part)
-        farthest = slips.max(initial=farthest, where=slips > LEAST_SLIP)
+        farthest = slips.max(initial=farthest, where=slips > MIN_REPORTED_SLIP)
         found.update(_counts(part, slips))
     text = f"{these} {found['overturned']} overturned and {found['stood']} did not"
     if found["would slide"] + found["would hold"]:
@@ -79,12 +79,12 @@ def cases_sentence(runs: xr.Dataset, these: str) -> str:
 def _counts(runs: xr.Dataset, slips: Generic) -> dict[str, int]:
     """Count cases by outcome."""
     status = runs["status"].to_numpy()
-    overturned = overturned_by(status)
+    overturned = overturned_from_status(status)
     which: dict[str, Any] = {
         "overturned": overturned == 1.0,
         "stood": overturned == 0.0,
         "not run": status == RunStatus.NOT_RUN,
-        "slid": slips > LEAST_SLIP,
+        "slid": slips > MIN_REPORTED_SLIP,
     }
     if _BROKEN in runs:
         which["broke"] = runs[_BROKEN] > 0
@@ -92,7 +92,7 @@ def _counts(runs: xr.Dataset, slips: Generic) -> dict[str, int]:
         which |= {"screened": runs[REPEATED].notnull()} | {n: runs[n] == 1.0 for n in SCREENED}
     found = {name: int(np.count_nonzero(some)) for name, some in which.items()}
     if "would_slide" in runs:
-        slides = counts_of_slides(runs["would_slide"].to_numpy())
+        slides = count_slides(runs["would_slide"].to_numpy())
         found |= dict(zip(("would slide", "would hold"), slides, strict=True))
     return found | {"cases": int(np.count_nonzero(~np.isnan(status)))}
 

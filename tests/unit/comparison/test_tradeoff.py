@@ -452,16 +452,16 @@ def test_a_rung_is_timed_once_its_machine_code_is_there(monkeypatch):
 
     def counted(*given):
         done.append("untimed")
-        return respond(*given)
+        return compute_response(*given)
 
     def timed(*_):
         done.append("timed")
         return 1.0
 
-    respond = module.respond
+    compute_response = module.respond
     monkeypatch.setattr(module, "has_machine_code", lambda _: next(there))
     monkeypatch.setattr(module, "runs_as_python", lambda _: False)
-    monkeypatch.setattr(module, "respond", counted)
+    monkeypatch.setattr(module, "compute_response", counted)
     monkeypatch.setattr(module, "_timed", timed)
     rf.tradeoff(SYSTEM, PULSE, models="two pads", accuracies="standard", repeats=1, duration="1 s")
     assert done == ["untimed", "untimed", "timed"]

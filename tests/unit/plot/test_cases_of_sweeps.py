@@ -63,7 +63,7 @@ def test_a_case_is_drawn_with_its_own_block():
         rf.System(BLOCK), PULSE, width=["0.8 m", "1.2 m"], scale=[0.5, 1.0], outputs=[], **QUIET
     )
     for dataset, width in ((runs.isel(width=1, scale=0, motion=0), 1.2), (runs, 0.8)):
-        assert system_of_run(dataset, "state").parts.the_block.width == width
+        assert system_of_run(dataset, "state").parts.block_si.width == width
     picked, alone = (
         rf.plot.state(one, "0.2 s").get_xlim()
         for one in (

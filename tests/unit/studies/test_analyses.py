@@ -92,7 +92,7 @@ def test_bodies_told_by_their_inertia_keep_their_shape_factor_at_other_sizes(nam
     found = rf.rocking_spectrum(system, {"seed 1": motion}, **sizes, **FAST)
     for period in (2.0, 3.0):
         case = rf.case(found, slenderness=5.0, rocking_period=period, motion="seed 1")
-        block = case.system.parts.the_block
+        block = case.system.parts.block_si
         frequency = block.frequency_at(system.options.gravity)
         assert 2.0 * np.pi / frequency == pytest.approx(period, rel=1e-12)
         assert 1.0 / np.tan(block.overturning_angle) == pytest.approx(5.0, rel=1e-12)

@@ -20,7 +20,7 @@ from rockframe.errors import (
     SolverWarning,
     UnitsError,
 )
-from rockframe.simulation.run import summary_of
+from rockframe.simulation.run import compute_summary
 
 BLOCK = rf.Block(width="0.8 m", height="3.6 m", mass="4 t")
 RIGID = rf.System(BLOCK)
@@ -131,7 +131,7 @@ def test_nothing_happens_on_rigid_ground_before_uplift(found):
         with pytest.warns(ModelWarning) if slope > friction else nullcontext():
             slides = rf.System(BLOCK, ground, inclination=f"{slope!r} rad")
         least = max(0.0, math.tan(math.atan(min(friction, 0.8 / 3.6)) - slope))
-        either = slides.setting.moving_accelerations
+        either = slides.setting.onset_accelerations
         assert min(either) == pytest.approx(9.80665 * least, rel=1e-12)
     slippery = rf.System(BLOCK, rf.RigidGround(friction=0.1))
     slid = rf.critical_scale(slippery, SHAKING, **SPARING)
@@ -249,10 +249,10 @@ def test_an_interrupt_gives_back_the_runs_until_then(monkeypatch):
     def interrupted(*given):
         if next(calls) == 17:
             raise KeyboardInterrupt
-        return summary_of(*given)
+        return compute_summary(*given)
 
     options = {"scales": 20, "runs": 30, "free_vibration": "5 s", "accuracy": "fast"}
-    monkeypatch.setattr(MODULE, "summary_of", interrupted)
+    monkeypatch.setattr(MODULE, "compute_summary", interrupted)
     with pytest.warns(SolverWarning, match="critical_scale: interrupted; .*17 scales"):
         found = rf.critical_scale(ON_PADS, PULSE, **options)
     assert found.sizes["scale"] == 17

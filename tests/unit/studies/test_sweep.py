@@ -35,7 +35,7 @@ from rockframe.simulation.soundness import STILL_MOVING
 from rockframe.solve.workspace import Status
 from rockframe.studies.sweeps import case as of_cases
 from rockframe.studies.sweeps import labelling
-from rockframe.studies.sweeps.axes import OF_SCENES, Changes
+from rockframe.studies.sweeps.axes import SYSTEM_AXES, Changes
 
 BLOCK = rf.Block(width="0.8 m", height="3.6 m", mass="4 t")
 PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
@@ -487,7 +487,7 @@ def test_a_part_of_a_sweep_tells_no_system_that_is_another_ones(axis, changes):
     assert kinds[name] == changes
     assert rf.System.from_dataset(runs) == SYSTEM
     picked = runs.isel({name: 1, "motion": 0})
-    if changes not in OF_SCENES:
+    if changes not in SYSTEM_AXES:
         assert rf.System.from_dataset(picked) == SYSTEM
         return
     with pytest.raises(SchemaError, match=f"part of a sweep over {name}, .*rf.case"):

@@ -16,12 +16,12 @@ from rockframe.dynamics.statics import StandingChain
 from rockframe.dynamics.vibrations import ChainBody
 from rockframe.errors import AssemblyError
 from rockframe.many import atan2, isnan
-from rockframe.system.alone import AloneSetting
 from rockframe.system.bodies import Cap
-from rockframe.system.fitting import HELD, BaseFriction
+from rockframe.system.compatibility import NO_SLIP, BaseFriction
 from rockframe.system.options import restraint_words
 from rockframe.system.setting import Setting, SlipRange, chain_slips
-from rockframe.system.sliding_stack import beyond_edge
+from rockframe.system.single_body import SingleBodySetting
+from rockframe.system.sliding_stack import overhang_caution
 from rockframe.system.statics import SmallMotion, Statics, static_values
 from rockframe.system.support import BaseWords, StandingBodies, Support
 from rockframe.system.words import Words, sliding_words
@@ -29,18 +29,18 @@ from rockframe.system.words import Words, sliding_words
 if TYPE_CHECKING:
     from rockframe.dynamics.coupled.model import StackRest
 
-LEAST_CAP_SHARE = 1e-3
-"""Least mass of a cap, as a share of the block's, with which the coupled equations are
-solved: a plate without mass has no acceleration. Halving it changes histories of the
+MIN_CAP_MASS_RATIO = 1e-3
+"""Least mass of a cap, as a share of the block's, in the coupled equations, which cannot be solved
+for a plate without mass. Halving it changes histories of the
 paper's example by up to 3e-3 of their peak, page "Coupled" of the manual."""
 
 
 @dataclass(frozen=True)
-class StackedSetting(Setting):
+class BlockOnCapSetting(Setting):
     """A block on pads on a cap on soil."""
 
-    upper: AloneSetting  # the block on its pads
-    lower: AloneSetting  # block and cap as one body on the soil
+    upper: SingleBodySetting  # the block on its pads
+    lower: SingleBodySetting  # block and cap as one body on the soil
     cap: Cap  # the cap
     stacked: ClassVar[bool] = True
 
@@ -79,14 +79,16 @@ class StackedSetting(Setting):
         """Return the equations of small motion of block and cap about rest."""
         names = ("cap_vertical_displacement", "cap_rotation", "vertical_displacement", "rotation")
         # from coordinates on the cap, psi = alpha - phi and r = y - Y, to those of the block
-        to_own = np.array([[0, -1, 0, 1], [-1, 0, 1, 0], [0, 1, 0, 0], [1, 0, 0, 0]], dtype=float)
-        matrices = self._moving.small_motion(self._rest)
-        return SmallMotion(names, *(to_own.T @ matrix @ to_own for matrix in matrices))
+        transform = np.array(
+            [[0, -1, 0, 1], [-1, 0, 1, 0], [0, 1, 0, 0], [1, 0, 0, 0]], dtype=float
+        )
+        matrices = self._effective_statics.small_motion(self._rest)
+        return SmallMotion(names, *(transform.T @ matrix @ transform for matrix in matrices))
 
     @property
     def _rest(self) -> list[Pose]:
         """Equilibrium of block and cap at rest; AssemblyError if there is none."""
-        found = self._moving.rest
+        found = self._effective_statics.rest
         if found is None:
             raise AssemblyError(["the block and the cap under it find no rest under their weight"])
         return found
@@ -103,7 +105,7 @@ class StackedSetting(Setting):
 
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
         """Return the equilibria with the block held at rotations, :eq:`eq-static-stack`."""
-        return self._standing(self.cap.mass, self.cap.inertia).held(rotations)
+        return self._statics(self.cap.mass, self.cap.inertia).held(rotations)
 
     def equilibrium(self) -> dict[str, float]:
         """Return settlements and reactions at rest, by their names in the schema."""
@@ -112,32 +114,32 @@ class StackedSetting(Setting):
         return {**self.upper.equilibrium(), **soil}
 
     @cached_property
-    def _moving(self) -> StandingBodies:
+    def _effective_statics(self) -> StandingBodies:
         """Statics of block and cap, the cap with at least the least mass."""
-        return self._standing(*self._moving_cap)
+        return self._statics(*self._effective_cap)
 
-    def _standing(self, cap_mass: float, cap_inertia: float) -> StandingBodies:
-        both = self._stack(cap_mass, cap_inertia)
+    def _statics(self, cap_mass: float, cap_inertia: float) -> StandingBodies:
+        bodies = self._chain_bodies(cap_mass, cap_inertia)
         links = tuple(
             standing_body(BodyOnBase(one.body, one.base.law), one.mass, one.top, one.offset)
-            for one in both
+            for one in bodies
         )
         chain = StandingChain(links, self.slope.along_gravity)
-        return StandingBodies(chain, self.body.mass, tuple(one.base for one in both))
+        return StandingBodies(chain, self.body.mass, tuple(one.base for one in bodies))
 
     @property
-    def _moving_cap(self) -> tuple[float, float]:
+    def _effective_cap(self) -> tuple[float, float]:
         """Mass and inertia of the cap; if it is too light, of a plate with the least mass."""
-        cap, least = self.cap, LEAST_CAP_SHARE * self.body.mass
+        cap, least = self.cap, MIN_CAP_MASS_RATIO * self.body.mass
         if cap.mass >= least:
             return cap.mass, cap.inertia
         return least, least * cap.half_width**2 / 3.0
 
     def bodies(self) -> tuple[ChainBody, ChainBody]:
         """Return block and cap on their bases, as the coupled equations take them."""
-        return self._stack(*self._moving_cap)
+        return self._chain_bodies(*self._effective_cap)
 
-    def _stack(self, cap_mass: float, cap_inertia: float) -> tuple[ChainBody, ChainBody]:
+    def _chain_bodies(self, cap_mass: float, cap_inertia: float) -> tuple[ChainBody, ChainBody]:
         (upper, lower), cap, mass = self.supports, self.cap, self.body.mass
         block = self.load.law(mass)
         plate = block._replace(
@@ -154,7 +156,7 @@ class StackedSetting(Setting):
         )
 
 
-class CoupledSetting(StackedSetting):
+class CoupledSetting(BlockOnCapSetting):
     """Block and cap coupled in one set of equations."""
 
     @property
@@ -165,10 +167,10 @@ class CoupledSetting(StackedSetting):
     def cautions(self) -> list[str]:
         """Return the warnings of pads and soil, and about a cap that is too light."""
         found = super().cautions()
-        if self.cap.mass < LEAST_CAP_SHARE * self.body.mass:
+        if self.cap.mass < MIN_CAP_MASS_RATIO * self.body.mass:
             found.append(
-                f"the cap's mass, {self.cap.mass:.4g} kg, is less than {LEAST_CAP_SHARE:g} of the "
-                "building's; the coupled equations are solved with that share of it"
+                f"the cap's mass, {self.cap.mass:.4g} kg, is less than {MIN_CAP_MASS_RATIO:g} of "
+                "the building's; the coupled equations are solved with that share of it"
             )
         return found
 
@@ -195,7 +197,7 @@ class CoupledSetting(StackedSetting):
         found = super().equilibrium()
         if not self.leans:
             return found
-        return found | static_values(self._moving.reactions(self._rest))
+        return found | static_values(self._effective_statics.reactions(self._rest))
 
     @cached_property
     def rest_rotation(self) -> float:
@@ -221,7 +223,7 @@ class SlidingCoupledSetting(CoupledSetting):
         return sliding_words(super().words(), *(
             (f"{name}: friction at rest, and of slip", friction.words())
             for name, friction in zip(("pads", "soil"), self.frictions, strict=True)
-            if friction != HELD
+            if friction != NO_SLIP
         ))  # fmt: skip
 
     def contact_model(self) -> ContactModel:
@@ -236,16 +238,16 @@ class SlidingCoupledSetting(CoupledSetting):
 
     def slips_of(self, ending: Ending) -> tuple[SlipRange, ...]:
         """Return how far the block slipped on the cap and, if it can slip, the cap on the soil."""
-        return chain_slips(self, 1 if self.frictions[-1] == HELD else 2, ending)
+        return chain_slips(self, 1 if self.frictions[-1] == NO_SLIP else 2, ending)
 
     def beyond_edges(self, ending: Ending) -> list[str]:
         """Warn of a block that slipped beyond the edge of its cap."""
         slips, widths = self.slips_of(ending)[0], (self.body.half_width, self.cap.half_width)
-        found = beyond_edge(slips, 0.0, *widths, self.sliding_bodies)
+        found = overhang_caution(slips, 0.0, *widths, self.sliding_bodies)
         return [found] if found else []
 
 
-class CascadeSetting(StackedSetting):
+class CascadeSetting(BlockOnCapSetting):
     """Two stages, Eq. (20): both as one body on the soil, then the block on the moving cap."""
 
     @property
@@ -290,7 +292,9 @@ class CascadeSetting(StackedSetting):
         return self.lower.rest_rotation + self.upper.rest_rotation
 
 
-def _uplift_row(setting: AloneSetting, on: str, base: BaseWords, whose: str) -> tuple[str, str]:
+def _uplift_row(
+    setting: SingleBodySetting, on: str, base: BaseWords, whose: str
+) -> tuple[str, str]:
     name, words = base.uplift
     title = name.replace("uplift angle", f"uplift angle {on}", 1)
     if isnan(setting.uplift_angle):

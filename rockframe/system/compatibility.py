@@ -20,34 +20,33 @@ from rockframe.many import isfinite
 from rockframe.system.links import link_labels
 from rockframe.system.options import Coupling, Options, Restraint, Sliding
 from rockframe.system.own_base import OwnBase
-from rockframe.system.parts import Parts, slot_of_kind
-from rockframe.system.rear_wall import IMPACT_TIME, yielding_wall
+from rockframe.system.parts import Parts, slot_of_class
+from rockframe.system.rear_wall import IMPACT_TIME, equivalent_wall
 
-SMALL_SLIDING: Final = (
+SLIDING_AT_SMALL_ROTATION: Final = (
     "a block slides with rotation='finite' only; give sliding='checked' to hold it and compare its "
     "friction"
 )
 _ROUNDING = 1e-12
-BASES = ("pads", "soil", "ground")
+BASE_SLOTS = ("pads", "soil", "ground")
 """Slots of bases that bodies of a stack may stand on."""
-_ROUNDING_OF_DEPTHS = 1e-9
-_AT_THE_EDGE: Final = 1.01
+_DEPTH_TOLERANCE = 1e-9
+_EDGE_TOLERANCE: Final = 1.01
 """Ratio up to which a point counts as inside a size: certificates change sizes a little."""
 
 
-def misfits(parts: Parts) -> list[str]:
-    """Return the faults of a combination of parts, whatever their sizes."""
+def combination_faults(parts: Parts) -> list[str]:
+    """Return the faults of a combination of parts of any sizes."""
     block, pads, cap, soil = parts.block, parts.pads, parts.cap, parts.soil
     faults: list[str] = []
     if parts.own:  # parts of a user's own scene, which checks them itself
         return ["no Block is given"] if block is None else []
     if parts.stack is not None:
-        faults += _misfits_of_stack(parts.stack, parts)
+        faults += _stack_faults(parts.stack, parts)
     elif parts.frame is not None:
-        faults += _misfits_of_frame(parts)
+        faults += _frame_faults(parts)
     elif block is None:
         faults.append("no Block is given")
-    given = parts.components
     if parts.ground is not None:
         others = [type(part).__name__ for part in (pads, cap, soil) if part is not None]
         if others:
@@ -56,9 +55,9 @@ def misfits(parts: Parts) -> list[str]:
                 "block directly"
             )
     if parts.wall is not None and not parts.wall.elastic:
-        faults += _misfits_of_stiff_wall(parts.wall, parts)
+        faults += _stiff_wall_faults(parts.wall, parts)
     if parts.links and parts.frame is None:
-        faults += _misfits_of_links(parts)
+        faults += _link_faults(parts)
     if cap is not None and soil is None:
         faults.append("a CushionCap is given without a WinklerSoil for it to stand on")
     if pads is not None and soil is not None and cap is None and parts.stack is None:
@@ -66,17 +65,17 @@ def misfits(parts: Parts) -> list[str]:
             f"a {type(pads).__name__} and a {type(soil).__name__} are given without a CushionCap; "
             "the cap carries the pads and spreads their reactions over the soil"
         )
-    for part in given.values():
+    for part in parts.components.values():
         if isinstance(part, OwnBase):
-            faults += part.misfits(given)
+            faults += part.misfits(parts.components)
     return faults
 
 
-def _misfits_of_stiff_wall(wall: RearWall, parts: Parts) -> list[str]:
+def _stiff_wall_faults(wall: RearWall, parts: Parts) -> list[str]:
     """Return the faults of a stiff wall with other parts: its laws are impacts on rigid ground."""
     base = parts.pads or parts.soil
-    behind = (parts.pads, parts.soil, parts.cap, parts.stack, parts.frame, *parts.links)
-    others = [type(part).__name__ for part in behind if part is not None]
+    excluded = (parts.pads, parts.soil, parts.cap, parts.stack, parts.frame, *parts.links)
+    others = [type(part).__name__ for part in excluded if part is not None]
     if not others:
         if wall.si.on_body == 1:
             return []
@@ -90,7 +89,7 @@ def _misfits_of_stiff_wall(wall: RearWall, parts: Parts) -> list[str]:
     yields = "give the wall a stiffness and a damping in place of its law"
     if parts.block is None:
         return [f"{fault}, unless it yields: {yields}"]
-    found = yielding_wall(wall, parts.block.si)
+    elastic = equivalent_wall(wall, parts.block.si)
     why = (
         "its impacts are those of a block that nothing else holds"
         if base is None
@@ -98,12 +97,12 @@ def _misfits_of_stiff_wall(wall: RearWall, parts: Parts) -> list[str]:
     )
     return [
         f"{fault}, where base and wall are struck at once; {why}: {yields}. "
-        f"stiffness='{found.stiffness:.4g} N/m', damping='{found.damping:.4g} N*s/m' throws it "
-        f"back with {found.share:.3g} of its speed, within {1e3 * IMPACT_TIME:g} ms"
+        f"stiffness='{elastic.stiffness:.4g} N/m', damping='{elastic.damping:.4g} N*s/m' throws it "
+        f"back with {elastic.rebound:.3g} of its speed, within {1e3 * IMPACT_TIME:g} ms"
     ]
 
 
-def _misfits_of_links(parts: Parts) -> list[str]:
+def _link_faults(parts: Parts) -> list[str]:
     """Return the faults of links with other parts."""
     faults: list[str] = []
     base = next((one for one in (parts.pads, parts.soil) if one is not None), None)
@@ -127,7 +126,7 @@ def _misfits_of_links(parts: Parts) -> list[str]:
     return faults
 
 
-def _misfits_of_frame(parts: Parts) -> list[str]:
+def _frame_faults(parts: Parts) -> list[str]:
     """Return the faults of columns under a beam with other parts."""
     faults = [
         "a Tendon of a RockingFrame goes along the axis of each column, bent below and above it: "
@@ -149,7 +148,7 @@ def _misfits_of_frame(parts: Parts) -> list[str]:
     return faults
 
 
-def _misfits_of_stack(stack: Stack, parts: Parts) -> list[str]:
+def _stack_faults(stack: Stack, parts: Parts) -> list[str]:
     """Return the faults of a stack with other parts."""
     faults: list[str] = []
     if parts.block is not None:
@@ -165,7 +164,7 @@ def _misfits_of_stack(stack: Stack, parts: Parts) -> list[str]:
         "the bodies of a Stack stand on TwoSpringSupport, WinklerSoil or RigidGround, not on "
         f"{type(one).__name__}"
         for one in standing
-        if slot_of_kind(type(one)) not in BASES or isinstance(one, OwnBase)
+        if slot_of_class(type(one)) not in BASE_SLOTS or isinstance(one, OwnBase)
     ]
     if any(isinstance(one, RigidGround) and one.si.restitution is not None for one in standing):
         faults.append(
@@ -175,40 +174,40 @@ def _misfits_of_stack(stack: Stack, parts: Parts) -> list[str]:
     return faults
 
 
-def contradictions(parts: Parts) -> list[str]:
-    """Say which sizes of parts contradict one another, though they can be simulated."""
-    depths: dict[str, float] = {}  # depth that each was built with, where that is known
+def depth_and_point_cautions(parts: Parts) -> list[str]:
+    """Warn of depths that differ, and of links outside their bodies, which can be simulated."""
+    depths: dict[str, float] = {}  # depth with which each was made, where it is known
     for part in (parts.cap or parts.block, parts.soil):
         # without this a component without a depth would look for names like it
         known = getattr_static(part, "depth", None) is not None
         depth = getattr(part, "depth", None) if known else None
         if depth is not None:
             depths[type(part).__name__] = float(depth.m_as("m"))
-    beside = _outside_bodies(parts) if parts.links else []
-    if len(depths) < 2 or math.isclose(*depths.values(), rel_tol=_ROUNDING_OF_DEPTHS):
-        return beside
+    outside = _outside_point_cautions(parts) if parts.links else []
+    if len(depths) < 2 or math.isclose(*depths.values(), rel_tol=_DEPTH_TOLERANCE):
+        return outside
     (upper, above), (lower, below) = depths.items()
     return [
-        *beside,
+        *outside,
         f"the {lower} was built for a base of a depth of {below:.6g} m, but the {upper} on it is "
         f"{above:.6g} m deep: its stiffness is the subgrade modulus times that depth",
     ]
 
 
-def _bodies_of(parts: Parts) -> tuple[BlockSI, ...]:
-    """Return the bodies that links may be on, from the top down; none of a frame."""
+def _linked_bodies(parts: Parts) -> tuple[BlockSI, ...]:
+    """Return the bodies to which links may be attached, from the top down; none of a frame."""
     if parts.stack is not None:
         return parts.stack.si.bodies
     return () if parts.block is None else (parts.block.si,)
 
 
-def _outside_bodies(parts: Parts) -> list[str]:
+def _outside_point_cautions(parts: Parts) -> list[str]:
     """Warn of links at points that are above or below their bodies, or far beside them.
 
     A bracket or the arm of a statue may reach beyond the base, by no more than the body's height.
     """
     messages = list[str]()
-    bodies = _bodies_of(parts)
+    bodies = _linked_bodies(parts)
     for name, link in zip(link_labels(parts.links), parts.links, strict=True):
         points = list[tuple[int | None, tuple[float, float]]]()
         if isinstance(link, PointLink):
@@ -219,8 +218,8 @@ def _outside_bodies(parts: Parts) -> list[str]:
             if number is None or number > len(bodies):
                 continue
             body = bodies[number - 1]
-            reach, most = body.half_width + body.height, body.height * (1.0 + _ROUNDING)
-            if abs(x) > reach or not body.height - most <= y <= most:
+            reach, top = body.half_width + body.height, body.height * (1.0 + _ROUNDING)
+            if abs(x) > reach or not body.height - top <= y <= top:
                 messages.append(
                     f"{name}: its point ({x:.6g}, {y:.6g}) m is outside of body {number}, "
                     f"{body.width:.6g} m wide at its base and {body.height:.6g} m high; points "
@@ -229,27 +228,27 @@ def _outside_bodies(parts: Parts) -> list[str]:
     return messages
 
 
-def _beyond_bodies(parts: Parts) -> list[str]:
+def _tendon_and_wall_faults(parts: Parts) -> list[str]:
     """Return the faults of tendons and walls that miss their bodies."""
     faults = list[str]()
-    bodies = _bodies_of(parts)
+    bodies = _linked_bodies(parts)
     for name, link in zip(link_labels(parts.links), parts.links, strict=True):
         if not isinstance(link, Tendon | RearWall) or link.si.on_body > len(bodies):
             continue
         body = bodies[link.si.on_body - 1]
         if isinstance(link, Tendon):
-            if abs(link.si.at) > body.half_width * _AT_THE_EDGE:
+            if abs(link.si.at) > body.half_width * _EDGE_TOLERANCE:
                 faults.append(
                     f"{name}: a Tendon goes through its body, whose base ends "
                     f"{body.half_width:.6g} m beside its middle; at is {link.si.at:.6g} m"
                 )
             below = bodies[link.si.on_body :]
-            if below and link.si.depth > below[0].height * _AT_THE_EDGE:
+            if below and link.si.depth > below[0].height * _EDGE_TOLERANCE:
                 faults.append(
                     f"{name}: a Tendon through body {link.si.on_body} is held in the body below, "
                     f"which is {below[0].height:.6g} m high; depth is {link.si.depth:.6g} m"
                 )
-        elif link.si.height is not None and link.si.height > body.height * _AT_THE_EDGE:
+        elif link.si.height is not None and link.si.height > body.height * _EDGE_TOLERANCE:
             faults.append(
                 f"RearWall: height is {link.si.height:.6g} m, above the top of body "
                 f"{link.si.on_body} at {body.height:.6g} m"
@@ -257,8 +256,8 @@ def _beyond_bodies(parts: Parts) -> list[str]:
     return faults
 
 
-def unused(parts: Parts, options: Options) -> list[str]:
-    """Say which of the chosen options have no effect in a scene of these parts."""
+def unused_option_cautions(parts: Parts, options: Options) -> list[str]:
+    """Warn of options that have no effect in a scene of these parts."""
     messages: list[str] = []
     between = () if parts.stack is None else parts.stack.interfaces
     bases = (*parts.structural(), *between)
@@ -267,7 +266,7 @@ def unused(parts: Parts, options: Options) -> list[str]:
             f"coupling={str(options.coupling)!r} changes nothing here: it is how pads, a "
             "CushionCap and soil are joined, and the scene has not all of them"
         )
-    yielding = any(slot_of_kind(type(part)) in ("pads", "soil") for part in bases)
+    yielding = any(slot_of_class(type(part)) in ("pads", "soil") for part in bases)
     if options.restraint is not Restraint.CONTACT_STATE and not yielding and not parts.own:
         messages.append(
             f"restraint={str(options.restraint)!r} changes nothing here: on rigid ground it is the "
@@ -306,47 +305,47 @@ class BaseFriction(NamedTuple):
         return f"{self.static:.6g}, {self.kinetic:.6g}{sticks}"
 
 
-HELD: Final = BaseFriction(math.inf, math.inf, math.inf)
-"""Friction of a base that holds what stands on it."""
-WITHOUT_END: Final = 1e8
-"""Coefficient of friction that counts as infinite: a body would slip only under pressing forces
-that are lost in the rounding of weights."""
+NO_SLIP: Final = BaseFriction(math.inf, math.inf, math.inf)
+"""Friction of a base on which nothing slips."""
+INFINITE_COEFFICIENT: Final = 1e8
+"""Coefficient of friction that counts as infinite: a body would slip only under normal forces
+below the rounding errors of weights."""
 
 
-def friction_under(part: Component, options: Options) -> BaseFriction | None:
-    """Return the friction of a base; None where the base holds what is on it."""
+def base_friction(part: Component, options: Options) -> BaseFriction | None:
+    """Return the friction of a base; None if nothing slips on it."""
     static = getattr(part.si, "friction", None)
     if static is None or options.sliding is Sliding.CHECKED or isinstance(part, OwnBase):
         return None
     kinetic = static if part.si.kinetic_friction is None else part.si.kinetic_friction
     rigid = isinstance(part, RigidGround)
-    if kinetic >= WITHOUT_END and not rigid:
-        return HELD
+    if kinetic >= INFINITE_COEFFICIENT and not rigid:
+        return NO_SLIP
     sticks = rigid and part.si.impact is Impact.STICK
     return BaseFriction(static, kinetic, math.inf if sticks else kinetic)
 
 
-def _slides(parts: Parts, options: Options) -> bool:
+def _block_slides(parts: Parts, options: Options) -> bool:
     """Whether a block slides on what it stands on."""
     behind_wall = parts.wall is not None and not parts.wall.elastic
     of_stages = parts.cap is not None and options.coupling is Coupling.CASCADE
     bases = (parts.components.get(slot) for slot in ("pads", "soil", "ground"))
     under = next((one for one in bases if one is not None), None)
-    slippery = under is not None and friction_under(under, options) is not None
+    slippery = under is not None and base_friction(under, options) is not None
     return slippery and not (behind_wall or of_stages)
 
 
-def missizes(parts: Parts, options: Options) -> list[str]:
+def size_faults(parts: Parts, options: Options) -> list[str]:
     """Return the faults of the sizes of parts that are together."""
     block, cap = parts.block, parts.cap
     faults: list[str] = []
     # a squat body may land flat if it slides, or stands in a stack
-    if block is not None and not parts.own and not _slides(parts, options):
+    if block is not None and not parts.own and not _block_slides(parts, options):
         faults += squat(block.si, type(block).__name__)
     if parts.links:
-        faults += _beyond_bodies(parts)
+        faults += _tendon_and_wall_faults(parts)
     if block is not None and cap is not None:
-        body = parts.the_cap
+        body = parts.cap_si
         width = 2.0 * body.half_width
         if not isfinite(body.inertia + block.si.mass * body.half_height * body.half_height):
             faults.append(

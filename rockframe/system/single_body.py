@@ -9,7 +9,7 @@ from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.dynamics.single_body import single_body
 from rockframe.errors import AssemblyError
 from rockframe.many import isnan
-from rockframe.system.fitting import BaseFriction
+from rockframe.system.compatibility import BaseFriction
 from rockframe.system.options import restraint_words
 from rockframe.system.setting import Setting, SlipRange, chain_slips
 from rockframe.system.statics import SmallMotion, Statics, static_values
@@ -18,7 +18,7 @@ from rockframe.system.words import Words, angle_words, sliding_words
 
 
 @dataclass(frozen=True)
-class AloneSetting(Setting):
+class SingleBodySetting(Setting):
     """A body on a base."""
 
     support: Support  # the base under it
@@ -55,10 +55,10 @@ class AloneSetting(Setting):
             return 0.0
         found = self.support.standing.rest
         if found is None:
-            raise AssemblyError([self._falling_words()])
+            raise AssemblyError([self._no_equilibrium_words()])
         return found[0].state.rotation
 
-    def _falling_words(self) -> str:
+    def _no_equilibrium_words(self) -> str:
         """Say that the body has no equilibrium under its weight, and why."""
         slope, body = self.slope, self.body
         moment = body.eccentricity * slope.normal_gravity - body.centre_height * slope.along_gravity
@@ -76,9 +76,10 @@ class AloneSetting(Setting):
     def small_motion(self) -> SmallMotion:
         """Return the equations of small motion about rest, in the contact of the body at rest."""
         standing = self.support.standing
-        stands = standing.rest or standing.upright
-        turned = [matrix[::-1, ::-1] for matrix in standing.small_motion(stands)]
-        return SmallMotion(("vertical_displacement", "rotation"), *turned)
+        position = standing.rest or standing.upright
+        # their coordinates are rotation and height
+        matrices = [matrix[::-1, ::-1] for matrix in standing.small_motion(position)]
+        return SmallMotion(("vertical_displacement", "rotation"), *matrices)
 
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
         """Return the vertical equilibrium at some rotations, :eq:`eq-incline-held`."""
@@ -99,7 +100,7 @@ class AloneSetting(Setting):
 
 
 @dataclass(frozen=True)
-class SlidingAloneSetting(AloneSetting):
+class SlidingBodySetting(SingleBodySetting):
     """A body on a base with friction."""
 
     friction: BaseFriction
@@ -123,8 +124,8 @@ class SlidingAloneSetting(AloneSetting):
 
         body, rest = self.load.rigid_body, None
         if self.leans and self.support.standing.rest is not None:
-            stands = self.support.standing.rest[0].state
-            rest = [AtRest(stands.rotation, stands.vertical)]
+            state = self.support.standing.rest[0].state
+            rest = [AtRest(state.rotation, state.vertical)]
         one = ChainBody(body, self.support.base_numbers, 1.0, 0.0, 0.0)
         return chain_model([one], self.body.mass, rest, frictions=[self.friction])
 

@@ -14,47 +14,47 @@ from rockframe.errors import RockframeError
 from rockframe.motion import GroundMotion
 from rockframe.results.along_steps import FRACTIONS, AlongSteps
 from rockframe.results.forces import (
-    OF_SETTLEMENT,
-    OF_SOIL_FRICTION,
+    SETTLEMENT_COLUMNS,
+    SOIL_FRICTION_COLUMNS,
     EventStates,
     force_histories,
+    force_peaks,
     friction_demands,
-    peaks_along,
-    residuals,
+    residual_values,
 )
 from rockframe.results.outcome import (
     Generic,
     body_histories,
     cap_histories,
-    columns_of,
     energy_histories,
     ground_histories,
     ground_on_slope,
+    numbered_columns,
     relative_histories,
     without_gravity,
 )
 from rockframe.results.points import point_histories, point_labels, point_peaks
-from rockframe.results.schema import ENERGIES, ON_REQUEST, SCHEMA, fitting
+from rockframe.results.schema import ENERGIES, ON_REQUEST, SCHEMA, checked_results
 from rockframe.results.variables.variable import EVENT, TIME
 from rockframe.signals.arrays import Array
 from rockframe.signals.motion import Incline
 from rockframe.simulation.plan import Plan
-from rockframe.simulation.soundness import SlidingCheck, sliding_scalars, slidings
+from rockframe.simulation.soundness import SlidingCheck, sliding_checks, sliding_scalars
 from rockframe.solve.observe import memory_at_outputs, observe_run, observe_states
 from rockframe.solve.trajectory import Trajectory
 from rockframe.system.assembly import Assembly
 from rockframe.system.own_base import OwnAnswers
 
-Found = TypeVar("Found")
+Result = TypeVar("Result")
 
-OF_SLIPS: Final = (SLIP, REVERSAL, STICK)
+SLIP_EVENTS: Final = (SLIP, REVERSAL, STICK)
 """Events at which a base begins to slip, reverses its slip, or is held again."""
-STOPPED_WITHIN: Final = 1e-6
-"""Longest slip, over the width of the base, of a body that friction stops at once."""
+MAX_STOPPED_SLIP: Final = 1e-6
+"""Longest slip, over the width of the base, that friction stops at once."""
 
 
 @dataclass(frozen=True)
-class Answers:
+class RunOutputs:
     """What follows from the samples of a run; empty for a run without samples."""
 
     # histories, and values at events, by their names in the schema
@@ -64,7 +64,7 @@ class Answers:
     # names and places of points, names of restrainers
     points: dict[str, Generic] = field(default_factory=dict[str, Generic])
     # checks of the bases with a given friction that the model holds
-    slidings: list[SlidingCheck] = field(default_factory=list[SlidingCheck])
+    sliding_checks: list[SlidingCheck] = field(default_factory=list[SlidingCheck])
 
 
 def ground_at(motion: GroundMotion | None, time: Array) -> Array:
@@ -75,61 +75,64 @@ def ground_at(motion: GroundMotion | None, time: Array) -> Array:
     return np.column_stack(found or [still, still])
 
 
-def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]) -> Answers:
+def compute_outputs(
+    system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
+) -> RunOutputs:
     """Return what follows from the samples of a run: histories, if they are kept, peaks and points.
 
     What cannot be computed is named in `missing`.
     """
     setting, load, model = system.setting, system.setting.load, system.model
-    seen = _Observed(system, plan, run)
-    values, upright = seen.histories(), seen.events
-    fell = run.overturning_time <= run.end_time
-    along = seen.along(run.overturning_time if fell else math.inf)
+    observed = _ObservedRun(system, plan, run)
+    values, until_overturning = observed.histories(), observed.events
+    overturned = run.overturning_time <= run.end_time
+    along = observed.along(run.overturning_time if overturned else math.inf)
     if not along.steps.complete:
         missing.append(
             f"peaks of forces and at points are those until {along.steps.time[-1]:.4g} s: the run "
             "made more steps than are kept"
         )
-    if fell:  # the fall after overturning does not count
-        upright = upright.those(upright.time <= run.overturning_time)
-    found = slidings(system, along)
-    of_forces, of_settlement = peaks_along(along, upright, load)
+    if overturned:  # the fall after overturning does not count
+        kept = until_overturning.time <= run.overturning_time
+        until_overturning = until_overturning.select(kept)
+    checks = sliding_checks(system, along)
+    of_forces, of_settlement = force_peaks(along, until_overturning, load)
     scalars: dict[str, Generic | float] = {
-        **of_forces, **sliding_scalars(found), **residuals(seen.at_the_end(), load),
+        **of_forces, **sliding_scalars(checks), **residual_values(observed.at_the_end(), load),
         **of_settlement,
     }  # fmt: skip
     if model.shows_bodies:
         # peaks of the whole run, as for the peak rotation of the highest body
-        every = seen.along(math.inf) if fell else along
-        scalars["peak_body_rotation"] = _peaks_of("rotation", model.system.bodies(), every)
+        every = observed.along(math.inf) if overturned else along
+        scalars["peak_body_rotation"] = _absolute_peaks("rotation", model.system.bodies(), every)
     places: dict[str, Generic] = {}
     if model.links:
-        scalars["peak_restrainer_force"] = _peaks_of("restrainer_force", model.links, along)
+        scalars["peak_restrainer_force"] = _absolute_peaks("restrainer_force", model.links, along)
         places = {"restrainer": np.array(setting.link_names)}
     if plan.points:
         scalars |= point_peaks(plan.points, along, load)
         places |= point_labels(plan.points)
         values |= point_histories(plan.points, values, load)
     shown = run.events.kind != SILENT
-    impulses = seen.events.impulses(load.body.mass)
+    impulses = observed.events.impulses(load.body.mass)
     everything = values | {name: each[shown] for name, each in impulses.items()}
     if "slip" in values:
-        everything["event_slip"] = seen.events.after["slip"][shown]
+        everything["event_slip"] = observed.events.after["slip"][shown]
     if plan.energies:
         across = values["horizontal_displacement"]
         everything |= energy_histories(model, run, across, system.options.slope)
-    of_users = _of_users(seen, values, everything, along, missing)
+    of_users = _user_outputs(observed, values, everything, along, missing)
     scalars |= {name: each for name, each in of_users.items() if not SCHEMA[name].dims}
     everything |= {name: each for name, each in of_users.items() if SCHEMA[name].dims}
-    kept = {
+    requested = {
         name: each
         for name, each in everything.items()
         if name not in ON_REQUEST or name in plan.requested
     }
-    return Answers(kept if plan.histories else {}, scalars, places, found)
+    return RunOutputs(requested if plan.histories else {}, scalars, places, checks)
 
 
-class _Observed:
+class _ObservedRun:
     """The columns of a model in a run: along the steps, at samples, and around events."""
 
     def __init__(self, system: Assembly, plan: Plan, run: Trajectory) -> None:
@@ -139,10 +142,10 @@ class _Observed:
         events, slope, count = run.events, system.options.slope, len(run.time)
         ground = ground_at(plan.motion, np.concatenate([run.time, events.time, events.time]))
         moved, resolved = ground_on_slope(ground, slope)
-        model, names = system.model, BODY_FORCES + OF_SETTLEMENT
-        names += columns_of("restrainer_force", model.links)
-        names += OF_SOIL_FRICTION if system.setting.stacked else ()
-        names += columns_of("rotation", model.system.bodies()) if model.shows_bodies else ()
+        model, names = system.model, BODY_FORCES + SETTLEMENT_COLUMNS
+        names += numbered_columns("restrainer_force", model.links)
+        names += SOIL_FRICTION_COLUMNS if system.setting.stacked else ()
+        names += numbered_columns("rotation", model.system.bodies()) if model.shows_bodies else ()
         self.columns, shown = observe_run(model, run, None if self.whole else names, resolved)
         shown, last = without_gravity(shown, slope), count + len(events.time)
         self.values, before, after = (
@@ -193,14 +196,16 @@ class _Observed:
         memory, steps = memory_at_outputs(run)[0], run.kept_steps.until(until)
         shown = {name: each[: len(steps.time)] for name, each in self.columns.items()}
         if STICK in run.events.kind:
-            stops = _stops(run, self.events, STOPPED_WITHIN * 2.0 * load.body.half_width)
+            stops = _stopping_events(
+                run, self.events, MAX_STOPPED_SLIP * 2.0 * load.body.half_width
+            )
             kept = ~np.isin(steps.memory_row, stops)
             steps = replace(steps, values=steps.values[kept], codes=steps.codes[kept])
             shown = {name: each[kept] for name, each in shown.items()}
         if self.whole:
             moved = steps.ground - np.array([slope.along_gravity, 0.0])
-            ground = _level(moved, slope)
-            shown = self._further(without_gravity(shown, slope), steps.time, ground, moved)
+            ground = _horizontal_and_vertical(moved, slope)
+            shown = self._with_derived(without_gravity(shown, slope), steps.time, ground, moved)
         else:
             shown |= friction_demands(shown, load)
 
@@ -216,41 +221,41 @@ class _Observed:
             found = without_gravity(found, slope)
             if not self.whole:
                 return found | friction_demands(found, load)
-            return self._further(found, time, ground, moved)
+            return self._with_derived(found, time, ground, moved)
 
         return AlongSteps(steps, shown, inside)
 
-    def _further(
+    def _with_derived(
         self, shown: dict[str, Generic], time: Array, ground: Array, moved: Array
     ) -> dict[str, Generic]:
         """Return columns with what follows from them, and with the state that diagnostics take."""
         shown = shown | force_histories(shown, moved, self.system.setting.load)
-        return shown | _state_of(shown, time, ground)
+        return shown | _diagnostic_state(shown, time, ground)
 
 
-def _of_users(
-    seen: _Observed,
+def _user_outputs(
+    observed: _ObservedRun,
     values: dict[str, Generic],
     everything: dict[str, Generic],
     along: AlongSteps,
     missing: list[str],
 ) -> dict[str, Any]:
     """Return the results of user-defined bases, scenes and diagnostics for a run."""
-    plan, system, found = seen.plan, seen.system, dict[str, Any]()
+    plan, system, found = observed.plan, observed.system, dict[str, Any]()
     for own in (system.setting, *system.parts.structural()) if plan.histories else ():
         if isinstance(own, OwnAnswers):
-            events = seen.events.those(seen.run.events.kind != SILENT)
+            events = observed.events.select(observed.run.events.kind != SILENT)
             sides = [{**side, "time": events.time} for side in (events.before, events.after)]
             sizes = {TIME[0]: len(values["time"]), EVENT[0]: len(events.time)}
-            found |= or_missing(
-                lambda own=own, sides=sides, sizes=sizes: fitting(
+            found |= compute_or_note(
+                lambda own=own, sides=sides, sizes=sizes: checked_results(
                     own.answers(everything, *sides), sizes
                 ),
                 {}, f"what {type(own).__name__} tells of the run", missing,
             )  # fmt: skip
     for one in plan.diagnostics:
-        state = _state_of(values, seen.run.time, seen.ground)
-        history_and_peak = or_missing(
+        state = _diagnostic_state(values, observed.run.time, observed.ground)
+        history_and_peak = compute_or_note(
             lambda one=one, state=state: (
                 one.of(state), along.largest(lambda values: np.abs(one.of(values))[None])[0].item()
             ),
@@ -261,23 +266,23 @@ def _of_users(
     return found
 
 
-def _peaks_of(name: str, count: int, along: AlongSteps) -> Array:
+def _absolute_peaks(name: str, count: int, along: AlongSteps) -> Array:
     """Return the greatest absolute values of a quantity of all bodies, or of all restrainers."""
-    names = columns_of(name, count)
+    names = numbered_columns(name, count)
     return along.largest(lambda shown: np.abs([shown[name] for name in names]))[0]
 
 
-def _stops(run: Trajectory, events: EventStates, within: float) -> Integers:
+def _stopping_events(run: Trajectory, events: EventStates, within: float) -> Integers:
     """Return numbers, from 1, of events whose small slip velocity friction stops `within` [m]."""
     kind = run.events.kind
-    changes = ~np.isin(kind[:-1], OF_SLIPS) & (kind[1:] == STICK)
+    changes = ~np.isin(kind[:-1], SLIP_EVENTS) & (kind[1:] == STICK)
     of_caps = ("slip", "cap_slip")
     for name in (one for one in events.after if one in of_caps or one.startswith("slip_of_")):
         changes &= np.abs(events.before[name][1:] - events.after[name][:-1]) < within
     return 1 + np.flatnonzero(changes)
 
 
-def _state_of(values: dict[str, Generic], time: Array, ground: Array) -> dict[str, Generic]:
+def _diagnostic_state(values: dict[str, Generic], time: Array, ground: Array) -> dict[str, Generic]:
     """Return the state that diagnostics take: values at some times, and the ground there."""
     known = {name: each for name, each in values.items() if name in SCHEMA}
     return {
@@ -287,14 +292,16 @@ def _state_of(values: dict[str, Generic], time: Array, ground: Array) -> dict[st
     }
 
 
-def _level(moved: Array, slope: Incline) -> Array:
+def _horizontal_and_vertical(moved: Array, slope: Incline) -> Array:
     """Return horizontal and vertical components of those along and normal to the base."""
     back = replace(slope, inclination=-slope.inclination)
     return np.column_stack(back.rotated(moved[:, 0], moved[:, 1]))
 
 
-def or_missing(work: Callable[[], Found], instead: Found, what: str, missing: list[str]) -> Found:
-    """Compute a further result of a finished run; if that fails, note it and return `instead`."""
+def compute_or_note(
+    work: Callable[[], Result], default: Result, what: str, missing: list[str]
+) -> Result:
+    """Compute a further result of a finished run; if that fails, note it and return the default."""
     try:
         return work()
     except Warning:  # the user has made warnings errors
@@ -302,4 +309,4 @@ def or_missing(work: Callable[[], Found], instead: Found, what: str, missing: li
     except Exception as problem:
         kind = "" if isinstance(problem, RockframeError) else f"{type(problem).__name__}: "
         missing.append(f"{what} could not be computed: {kind}{problem}")
-        return instead
+        return default
