@@ -89,7 +89,7 @@ def agrees(lazy, whole):
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
 @pytest.mark.parametrize("run", STUDIES)
 def test_what_is_read_lazily_is_what_is_there(run, tmp_path, dask_is_there, monkeypatch):
-    monkeypatch.setattr(lazily, "_BLOCK", 1)
+    monkeypatch.setattr(lazily, "_BLOCK_SIZE", 1)
     counted, counts = [], words._counts
     monkeypatch.setattr(words, "_counts", lambda *a: counted.append(a[0].sizes) or counts(*a))
     whole = run(accuracy="fast", store=tmp_path / "study")
@@ -145,7 +145,7 @@ def test_what_is_still_to_come_is_a_gap(tmp_path, dask_is_there):
     assert int((lazy.status == RunStatus.NOT_RUN).sum()) == 7
     assert lazy.rockframe.verdict == whole.verdict
     on_a_grid(store=tmp_path / "study")
-    assert lazily.lazy_dataset(Store.at(tmp_path / "study")).status.max() < RunStatus.NOT_RUN
+    assert lazily.lazy_dataset(Store.open(tmp_path / "study")).status.max() < RunStatus.NOT_RUN
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
@@ -175,7 +175,7 @@ def test_with_dask_statistics_stream(tmp_path, monkeypatch):
     whole = rf.sweep(SYSTEM, MOTIONS, **few, chunk=10, store=tmp_path / "study")
     size = whole.rotation.nbytes
     assert size > 1e7
-    monkeypatch.setattr(lazily, "_BLOCK", 10)
+    monkeypatch.setattr(lazily, "_BLOCK_SIZE", 10)
     lazy = rf.open_study(tmp_path / "study", lazy=True)
     assert max(lazy.rotation.data.chunksize[:2]) == 10
     lazily._rows.cache_clear()
@@ -199,10 +199,10 @@ def test_with_dask_statistics_stream(tmp_path, monkeypatch):
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
 def test_blocks_follow_the_order_of_running(tmp_path):
     on_a_grid(store=tmp_path / "study", accuracy="fast", progress=False)
-    grid = Store.at(tmp_path / "study").labels().grid
+    grid = Store.open(tmp_path / "study").labels().grid
     assert grid.order == ("motion", "scale", "height")
     for most, expected in ((1, (1, 1, 1)), (2, (1, 1, 2)), (7, (1, 2, 3)), (30, (2, 4, 3))):
-        assert tuple(lazily.blocks(grid, most).values())[::-1] == expected
+        assert tuple(lazily.block_lengths(grid, most).values())[::-1] == expected
     numbers = grid.numbers((slice(None), slice(None), slice(None)))
     assert numbers.shape == tuple(grid.sizes.values())
     assert (grid.arranged(np.arange(grid.count)) == numbers).all()
@@ -211,7 +211,7 @@ def test_blocks_follow_the_order_of_running(tmp_path):
 def test_what_does_not_fit_is_read_from_its_store(tmp_path, monkeypatch):
     scales = np.linspace(0.1, 1, 100)
     whole = rf.sweep(SYSTEM, MOTIONS["weak"], scale=scales, free_vibration="5 s")
-    monkeypatch.setattr(memory, "available", lambda: 2e4)
+    monkeypatch.setattr(memory, "available_memory", lambda: 2e4)
     told = r"100 cases need about 0.058 MB of memory .* 0.02 MB are available; "
     with pytest.raises(StudyError, match=f"{told}run fewer cases or give a store, from which"):
         rf.sweep(SYSTEM, MOTIONS["weak"], scale=scales, free_vibration="5 s")
@@ -230,7 +230,7 @@ def test_what_does_not_fit_is_read_from_its_store(tmp_path, monkeypatch):
 
 
 def test_an_interrupted_study_that_does_not_fit_is_not_read(tmp_path, monkeypatch):
-    monkeypatch.setattr(memory, "available", lambda: 2e4)
+    monkeypatch.setattr(memory, "available_memory", lambda: 2e4)
     monkeypatch.setattr(Store, "get", lambda *_: pytest.fail("it has been read"))
     stopped = Interrupting(2)
     with pytest.warns(SolverWarning) as said:
