@@ -214,9 +214,9 @@ class MotionSuite(LabelledMotions):
         found = target
         if not isinstance(found, xr.Dataset):
             found = self.scaling_to(found, **arguments)
-        motions, upwards = scaled_motions(self, found)
+        motions, verticals = scaled_motions(self, found)
         return type(self)(
-            motions, verticals=upwards, unread=self._unread, remarks=self._remarks,
+            motions, verticals=verticals, unread=self._unread, remarks=self._remarks,
             target=compared_target(found),
         )  # fmt: skip
 

@@ -183,7 +183,7 @@ def test_an_interrupt_leaves_what_was_found_until_then():
         return 0.2 * scale + 0.8 * math.exp(-((10.0 * (scale - 1.55)) ** 2))
 
     look, asked = runs_of(peak)
-    how = {"most": 100, "width": 1e-4, "resolution": 0.05}
+    how = {"max_runs": 100, "width": 1e-4, "resolution": 0.05}
     whole = scan_scales(look, ROW, **how)
     assert whole.completed
     for count in range(1, len(asked)):
