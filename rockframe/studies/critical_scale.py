@@ -32,7 +32,7 @@ from rockframe.studies.flips import (
     unfinished_words,
 )
 from rockframe.studies.intensities import ScaledIntensity, measure_attributes
-from rockframe.studies.lines import read_resolution, read_width
+from rockframe.studies.line_scan import read_resolution, read_width
 from rockframe.studies.sweeps.execution import progress_bar
 from rockframe.system.rigid_ground import RigidGroundSetting
 from rockframe.units import POSITIVE, QuantityLike, RatioLike, to_ratio

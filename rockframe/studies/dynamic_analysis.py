@@ -26,7 +26,7 @@ from rockframe.studies.limit_states import (
     states_json,
 )
 from rockframe.studies.line_axes import read_line_axes
-from rockframe.studies.lines import (
+from rockframe.studies.line_scan import (
     CAPACITY_DEFINITION,
     INTERRUPTED_ENDING,
     SCALE,

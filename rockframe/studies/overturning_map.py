@@ -17,7 +17,7 @@ from rockframe.signals.arrays import Array
 from rockframe.signals.motion import greatest
 from rockframe.simulation.system import System, check_system
 from rockframe.studies.limit_states import overturns
-from rockframe.studies.lines import (
+from rockframe.studies.line_scan import (
     SCALE,
     SCAN_SOURCE,
     VERDICT_DIM,

@@ -24,7 +24,7 @@ from rockframe.studies.intensities import (
 )
 from rockframe.studies.limit_states import overturns
 from rockframe.studies.line_axes import read_line_axes, unstack_cases
-from rockframe.studies.lines import (
+from rockframe.studies.line_scan import (
     CAPACITY_DEFINITION,
     SCALE,
     SCAN_SOURCE,

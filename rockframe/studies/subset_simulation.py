@@ -43,7 +43,7 @@ from rockframe.studies.limit_states import (
     limit_states,
     states_json,
 )
-from rockframe.studies.lines import INTERRUPTED_ENDING, SweepRounds, sweep_rounds
+from rockframe.studies.line_scan import INTERRUPTED_ENDING, SweepRounds, sweep_rounds
 from rockframe.studies.probability import (
     SAMPLING_ATTRIBUTE,
     RandomParameter,

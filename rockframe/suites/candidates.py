@@ -16,8 +16,8 @@ from rockframe.measures.response import checked_periods, shortest_of, spectra_of
 from rockframe.motion.processing.samples import warn_of_coarse_samples
 from rockframe.motion.quantities import ArrayLike
 from rockframe.signals.arrays import Array
+from rockframe.suites.labelled_motions import LabelledMotions
 from rockframe.suites.target import TargetSpectrum, check_target
-from rockframe.suites.value import LabelledMotions
 from rockframe.units import PERIOD, POSITIVE, QuantityLike, RatioLike, to_ratio
 
 _DEFAULT_BAND: Final = (0.1, 4.0)

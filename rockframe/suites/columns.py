@@ -17,7 +17,7 @@ from rockframe.results.variables.motions import RECORDS
 from rockframe.units import Measure, Unit, to_ratio, to_si
 
 if TYPE_CHECKING:
-    from rockframe.suites.value import LabelledMotions
+    from rockframe.suites.labelled_motions import LabelledMotions
 
 
 _COMPUTED: Final = ("time_step", "duration", "sample_count", "peak_ground_acceleration")

@@ -15,8 +15,8 @@ from rockframe.results.joining import MOTION
 from rockframe.results.schema import SCHEMA, build_dataset, with_variables, without_fill_values
 from rockframe.signals.arrays import Array
 from rockframe.suites.candidates import Candidates, Combination, candidates_of
+from rockframe.suites.labelled_motions import LabelledMotions
 from rockframe.suites.target import TargetSpectrum
-from rockframe.suites.value import LabelledMotions
 from rockframe.units import QuantityLike, RatioLike, Unit
 
 DEFAULT_BOUNDS: Final = (0.25, 4.0)

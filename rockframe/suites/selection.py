@@ -15,9 +15,9 @@ from rockframe.proposals import hinted
 from rockframe.results.schema import with_variables
 from rockframe.signals.arrays import Array
 from rockframe.suites.candidates import Combination, candidates_of
+from rockframe.suites.labelled_motions import LabelledMotions
 from rockframe.suites.scaling import DEFAULT_BOUNDS, scaled_set
 from rockframe.suites.target import TargetSpectrum
-from rockframe.suites.value import LabelledMotions
 from rockframe.units import NOT_NEGATIVE, QuantityLike, RatioLike, to_ratio
 
 _MAX_STARTS: Final = 20

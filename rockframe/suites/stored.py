@@ -22,8 +22,8 @@ from rockframe.results.schema import build_dataset
 from rockframe.signals import Motion, Signal
 from rockframe.signals.motion import COEFFICIENTS, VERTICAL
 from rockframe.suites.columns import known_columns
+from rockframe.suites.labelled_motions import LabelledMotions
 from rockframe.suites.target import TargetSpectrum
-from rockframe.suites.value import LabelledMotions
 from rockframe.units import Unit
 
 _KIND: Final = "suite of ground motions"

@@ -14,12 +14,12 @@ from rockframe.measures import (
 )
 from rockframe.motion.quantities import ArrayLike
 from rockframe.proposals import proposing
+from rockframe.suites.labelled_motions import LabelledMotions
 from rockframe.suites.matching import matched
 from rockframe.suites.scaling import compared_target, scaled_motions, scaling_to
 from rockframe.suites.selection import selection_for
 from rockframe.suites.stored import stored_motions, suite_dataset
 from rockframe.suites.target import TargetSpectrum
-from rockframe.suites.value import LabelledMotions
 from rockframe.units import QuantityLike, RatioLike
 
 

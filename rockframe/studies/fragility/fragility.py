@@ -42,7 +42,7 @@ from rockframe.studies.limit_states import (
     limit_states,
     states_of,
 )
-from rockframe.studies.lines import SCALE
+from rockframe.studies.line_scan import SCALE
 from rockframe.studies.sweeps.axes import read_free_values
 from rockframe.studies.sweeps.motions import MotionsLike
 from rockframe.units import RatioLike

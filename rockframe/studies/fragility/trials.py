@@ -19,7 +19,7 @@ from rockframe.errors import ComponentError, SchemaError, StudyError, shown
 from rockframe.results.outcome import Generic
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.signals.arrays import Array
-from rockframe.studies.lines import SCALE
+from rockframe.studies.line_scan import SCALE
 from rockframe.studies.sweeps.axes import Changes
 
 Values = TypeVar("Values", xr.DataArray, xr.Dataset)

@@ -32,9 +32,9 @@ from rockframe.studies.sweeps.execution import (
     run_chunks,
     workers_of_executor,
 )
-from rockframe.studies.sweeps.known import KnownCases
+from rockframe.studies.sweeps.known_cases import KnownCases
 from rockframe.studies.sweeps.labelling import sweep_dataset, sweep_labels
-from rockframe.studies.sweeps.lazily import lazy_dataset
+from rockframe.studies.sweeps.lazy_dataset import lazy_dataset
 from rockframe.studies.sweeps.motions import MotionsLike
 from rockframe.studies.sweeps.planning import plan_study
 from rockframe.studies.sweeps.store import Store, staggered

@@ -10,8 +10,8 @@ from unit.studies.analysed import FAST, QUIET, SYSTEM, checked, motions, whole_a
 
 import rockframe as rf
 from rockframe.errors import ComponentError, ModelWarning, SchemaError, SolverWarning
-from rockframe.studies import lines as of_lines
-from rockframe.studies.lines import Bracket, bisect_brackets, bracket_arrays, find_brackets
+from rockframe.studies import line_scan as of_lines
+from rockframe.studies.line_scan import Bracket, bisect_brackets, bracket_arrays, find_brackets
 from rockframe.studies.sweeps import execution
 
 

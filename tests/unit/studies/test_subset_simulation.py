@@ -9,7 +9,7 @@ from scipy import stats
 import rockframe as rf
 from rockframe.errors import ComponentError, ModelWarning, SolverWarning, StudyError
 from rockframe.results.schema import SCHEMA
-from rockframe.studies import lines
+from rockframe.studies import line_scan as lines
 from rockframe.studies.conditional_sampling import (
     subset_bounds,
     subset_levels,
