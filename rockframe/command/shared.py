@@ -26,7 +26,7 @@ from rockframe.results.table import head_of
 from rockframe.results.variables.variable import unit_suffix
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import accuracy_of
-from rockframe.studies.intensities import PERIOD_OF, measure_words
+from rockframe.studies.intensities import PERIOD_ATTRIBUTE, measure_words
 from rockframe.studies.sweeps.chunk import SCREEN
 from rockframe.suites import MotionSuite, read_suite
 from rockframe.units import Unit
@@ -210,7 +210,7 @@ def with_project(dataset: xr.Dataset, project: str) -> xr.Dataset:
 
 def in_words(value: xr.DataArray, of: xr.Dataset) -> str:
     """Write an intensity measure: its name, value and unit; of an acceleration also in g."""
-    name = measure_words(str(value.name), of.attrs.get(PERIOD_OF))
+    name = measure_words(str(value.name), of.attrs.get(PERIOD_ATTRIBUTE))
     return f"{name} {amount(float(value), value.attrs)}"
 
 

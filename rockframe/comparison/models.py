@@ -36,11 +36,11 @@ _MODELS: Final = (
     ("stack on {soil}", ("stack", "soil"), Coupling.COUPLED),
 )
 """Models of all scenes: their names, the slots of their parts, and how these are joined."""
-_WORDS: Final = {"two pads": "pads", "pads": "pads", "soil": "soil"}
+_BASE_WORDS: Final = {"two pads": "pads", "pads": "pads", "soil": "soil"}
 """Words in the names of models, and the slots of the bases that they name."""
 
 
-_LINKS: Final[dict[type, str]] = {
+_LINK_WORDS: Final[dict[type, str]] = {
     Restrainer: "restrainers",
     Tendon: "tendons",
     Load: "loads",
@@ -88,58 +88,67 @@ def model_ladder(system: System) -> dict[str, System]:
     two pads
     """
     check_system(system, "model_ladder")
-    given = system.parts.components
+    components = system.parts.components
     present = system.parts.signature
     rows = _MODELS[:1] if system.parts.own else _MODELS
     slides = system.setting.slides and not system.parts.own
     if slides and "stack" not in present and squat(system.parts.block_si, ""):
         rows = ()  # held against sliding, it would not rock
     # a wall prevents the sliding of the model without it
-    holds = slides or "wall" in present
-    whole, held = given, Sliding.CHECKED if holds else system.sliding
+    prevents_sliding = slides or "wall" in present
+    whole, sliding = components, Sliding.CHECKED if prevents_sliding else system.sliding
     if slides and "stack" in present:  # the bases of a stack do not slide without a friction
-        given, held = {slot: _holding(part) for slot, part in given.items()}, system.sliding
+        components, sliding = (
+            {slot: _without_sliding(part) for slot, part in components.items()},
+            system.sliding,
+        )
     options: dict[str, Any] = {
         "restraint": system.restraint, "gravity": system.gravity,
         "inclination": system.inclination,
-        "sliding": held,
+        "sliding": sliding,
     }  # fmt: skip
     models: dict[str, System] = {}
     links = () if system.parts.own else system.parts.links
-    acts = " and ".join(dict.fromkeys(_LINKS.get(type(one), type(one).__name__) for one in links))
+    link_words = " and ".join(
+        dict.fromkeys(_LINK_WORDS.get(type(one), type(one).__name__) for one in links)
+    )
     with warnings.catch_warnings():
         # a simpler model may warn of effects that it leaves out; the scene has warned before
         warnings.simplefilter("ignore", ModelWarning)
         for name, slots, coupling in rows:
-            if not _reached(slots, coupling, system):
+            if not _is_simpler(slots, coupling, system):
                 continue
-            for bases in _bases(given, slots):
-                parts = {**{slot: given[slot] for slot in slots}, **bases}
-                if "ground" in given:
-                    parts["ground"] = given["ground"]
-                words = name.format(**_named(bases))
+            for bases in _bases(components, slots):
+                parts = {**{slot: components[slot] for slot in slots}, **bases}
+                if "ground" in components:
+                    parts["ground"] = components["ground"]
+                words = name.format(**_base_names(bases))
                 for rotation in Rotation.SMALL, Rotation.FINITE:
                     if rotation is Rotation.FINITE and system.rotation is Rotation.SMALL:
                         continue
-                    rung = f"{words}, small rotations" if rotation is Rotation.SMALL else words
-                    models[rung] = System(
+                    label = f"{words}, small rotations" if rotation is Rotation.SMALL else words
+                    models[label] = System(
                         *parts.values(), rotation=rotation, coupling=coupling, **options
                     )
                 if links:
-                    models[f"{words} with {acts}"] = System(*parts.values(), *links, **options)
+                    models[f"{words} with {link_words}"] = System(
+                        *parts.values(), *links, **options
+                    )
     if slides:
-        computed: dict[str, Any] = {**options, "sliding": Sliding.COMPUTED}
+        sliding_options: dict[str, Any] = {**options, "sliding": Sliding.COMPUTED}
         last = list(models)[-1] if models else "rigid ground"
-        models[f"{last}, sliding"] = System(*whole.values(), **computed)
+        models[f"{last}, sliding"] = System(*whole.values(), **sliding_options)
     if system.parts.own:
-        models[system.setting.model] = System(*given.values(), rotation=system.rotation, **options)
+        models[system.setting.model] = System(
+            *components.values(), rotation=system.rotation, **options
+        )
     return models
 
 
-def _holding(part: Component) -> Component:
+def _without_sliding(part: Component) -> Component:
     """Return a base, or a stack with all its interfaces, without sliding."""
     if isinstance(part, Stack):
-        return part.replace(interfaces=[_holding(one) for one in part.interfaces])
+        return part.replace(interfaces=[_without_sliding(one) for one in part.interfaces])
     if isinstance(part, RigidGround):
         return RigidGround(restitution=part.si.restitution)
     if isinstance(part, TwoSpringSupport | WinklerSoil):
@@ -161,13 +170,13 @@ def _bases(arguments: Mapping[str, Any], slots: tuple[str, ...]) -> Iterator[dic
     yield bases
 
 
-def _named(bases: Mapping[str, Component]) -> dict[str, str]:
+def _base_names(bases: Mapping[str, Component]) -> dict[str, str]:
     """Return the words for the bases of a model; users' own bases are named by their classes."""
     own = {slot: type(part).__name__ for slot, part in bases.items() if isinstance(part, OwnBase)}
-    return {words: own.get(slot, words) for words, slot in _WORDS.items()}
+    return {words: own.get(slot, words) for words, slot in _BASE_WORDS.items()}
 
 
-def _reached(slots: tuple[str, ...], coupling: Coupling, system: System) -> bool:
+def _is_simpler(slots: tuple[str, ...], coupling: Coupling, system: System) -> bool:
     """Whether a model is no finer than the scene: a cascade has no coupled model."""
     present = system.parts.signature
     below = present & {"pads", "soil"} - set(slots)

@@ -11,7 +11,7 @@ from rockframe.proposals import hinted, proposing
 from rockframe.units import POSITIVE, to_ratio
 
 _OWNER: Final = "recommend"
-_LEAST_PERCENTAGE: Final = 1e-4
+_MIN_PERCENTAGE: Final = 1e-4
 """Smallest error written as a percentage; a percentage with an exponent is easily misread."""
 _NEEDED: Final = ("run_time", "verdict_agrees", "model", "accuracy")
 _ERRORS: Final = {"peak_error": "the peak rotation", "history_error": "the rotation along time"}
@@ -89,10 +89,10 @@ def recommend(
     if limit > 1.0:
         msg = (
             f"{_OWNER}: tolerance must be at most 1, the whole peak, got {shown(tolerance)}; "
-            f"for {_without_exponent(limit, 3)} % write {_without_exponent(0.01 * limit, 3)}"
+            f"for {_plain_number(limit, 3)} % write {_plain_number(0.01 * limit, 3)}"
         )
         raise ComponentError(msg)
-    dataset = _checked(dataset)
+    dataset = _check_comparison(dataset)
     if not isinstance(cast("object", error), str) or error not in _ERRORS:
         known, near = " or ".join(map(repr, _ERRORS)), nearest(error, _ERRORS)
         msg = f"{_OWNER}: error must be {known}, got {shown(error)}{near}"
@@ -103,21 +103,21 @@ def recommend(
         raise SchemaError(msg)
     errors = np.where(dataset["verdict_agrees"], dataset[error], np.inf)
     times = dataset["run_time"].to_numpy()
-    good = errors <= limit
-    place = np.where(good, times, np.inf) if good.any() else errors
-    row, column = np.unravel_index(int(np.argmin(place)), place.shape)
+    admissible = errors <= limit
+    ranking = np.where(admissible, times, np.inf) if admissible.any() else errors
+    row, column = np.unravel_index(int(np.argmin(ranking)), ranking.shape)
     model = str(dataset["model"].to_numpy()[row])
     accuracy = str(dataset["accuracy"].to_numpy()[column])
-    met = bool(good.any())
-    rung = f"{model!r} at accuracy {accuracy!r}"
-    cost = f"{_without_exponent(1e3 * times[row, column], 3)} ms a run"
-    of = _ERRORS[error] + " or slip" * (error == "peak_error" and "peak_slip" in dataset)
-    found = f"off by {_share(errors[row, column], 2)} in {of}"
+    met = bool(admissible.any())
+    choice = f"{model!r} at accuracy {accuracy!r}"
+    cost = f"{_plain_number(1e3 * times[row, column], 3)} ms a run"
+    quantity = _ERRORS[error] + " or slip" * (error == "peak_error" and "peak_slip" in dataset)
+    found = f"off by {_error_words(errors[row, column], 2)} in {quantity}"
     if met:
         slowest = float(np.max(times)) / float(times[row, column])
         sentence = (
-            f"For an error of at most {_share(limit, 3)}, take {rung}: {found}, {cost}, "
-            f"{_without_exponent(slowest, 3)} times faster than the slowest rung."
+            f"For an error of at most {_error_words(limit, 3)}, take {choice}: {found}, {cost}, "
+            f"{_plain_number(slowest, 3)} times faster than the slowest rung."
         )
         if error == "peak_error" and "overturned" in dataset and dataset["overturned"][row, column]:
             sentence += (
@@ -125,14 +125,14 @@ def recommend(
                 "error='history_error' compares them along time."
             )
     elif np.isfinite(errors[row, column]):
-        within = _share(limit, 3)
-        sentence = f"No rung tried comes within {within}; the nearest is {rung}: {found}."
+        within = _error_words(limit, 3)
+        sentence = f"No rung tried comes within {within}; the nearest is {choice}: {found}."
     else:
         sentence = "No rung tried has the verdict of the scene itself."
     return Recommendation(model, accuracy, met, sentence)
 
 
-def _checked(value: object) -> xr.Dataset:
+def _check_comparison(value: object) -> xr.Dataset:
     if isinstance(value, xr.Dataset):
         return value
     msg = (
@@ -142,15 +142,15 @@ def _checked(value: object) -> xr.Dataset:
     raise SchemaError(msg)
 
 
-def _share(value: float, digits: int) -> str:
+def _error_words(value: float, digits: int) -> str:
     """Write an error as a percentage, or a very small one as a share of the peak."""
-    if 0.0 < value < _LEAST_PERCENTAGE:
+    if 0.0 < value < _MIN_PERCENTAGE:
         text = np.format_float_scientific(value, digits - 1, trim="-", exp_digits=1)
         return f"{text.replace('.e', 'e')} of the peak"
-    return f"{_without_exponent(100.0 * value, digits)} %"
+    return f"{_plain_number(100.0 * value, digits)} %"
 
 
-def _without_exponent(value: float, digits: int) -> str:
+def _plain_number(value: float, digits: int) -> str:
     """Write a number without an exponent, to `digits` digits or to the decimal point."""
     if value >= 10.0 ** (digits - 1):
         return f"{value:.0f}"

@@ -40,7 +40,7 @@ def verdicts_agree(run: xr.Dataset, reference: xr.Dataset) -> bool:
 
 def relative_peak_error(run: xr.Dataset, reference: xr.Dataset) -> float:
     """Return the greater of the relative errors of peak rotation and of peak slip [1]."""
-    if _cut_off(run, reference):
+    if _without_verdict(run, reference):
         return float("nan")
     peak, slips = float(reference["peak_rotation"]), _slips(reference)
     error = _relative(abs(float(run["peak_rotation"]) - peak), peak)
@@ -58,7 +58,7 @@ def _slips(run: xr.Dataset) -> Generic:
 
 def history_error(run: xr.Dataset, reference: xr.Dataset) -> float:
     """Return the largest difference of both histories of rotation over the peak rotation [1]."""
-    if _cut_off(run, reference):
+    if _without_verdict(run, reference):
         return float("nan")
     one, other = (data["rotation"].to_numpy() for data in (run, reference))
     times = [data["time"].to_numpy() for data in (run, reference)]
@@ -71,7 +71,7 @@ def history_error(run: xr.Dataset, reference: xr.Dataset) -> float:
 
 def event_time_error(run: xr.Dataset, reference: xr.Dataset) -> float:
     """Return the largest difference of the times of events [s]; NaN if their kinds differ."""
-    if _cut_off(run, reference):
+    if _without_verdict(run, reference):
         return float("nan")
     if not np.array_equal(run["event_kind"].to_numpy(), reference["event_kind"].to_numpy()):
         return float("nan")
@@ -79,7 +79,7 @@ def event_time_error(run: xr.Dataset, reference: xr.Dataset) -> float:
     return float(np.max(np.abs(difference), initial=0.0))
 
 
-def _cut_off(*runs: xr.Dataset) -> bool:
+def _without_verdict(*runs: xr.Dataset) -> bool:
     return any(verdict_of(run) is None for run in runs)
 
 
@@ -89,18 +89,18 @@ def _relative(difference: float, scale: float) -> float:
     return difference / scale if scale > 0.0 else float("inf")
 
 
-TIGHT: Final = 1e-12
-BENCHMARK: Final = Accuracy(rtol=TIGHT)
+BENCHMARK_TOLERANCE: Final = 1e-12
+BENCHMARK: Final = Accuracy(rtol=BENCHMARK_TOLERANCE)
 """Accuracy of the runs against which errors are measured; their own errors are about `TIGHT`."""
 
 DIMENSIONS: Final = ("model", "accuracy")
 
 Outcome: TypeAlias = dict[str, float | int | bool]
 
-_KEPT: Final = ("peak_rotation", "overturned", "energy_residual", "status")
+_COPIED_SCALARS: Final = ("peak_rotation", "overturned", "energy_residual", "status")
 _OWNER: Final = "tradeoff"
-_MOST_REPEATS: Final = 1000
-_PATIENCE: Final = 60.0
+_MAX_REPEATS: Final = 1000
+_COMPILE_TIMEOUT: Final = 60.0
 """Longest wait for machine code before a model is timed [s]."""
 
 
@@ -172,11 +172,11 @@ def tradeoff(
     [[True, True]]
     """
     check_system(system, _OWNER)
-    repeats = whole_number(repeats, owner=_OWNER, name="repeats", lowest=1, highest=_MOST_REPEATS)
+    repeats = whole_number(repeats, owner=_OWNER, name="repeats", lowest=1, highest=_MAX_REPEATS)
     models_of_scene = model_ladder(system)
-    chosen = _chosen(models_of_scene, models)
-    alone = isinstance(accuracies, str | float | int | Accuracy)
-    entries: list[Any] = [accuracies] if alone else several(
+    chosen = _select_models(models_of_scene, models)
+    is_single = isinstance(accuracies, str | float | int | Accuracy)
+    entries: list[Any] = [accuracies] if is_single else several(
         accuracies, owner=_OWNER, name="accuracies", of="accuracies"
     )  # fmt: skip
     if not entries:
@@ -186,36 +186,31 @@ def tradeoff(
     record = system.motion if motion is None else motion
 
     def plan(scene: System, accuracy: Accuracy) -> Plan:
-        return plan_run(
-            scene.assembly,
-            record,
-            accuracy=accuracy,
-            **arguments,
-        )
+        return plan_run(scene.assembly, record, accuracy=accuracy, **arguments)
 
     with warnings.catch_warnings():
         # a simpler model may warn of effects that it leaves out; the errors measure these
         warnings.simplefilter("ignore", ModelWarning)
         warnings.simplefilter("ignore", SolverWarning)
-        truth = run(system.assembly, plan(system, BENCHMARK))
+        reference = run(system.assembly, plan(system, BENCHMARK))
         rows: list[list[Outcome]] = []
         for scene in chosen.values():
             converged = run(scene.assembly, plan(scene, BENCHMARK))
             rows.append(
                 [
-                    measure(scene, plan(scene, setting), converged, truth, repeats)
+                    measure_run(scene, plan(scene, setting), converged, reference, repeats)
                     for setting in settings.values()
                 ]
             )
     names = rows[0][0]
-    exact = {label: vars(setting) for label, setting in settings.items()}
+    settings_of_labels = {label: vars(setting) for label, setting in settings.items()}
     dataset = build_dataset(
         {name: np.array([[cell[name] for cell in row] for row in rows]) for name in names},
         {
             "scene": list(models_of_scene)[-1],
-            "benchmark_rtol": TIGHT,
+            "benchmark_rtol": BENCHMARK_TOLERANCE,
             "repeats": repeats,
-            "settings": json.dumps(exact),
+            "settings": json.dumps(settings_of_labels),
             "system_json": system.assembly.json,
             **motion_attributes(record),
         },
@@ -230,14 +225,14 @@ def tradeoff(
     return dataset.assign_attrs(verdict=recommend(dataset).sentence)
 
 
-def measure(
-    scene: System, plan: Plan, converged: xr.Dataset, truth: xr.Dataset, repeats: int
+def measure_run(
+    scene: System, plan: Plan, converged: xr.Dataset, reference: xr.Dataset, repeats: int
 ) -> Outcome:
     """Run a model at an accuracy, time it, and compare it with both references."""
     found = run(scene.assembly, plan)
     bare = replace(plan, output_step=None)
     _run_until_compiled(scene, bare)
-    times = [_timed(scene, bare) for _ in range(repeats)]
+    times = [_time_of_run(scene, bare) for _ in range(repeats)]
     return {
         "run_time": float(np.median(times)),
         "run_time_least": min(times),
@@ -245,11 +240,11 @@ def measure(
         "numerical_peak_error": relative_peak_error(found, converged),
         "numerical_history_error": history_error(found, converged),
         "event_time_error": event_time_error(found, converged),
-        "peak_error": relative_peak_error(found, truth),
-        "history_error": history_error(found, truth),
-        "verdict_agrees": verdicts_agree(found, truth),
-        **{name: found[name].item() for name in _KEPT},
-        **({"peak_slip": float(found.get("peak_slip", 0.0))} if "peak_slip" in truth else {}),
+        "peak_error": relative_peak_error(found, reference),
+        "history_error": history_error(found, reference),
+        "verdict_agrees": verdicts_agree(found, reference),
+        **{name: found[name].item() for name in _COPIED_SCALARS},
+        **({"peak_slip": float(found.get("peak_slip", 0.0))} if "peak_slip" in reference else {}),
     }
 
 
@@ -261,20 +256,20 @@ def _run_until_compiled(scene: System, plan: Plan) -> None:
         compiled_in=True,
     )  # fmt: skip
     compile_in_next_run(equations)
-    deadline = time.perf_counter() + _PATIENCE
+    deadline = time.perf_counter() + _COMPILE_TIMEOUT
     while not (is_fully_compiled(equations) or runs_as_python(equations)):
         if time.perf_counter() > deadline:
             return
         compute_response(scene.assembly, plan)
 
 
-def _timed(scene: System, plan: Plan) -> float:
+def _time_of_run(scene: System, plan: Plan) -> float:
     start = time.perf_counter()
     compute_response(scene.assembly, plan)
     return time.perf_counter() - start
 
 
-def _chosen(known: dict[str, System], models: object) -> dict[str, System]:
+def _select_models(known: dict[str, System], models: object) -> dict[str, System]:
     if models is None:
         return known
     requested = several(models, owner=_OWNER, name="models", of="models")

@@ -17,7 +17,7 @@ from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.proposals import hinted
 from rockframe.results.variables.analyses import LIMIT_STATE, FragilityStatus
 from rockframe.studies.fragility.words import in_own_units
-from rockframe.studies.intensities import PERIOD_OF, SHORT
+from rockframe.studies.intensities import MEASURE_ABBREVIATIONS, PERIOD_ATTRIBUTE
 from rockframe.units import POSITIVE, to_ratio
 from rockframe.version import __version__
 from rockframe.writing import FileKind, write_file
@@ -34,17 +34,17 @@ _WORD: Final = re.compile(r"[A-Za-z0-9_-]{1,100}")
 _MOST_STOREYS: Final = 1000
 _PELICUN_MEASURES: Final = {
     # (demand type, unit, SI units in it)
-    SHORT["PGA"]: ("Peak Ground Acceleration", "g", STANDARD_GRAVITY),
-    SHORT["PGV"]: ("Peak Ground Velocity", "mps", 1.0),
-    SHORT["SA"]: ("Peak Spectral Acceleration", "g", STANDARD_GRAVITY),
+    MEASURE_ABBREVIATIONS["PGA"]: ("Peak Ground Acceleration", "g", STANDARD_GRAVITY),
+    MEASURE_ABBREVIATIONS["PGV"]: ("Peak Ground Velocity", "mps", 1.0),
+    MEASURE_ABBREVIATIONS["SA"]: ("Peak Spectral Acceleration", "g", STANDARD_GRAVITY),
 }
 _QUANTITIES: Final = frozenset({"spectral", "acceleration", "velocity", "displacement", "drift"})
 """Words that identify the quantity in the type of a demand."""
 _OPENQUAKE_MEASURES: Final = {
     # (intensity measure type, SI units in its unit)
-    SHORT["PGA"]: ("PGA", STANDARD_GRAVITY),
-    SHORT["PGV"]: ("PGV", 0.01),
-    SHORT["SA"]: ("SA", STANDARD_GRAVITY),
+    MEASURE_ABBREVIATIONS["PGA"]: ("PGA", STANDARD_GRAVITY),
+    MEASURE_ABBREVIATIONS["PGV"]: ("PGV", 0.01),
+    MEASURE_ABBREVIATIONS["SA"]: ("SA", STANDARD_GRAVITY),
 }
 
 
@@ -112,7 +112,7 @@ def to_pelicun(
     kind, unit, size = _PELICUN_MEASURES[measure]
     if demand is not None:
         _check_demand(text(demand, owner=_PELICUN, name="demand"), measure, kind)
-    if measure == SHORT["SA"]:
+    if measure == MEASURE_ABBREVIATIONS["SA"]:
         kind = f"{kind}|{_period(fragility, _PELICUN):g}"
     row: dict[str, Any] = {
         "Incomplete": 0,
@@ -239,7 +239,7 @@ def to_openquake(
     Tree.SubElement(model, "limitStates").text = " ".join(map(_state_name, next(iter(names))))
     for taxonomy, (measure, states) in fits.items():
         kind, size = _OPENQUAKE_MEASURES[measure]
-        if measure == SHORT["SA"]:
+        if measure == MEASURE_ABBREVIATIONS["SA"]:
             kind = f"SA({_period(fragilities[taxonomy], _OPENQUAKE):g})"
         function = Tree.SubElement(
             model, "fragilityFunction", id=taxonomy, format="continuous", shape="logncdf"
@@ -305,10 +305,10 @@ def _fits(
 
 
 def _period(dataset: xr.Dataset, owner: str) -> float:
-    if PERIOD_OF not in dataset.attrs:
-        msg = f"{owner}: found a spectral measure without the attribute {PERIOD_OF!r}"
+    if PERIOD_ATTRIBUTE not in dataset.attrs:
+        msg = f"{owner}: found a spectral measure without the attribute {PERIOD_ATTRIBUTE!r}"
         raise SchemaError(msg)
-    return float(dataset.attrs[PERIOD_OF])
+    return float(dataset.attrs[PERIOD_ATTRIBUTE])
 
 
 def _check_word(value: object) -> None:

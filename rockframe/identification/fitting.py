@@ -10,10 +10,10 @@ import numpy as np
 from rockframe.identification.measured import History, MeasuredPeaks
 from rockframe.identification.prediction import Prediction
 from rockframe.identification.swings import Swings
-from rockframe.identification.unknowns import Circumstance, Unknown, started_at
+from rockframe.identification.unknowns import Circumstance, Unknown, with_starts
 from rockframe.signals.arrays import Array
 
-DIFFERENCE: Final = 1e-4
+DIFFERENCE_STEP: Final = 1e-4
 """Step of the differences for derivatives, as a share of an unknown's size.
 
 Runs are accurate to some 1e-8 of the rotation, so that smaller steps would suffice. But residuals
@@ -21,13 +21,13 @@ have kinks where contact changes, and a derivative near a kink should include bo
 above 1e-3 are too long for the end of a decay, where the phase depends most on the parameters."""
 _FIRST_STEP: Final = 0.05
 """Longest first step, as a share of an unknown's size: a longer one may reach another minimum."""
-TIGHT: Final = 1e-10
+FINAL_TOLERANCE: Final = 1e-10
 """Tolerance of the final fit."""
-MOST_EVALUATIONS: Final = 100
+MAX_EVALUATIONS: Final = 100
 """Number of trials after which a fit is given up, without those for derivatives."""
-_SINGULAR: Final = 1e-7
+_SINGULAR_RATIO: Final = 1e-7
 """Ratio of singular values below which the effects of unknowns cannot be separated."""
-_UNSEEN: Final = 1e-8
+_NO_EFFECT: Final = 1e-8
 """Share of the greatest derivative below which the effect of an unknown is rounding."""
 _AT_BOUND: Final = 1e-5
 """Distance from a bound, as a share of an unknown's size, within which it is at the bound."""
@@ -43,23 +43,23 @@ class Solution:
     status: int  # of :func:`scipy.optimize.least_squares`
     evaluations: int  # number of trials, without those for derivatives
     at_bound: Any  # which unknowns are at a bound
-    seen: Any  # which unknowns have an effect on the residuals
-    freedom: float  # degrees of freedom from which the noise is known
+    has_effect: Any  # which unknowns have an effect on the residuals
+    degrees_of_freedom: float  # degrees of freedom from which the noise is known
 
     @property
-    def lengths(self) -> Array:
+    def norms(self) -> Array:
         """Norms of the derivatives by each unknown, 1 for unknowns without effect."""
-        return np.where(self.seen, np.linalg.norm(self.jacobian, axis=0), 1.0)
+        return np.where(self.has_effect, np.linalg.norm(self.jacobian, axis=0), 1.0)
 
     @property
     def directions(self) -> Array:
         """The derivatives over their norms, zero for unknowns without effect."""
-        return np.where(self.seen, self.jacobian, 0.0) / self.lengths
+        return np.where(self.has_effect, self.jacobian, 0.0) / self.norms
 
     def leverages(self) -> Array:
         """Return how much of each residual the unknowns take up; the sum is their number."""
         left, singular, _ = np.linalg.svd(self.directions, full_matrices=False)
-        return np.sum(left[:, singular > _SINGULAR * singular[0]] ** 2, axis=1)
+        return np.sum(left[:, singular > _SINGULAR_RATIO * singular[0]] ** 2, axis=1)
 
 
 @dataclass(frozen=True)
@@ -68,14 +68,14 @@ class Uncertainty:
 
     standard_error: Array  # NaN where the data do not determine the value
     correlation: Array  # correlation of the errors of the values
-    reach: float  # half-width of the confidence interval in standard errors
+    half_width: float  # half-width of the confidence interval in standard errors
 
 
 def minimize(
     residuals: Callable[[Array], Array],
     unknowns: Sequence[Unknown],
     *,
-    tolerance: float = TIGHT,
+    tolerance: float = FINAL_TOLERANCE,
 ) -> Solution:
     """Find the values of the unknowns that minimise the sum of the squared residuals."""
     # imported here, since the import is slow and few scripts need it
@@ -94,12 +94,12 @@ def minimize(
 
     least, greatest = ((bound - start) / scale + _FIRST_STEP for bound in (lower, upper))
 
-    def slopes(point: Array) -> Any:
+    def jacobian(point: Array) -> Any:
         columns: list[Array] = []
         for index in range(start.size):
             down, up = point.copy(), point.copy()
-            down[index] = max(point[index] - DIFFERENCE, least[index])
-            up[index] = min(point[index] + DIFFERENCE, greatest[index])
+            down[index] = max(point[index] - DIFFERENCE_STEP, least[index])
+            up[index] = min(point[index] + DIFFERENCE_STEP, greatest[index])
             columns.append((misfit(up) - misfit(down)) / (up[index] - down[index]))
         return np.stack(columns, axis=1)
 
@@ -107,27 +107,27 @@ def minimize(
     found = least_squares(
         misfit,
         np.full(start.size, _FIRST_STEP),
-        jac=cast("Any", slopes),
+        jac=cast("Any", jacobian),
         bounds=(least, greatest),
         ftol=tolerance,
         xtol=tolerance,
         gtol=tolerance,
-        max_nfev=MOST_EVALUATIONS,
+        max_nfev=MAX_EVALUATIONS,
     )
-    length = np.linalg.norm(found.jac, axis=0)
-    seen = length > _UNSEEN * np.max(length)
+    norms = np.linalg.norm(found.jac, axis=0)
+    has_effect = norms > _NO_EFFECT * np.max(norms)
     # rounding moves an unknown without effect: it keeps its start value
-    values = np.where(seen, values_at(found.x), start)
-    room = np.minimum(values - lower, upper - values) / scale
+    values = np.where(has_effect, values_at(found.x), start)
+    distance = np.minimum(values - lower, upper - values) / scale
     return Solution(
         values=values,
         jacobian=np.asarray(found.jac) / scale,
         residuals=np.asarray(found.fun),
         status=int(found.status),
         evaluations=int(found.nfev),
-        at_bound=seen & (room < _AT_BOUND),
-        seen=seen,
-        freedom=found.fun.size - found.x.size,
+        at_bound=has_effect & (distance < _AT_BOUND),
+        has_effect=has_effect,
+        degrees_of_freedom=found.fun.size - found.x.size,
     )
 
 
@@ -136,31 +136,31 @@ def uncertainty_of(solution: Solution, confidence: float) -> Uncertainty:
     from scipy.special import stdtrit
 
     count, size = solution.jacobian.shape
-    freedom = count - size
-    reach = float(stdtrit(solution.freedom, 0.5 * (1.0 + confidence)))
+    degrees_of_freedom = count - size
+    half_width = float(stdtrit(solution.degrees_of_freedom, 0.5 * (1.0 + confidence)))
     _, singular, rows = np.linalg.svd(solution.directions, full_matrices=False)
-    determined = singular > _SINGULAR * singular[0]
+    determined = singular > _SINGULAR_RATIO * singular[0]
     # an unknown with a share in a direction that the data do not determine is itself undetermined
-    lost = ~solution.seen | (np.sum(rows[~determined] ** 2, axis=0) > _SINGULAR)
+    undetermined = ~solution.has_effect | (np.sum(rows[~determined] ** 2, axis=0) > _SINGULAR_RATIO)
     inverse = (rows[determined].T / singular[determined] ** 2) @ rows[determined]
-    variance = float(solution.residuals @ solution.residuals) / freedom
+    variance = float(solution.residuals @ solution.residuals) / degrees_of_freedom
     spread = np.sqrt(np.diag(inverse))
-    error = math.sqrt(variance) * spread / solution.lengths
+    error = math.sqrt(variance) * spread / solution.norms
     correlation = inverse / np.where(spread > 0.0, np.outer(spread, spread), 1.0)
-    correlation[lost, :] = correlation[:, lost] = math.nan
-    return Uncertainty(np.where(lost, math.nan, error), correlation, reach)
+    correlation[undetermined, :] = correlation[:, undetermined] = math.nan
+    return Uncertainty(np.where(undetermined, math.nan, error), correlation, half_width)
 
 
-_FIRST_WEIGHT: Final = 0.01
+_INITIAL_NOISE: Final = 0.01
 """Noise that is assumed before it is estimated from residuals, as a share of the largest peak and
 of the mean time between two peaks."""
-_LEAST_WEIGHT: Final = 1e-9
+_MIN_NOISE: Final = 1e-9
 """Least noise, as the same share: less cannot be distinguished from rounding."""
-_ROUGH: Final = 1e-3
+_ROUGH_TOLERANCE: Final = 1e-3
 """Tolerance of a fit that gives start values."""
-_FEWEST_PEAKS: Final = 3
+_MIN_PEAKS: Final = 3
 """Least number of peaks of a history, including the release, for a fit of start values to them."""
-_WEIGHTINGS: Final = 4
+_REWEIGHTINGS: Final = 4
 """Number of times that the noise of rotations and of times is estimated from their residuals."""
 
 
@@ -184,12 +184,12 @@ def fit_history(
         return prediction.history(values, measured) - measured.rotation
 
     starts = [list(unknowns)]
-    if swings.peaks.rotation.size >= _FEWEST_PEAKS:
-        misfit = _misfit_of(prediction, swings.peaks, _first_weights(swings.peaks))
-        starts.append(started_at(unknowns, _fit_roughly(misfit, unknowns).values))
+    if swings.peaks.rotation.size >= _MIN_PEAKS:
+        misfit = _peak_residuals(prediction, swings.peaks, _initial_weights(swings.peaks))
+        starts.append(with_starts(unknowns, _fit_roughly(misfit, unknowns).values))
     fits = [_fit_roughly(residuals, start) for start in starts]
     best = min(fits, key=lambda fit: float(fit.residuals @ fit.residuals))
-    return minimize(residuals, started_at(unknowns, best.values))
+    return minimize(residuals, with_starts(unknowns, best.values))
 
 
 def fit_peaks(
@@ -200,16 +200,16 @@ def fit_peaks(
     Rotations and times, where there are times, are weighted by their noise, which is estimated
     from the residuals, :eq:`eq-fit-peaks`.
     """
-    sizes = weights = _first_weights(measured)
-    misfit = _misfit_of(prediction, measured, weights)
-    solution = minimize(misfit, started_at(unknowns, _fit_roughly(misfit, unknowns).values))
+    initial = weights = _initial_weights(measured)
+    misfit = _peak_residuals(prediction, measured, weights)
+    solution = minimize(misfit, with_starts(unknowns, _fit_roughly(misfit, unknowns).values))
     if measured.time is None:
         return solution
-    for _ in range(_WEIGHTINGS):
-        weights = _reweighted(solution, weights, measured, sizes)
-        misfit = _misfit_of(prediction, measured, weights)
-        solution = minimize(misfit, started_at(unknowns, solution.values))
-    return replace(solution, freedom=min(_freedoms(solution, measured)))
+    for _ in range(_REWEIGHTINGS):
+        weights = _estimate_weights(solution, weights, measured, initial)
+        misfit = _peak_residuals(prediction, measured, weights)
+        solution = minimize(misfit, with_starts(unknowns, solution.values))
+    return replace(solution, degrees_of_freedom=min(_degrees_of_freedom(solution, measured)))
 
 
 def _fit_roughly(residuals: Callable[[Array], Array], unknowns: Sequence[Unknown]) -> Solution:
@@ -224,18 +224,20 @@ def _fit_roughly(residuals: Callable[[Array], Array], unknowns: Sequence[Unknown
 
     if where:
         free = [unknowns[index] for index in where]
-        values[where] = minimize(of_circumstances, free, tolerance=_ROUGH).values
-    return minimize(residuals, started_at(unknowns, values), tolerance=_ROUGH)
+        values[where] = minimize(of_circumstances, free, tolerance=_ROUGH_TOLERANCE).values
+    return minimize(residuals, with_starts(unknowns, values), tolerance=_ROUGH_TOLERANCE)
 
 
-def _first_weights(measured: MeasuredPeaks) -> Weights:
-    swing = 1.0
+def _initial_weights(measured: MeasuredPeaks) -> Weights:
+    mean_interval = 1.0
     if measured.time is not None:
-        swing = float(np.mean(np.diff(measured.time[np.isfinite(measured.time)])))
-    return Weights(_FIRST_WEIGHT * float(np.max(np.abs(measured.rotation))), _FIRST_WEIGHT * swing)
+        mean_interval = float(np.mean(np.diff(measured.time[np.isfinite(measured.time)])))
+    return Weights(
+        _INITIAL_NOISE * float(np.max(np.abs(measured.rotation))), _INITIAL_NOISE * mean_interval
+    )
 
 
-def _misfit_of(
+def _peak_residuals(
     prediction: Prediction, measured: MeasuredPeaks, weights: Weights
 ) -> Callable[[Array], Array]:
     """Return the weighted residuals of the peaks as a function of the unknowns."""
@@ -251,24 +253,24 @@ def _misfit_of(
     return misfit
 
 
-def _reweighted(
-    solution: Solution, weights: Weights, measured: MeasuredPeaks, sizes: Weights
+def _estimate_weights(
+    solution: Solution, weights: Weights, measured: MeasuredPeaks, initial: Weights
 ) -> Weights:
     """Estimate the noise of rotations and of times from their residuals."""
     count = measured.rotation.size
-    least = _LEAST_WEIGHT / _FIRST_WEIGHT
+    least = _MIN_NOISE / _INITIAL_NOISE
     kinds = solution.residuals[:count], solution.residuals[count:]
     rotation, time = (
         math.sqrt(float(of @ of) / freedom)
-        for of, freedom in zip(kinds, _freedoms(solution, measured), strict=True)
+        for of, freedom in zip(kinds, _degrees_of_freedom(solution, measured), strict=True)
     )
     return Weights(
-        max(rotation * weights.rotation, least * sizes.rotation),
-        max(time * weights.time, least * sizes.time),
+        max(rotation * weights.rotation, least * initial.rotation),
+        max(time * weights.time, least * initial.time),
     )
 
 
-def _freedoms(solution: Solution, measured: MeasuredPeaks) -> tuple[float, float]:
+def _degrees_of_freedom(solution: Solution, measured: MeasuredPeaks) -> tuple[float, float]:
     """Return the degrees of freedom of rotations and of times, at least 1."""
     leverages, count = solution.leverages(), measured.rotation.size
     kinds = leverages[:count], leverages[count:]

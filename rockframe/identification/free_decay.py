@@ -16,7 +16,7 @@ from rockframe.identification.measured import (
     read_history,
     read_peaks,
 )
-from rockframe.identification.prediction import Prediction, starts_of
+from rockframe.identification.prediction import Prediction, start_values
 from rockframe.identification.report import fit_dataset
 from rockframe.identification.swings import swings_of
 from rockframe.identification.unknowns import Circumstance, TrialSystems
@@ -127,7 +127,7 @@ def fit_free_decay(
         value = "neither" if peaks is None else "both"
         msg = f"{OWNER}: give measured (a history) or peaks, got {value}"
         raise ComponentError(msg)
-    names = _names(parameters)
+    names = _read_names(parameters)
     probability = to_ratio(
         confidence, owner=OWNER, name="confidence", condition=_CONFIDENCE, example="0.95"
     )
@@ -135,19 +135,19 @@ def fit_free_decay(
     trials = TrialSystems(system, names)
     data = read_history(measured) if peaks is None else read_peaks(peaks)
     check_below_overturning(data, system.setting.overturning_angles)
-    sought = _sought(circumstances, data)
-    unknown = (*names, *sought)
-    if data.count <= len(unknown):
+    fitted = _read_circumstances(circumstances, data)
+    unknowns = (*names, *fitted)
+    if data.count <= len(unknowns):
         msg = (
-            f"{OWNER}: {data.count} data do not tell {len(unknown)} unknowns "
-            f"({', '.join(unknown)}) and their uncertainty; expected at least {len(unknown) + 1}"
+            f"{OWNER}: {data.count} data do not tell {len(unknowns)} unknowns "
+            f"({', '.join(unknowns)}) and their uncertainty; expected at least {len(unknowns) + 1}"
         )
         raise ComponentError(msg)
     swings = swings_of(data) if isinstance(data, History) else None
-    starts = starts_of(system, trials, data, swings, sought, settings)
-    known = {str(name): starts[name].start for name in Circumstance if name not in sought}
-    prediction = Prediction(trials, unknown, known, settings)
-    chosen = [starts[name] for name in unknown]
+    starts = start_values(system, trials, data, swings, fitted, settings)
+    known = {str(name): starts[name].start for name in Circumstance if name not in fitted}
+    prediction = Prediction(trials, unknowns, known, settings)
+    chosen = [starts[name] for name in unknowns]
     if isinstance(data, MeasuredPeaks):
         fit = fit_peaks(prediction, data, chosen)
     else:
@@ -174,7 +174,7 @@ def _check_swings(system: System) -> None:
         raise ComponentError(msg)
 
 
-def _names(parameters: Sequence[str] | str) -> tuple[str, ...]:
+def _read_names(parameters: Sequence[str] | str) -> tuple[str, ...]:
     names = tuple(several(parameters, owner=OWNER, name="parameters", of="names"))
     if names and len(set(names)) == len(names):
         return names
@@ -182,7 +182,7 @@ def _names(parameters: Sequence[str] | str) -> tuple[str, ...]:
     raise ComponentError(msg)
 
 
-def _sought(
+def _read_circumstances(
     values: Sequence[str] | str | None, data: History | MeasuredPeaks
 ) -> tuple[Circumstance, ...]:
     """Return circumstances that are to be found; refuse those that the data do not determine."""

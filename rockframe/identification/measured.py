@@ -15,7 +15,7 @@ from rockframe.units import ANGLE, TIME, Measure, check_own_unit, to_si
 from rockframe.units.shown import in_degrees
 
 OWNER: Final = "fit_free_decay"
-_UNITS: Final = {"rotation": "deg", "time": "s"}
+_EXAMPLE_UNITS: Final = {"rotation": "deg", "time": "s"}
 _HISTORY: Final = (
     "write measured=((times, 's'), (rotations, 'deg')), or give a DataArray over time with units"
 )
@@ -72,28 +72,28 @@ def read_history(value: object) -> History:
                 f"{shown(value)}; {_HISTORY}"
             )
             raise ComponentError(msg)
-        return History(*_with_times(value[name], value))
-    pair = _two(value)
+        return History(*_times_and_rotations(value[name], value))
+    pair = _pair_of_arrays(value)
     if pair is None:
         msg = f"{OWNER}: measured needs times and rotations, got {shown(value)}; {_HISTORY}"
         raise UnitsError(msg)
-    return History(*_with_times(*pair))
+    return History(*_times_and_rotations(*pair))
 
 
 def read_peaks(value: object) -> MeasuredPeaks:
     """Read successive peaks of the rotation, with or without times."""
-    pair = _two(value)
+    pair = _pair_of_arrays(value)
     if pair is not None:
-        times, rotation = _with_times(*pair)
+        times, rotation = _times_and_rotations(*pair)
         peaks = MeasuredPeaks(rotation, np.sign(rotation), times)
     elif isinstance(value, tuple | pint.Quantity):
-        rotation = _values(cast("object", value), ANGLE, "peaks")
+        rotation = _read_array(cast("object", value), ANGLE, "peaks")
         peaks = MeasuredPeaks(rotation, np.sign(rotation))
     else:
         msg = f"{OWNER}: peaks needs rotations with a unit, got {shown(value)}; {_PEAKS}"
         raise UnitsError(msg)
-    turns = np.diff(peaks.sides)
-    if not np.all(peaks.sides) or (peaks.signed and not np.all(turns)):
+    side_changes = np.diff(peaks.sides)
+    if not np.all(peaks.sides) or (peaks.signed and not np.all(side_changes)):
         msg = (
             f"{OWNER}: peaks must alternate in sign, from one swing to the next, or all be given "
             f"without a sign, and none be zero; got {shown(peaks.rotation.tolist())} rad"
@@ -114,15 +114,15 @@ def check_below_overturning(measured: History | MeasuredPeaks, angles: Overturni
     beyond = np.flatnonzero(np.abs(measured.rotation) >= theta)
     if beyond.size:
         first = int(beyond[0])
+        angle, limit = (_angle_words(float(one[first])) for one in (measured.rotation, theta))
         msg = (
-            f"{OWNER}: {_place(measured, first)} is {_angle(float(measured.rotation[first]))}, "
-            f"not below the overturning angle {_angle(float(theta[first]))}; check the unit, and "
-            "the size of the block"
+            f"{OWNER}: {_datum_words(measured, first)} is {angle}, not below the overturning angle "
+            f"{limit}; check the unit, and the size of the block"
         )
         raise ComponentError(msg)
 
 
-def _two(value: object) -> tuple[object, object] | None:
+def _pair_of_arrays(value: object) -> tuple[object, object] | None:
     """Return the two items of a pair of arrays with units, or None of anything else."""
     if not isinstance(value, tuple | list):
         return None
@@ -132,7 +132,7 @@ def _two(value: object) -> tuple[object, object] | None:
     return items[0], items[1]
 
 
-def _values(value: object, measure: Measure, name: str) -> Array:
+def _read_array(value: object, measure: Measure, name: str) -> Array:
     """Convert an array with a unit to SI units, and check it."""
     unit: object = None
     values: object = value
@@ -150,7 +150,7 @@ def _values(value: object, measure: Measure, name: str) -> Array:
             if isinstance(unit, str):
                 check_own_unit(values, unit, owner=OWNER, name=name)
     if not isinstance(unit, str):
-        example = _UNITS["time" if measure is TIME else "rotation"]
+        example = _EXAMPLE_UNITS["time" if measure is TIME else "rotation"]
         msg = (
             f"{OWNER}: {name} needs an array with a unit such as {example}, got {shown(value)}; "
             f"write for example (values, {example!r})"
@@ -175,10 +175,10 @@ def _values(value: object, measure: Measure, name: str) -> Array:
     return factor * array
 
 
-def _with_times(times: object, rotations: object) -> tuple[Array, Array]:
+def _times_and_rotations(times: object, rotations: object) -> tuple[Array, Array]:
     """Read rotations and their times, which must increase."""
-    time = _values(times, TIME, "time")
-    rotation = _values(rotations, ANGLE, "rotation")
+    time = _read_array(times, TIME, "time")
+    rotation = _read_array(rotations, ANGLE, "rotation")
     if time.size != rotation.size:
         msg = f"{OWNER}: there are {time.size} times and {rotation.size} rotations"
         raise ComponentError(msg)
@@ -193,11 +193,11 @@ def _with_times(times: object, rotations: object) -> tuple[Array, Array]:
     return time, rotation
 
 
-def _place(measured: History | MeasuredPeaks, index: int) -> str:
+def _datum_words(measured: History | MeasuredPeaks, index: int) -> str:
     if isinstance(measured, History):
         return f"the rotation measured at {measured.time[index]:.6g} s"
     return f"peak {index + 1}"
 
 
-def _angle(value: float) -> str:
+def _angle_words(value: float) -> str:
     return f"{value:.6g} rad ({in_degrees(value)})"

@@ -46,7 +46,7 @@ class FreeMotion:
         start, slope, square, cube = self._cubics(first)
         return start + share * (slope + share * (square + share * cube))
 
-    def crossing(self) -> float:
+    def first_crossing(self) -> float:
         """Return the time of the first passage through zero, or of the end without one [s]."""
         beyond = np.flatnonzero(self.rotation * self.rotation[0] <= 0.0)
         return float(self.time[beyond[0] if beyond.size else -1])
@@ -54,9 +54,9 @@ class FreeMotion:
     def peaks(self) -> tuple[Array, Array]:
         """Return times [s] and magnitudes [rad] of the peaks between passages through zero."""
         side = np.sign(self.rotation)
-        there = np.flatnonzero(side)
-        turns = there[1:][side[there[1:]] != side[there[:-1]]]
-        edges = np.concatenate([there[:1], turns])
+        nonzero = np.flatnonzero(side)
+        side_changes = nonzero[1:][side[nonzero[1:]] != side[nonzero[:-1]]]
+        edges = np.concatenate([nonzero[:1], side_changes])
         found = [
             self._peak(first + int(np.argmax(np.abs(self.rotation[first:end]))))
             for first, end in pairwise(edges.tolist())
@@ -83,12 +83,14 @@ class FreeMotion:
         """Return the coefficients of the cubic through rotations and rates of two samples [rad]."""
         length = self.time[first + 1] - self.time[first]
         start, step = self.rotation[first], self.rotation[first + 1] - self.rotation[first]
-        leaving, arriving = self.rate[first] * length, self.rate[first + 1] * length
-        square = 3.0 * step - 2.0 * leaving - arriving
-        return start, leaving, square, leaving + arriving - 2.0 * step
+        start_slope, end_slope = self.rate[first] * length, self.rate[first + 1] * length
+        square = 3.0 * step - 2.0 * start_slope - end_slope
+        return start, start_slope, square, start_slope + end_slope - 2.0 * step
 
 
-def let_go(system: Assembly, rotation: float, duration: float, accuracy: Accuracy) -> FreeMotion:
+def release_response(
+    system: Assembly, rotation: float, duration: float, accuracy: Accuracy
+) -> FreeMotion:
     """Compute the motion of a system that is released from rest at a rotation, on still ground."""
     model = system.setting.compile()
     step = 2.0 * math.pi / model.fastest_frequency / SAMPLES_PER_PERIOD
@@ -100,8 +102,8 @@ def let_go(system: Assembly, rotation: float, duration: float, accuracy: Accurac
     rates = slice(count, 2 * count)
     events = run.events
     time = np.concatenate([np.repeat(events.time, 2), run.time])
-    turns = np.stack([events.state_before, events.state_after], axis=1)
-    state = np.concatenate([turns.reshape(-1, run.state.shape[1]), run.state])
+    event_states = np.stack([events.state_before, events.state_after], axis=1)
+    state = np.concatenate([event_states.reshape(-1, run.state.shape[1]), run.state])
     # a sample at the instant of an event has the rate of one side of its jump only
     kept = np.ones(time.size, dtype=bool)
     kept[2 * events.time.size :] = ~np.isin(run.time, events.time[events.time > 0.0])
@@ -114,22 +116,22 @@ def first_peaks(
     system: Assembly, rotation: float, count: int, duration: float, accuracy: Accuracy
 ) -> tuple[Array, Array]:
     """Return times and magnitudes of the first peaks after a release, zero for missing ones."""
-    motion = let_go(system, rotation, duration, accuracy)
+    motion = release_response(system, rotation, duration, accuracy)
     times, sizes = motion.peaks()
     for _ in range(_DOUBLINGS):
         if times.size >= count:
             break
         duration *= 2.0
-        motion = let_go(system, rotation, duration, accuracy)
+        motion = release_response(system, rotation, duration, accuracy)
         times, sizes = motion.peaks()
     missing = (0, max(0, count - times.size))
     times = np.pad(times, missing, constant_values=motion.time[-1])
     return times[:count], np.pad(sizes, missing)[:count]
 
 
-EARLIER: Final = 0.25
+RELEASE_MARGIN: Final = 0.25
 """Share of a history's duration by which the release may precede its first sample."""
-_REMEMBERED: Final = 4
+_CACHE_SIZE: Final = 4
 """Number of runs that are kept, since other values of offset and release time need no new run."""
 
 
@@ -147,8 +149,8 @@ class Prediction:
         self.names = names
         self._known = known
         self._accuracy = accuracy
-        self._for_history = lru_cache(maxsize=_REMEMBERED)(self._run_history)
-        self._for_peaks = lru_cache(maxsize=_REMEMBERED)(self._run_peaks)
+        self._for_history = lru_cache(maxsize=_CACHE_SIZE)(self._run_history)
+        self._for_peaks = lru_cache(maxsize=_CACHE_SIZE)(self._run_peaks)
 
     def values(self, found: Array) -> dict[str, float]:
         """Return the values of all parameters and circumstances by name, including known ones."""
@@ -157,7 +159,7 @@ class Prediction:
     def history(self, found: Array, measured: History) -> Array:
         """Return the rotation that the gauge would show at the times of a history [rad]."""
         values = self.values(found)
-        motion = self._for_history(*self._key(values), (1.0 + EARLIER) * measured.span)
+        motion = self._for_history(*self._key(values), (1.0 + RELEASE_MARGIN) * measured.span)
         since = measured.time - values[Circumstance.RELEASE_TIME]
         return values[Circumstance.GAUGE_OFFSET] + motion.at(since)
 
@@ -165,28 +167,28 @@ class Prediction:
         """Return times [s] and rotations [rad] of the peaks that the gauge would show."""
         values = self.values(found)
         count = measured.rotation.size
-        times, sizes = self._for_peaks(*self._key(values), count, self._length(measured))
+        times, sizes = self._for_peaks(*self._key(values), count, self._run_duration(measured))
         rotation = values[Circumstance.GAUGE_OFFSET] + measured.sides * sizes
         return values[Circumstance.RELEASE_TIME] + times, rotation
 
     def _key(self, values: Mapping[str, float]) -> tuple[tuple[float, ...], float]:
-        parameters = tuple(values[name] for name in self.trials.places)
+        parameters = tuple(values[name] for name in self.trials.parameters)
         return parameters, values[Circumstance.INITIAL_ROTATION]
 
     def _system(self, parameters: tuple[float, ...]) -> Assembly:
-        return self.trials.assembly(dict(zip(self.trials.places, parameters, strict=True)))
+        return self.trials.assembly(dict(zip(self.trials.parameters, parameters, strict=True)))
 
     def _run_history(
         self, parameters: tuple[float, ...], rotation: float, duration: float
     ) -> FreeMotion:
-        return let_go(self._system(parameters), rotation, duration, self._accuracy)
+        return release_response(self._system(parameters), rotation, duration, self._accuracy)
 
     def _run_peaks(
         self, parameters: tuple[float, ...], rotation: float, count: int, duration: float
     ) -> tuple[Array, Array]:
         return first_peaks(self._system(parameters), rotation, count, duration, self._accuracy)
 
-    def _length(self, measured: MeasuredPeaks) -> float:
+    def _run_duration(self, measured: MeasuredPeaks) -> float:
         """Return the duration of a run that is likely to contain all peaks [s]."""
         if measured.time is not None:
             return 1.5 * float(measured.time[-1] - np.nanmin(measured.time))
@@ -194,16 +196,16 @@ class Prediction:
         return 2.0 * measured.rotation.size * math.sqrt(radius / gravity)
 
 
-_LARGEST: Final = 1.0 - 1e-6
+_MAX_INITIAL_RATIO: Final = 1.0 - 1e-6
 """Largest initial rotation, as a share of the overturning angle."""
 
 
-def starts_of(
+def start_values(
     system: System,
     trials: TrialSystems,
     measured: History | MeasuredPeaks,
     swings: Swings | None,
-    sought: Collection[Circumstance],
+    fitted: Collection[Circumstance],
     accuracy: Accuracy,
 ) -> dict[str, Unknown]:
     """Return start values and bounds of all parameters and circumstances."""
@@ -211,40 +213,44 @@ def starts_of(
     if isinstance(measured, MeasuredPeaks):
         peaks = measured
     offset = 0.0
-    if swings is not None and Circumstance.GAUGE_OFFSET in sought:
+    if swings is not None and Circumstance.GAUGE_OFFSET in fitted:
         offset = swings.offset
     first = float(measured.rotation[0] if peaks is None else peaks.rotation[0]) - offset
-    starts = {name: place.unknown(name) for name, place in trials.places.items()}
+    starts = {name: place.unknown(name) for name, place in trials.parameters.items()}
     angles, body = system.setting.overturning_angles, system.setting.body
     if system.setting.settlement is None and peaks is not None and peaks.rotation.size > 1:
-        swung = peaks.rotation - offset
+        about_offset = peaks.rotation - offset
         left, right = (
             math.hypot(arm, body.centre_height) / body.gyration_square_about(arm)
             for arm in (body.left, body.right)
         )
         found = restitution_of(
-            swung,
-            np.where(swung < 0.0, angles.left, angles.right),
-            np.where(swung < 0.0, left / right, 1.0),
+            about_offset,
+            np.where(about_offset < 0.0, angles.left, angles.right),
+            np.where(about_offset < 0.0, left / right, 1.0),
             small_rotation=system.rotation is Rotation.SMALL,
         )
-        for name, place in trials.places.items():
+        for name, place in trials.parameters.items():
             if place.argument == "restitution":
-                starts[name] = place.unknown(name).started_at(found)
-    limit = math.copysign(_LARGEST * angles.on_side_of(first), first)
+                starts[name] = place.unknown(name).with_start(found)
+    limit = math.copysign(_MAX_INITIAL_RATIO * angles.on_side_of(first), first)
     rotation = Unknown(
         Circumstance.INITIAL_ROTATION, first, abs(first), min(limit, 0.0), max(limit, 0.0)
-    ).started_at(first)
+    ).with_start(first)
     period = math.sqrt(trials.radius / trials.gravity)
     release = Unknown(Circumstance.RELEASE_TIME, 0.0, period)
     if isinstance(measured, History):
         begin, end, span = float(measured.time[0]), float(measured.time[-1]), measured.span
         values = {name: one.start for name, one in starts.items()}
-        swing = let_go(trials.assembly(values), rotation.start, span, accuracy).crossing()
-        release = Unknown(Circumstance.RELEASE_TIME, begin, period, begin - EARLIER * span, end)
-        if swings is not None and Circumstance.RELEASE_TIME in sought:
-            release = release.started_at(swings.crossing - swing)
+        swing = release_response(
+            trials.assembly(values), rotation.start, span, accuracy
+        ).first_crossing()
+        release = Unknown(
+            Circumstance.RELEASE_TIME, begin, period, begin - RELEASE_MARGIN * span, end
+        )
+        if swings is not None and Circumstance.RELEASE_TIME in fitted:
+            release = release.with_start(swings.crossing - swing)
     elif measured.time is not None:
-        release = release.started_at(float(measured.time[0]))
+        release = release.with_start(float(measured.time[0]))
     gauge = Unknown(Circumstance.GAUGE_OFFSET, offset, abs(first))
     return {**starts, **{one.name: one for one in (rotation, release, gauge)}}

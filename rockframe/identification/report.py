@@ -9,7 +9,7 @@ import xarray as xr
 
 from rockframe.errors import ModelWarning, warn
 from rockframe.identification.fitting import (
-    MOST_EVALUATIONS,
+    MAX_EVALUATIONS,
     Solution,
     Uncertainty,
     uncertainty_of,
@@ -22,22 +22,22 @@ from rockframe.results.variables.studies import FitStatus
 from rockframe.signals.arrays import Array
 from rockframe.units.shown import in_degrees
 
-_DEPENDENT: Final = 0.3
+_HIGH_AUTOCORRELATION: Final = 0.3
 """Autocorrelation of residuals above which they do not count as independent."""
-_BY_CHANCE: Final = 3.0
+_CHANCE_DEVIATIONS: Final = 3.0
 """Largest autocorrelation of n independent residuals, in standard deviations of 1 / sqrt(n)."""
-_ROUNDING: Final = 1e-5
+_ROUNDING_SHARE: Final = 1e-5
 """Share of the initial rotation below which residuals are rounding and no noise."""
-_CLOSE: Final = 0.98
+_HIGH_CORRELATION: Final = 0.98
 """Correlation above which the data hardly separate two unknowns."""
 
 
-def fit_sentence(
-    values: Mapping[str, Any], names: Sequence[str], confidence: float, reach: float
+def fit_verdict(
+    values: Mapping[str, Any], names: Sequence[str], confidence: float, half_width: float
 ) -> str:
     """Return the result of a fit as a sentence."""
     found = ", ".join(
-        f"{name.replace('_', ' ')} {_with_error(value, reach * error)}"
+        f"{name.replace('_', ' ')} {_with_error(value, half_width * error)}"
         for name, value, error in zip(
             names, values["fitted_value"], values["standard_error"], strict=True
         )
@@ -57,21 +57,21 @@ def cautions_of(
 ) -> Iterator[str]:
     """Return the reasons for which values or their errors may be wrong, as clauses."""
     if solution.status == FitStatus.TRIAL_LIMIT:
-        yield f"the fit was given up after {MOST_EVALUATIONS} trials"
+        yield f"the fit was given up after {MAX_EVALUATIONS} trials"
     for name, value, bound in zip(names, solution.values, solution.at_bound, strict=True):
         if bound:
             yield f"{name} stands at its bound, {value:.6g}; its standard error means little there"
-    lost = [
+    undetermined = [
         name
         for name, error in zip(names, uncertainty.standard_error, strict=True)
         if math.isnan(error)
     ]
-    if lost:
+    if undetermined:
         yield (
-            f"the test does not tell {' and '.join(lost)}: another value, or other values "
+            f"the test does not tell {' and '.join(undetermined)}: another value, or other values "
             "together, would give the same rotation"
         )
-    close = np.argwhere(np.triu(np.abs(uncertainty.correlation) > _CLOSE, 1))
+    close = np.argwhere(np.triu(np.abs(uncertainty.correlation) > _HIGH_CORRELATION, 1))
     for first, second in close:
         yield (
             f"{names[first]} and {names[second]} can hardly be told apart, with a correlation of "
@@ -79,8 +79,8 @@ def cautions_of(
         )
     dependence = float(values["residual_autocorrelation"])
     noise = float(values["rotation_rms_residual"])
-    chance = _BY_CHANCE / math.sqrt(solution.residuals.size)
-    if dependence > max(_DEPENDENT, chance) and noise > _ROUNDING * abs(
+    chance = _CHANCE_DEVIATIONS / math.sqrt(solution.residuals.size)
+    if dependence > max(_HIGH_AUTOCORRELATION, chance) and noise > _ROUNDING_SHARE * abs(
         float(values["initial_rotation"])
     ):
         yield (
@@ -106,31 +106,31 @@ def fit_dataset(
     accuracy: str,
 ) -> xr.Dataset:
     """Return the results of a fit as a labelled dataset, and warn of reasons for doubt."""
-    names, places = list(prediction.names), prediction.trials.places
+    names, parameters = list(prediction.names), prediction.trials.parameters
     uncertainty = uncertainty_of(solution, confidence)
     found = prediction.values(solution.values)
     error = dict(zip(names, uncertainty.standard_error.tolist(), strict=True))
-    value = np.array([found[name] for name in places])
-    spread = np.array([error[name] for name in places])
+    value = np.array([found[name] for name in parameters])
+    spread = np.array([error[name] for name in parameters])
     values: dict[str, Any] = {
         "fitted_value": value,
         "standard_error": spread,
-        "lower_confidence_bound": value - uncertainty.reach * spread,
-        "upper_confidence_bound": value + uncertainty.reach * spread,
-        "start_value": np.array([place.start for place in places.values()]),
+        "lower_confidence_bound": value - uncertainty.half_width * spread,
+        "upper_confidence_bound": value + uncertainty.half_width * spread,
+        "start_value": np.array([place.start for place in parameters.values()]),
         **{str(name): found[name] for name in Circumstance},
         **{f"{name}_error": error.get(name, math.nan) for name in Circumstance},
         "correlation": uncertainty.correlation,
         "fit_status": solution.status,
         "trial_count": solution.evaluations,
-        **_compared(prediction, measured, solution.values),
+        **_measured_and_fitted(prediction, measured, solution.values),
     }
     cautions = list(cautions_of(names, solution, uncertainty, values))
     for caution in cautions:
         warn(f"{OWNER}: {caution}", ModelWarning)
-    fitted = prediction.trials.system({name: found[name] for name in places})
+    fitted = prediction.trials.system({name: found[name] for name in parameters})
     attributes: dict[str, str | float | int] = {
-        "verdict": fit_sentence(values, list(places), confidence, uncertainty.reach),
+        "verdict": fit_verdict(values, list(parameters), confidence, uncertainty.half_width),
         "confidence": confidence,
         "model": fitted.setting.model,
         "model_description": fitted.describe(),
@@ -142,7 +142,7 @@ def fit_dataset(
     dataset = build_dataset(
         values, attributes, title="Free-decay test", source="least squares on repeated runs"
     ).assign_coords(
-        parameter=("parameter", list(places), {"long_name": "parameter"}),
+        parameter=("parameter", list(parameters), {"long_name": "parameter"}),
         unknown=("unknown", names, {"long_name": "unknown of the fit"}),
         other_unknown=("other_unknown", names, {"long_name": "other unknown of the fit"}),
     )
@@ -151,7 +151,7 @@ def fit_dataset(
     return dataset
 
 
-def _compared(
+def _measured_and_fitted(
     prediction: Prediction, measured: History | MeasuredPeaks, found: Array
 ) -> Mapping[str, Array | float]:
     """Return measured and fitted values with their residuals, by their names in the schema."""

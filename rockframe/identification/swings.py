@@ -10,11 +10,11 @@ from rockframe.errors import ComponentError
 from rockframe.identification.measured import OWNER, History, MeasuredPeaks
 from rockframe.signals.arrays import Array
 
-_LEVEL: Final = 0.1
+_MIN_SWING: Final = 0.1
 """Share of the first rotation that a swing must exceed: smaller ones may be noise."""
-_TOP: Final = 0.8
+_PARABOLA_SHARE: Final = 0.8
 """Share of a swing's peak above which a parabola is fitted to the samples."""
-_FEWEST: Final = 5
+_MIN_SAMPLES: Final = 5
 """Least number of samples for such a parabola."""
 
 
@@ -36,24 +36,24 @@ def swings_of(history: History) -> Swings:
     offset = _offset(rotation)
     swing = rotation - offset
     first = float(np.median(swing[:3]))
-    side = np.where(np.abs(swing) > _LEVEL * abs(first), np.sign(swing), 0.0)
+    side = np.where(np.abs(swing) > _MIN_SWING * abs(first), np.sign(swing), 0.0)
     marked = np.flatnonzero(side)
-    turns = np.flatnonzero(np.diff(side[marked]))
-    if turns.size == 0 or first == 0.0:
+    side_changes = np.flatnonzero(np.diff(side[marked]))
+    if side_changes.size == 0 or first == 0.0:
         msg = (
             f"{OWNER}: nothing rocks: the measured rotation, from {rotation[0]:.6g} rad at the "
             "start, never passes to the other side; give a history of a block that was tilted "
             "and let go"
         )
         raise ComponentError(msg)
-    before, after = marked[turns[0]], marked[turns[0] + 1]
+    before, after = marked[side_changes[0]], marked[side_changes[0] + 1]
     share = swing[before] / (swing[before] - swing[after])
     crossing = float(time[before] + share * (time[after] - time[before]))
     sizes, times = [float(rotation[0])], [math.nan]
     # without the last swing, which may be incomplete
-    for start, end in zip(marked[turns[:-1] + 1], marked[turns[1:]], strict=True):
+    for start, end in zip(marked[side_changes[:-1] + 1], marked[side_changes[1:]], strict=True):
         inside = slice(int(start), int(end) + 1)
-        when, size = _top(time[inside], swing[inside])
+        when, size = _peak_of_swing(time[inside], swing[inside])
         times.append(when)
         sizes.append(size + offset)
     rotation = np.array(sizes)
@@ -62,11 +62,13 @@ def swings_of(history: History) -> Swings:
     )
 
 
-def restitution_of(peaks: Array, theta: Array, pull: Array, *, small_rotation: bool) -> float:
+def restitution_of(
+    peaks: Array, theta: Array, frequency_ratio: Array, *, small_rotation: bool
+) -> float:
     """Estimate the coefficient of restitution from the decay of peaks on rigid ground.
 
     The estimate is by :eq:`eq-rigid-decay`. `theta` is the overturning angle on the side of each
-    peak, and `pull` is p^2 about the corner on that side over p^2 about the right corner.
+    peak, and `frequency_ratio` is p^2 about the corner on that side over p^2 about the right one.
     """
     size = np.clip(np.abs(peaks), 1e-9 * theta, theta)
     if small_rotation:
@@ -75,23 +77,23 @@ def restitution_of(peaks: Array, theta: Array, pull: Array, *, small_rotation: b
         energy = 2.0 * np.sin(theta - 0.5 * size) * np.sin(0.5 * size)
         slope = np.sin(theta - size)
     weights = energy / np.maximum(slope, 1e-3 * theta)
-    gradient = np.polyfit(np.arange(size.size), np.log(pull * energy), 1, w=weights)[0]
+    gradient = np.polyfit(np.arange(size.size), np.log(frequency_ratio * energy), 1, w=weights)[0]
     return float(math.exp(0.5 * gradient))
 
 
 def _offset(rotation: Array) -> float:
     """Return the median of the rotation after it first falls below half its initial value."""
     first = float(np.median(rotation[:3]))
-    left = np.flatnonzero(rotation * np.sign(first) < 0.5 * abs(first))
-    return float(np.median(rotation[left[0] :])) if left.size else 0.0
+    decayed = np.flatnonzero(rotation * np.sign(first) < 0.5 * abs(first))
+    return float(np.median(rotation[decayed[0] :])) if decayed.size else 0.0
 
 
-def _top(time: Array, swing: Array) -> tuple[float, float]:
+def _peak_of_swing(time: Array, swing: Array) -> tuple[float, float]:
     """Return time and rotation of a swing's peak, by a parabola where it has enough samples."""
     highest = int(np.argmax(np.abs(swing)))
     when, size = float(time[highest]), float(swing[highest])
-    near = np.flatnonzero(np.abs(swing) > _TOP * abs(size))
-    if near.size < _FEWEST:
+    near = np.flatnonzero(np.abs(swing) > _PARABOLA_SHARE * abs(size))
+    if near.size < _MIN_SAMPLES:
         return when, size
     along = time[near] - when
     square, slope, value = (float(one) for one in np.polyfit(along, swing[near], 2))

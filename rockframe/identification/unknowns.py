@@ -16,9 +16,9 @@ from rockframe.identification.measured import OWNER
 from rockframe.simulation.system import System
 from rockframe.system.assembly import Assembly, assemble
 
-_ALMOST: Final = 1e-6
+_OPEN_BOUND_MARGIN: Final = 1e-6
 """Distance of the search from an open lower bound, as a share of an unknown's size."""
-_SMALLEST_SCALE: Final = 0.01
+_MIN_SCALE: Final = 0.01
 """Size of a ratio whose start value is zero."""
 
 
@@ -40,14 +40,14 @@ class Unknown:
     lower: float = -math.inf  # bounds
     upper: float = math.inf
 
-    def started_at(self, value: float) -> "Unknown":
+    def with_start(self, value: float) -> "Unknown":
         """Return the unknown with another start value, within the bounds."""
         return replace(self, start=min(max(value, self.lower), self.upper))
 
 
-def started_at(unknowns: Sequence[Unknown], values: NDArray[np.float64]) -> list[Unknown]:
+def with_starts(unknowns: Sequence[Unknown], values: NDArray[np.float64]) -> list[Unknown]:
     """Return the unknowns with other start values, within their bounds."""
-    return [one.started_at(float(value)) for one, value in zip(unknowns, values, strict=True)]
+    return [one.with_start(float(value)) for one, value in zip(unknowns, values, strict=True)]
 
 
 @dataclass(frozen=True)
@@ -61,9 +61,9 @@ class PartParameter:
 
     def unknown(self, name: str) -> Unknown:
         """Return the parameter as an unknown of a fit."""
-        scale = abs(self.start) or _SMALLEST_SCALE
-        lower, upper = self.bounds[0] + _ALMOST * scale, self.bounds[1]
-        return Unknown(name, self.start, scale, lower, upper).started_at(self.start)
+        scale = abs(self.start) or _MIN_SCALE
+        lower, upper = self.bounds[0] + _OPEN_BOUND_MARGIN * scale, self.bounds[1]
+        return Unknown(name, self.start, scale, lower, upper).with_start(self.start)
 
 
 class TrialSystems:
@@ -77,7 +77,7 @@ class TrialSystems:
         self.gravity = system.options.gravity
         known = dict(self._ratios(system))
         inside = set(self._ratios_inside())
-        self.places = {name: _place_of(name, known, inside) for name in names}
+        self.parameters = {name: _find_parameter(name, known, inside) for name in names}
 
     def _ratios(self, system: System) -> Iterator[tuple[str, PartParameter | None]]:
         """Find the dimensionless parameters of all parts; None for one without a start value."""
@@ -101,12 +101,12 @@ class TrialSystems:
                     f"{type(interface).__name__}.{one}" for one, _ in _declared_ratios(interface)
                 )
 
-    def _with(self, values: Mapping[str, float]) -> list[Component]:
+    def _parts_with(self, values: Mapping[str, float]) -> list[Component]:
         """Return the parts with these values of the parameters."""
         changes: dict[int, dict[str, float]] = {}
         for name, value in values.items():
-            place = self.places[name]
-            changes.setdefault(place.part, {})[place.argument] = value
+            parameter = self.parameters[name]
+            changes.setdefault(parameter.part, {})[parameter.argument] = value
         return [
             type(part).from_dict({**part.to_dict(), **changes[index]}) if index in changes else part
             for index, part in enumerate(self._parts)
@@ -114,11 +114,11 @@ class TrialSystems:
 
     def assembly(self, values: Mapping[str, float]) -> Assembly:
         """Assemble a system for a run, without the warnings for users."""
-        return assemble(self._with(values), **self._options)
+        return assemble(self._parts_with(values), **self._options)
 
     def system(self, values: Mapping[str, float]) -> System:
         """Return the system with these values of the parameters."""
-        return System(*self._with(values), **self._options)
+        return System(*self._parts_with(values), **self._options)
 
 
 def _declared_ratios(part: Component) -> list[tuple[str, Ratio[Any]]]:
@@ -126,14 +126,14 @@ def _declared_ratios(part: Component) -> list[tuple[str, Ratio[Any]]]:
     return [(name, one) for name, one in declared if isinstance(one, Ratio)]
 
 
-def _place_of(
+def _find_parameter(
     name: object, known: Mapping[str, PartParameter | None], inside: Collection[str]
 ) -> PartParameter:
     matches = [full for full in known if name in (full, full.partition(".")[2])]
     if len(matches) == 1:
-        place = known[matches[0]]
-        if place is not None:
-            return place
+        parameter = known[matches[0]]
+        if parameter is not None:
+            return parameter
         msg = (
             f"{OWNER}: {shown(name)} cannot be fitted, since the part was given without it; give "
             f"{matches[0]} as a start value, instead of what stands for it"

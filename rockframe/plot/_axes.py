@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.studies.intensities import PERIOD_OF, measure_words
+from rockframe.studies.intensities import PERIOD_ATTRIBUTE, measure_words
 from rockframe.units import ANGLE, LENGTH, Measure
 from rockframe.units.shown import ReaderUnits, reader_units, shown_unit
 from rockframe.units.shown import Shown as Shown
@@ -146,7 +146,7 @@ def label_of_value(value: xr.DataArray) -> str:
 
 def label_of_intensity(values: xr.DataArray, study: xr.Dataset) -> str:
     """Return the name, period and unit of an intensity measure of a study, for an axis."""
-    words = measure_words(str(values.name), study.attrs.get(PERIOD_OF))
+    words = measure_words(str(values.name), study.attrs.get(PERIOD_ATTRIBUTE))
     return axis_label(words, str(values.attrs.get("units", "1")))
 
 

@@ -16,7 +16,7 @@ from rockframe.motion import GroundMotion
 from rockframe.proposals import hinted
 from rockframe.shared_arguments import Argument, completed, with_raises, with_section
 from rockframe.simulation.system import System
-from rockframe.studies.sweeps.axes import in_unit, in_units_of_schema
+from rockframe.studies.sweeps.axes import in_units_of_schema, labels_in_unit
 from rockframe.studies.sweeps.case import SweepCase, system_of_case
 from rockframe.units import POSITIVE, Unit, to_ratio
 from rockframe.units.shown import KINDS as SHOWN_KINDS
@@ -170,7 +170,9 @@ def checked_run(value: object, function: str) -> xr.Dataset:
     """
     owner = f"rf.plot.{function}"
     value = in_units_of_schema(_checked(value, function, RUN), owner=owner)
-    value = value.assign_coords(time=in_unit(value["time"], Unit.SECOND, owner=owner).variable)
+    value = value.assign_coords(
+        time=labels_in_unit(value["time"], Unit.SECOND, owner=owner).variable
+    )
     for name in (*RUN.known, *RUN.needed):
         if value[name].dtype.kind not in "fiub":
             raise _got(function, f"one whose {name!r} holds no numbers")

@@ -18,8 +18,8 @@ from rockframe.reports.values import column_head, number_in
 from rockframe.results.schema import SCHEMA
 from rockframe.studies.sweeps.case import known_motions
 from rockframe.suites import MotionSuite, TargetSpectrum
-from rockframe.suites.candidates import usual_periods
-from rockframe.suites.columns import column, is_missing
+from rockframe.suites.candidates import default_periods
+from rockframe.suites.columns import column_value, is_missing
 from rockframe.suites.scaling import compared_target
 from rockframe.units import Unit
 from rockframe.units.shown import ReaderUnits, raised, reader_units
@@ -59,7 +59,7 @@ def aim_of(value: object, motions: object, owner: str) -> Aim | None:
         carried = motions.target if isinstance(motions, MotionSuite) else None
         return None if carried is None else Aim(carried, np.geomspace(*carried.limits, 40))
     if isinstance(value, TargetSpectrum):
-        return Aim(value, usual_periods(value))
+        return Aim(value, default_periods(value))
     if isinstance(value, xr.Dataset) and "target_spectral_acceleration" in value:
         target = compared_target(value)
         if target is not None:
@@ -148,7 +148,7 @@ def _records(
     """Return a table with a row for each motion, with what is known of its record."""
     known = {
         name: values for name in OF_RECORDS
-        if not all(map(is_missing, values := [column(name, one) for one in motions.values()]))
+        if not all(map(is_missing, values := [column_value(name, one) for one in motions.values()]))
     }  # fmt: skip
     if misfits is not None:
         known["spectral_misfit"] = misfits.tolist()
@@ -161,7 +161,7 @@ def _records(
 
 def record_rows(motion: GroundMotion, units: ReaderUnits) -> list[tuple[str, str]]:
     """Return what is known of the record of a motion, without its peak."""
-    found = ((name, column(name, motion)) for name in OF_RECORDS[:-1])
+    found = ((name, column_value(name, motion)) for name in OF_RECORDS[:-1])
     return [
         (_head(name, units), _cell(name, value, units))
         for name, value in found

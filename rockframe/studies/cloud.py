@@ -22,16 +22,16 @@ from rockframe.studies.fragility.labelling import with_stripes
 from rockframe.studies.fragility.trials import (
     attributes_of_system,
     check_one_structure,
-    laid_out,
+    flatten_like,
     motion_numbers,
 )
-from rockframe.studies.fragility.words import POOLED
+from rockframe.studies.fragility.words import POOLED_ATTRIBUTE
 from rockframe.studies.intensities import (
-    PERIOD_OF,
+    PERIOD_ATTRIBUTE,
     PeriodLike,
-    measure_in,
+    column_of_runs,
+    measure_of_runs,
     measure_words,
-    named_column,
     period_attribute,
 )
 from rockframe.studies.limit_states import (
@@ -46,23 +46,23 @@ from rockframe.studies.sweeps.motions import MotionsLike
 from rockframe.units import POSITIVE, RatioLike
 
 _OWNER: Final = "cloud_analysis"
-_FEWEST: Final = 4
+_MIN_RUNS: Final = 4
 """Least number of runs in a regression, so that its dispersion can be estimated."""
-_POINTS: Final = 101
-_DRAWS: Final = 4000
+_CURVE_POINTS: Final = 101
+_POSTERIOR_DRAWS: Final = 4000
 """Random draws of the coefficients, for bounds."""
-_BEYOND: Final = 3.0
+_SEARCH_MARGIN: Final = 3.0
 """Range beyond the intensities of the runs in which medians are searched, as a logarithm."""
-_WIDE: Final = 601
-_ENDS: Final = ("", "_lower_bound", "_upper_bound")
-_OF_INTENSITY: Final = (
+_SEARCH_POINTS: Final = 601
+_BOUND_SUFFIXES: Final = ("", "_lower_bound", "_upper_bound")
+_INTENSITY_VARIABLES: Final = (
     "median_intensity", "median_intensity_lower_bound", "median_intensity_upper_bound",
     "stripe_intensity", "cloud_intensity",
 )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
-class Line:
+class Regression:
     """A straight line through the logarithms of responses, :eq:`eq-cloud-line`."""
 
     intercept: float
@@ -70,29 +70,29 @@ class Line:
     dispersion: float  # standard deviation of the residuals
     determination: float
     covariance: Array  # of intercept and slope
-    freedom: int  # degrees of freedom of the residuals
+    dof: int  # degrees of freedom of the residuals
     residuals: Array
 
     @classmethod
-    def through(cls, logs: Array, responses: Array) -> "Line":
+    def fit(cls, logs: Array, responses: Array) -> "Regression":
         """Fit by least squares."""
         design = np.column_stack([np.ones(len(logs)), logs])
         (intercept, slope), *_ = np.linalg.lstsq(design, responses)
         residuals = responses - design @ np.array([intercept, slope])
-        freedom = len(logs) - 2
+        dof = len(logs) - 2
         squares = float(residuals @ residuals)
         total = float(((responses - responses.mean()) ** 2).sum())
-        variance = squares / freedom
+        variance = squares / dof
         return cls(
             float(intercept), float(slope), math.sqrt(variance),
             1.0 - squares / total if total > 0.0 else 0.0,
-            np.asarray(variance * np.linalg.inv(design.T @ design), dtype=np.float64), freedom,
+            np.asarray(variance * np.linalg.inv(design.T @ design), dtype=np.float64), dof,
             residuals,
         )  # fmt: skip
 
-    def drawn(self, rng: np.random.Generator, count: int) -> tuple[Array, Array, Array]:
+    def draw_coefficients(self, rng: np.random.Generator, count: int) -> tuple[Array, Array, Array]:
         """Draw intercepts, slopes and dispersions of the posterior, :eq:`eq-cloud-posterior`."""
-        scale = np.sqrt(self.freedom / rng.chisquare(self.freedom, count))
+        scale = np.sqrt(self.dof / rng.chisquare(self.dof, count))
         root = np.linalg.cholesky(self.covariance)
         about = rng.standard_normal((count, 2)) @ root.T * scale[:, None]
         return self.intercept + about[:, 0], self.slope + about[:, 1], self.dispersion * scale
@@ -104,69 +104,89 @@ class Cloud:
 
     logs: Array  # of the intensity
     responses: Array  # infinite where the block overturned, zero where it stayed at rest
-    line: Line | None  # of the runs in between; None if these are too few
+    regression: Regression | None  # of the runs in between; None if these are too few
     overturning: Logistic
     moving: Logistic  # of runs that did not overturn: whether anything moved
 
     @classmethod
-    def of(cls, logs: Array, responses: Array) -> "Cloud":
+    def fit(cls, logs: Array, responses: Array) -> "Cloud":
         """Fit a line, and logistic curves for overturning and for staying at rest."""
-        fell, moved = np.isinf(responses), responses > 0.0
-        between = moved & ~fell
-        several = between.sum() >= _FEWEST and np.ptp(logs[between]) > 0.0
-        line = Line.through(logs[between], np.log(responses[between])) if several else None
+        overturned, moved = np.isinf(responses), responses > 0.0
+        between = moved & ~overturned
+        enough = between.sum() >= _MIN_RUNS and np.ptp(logs[between]) > 0.0
+        regression = Regression.fit(logs[between], np.log(responses[between])) if enough else None
         return cls(
-            logs, responses, line, fit_logistic(logs, fell), fit_logistic(logs[~fell], moved[~fell])
+            logs,
+            responses,
+            regression,
+            fit_logistic(logs, overturned),
+            fit_logistic(logs[~overturned], moved[~overturned]),
         )
 
     @property
-    def between(self) -> Generic:
+    def is_regressed(self) -> Generic:
         """Which runs moved and did not overturn."""
         return (self.responses > 0.0) & np.isfinite(self.responses)
 
     def log_likelihoods(self) -> Array:
         """Return the logarithm of the likelihood of each run, :eq:`eq-cloud-likelihood`."""
-        if self.line is None:
+        if self.regression is None:
             return np.full(len(self.logs), np.nan)
-        falls, moves = self.overturning.at(self.logs), self.moving.at(self.logs)
-        fell, spread = np.isinf(self.responses), self.line.dispersion
-        found = np.where(
-            fell, np.log(np.maximum(falls, 1e-300)), np.log1p(-np.minimum(falls, 1.0 - 1e-16))
+        overturning, moving = (
+            self.overturning.probability(self.logs),
+            self.moving.probability(self.logs),
         )
-        chance = np.where(self.responses > 0.0, moves, 1.0 - moves)
-        found[~fell] += np.log(np.maximum(chance[~fell], 1e-300))
-        over = self.line.residuals / spread
-        found[self.between] += -0.5 * (over**2 + math.log(2.0 * math.pi)) - math.log(spread)
+        overturned, dispersion = np.isinf(self.responses), self.regression.dispersion
+        found = np.where(
+            overturned,
+            np.log(np.maximum(overturning, 1e-300)),
+            np.log1p(-np.minimum(overturning, 1.0 - 1e-16)),
+        )
+        probability = np.where(self.responses > 0.0, moving, 1.0 - moving)
+        found[~overturned] += np.log(np.maximum(probability[~overturned], 1e-300))
+        normalized = self.regression.residuals / dispersion
+        found[self.is_regressed] += -0.5 * (normalized**2 + math.log(2.0 * math.pi)) - math.log(
+            dispersion
+        )
         return found
 
     def probabilities(self, logs: Array, level: float) -> Array:
         """Return the probability that a level is exceeded, :eq:`eq-cloud-fragility`."""
-        line = self.line
-        of_line = None if line is None else (line.intercept, line.slope, line.dispersion)
-        return _beyond(self.overturning.at(logs), self.moving.at(logs), of_line, logs, level)
+        line = self.regression
+        coefficients = None if line is None else (line.intercept, line.slope, line.dispersion)
+        return _exceedance_probability(
+            self.overturning.probability(logs),
+            self.moving.probability(logs),
+            coefficients,
+            logs,
+            level,
+        )
 
-    def drawn(self, logs: Array, level: float, rng: np.random.Generator, count: int) -> Array:
+    def draw_curves(self, logs: Array, level: float, rng: np.random.Generator, count: int) -> Array:
         """Draw fragility curves from the posterior; shape (count, intensities)."""
-        falls, moves = self.overturning.drawn(logs, rng, count), self.moving.drawn(logs, rng, count)
-        of_line = None
-        if self.line is not None and not math.isinf(level):
-            of_line = [one[:, None] for one in self.line.drawn(rng, count)]
-        return _beyond(falls, moves, of_line, logs, level)
+        overturning, moving = (
+            self.overturning.draw_curves(logs, rng, count),
+            self.moving.draw_curves(logs, rng, count),
+        )
+        coefficients = None
+        if self.regression is not None and not math.isinf(level):
+            coefficients = [one[:, None] for one in self.regression.draw_coefficients(rng, count)]
+        return _exceedance_probability(overturning, moving, coefficients, logs, level)
 
 
-def _beyond(
-    falls: Array, moves: Array, of_line: Sequence[Any] | None, logs: Array, level: float
+def _exceedance_probability(
+    overturning: Array, moving: Array, coefficients: Sequence[Any] | None, logs: Array, level: float
 ) -> Array:
     """Return the probability beyond a level: of overturning, of moving, and by the line."""
     from scipy.special import ndtr
 
     if math.isinf(level):
-        return falls
-    if of_line is None:
-        return np.full(np.shape(falls), np.nan)
-    intercept, slope, dispersion = of_line
-    beyond = np.asarray(ndtr((intercept + slope * logs - math.log(level)) / dispersion))
-    return falls + (1.0 - falls) * moves * beyond
+        return overturning
+    if coefficients is None:
+        return np.full(np.shape(overturning), np.nan)
+    intercept, slope, dispersion = coefficients
+    regressed = np.asarray(ndtr((intercept + slope * logs - math.log(level)) / dispersion))
+    return overturning + (1.0 - overturning) * moving * regressed
 
 
 @hinted()
@@ -261,17 +281,17 @@ def cloud_analysis(
     runs = check_runs(runs, owner=_OWNER)
     level = read_level(confidence, owner=_OWNER)
     seed = whole_number(seed, owner=_OWNER, name="seed", lowest=0)
-    together = several(pooled, owner=_OWNER, name="pooled", of="names")
-    check_one_structure(runs, together, [named_column(runs, intensity)], owner=_OWNER)
-    measure = measure_in(runs, intensity, period, motions, owner=_OWNER)
+    pooled_axes = several(pooled, owner=_OWNER, name="pooled", of="names")
+    check_one_structure(runs, pooled_axes, [column_of_runs(runs, intensity)], owner=_OWNER)
+    measure = measure_of_runs(runs, intensity, period, motions, owner=_OWNER)
     values = scalar_of(runs, response, label, owner=_OWNER)
     levels = listed_limits(limits, owner=_OWNER)
     requested = [_read_level(one, values, _OWNER, "limits") for one in levels if one != OVERTURNING]
     floor = read_least(least, values, owner=_OWNER)
-    found = cloud_of(runs, measure, values, least=floor, owner=_OWNER)
+    found = fit_cloud(runs, measure, values, least=floor, owner=_OWNER)
     words = " ".join(filter(None, [response.replace("_", " "), label]))
     named = {f"{words} {one:g}{unit_suffix(values.attrs)}": one for one in requested}
-    dataset = _labelled(found, named | {OVERTURNING: math.inf}, measure, level, seed)
+    dataset = _cloud_dataset(found, named | {OVERTURNING: math.inf}, measure, level, seed)
     for one in ("cloud_response", "response_limit"):
         dataset[one].attrs["units"] = str(values.attrs.get("units", "1"))
     dataset.attrs |= {
@@ -279,41 +299,43 @@ def cloud_analysis(
         **period_attribute(runs, [intensity], period, owner=_OWNER),
         "intensity": str(measure.name),
         "response": response if label is None else f"{response} {label}",
-        **({POOLED: ", ".join(together)} if together else {}),
+        **({POOLED_ATTRIBUTE: ", ".join(pooled_axes)} if pooled_axes else {}),
     }
-    return dataset.assign_attrs(verdict=_sentence(dataset, found.repeated))
+    return dataset.assign_attrs(verdict=_sentence(dataset, found.motions_repeat))
 
 
-class CloudOfRuns(NamedTuple):
+class CloudFit(NamedTuple):
     """A cloud, and the runs that are in it."""
 
     cloud: Cloud
-    kept: Generic  # whether each run is in it, in the order of the dimensions
-    repeated: bool  # whether motions were run more than once
+    included: Generic  # whether each run is in it, in the order of the dimensions
+    motions_repeat: bool  # whether motions were run more than once
 
 
-def cloud_of(
+def fit_cloud(
     runs: xr.Dataset, measure: xr.DataArray, values: xr.DataArray, *, least: float, owner: str
-) -> CloudOfRuns:
+) -> CloudFit:
     """Fit a cloud to the runs that have a verdict, an intensity and a response."""
     if MOTION not in runs.coords:
         msg = f"{owner}: found runs without motions; expected those of many motions"
         raise StudyError(msg)
-    along, response, fell = (
-        laid_out(one, runs["status"]).astype(np.float64)
+    intensities, response, overturned = (
+        flatten_like(one, runs["status"]).astype(np.float64)
         for one in (measure, values, overturns(runs))
     )
     response = np.abs(response)
-    response = np.where(fell == 1.0, np.inf, np.where(response < least, 0.0, response))
-    known = ~np.isnan(fell) & (along > 0.0) & np.isfinite(along) & ~np.isnan(response)
-    if known.sum() < _FEWEST:
+    response = np.where(overturned == 1.0, np.inf, np.where(response < least, 0.0, response))
+    known = (
+        ~np.isnan(overturned) & (intensities > 0.0) & np.isfinite(intensities) & ~np.isnan(response)
+    )
+    if known.sum() < _MIN_RUNS:
         count = int(known.sum())
         msg = f"{owner}: {count} run{'s have' if count != 1 else ' has'} a verdict and an "
-        msg += f"intensity; {_FEWEST} are needed"
+        msg += f"intensity; {_MIN_RUNS} are needed"
         raise StudyError(msg)
     used = motion_numbers(overturns(runs))[known]
-    made = Cloud.of(np.log(along[known]), response[known])
-    return CloudOfRuns(made, known, len(np.unique(used)) < len(used))
+    cloud = Cloud.fit(np.log(intensities[known]), response[known])
+    return CloudFit(cloud, known, len(np.unique(used)) < len(used))
 
 
 def read_least(value: Any, values: xr.DataArray, *, owner: str) -> float:
@@ -327,17 +349,19 @@ def _read_level(value: Any, values: xr.DataArray, owner: str, name: str) -> floa
 
 
 def _curve(
-    cloud: Cloud, level: float, along: Array, confidence: float, seed: int
+    cloud: Cloud, level: float, logs: Array, confidence: float, seed: int
 ) -> tuple[FragilityStatus, Array, Array, Array]:
     """Return status, probabilities at some intensities, median and dispersion of a level.
 
     Each with its bounds, NaN where confidence is.
     """
     status = _status(cloud, level)
-    wide = np.linspace(cloud.logs.min() - _BEYOND, cloud.logs.max() + _BEYOND, _WIDE)
-    middle, spread = _parameters(cloud.probabilities(wide, level)[None], wide)
-    points = np.full((3, len(along)), np.nan)
-    points[0] = cloud.probabilities(along, level)
+    wide = np.linspace(
+        cloud.logs.min() - _SEARCH_MARGIN, cloud.logs.max() + _SEARCH_MARGIN, _SEARCH_POINTS
+    )
+    middle, spread = _median_dispersion(cloud.probabilities(wide, level)[None], wide)
+    points = np.full((3, len(logs)), np.nan)
+    points[0] = cloud.probabilities(logs, level)
     medians, spreads = np.full((2, 3), np.nan)
     if status not in (FragilityStatus.FITTED, FragilityStatus.SEPARATED):
         return status, points, medians, spreads
@@ -347,12 +371,12 @@ def _curve(
     elif not math.isnan(confidence):
         tails = 0.5 * (1.0 - confidence), 0.5 * (1.0 + confidence)
         rng = np.random.default_rng(seed)
-        drawn = cloud.drawn(np.concatenate([along, wide]), level, rng, _DRAWS)
-        points[1:] = np.quantile(drawn[:, : len(along)], tails, axis=0)
-        each = _parameters(drawn[:, len(along) :], wide)
+        drawn = cloud.draw_curves(np.concatenate([logs, wide]), level, rng, _POSTERIOR_DRAWS)
+        points[1:] = np.quantile(drawn[:, : len(logs)], tails, axis=0)
+        each = _median_dispersion(drawn[:, len(logs) :], wide)
         # a median beyond the searched range is infinite, or zero where all of the curve lies above
         every = [np.where(np.isnan(one), np.inf, one) for one in each]
-        every[0][np.all(drawn[:, len(along) :] >= 0.5, axis=1)] = -np.inf
+        every[0][np.all(drawn[:, len(logs) :] >= 0.5, axis=1)] = -np.inf
         medians[1:] = np.exp(np.quantile(every[0], tails, method="inverted_cdf"))
         spreads[1:] = np.quantile(every[1], tails, method="inverted_cdf")
     return status, points, medians, spreads
@@ -364,23 +388,23 @@ def _status(cloud: Cloud, level: float) -> FragilityStatus:
         rises = cloud.overturning.status is not FragilityStatus.FITTED
         rises = rises or cloud.overturning.coefficients[1] > 0.0
         return cloud.overturning.status if rises else FragilityStatus.NOT_RISING
-    if cloud.line is None:
+    if cloud.regression is None:
         return FragilityStatus.NO_TRIALS
     parted = FragilityStatus.NOT_RISING in (cloud.overturning.status, cloud.moving.status)
-    rises = cloud.line.slope > 0.0 and not parted
+    rises = cloud.regression.slope > 0.0 and not parted
     return FragilityStatus.FITTED if rises else FragilityStatus.NOT_RISING
 
 
-def _parameters(curves: Array, logs: Array) -> tuple[Array, Array]:
+def _median_dispersion(curves: Array, logs: Array) -> tuple[Array, Array]:
     """Return the logarithms at which curves reach one half, and their dispersions."""
     from scipy.special import ndtri
 
     eta = ndtri(np.clip(curves, 1e-300, 1.0 - 1e-16))
-    at = [_crossing(eta, logs, level) for level in (-1.0, 0.0, 1.0)]
+    at = [_crossings(eta, logs, level) for level in (-1.0, 0.0, 1.0)]
     return at[1], 0.5 * (at[2] - at[0])
 
 
-def _crossing(eta: Array, logs: Array, level: float) -> Array:
+def _crossings(eta: Array, logs: Array, level: float) -> Array:
     """Return where curves first rise above a level; NaN where they do not."""
     above = eta >= level
     right = np.argmax(above, axis=1)
@@ -393,22 +417,18 @@ def _crossing(eta: Array, logs: Array, level: float) -> Array:
     return np.where(found, at, np.nan)
 
 
-def _labelled(
-    runs: CloudOfRuns,
-    levels: Mapping[str, float],
-    measure: xr.DataArray,
-    confidence: float,
-    seed: int,
+def _cloud_dataset(
+    runs: CloudFit, levels: Mapping[str, float], measure: xr.DataArray, confidence: float, seed: int
 ) -> xr.Dataset:
     """Label a cloud and its fragility against levels of the response, by their names."""
-    cloud, of_bounds = runs.cloud, math.nan if runs.repeated else confidence
-    along = np.linspace(cloud.logs.min(), cloud.logs.max(), _POINTS)
-    curves = [_curve(cloud, level, along, of_bounds, seed) for level in levels.values()]
+    cloud, of_bounds = runs.cloud, math.nan if runs.motions_repeat else confidence
+    logs = np.linspace(cloud.logs.min(), cloud.logs.max(), _CURVE_POINTS)
+    curves = [_curve(cloud, level, logs, of_bounds, seed) for level in levels.values()]
     name, over = str(measure.name), {"limit_state": len(levels)}
-    line, falls = cloud.line, cloud.overturning
-    of_line = [math.nan] * 5 if line is None else [
-        line.intercept, line.slope, math.sqrt(line.covariance[1, 1]), line.dispersion,
-        line.determination,
+    regression, logistic = cloud.regression, cloud.overturning
+    regressed = [math.nan] * 5 if regression is None else [
+        regression.intercept, regression.slope, math.sqrt(regression.covariance[1, 1]),
+        regression.dispersion, regression.determination,
     ]  # fmt: skip
     names = (
         "regression_intercept", "regression_slope", "regression_slope_error",
@@ -416,10 +436,10 @@ def _labelled(
     )  # fmt: skip
     found = build_dataset(
         {
-            **dict(zip(names, of_line, strict=True)),
-            "logistic_intercept": falls.coefficients[0],
-            "logistic_slope": falls.coefficients[1],
-            "logistic_slope_error": math.sqrt(falls.covariance[1, 1]),
+            **dict(zip(names, regressed, strict=True)),
+            "logistic_intercept": logistic.coefficients[0],
+            "logistic_slope": logistic.coefficients[1],
+            "logistic_slope_error": math.sqrt(logistic.covariance[1, 1]),
             "cloud_overturned_count": np.isinf(cloud.responses).sum(),
             "resting_count": (cloud.responses == 0.0).sum(),
             "cloud_intensity": np.exp(cloud.logs),
@@ -432,34 +452,34 @@ def _labelled(
     points, medians, spreads = map(np.stack, of_curves)
     of_states = {"fragility_status": np.array(status),
                  "response_limit": np.array([*levels.values()])}  # fmt: skip
-    for k, end in enumerate(_ENDS):
+    for k, end in enumerate(_BOUND_SUFFIXES):
         of_states[f"median_intensity{end}"] = medians[:, k]
         of_states[f"dispersion{end}"] = spreads[:, k]
     of_states["trial_count"] = np.full(len(levels), len(cloud.logs))
-    of_states["left_out_count"] = np.full(len(levels), int((~runs.kept).sum()))
+    of_states["left_out_count"] = np.full(len(levels), int((~runs.included).sum()))
     found = with_variables(found, of_states, over=tuple(over))
-    shares = {f"exceedance_probability{end}": points[:, k] for k, end in enumerate(_ENDS)}
+    shares = {f"exceedance_probability{end}": points[:, k] for k, end in enumerate(_BOUND_SUFFIXES)}
     found = with_variables(found, shares, over=(*over, name))
-    found = with_labels(found, {name: (name, np.exp(along), measure.attrs)})
+    found = with_labels(found, {name: (name, np.exp(logs), measure.attrs)})
     found = with_variables(found, {"limit_state": np.array(list(levels), dtype=object)})
     counted = [
         (np.exp(cloud.logs)[:, None], (cloud.responses >= level).astype(np.float64))
         for level in levels.values()
     ]
     found = with_stripes(found, counted, over, confidence)
-    for one in _OF_INTENSITY:
+    for one in _INTENSITY_VARIABLES:
         found[one].attrs["units"] = measure.attrs.get("units", "1")
     return found
 
 
-def _sentence(found: xr.Dataset, repeated: bool) -> str:
+def _sentence(found: xr.Dataset, motions_repeat: bool) -> str:
     """Return the verdict in words: the line, and how many runs overturned."""
-    words = measure_words(str(found.attrs["intensity"]), found.attrs.get(PERIOD_OF))
-    count, fell = found.sizes["run"], int(found["cloud_overturned_count"])
-    rest = int(found["resting_count"])
+    words = measure_words(str(found.attrs["intensity"]), found.attrs.get(PERIOD_ATTRIBUTE))
+    count, overturned = found.sizes["run"], int(found["cloud_overturned_count"])
+    resting = int(found["resting_count"])
     response = str(found.attrs["response"]).replace("_", " ")
-    text = f"Of {count} runs {fell} overturned"
-    text += f" and {rest} show no {response}" if rest else ""
+    text = f"Of {count} runs {overturned} overturned"
+    text += f" and {resting} show no {response}" if resting else ""
     if math.isnan(float(found["regression_slope"])):
         text += "; too few are between for a line"
     else:
@@ -470,5 +490,5 @@ def _sentence(found: xr.Dataset, repeated: bool) -> str:
         )
     left_out = int(found["left_out_count"].max())
     text += f"; {left_out} are left out, without a verdict or an intensity" if left_out else ""
-    text += "; no bounds, for motions were run more than once" if repeated else ""
+    text += "; no bounds, for motions were run more than once" if motions_repeat else ""
     return f"{text}."

@@ -14,13 +14,13 @@ from rockframe.results.outcome import Generic
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import clopper_pearson
 
-Demand = Callable[[str, Array], Array]
+DemandFunction = Callable[[str, Array], Array]
 """Function of the name of a level and its samples, a row each, that runs them; gives the demand of
 each, NaN where a run has no verdict."""
 
-_FIRST_STEP: Final = 0.6
+_INITIAL_STEP: Final = 0.6
 """Step size of the first chains (Papaioannou et al., 2015)."""
-_ACCEPTED: Final = 0.44
+_TARGET_ACCEPTANCE: Final = 0.44
 """Share of accepted candidates at which chains mix best (Papaioannou et al., 2015)."""
 
 
@@ -43,24 +43,24 @@ class Level:
         return self.demands >= self.threshold
 
     @property
-    def known(self) -> int:
+    def known_count(self) -> int:
         """Number of samples that have a demand."""
         return int((~np.isnan(self.demands)).sum())
 
     @property
     def share(self) -> float:
         """Share of the samples that exceed the threshold [1]."""
-        return int(self.exceeds.sum()) / self.known if self.known else math.nan
+        return int(self.exceeds.sum()) / self.known_count if self.known_count else math.nan
 
 
 def subset_levels(
-    demand: Demand,
+    demand: DemandFunction,
     size: int,
     limit: float,
     *,
     count: int,
     share: float,
-    most: int,
+    max_levels: int,
     rng: np.random.Generator,
 ) -> Iterator[Level]:
     """Sample level by level, until a sufficient share of the samples exceeds the limit.
@@ -73,11 +73,11 @@ def subset_levels(
     scores = rng.standard_normal((count, size))
     demands = demand("level 01", scores)
     origins: Generic = np.arange(count)
-    families, ran = origins, count
-    chains, acceptance, runs, step = count, math.nan, count, _FIRST_STEP
+    families, total_runs = origins, count
+    chains, acceptance, runs, step = count, math.nan, count, _INITIAL_STEP
     left_out = int(np.isnan(demands).sum())
-    for number in range(1, most + 1):
-        threshold = limit if number == most else _threshold(demands, share, limit)
+    for number in range(1, max_levels + 1):
+        threshold = limit if number == max_levels else _threshold(demands, share, limit)
         level = Level(demands, origins, families, threshold, chains, acceptance, runs, left_out)
         yield level
         if threshold >= limit:
@@ -87,25 +87,29 @@ def subset_levels(
         runs, left_out = chains * (length - 1), 0
         # all chains make a step together, so that their runs can be parallel
         states = [(scores[seeds], demands[seeds], origins[seeds])]
-        accepted: list[float] = []
-        for place in range(1, length):
+        acceptance_rates: list[float] = []
+        for number_of_step in range(1, length):
             scores, demands, origins = states[-1]
             noise = rng.standard_normal(scores.shape)
             candidates = math.sqrt(1.0 - step**2) * scores + step * noise
-            found = demand(f"level {number + 1:02d} step {place:02d}", candidates)
-            taken = found >= threshold
+            found = demand(f"level {number + 1:02d} step {number_of_step:02d}", candidates)
+            accepted = found >= threshold
             left_out += int(np.isnan(found).sum())
             states.append((
-                np.where(taken[:, None], candidates, scores),
-                np.where(taken, found, demands),
-                np.where(taken, ran + np.arange(chains), origins),
+                np.where(accepted[:, None], candidates, scores),
+                np.where(accepted, found, demands),
+                np.where(accepted, total_runs + np.arange(chains), origins),
             ))  # fmt: skip
-            ran += chains
-            accepted.append(float(taken.mean()))
-            step = min(1.0, step * math.exp((accepted[-1] - _ACCEPTED) / math.sqrt(place)))
+            total_runs += chains
+            acceptance_rates.append(float(accepted.mean()))
+            step = min(
+                1.0,
+                step
+                * math.exp((acceptance_rates[-1] - _TARGET_ACCEPTANCE) / math.sqrt(number_of_step)),
+            )
         scores, demands, origins = map(np.concatenate, zip(*states, strict=True))
         families = np.tile(families[seeds], length)
-        acceptance = float(np.mean(accepted))
+        acceptance = float(np.mean(acceptance_rates))
 
 
 def _threshold(demands: Array, share: float, limit: float) -> float:
@@ -123,7 +127,7 @@ def _threshold(demands: Array, share: float, limit: float) -> float:
     return min(limit, 0.5 * (below + upper) if math.isfinite(upper) else upper)
 
 
-def probability_of(levels: Sequence[Level]) -> float:
+def subset_probability(levels: Sequence[Level]) -> float:
     """Return the probability that the last threshold is exceeded, :eq:`eq-subset-product` [1]."""
     return math.prod(level.share for level in levels)
 
@@ -135,16 +139,16 @@ def family_shares(levels: Sequence[Level]) -> Array:
     return count[~np.isnan(levels[0].demands)] / max(int(count.sum()), 1)
 
 
-def variation_of(levels: Sequence[Level]) -> float:
+def subset_variation(levels: Sequence[Level]) -> float:
     """Return the coefficient of variation of the probability, :eq:`eq-subset-variation` [1]."""
-    if not probability_of(levels) > 0.0:
+    if not subset_probability(levels) > 0.0:
         return math.inf
     shares = family_shares(levels)
     count = len(shares)
     return math.sqrt(max(count * float((shares**2).sum()) - 1.0, 0.0) / (count - 1))
 
 
-def bounds_of(levels: Sequence[Level], confidence: float) -> tuple[float, float]:
+def subset_bounds(levels: Sequence[Level], confidence: float) -> tuple[float, float]:
     """Return bounds of the probability, :eq:`eq-subset-bounds` [1].
 
     For a single level they are those of independent cases. Where no sample exceeds the last
@@ -155,29 +159,29 @@ def bounds_of(levels: Sequence[Level], confidence: float) -> tuple[float, float]
     if len(levels) == 1:
         first = levels[0]
         exceeding = np.array(first.exceeds.sum())
-        lower, upper = clopper_pearson(exceeding, np.array(first.known), confidence)
+        lower, upper = clopper_pearson(exceeding, np.array(first.known_count), confidence)
         return float(lower), float(upper)
-    if not probability_of(levels) > 0.0:
-        return 0.0, bounds_of(levels[:-1], confidence)[1]
-    variation = variation_of(levels)
-    freedom = max(1.0 / variation**2 - 1.0, 1.0) if variation > 0.0 else math.inf
-    reach = float(t.ppf(0.5 * (1.0 + confidence), freedom))
-    factor = math.exp(reach * math.sqrt(math.log1p(variation**2)))
-    probability = probability_of(levels)
+    if not subset_probability(levels) > 0.0:
+        return 0.0, subset_bounds(levels[:-1], confidence)[1]
+    variation = subset_variation(levels)
+    dof = max(1.0 / variation**2 - 1.0, 1.0) if variation > 0.0 else math.inf
+    half_width = float(t.ppf(0.5 * (1.0 + confidence), dof))
+    factor = math.exp(half_width * math.sqrt(math.log1p(variation**2)))
+    probability = subset_probability(levels)
     return probability / factor, min(1.0, probability * factor)
 
 
-def weights_of(levels: Sequence[Level]) -> list[Array]:
+def sample_weights(levels: Sequence[Level]) -> list[Array]:
     """Return the probability that each sample represents, :eq:`eq-subset-weights` [1].
 
     Samples beyond a threshold have none: the next level represents them.
     """
     found: list[Array] = []
-    before = 1.0
+    probability = 1.0
     for number, level in enumerate(levels, start=1):
-        stands = ~np.isnan(level.demands)
+        is_counted = ~np.isnan(level.demands)
         if number < len(levels):
-            stands &= ~level.exceeds
-        found.append(np.where(stands, before / max(level.known, 1), 0.0))
-        before *= level.share
+            is_counted &= ~level.exceeds
+        found.append(np.where(is_counted, probability / max(level.known_count, 1), 0.0))
+        probability *= level.share
     return found

@@ -24,10 +24,16 @@ from rockframe.simulation.run import compute_summary, run
 from rockframe.simulation.run_arguments import ScaleArguments
 from rockframe.simulation.soundness import STILL_MOVING, has_friction_limit
 from rockframe.simulation.system import System, check_system
-from rockframe.studies.flips import Followed, flips_sentence, follow, least_overturning, unfinished
-from rockframe.studies.intensities import ScaledIntensity, of_study
-from rockframe.studies.lines import read_resolution, read_width
-from rockframe.studies.sweeps.execution import bar_of
+from rockframe.studies.flips import (
+    ScaleScan,
+    flips_sentence,
+    least_overturning_scale,
+    scan_scales,
+    unfinished_words,
+)
+from rockframe.studies.intensities import ScaledIntensity, measure_attributes
+from rockframe.studies.line_scan import read_resolution, read_width
+from rockframe.studies.sweeps.execution import progress_bar
 from rockframe.system.rigid_ground import RigidGroundSetting
 from rockframe.units import POSITIVE, QuantityLike, RatioLike, to_ratio
 
@@ -147,10 +153,10 @@ def critical_scale(
     greatest_scale = to_ratio(
         largest, owner=_OWNER, name="largest", condition=POSITIVE, example="4"
     )
-    share = read_width(bracket_width, owner=_OWNER)
+    width = read_width(bracket_width, owner=_OWNER)
     finest = read_resolution(resolution, owner=_OWNER)
     count = whole_number(scales, owner=_OWNER, name="scales", lowest=2, highest=MOST_RUNS)
-    most = whole_number(runs, owner=_OWNER, name="runs", lowest=count, highest=MOST_RUNS)
+    max_runs = whole_number(runs, owner=_OWNER, name="runs", lowest=count, highest=MOST_RUNS)
     plan = plan_run(system.assembly, motion, outputs=None, **requested)
     measure = None
     if intensity is not None:
@@ -161,43 +167,50 @@ def critical_scale(
         msg = f"{_OWNER}: period is that of an intensity; give intensity too"
         raise ComponentError(msg)
 
-    at_rest_to = _uplift_scale(system, plan)
-    least = 0.0 if math.isnan(at_rest_to) else min(at_rest_to, greatest_scale)
-    row = np.unique(np.linspace(least, greatest_scale, count)).tolist()
+    uplift_scale = _uplift_scale(system, plan)
+    least = 0.0 if math.isnan(uplift_scale) else min(uplift_scale, greatest_scale)
+    first_scales = np.unique(np.linspace(least, greatest_scale, count)).tolist()
 
     def plan_at(scale: float) -> Plan:
         return replace(plan, motion=motion.scaled(scale))
 
     # samples are needed here only for warnings of friction
-    rubs = has_friction_limit(system.assembly)
-    step = plan.output_step if rubs else None
+    may_slide = has_friction_limit(system.assembly)
+    step = plan.output_step if may_slide else None
 
-    with bar_of(progress, owner=_OWNER, unit="run") as bar:
-        bar.expect(len(row))
-        looks = itertools.count()
+    with progress_bar(progress, owner=_OWNER, unit="run") as bar:
+        bar.expect(len(first_scales))
+        run_numbers = itertools.count()
 
-        def look(scale: float) -> RunSummary:
-            number = next(looks)
-            if number == len(row):
+        def run_at(scale: float) -> RunSummary:
+            number = next(run_numbers)
+            if number == len(first_scales):
                 bar.name("more scales")
-            if number >= len(row):
+            if number >= len(first_scales):
                 bar.expect(1)
             shown = compute_summary(system.assembly, replace(plan_at(scale), output_step=step))
             bar.update(1)
             return shown
 
-        found = follow(look, row, most=most, width=share, resolution=finest, may_slide=rubs)
-    critical = least_overturning(found.shown)
-    text = flips_sentence(found, width=share, resolution=finest)
-    if not found.whole:
+        found = scan_scales(
+            run_at,
+            first_scales,
+            max_runs=max_runs,
+            width=width,
+            resolution=finest,
+            may_slide=may_slide,
+        )
+    critical = least_overturning_scale(found.runs)
+    text = flips_sentence(found, width=width, resolution=finest)
+    if not found.completed:
         warn(f"{_OWNER}: interrupted; {text}", SolverWarning)
     attributes = {
         "verdict": text,
         "largest_scale": greatest_scale,
         "first_scales": count,
-        "most_runs": most,
+        "most_runs": max_runs,
         "resolution": finest,
-        "bracket_width": share,
+        "bracket_width": width,
         "model": system.setting.model,
         "accuracy": plan.accuracy_name,
         **_cautions(system, plan_at, found, critical),
@@ -205,11 +218,11 @@ def critical_scale(
         "system_json": system.assembly.json,
         "run_json": plan.to_json(),
     }
-    dataset = _labelled(found, critical, at_rest_to, attributes)
+    dataset = _scale_dataset(found, critical, uplift_scale, attributes)
     if measure is None:
         return dataset
-    dataset = dataset.assign({measure.name: measure.at(critical)})
-    return dataset.assign_attrs(of_study(measure.name, measure.period))
+    dataset = dataset.assign({measure.name: measure.at_scale(critical)})
+    return dataset.assign_attrs(measure_attributes(measure.name, measure.period))
 
 
 def _uplift_scale(system: System, plan: Plan) -> float:
@@ -229,52 +242,52 @@ def _uplift_scale(system: System, plan: Plan) -> float:
 
 
 def _cautions(
-    system: System, plan_at: Callable[[float], Plan], found: Followed, critical: float
+    system: System, plan_at: Callable[[float], Plan], found: ScaleScan, critical: float
 ) -> dict[str, str]:
     """Repeat the warnings of the run at the decisive scale; warn of runs without a verdict."""
     cautions: list[str] = []
-    undecided = [scale for scale, shown in found.shown.items() if shown.overturned is None]
+    undecided = [scale for scale, shown in found.runs.items() if shown.overturned is None]
     if undecided:
-        cautions.append(f"{_OWNER}: {unfinished(undecided)}")
+        cautions.append(f"{_OWNER}: {unfinished_words(undecided)}")
         warn(cautions[0], SolverWarning)
-    moving = [scale for scale, shown in found.shown.items() if shown.in_motion]
+    moving = [scale for scale, shown in found.runs.items() if shown.in_motion]
     if moving:
         cautions.append(
-            f"{_OWNER}: at {len(moving)} of {len(found.shown)} scales, such as {moving[0]:.4g}, "
+            f"{_OWNER}: at {len(moving)} of {len(found.runs)} scales, such as {moving[0]:.4g}, "
             f"{STILL_MOVING}"
         )
         warn(cautions[-1], SolverWarning)
-    telling = critical
+    decisive = critical
     if math.isnan(critical) and has_friction_limit(system.assembly):
-        telling = max(found.shown)  # if none falls, it needs the most friction
-    if not math.isnan(telling):
-        again = run(system.assembly, plan_at(telling))
-        cautions += filter(None, [str(again.attrs.get("cautions", ""))])
+        decisive = max(found.runs)  # if none falls, it needs the most friction
+    if not math.isnan(decisive):
+        repeated = run(system.assembly, plan_at(decisive))
+        cautions += filter(None, [str(repeated.attrs.get("cautions", ""))])
     return {"cautions": "; ".join(cautions)} if cautions else {}
 
 
-def _labelled(
-    found: Followed, critical: float, at_rest_to: float, attributes: dict[str, str | float | int]
+def _scale_dataset(
+    scan: ScaleScan, critical: float, uplift_scale: float, attributes: dict[str, str | float | int]
 ) -> xr.Dataset:
-    flips, shown = found.flips(), list(found.shown.values())
+    flips, runs = scan.flips(), list(scan.runs.values())
     dataset = build_dataset(
         {
             "critical_scale": critical,
-            "followed_scale": found.up_to,
-            "largest_gap": found.largest_gap,
-            "uplift_scale": at_rest_to,
+            "followed_scale": scan.resolved_up_to,
+            "largest_gap": scan.largest_gap,
+            "uplift_scale": uplift_scale,
             "scale_below": np.array([flip.below for flip in flips]),
             "scale_above": np.array([flip.above for flip in flips]),
             "overturns_above": np.array([flip.overturns_above for flip in flips], dtype=bool),
-            "scale": np.array(list(found.shown)),
-            "outcome": np.array([_OUTCOMES[one.overturned] for one in shown]),
+            "scale": np.array(list(scan.runs)),
+            "outcome": np.array([_OUTCOMES[one.overturned] for one in runs]),
         },
         attributes,
         title="Critical scale of a ground motion",
         source="scan and bisection of event-driven runs",
     )
     of_runs = {
-        "peak_rotation": np.array([one.peak for one in shown]) + 0.0,  # no negative zeros
-        "status": np.array([one.status for one in shown]),
+        "peak_rotation": np.array([one.peak for one in runs]) + 0.0,  # no negative zeros
+        "status": np.array([one.status for one in runs]),
     }
     return with_variables(dataset, of_runs, over=("scale",))

@@ -16,23 +16,23 @@ from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
 from rockframe.simulation.soundness import share_words, slip_words
 from rockframe.simulation.system import System
-from rockframe.studies.intensities import Intensity, intensity_in, of_study
+from rockframe.studies.intensities import Intensity, intensity_of_runs, measure_attributes
 from rockframe.studies.limit_states import (
+    LIMITS_ATTRIBUTE,
     OVERTURNING,
-    STATES,
     exceeds,
     labels_of_states,
     limit_states,
     states_json,
 )
 from rockframe.studies.line_axes import read_line_axes
-from rockframe.studies.lines import (
-    CAPACITY,
-    INTERRUPTED,
+from rockframe.studies.line_scan import (
+    CAPACITY_DEFINITION,
+    INTERRUPTED_ENDING,
     SCALE,
-    SOURCE,
-    VERDICT,
-    Lines,
+    SCAN_SOURCE,
+    VERDICT_DIM,
+    LineScan,
     read_resolution,
     read_scales,
     read_width,
@@ -152,36 +152,40 @@ def incremental_dynamic_analysis(
     """
     scene = scene_of(system)
     arguments = signature(incremental_dynamic_analysis).parameters
-    line_axes = read_line_axes(axes, scene, owner=_OWNER, others=arguments)
+    line_axes = read_line_axes(axes, scene, owner=_OWNER, argument_names=arguments)
     states = limit_states(limits, owner=_OWNER)
     scales = read_scales(scale, owner=_OWNER)
-    share = read_width(bracket_width, owner=_OWNER)
+    width = read_width(bracket_width, owner=_OWNER)
     finest = read_resolution(resolution, owner=_OWNER)
     measure = None if intensity is None else Intensity.read(intensity, period, owner=_OWNER)
     by_name = needed_motions(motions, scene, owner=_OWNER)
     requested: Any = {**run, "points": points}
 
     def verdicts(runs: xr.Dataset) -> xr.DataArray:
-        return xr.concat([exceeds(runs, state) for state in states], VERDICT)
+        return xr.concat([exceeds(runs, state) for state in states], VERDICT_DIM)
 
-    lines = Lines(system, by_name, line_axes.columns(), requested, _OWNER, verdicts)
-    along = lines.followed(
-        scales, width=share, resolution=finest, outputs=outputs, output_step=output_step
+    lines = LineScan(system, by_name, line_axes.columns(), requested, _OWNER, verdicts)
+    result = lines.run_scan(
+        scales, width=width, resolution=finest, outputs=outputs, output_step=output_step
     )
-    scan = line_axes.arranged(along.scan)
-    over = {**line_axes.sizes, MOTION: scan.sizes[MOTION]}
-    shape = (len(states), *over.values())
-    capacities = along.capacities(shape)
-    found = with_variables(scan, {**capacities, **along.flips(shape)}, over=("limit_state", *over))
+    scan = line_axes.unstack(result.scan)
+    sizes = {**line_axes.sizes, MOTION: scan.sizes[MOTION]}
+    shape = (len(states), *sizes.values())
+    capacities = result.capacities(shape)
+    found = with_variables(
+        scan, {**capacities, **result.flips(shape)}, over=("limit_state", *sizes)
+    )
     censored = np.isinf(capacities["capacity_scale"]).sum(axis=-1)
     found = with_variables(
         found, {"censored_count": censored}, over=("limit_state", *line_axes.sizes)
     )
     found = with_variables(found, labels_of_states(states))
     if measure is not None:
-        found = found.assign({measure.name: intensity_in(scan, measure, by_name, owner=_OWNER)})
-        found.attrs |= of_study(measure.name, measure.period)
-    below, least = _at_the_least(found), float(found[SCALE].min())
+        found = found.assign(
+            {measure.name: intensity_of_runs(scan, measure, by_name, owner=_OWNER)}
+        )
+        found.attrs |= measure_attributes(measure.name, measure.period)
+    below, least = _overturned_at_least_scale(found), float(found[SCALE].min())
     if below.any():
         which = "motions" if below.ndim == 1 else "lines"
         warn(
@@ -192,17 +196,17 @@ def incremental_dynamic_analysis(
         )
     found.attrs |= {
         "title": "Incremental dynamic analysis of a rocking system",
-        "source": SOURCE,
-        "capacity": CAPACITY,
-        STATES: states_json(states),
+        "source": SCAN_SOURCE,
+        "capacity": CAPACITY_DEFINITION,
+        LIMITS_ATTRIBUTE: states_json(states),
         "resolution": finest,
-        "bracket_width": share,
+        "bracket_width": width,
         "verdict": _sentence(found, line_axes.sizes),
     }
     return found
 
 
-def _at_the_least(found: xr.Dataset) -> Array:
+def _overturned_at_least_scale(found: xr.Dataset) -> Array:
     """Find the motions that overturned at the least scale: their capacities may lie below it."""
     capacity = found["capacity_scale"].isel(limit_state=-1).to_numpy()
     return capacity == float(found[SCALE].min())
@@ -224,30 +228,32 @@ def _sentence(found: xr.Dataset, structures: Mapping[str, int]) -> str:
     """Return the verdict in words: how many motions overturned, and from which scale on."""
     of_overturning = found.isel(limit_state=-1)
     capacity = of_overturning["capacity_scale"].to_numpy()
-    count, some = capacity.size, np.isfinite(capacity)
+    count, finite = capacity.size, np.isfinite(capacity)
     motions = found.sizes[MOTION]
-    lines = f"{motions} motion{'s' if motions > 1 else ''}"
+    subject = f"{motions} motion{'s' if motions > 1 else ''}"
     if structures:
-        many = math.prod(structures.values())
-        lines = f"{count} lines, of {many} structures by {', '.join(structures)} under {lines},"
-    text = f"Of {lines} {int(some.sum())} overturned"
-    below = _at_the_least(found)
-    if some.any() and below.all():
-        text += f", at or below {capacity[some].min():.4g} times the motion"
-    elif some.any():
-        least = f"{'at or below ' if below.any() else ''}{capacity[some].min():.4g}"
-        most = f"{capacity[some].max():.4g}"
+        combined = f"{math.prod(structures.values())} structures by {', '.join(structures)}"
+        subject = f"{count} lines, of {combined} under {subject},"
+    text = f"Of {subject} {int(finite.sum())} overturned"
+    below = _overturned_at_least_scale(found)
+    if finite.any() and below.all():
+        text += f", at or below {capacity[finite].min():.4g} times the motion"
+    elif finite.any():
+        least = f"{'at or below ' if below.any() else ''}{capacity[finite].min():.4g}"
+        most = f"{capacity[finite].max():.4g}"
         text += f", from {least}{'' if most == least else f' to {most}'} times the motion on"
-    again = int((of_overturning["flip_count"].to_numpy() > 1).sum())
-    if again:
-        text += f"; under {again} the verdict changed more than once"
-    cut = str(found.attrs["verdict"]).endswith(INTERRUPTED)  # the verdict of the scan
-    lacking = int(overturns(found).isnull().sum())
-    if lacking and not cut:
-        text += f"; {lacking} of {found['status'].size} runs of the scan have no verdict"
+    repeated = int((of_overturning["flip_count"].to_numpy() > 1).sum())
+    if repeated:
+        text += f"; under {repeated} the verdict changed more than once"
+    interrupted = str(found.attrs["verdict"]).endswith(
+        INTERRUPTED_ENDING
+    )  # the verdict of the scan
+    missing = int(overturns(found).isnull().sum())
+    if missing and not interrupted:
+        text += f"; {missing} of {found['status'].size} runs of the scan have no verdict"
     slides = found["would_slide"].to_numpy() if "would_slide" in found else np.empty(0)
     if words := share_words(slides, runs="runs of the scan"):
         text += f"; {words}"
     if words := slip_words(slips_of_cases(found), runs="runs of the scan"):
         text += f"; {words}"
-    return f"{text}{INTERRUPTED if cut else '.'}"
+    return f"{text}{INTERRUPTED_ENDING if interrupted else '.'}"

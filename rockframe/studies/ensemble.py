@@ -13,7 +13,7 @@ from rockframe.results.schema import build_dataset
 from rockframe.results.variables.studies import MOTION
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import clopper_pearson, read_level, read_shares
-from rockframe.studies.probability import SAMPLED
+from rockframe.studies.probability import SAMPLING_ATTRIBUTE
 from rockframe.units import RatioLike
 
 _OWNER: Final = "ensemble_statistics"
@@ -82,12 +82,12 @@ def ensemble_statistics(
     """
     requested = read_level(confidence, owner=_OWNER)
     shares = read_shares(quantiles, "quantiles", owner=_OWNER)
-    values = _values(runs, name)
+    values = _values_of(runs, name)
     if values.dtype.kind not in "biuf":
         msg = f"{_OWNER}: {values.name!r} has no numbers, but words or objects"
         raise ComponentError(msg)
-    together = several(pooled, owner=_OWNER, name="pooled", of="names")
-    level = np.nan if _dependent(values, runs.attrs, together) else requested
+    pooled_axes = several(pooled, owner=_OWNER, name="pooled", of="names")
+    level = np.nan if _members_depend(values, runs.attrs, pooled_axes) else requested
     ordered = np.sort(values.to_numpy().ravel().astype(np.float64))
     ordered = ordered[~np.isnan(ordered)]
     if not len(ordered):
@@ -96,7 +96,7 @@ def ensemble_statistics(
     lower, upper = _quantile_bounds(ordered, shares, level)
     found = build_dataset(
         {
-            **_distribution(ordered, level),
+            **_empirical_distribution(ordered, level),
             "quantile": shares,
             "quantile_value": np.quantile(ordered, shares, method="inverted_cdf"),
             "quantile_value_lower_bound": lower,
@@ -118,7 +118,7 @@ def ensemble_statistics(
     return found
 
 
-def _values(runs: Any, name: str) -> xr.DataArray:
+def _values_of(runs: Any, name: str) -> xr.DataArray:
     if isinstance(runs, xr.DataArray):
         return runs
     dataset = checked_dataset(runs, owner=_OWNER)
@@ -130,20 +130,22 @@ def _values(runs: Any, name: str) -> xr.DataArray:
     return dataset[name]
 
 
-def _dependent(values: xr.DataArray, attributes: Mapping[Any, Any], pooled: Sequence[str]) -> bool:
+def _members_depend(
+    values: xr.DataArray, attributes: Mapping[Any, Any], pooled: Sequence[str]
+) -> bool:
     """Whether members of a sweep depend on one another; refuses axes not named in `pooled`."""
-    if "axes_json" not in attributes or SAMPLED in attributes:
+    if "axes_json" not in attributes or SAMPLING_ATTRIBUTE in attributes:
         return False
-    wide = [str(dim) for dim, size in values.sizes.items() if size > 1 and dim != MOTION]
-    unnamed = [dim for dim in wide if dim not in pooled]
+    dims = [str(dim) for dim, size in values.sizes.items() if size > 1 and dim != MOTION]
+    unnamed = [dim for dim in dims if dim not in pooled]
     if unnamed:
         msg = (
             f"{_OWNER}: the sweep goes over {', '.join(unnamed)} beside motions; pick a value of "
             f"each, or take all for one ensemble with pooled={tuple(unnamed)}"
         )
         raise ComponentError(msg)
-    if not wide or MOTION not in values.coords:
-        return bool(wide)
+    if not dims or MOTION not in values.coords:
+        return bool(dims)
     names = values[MOTION].broadcast_like(values).where(values.notnull(), "").to_numpy().astype(str)
     _, count = np.unique(names[names != ""], return_counts=True)
     return bool(count.max(initial=0) > 1)
@@ -151,31 +153,31 @@ def _dependent(values: xr.DataArray, attributes: Mapping[Any, Any], pooled: Sequ
 
 def _sentence(count: int, left_out: int, requested: float, level: float) -> str:
     """Return the verdict in words: the number of members, and the bounds."""
-    lacking = f"; {left_out} without a result are left out" if left_out else ""
+    missing = f"; {left_out} without a result are left out" if left_out else ""
     bounds = (
         "no bounds, for several members are of one motion"
         if np.isnan(level)
         else f"bands of confidence {requested:g}"
     )
-    return f"{count} members{lacking}; {bounds}"
+    return f"{count} members{missing}; {bounds}"
 
 
-def _distribution(ordered: Array, level: float) -> dict[str, Array]:
+def _empirical_distribution(ordered: Array, level: float) -> dict[str, Array]:
     """Return the share of members up to each value, and its bounds."""
     from scipy.stats import kstwo
 
     count = len(ordered)
     up_to = np.searchsorted(ordered, ordered, side="right").astype(np.float64)
     lower, upper = clopper_pearson(up_to, np.full(count, float(count)), level)
-    reach = float(kstwo.ppf(level, count))
+    half_width = float(kstwo.ppf(level, count))
     share = up_to / count
     return {
         "ordered_value": ordered,
         "cumulative_probability": share,
         "cumulative_probability_lower_bound": lower,
         "cumulative_probability_upper_bound": upper,
-        "simultaneous_lower_bound": np.maximum(share - reach, 0.0),
-        "simultaneous_upper_bound": np.minimum(share + reach, 1.0),
+        "simultaneous_lower_bound": np.maximum(share - half_width, 0.0),
+        "simultaneous_upper_bound": np.minimum(share + half_width, 1.0),
     }
 
 

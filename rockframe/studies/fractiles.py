@@ -18,16 +18,16 @@ from rockframe.results.variables.variable import unit_suffix
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import read_shares
 from rockframe.studies.fragility.trials import attributes_of_system
-from rockframe.studies.intensities import PeriodLike, measure_in, period_attribute
+from rockframe.studies.intensities import PeriodLike, measure_of_runs, period_attribute
 from rockframe.studies.limit_states import check_runs, scalar_of
-from rockframe.studies.lines import SCALE
+from rockframe.studies.line_scan import SCALE
 from rockframe.studies.sweeps.motions import MotionsLike
 from rockframe.units import Measure, RatioLike, Unit, to_ratio, to_si_values
 
 _OWNER: Final = "fractile_curves"
-_POINTS: Final = 201
+_CURVE_POINTS: Final = 201
 """Number of intensities, and of levels of the response, of the curves by default."""
-_LEVEL: Final = "response_level"
+_LEVEL_DIM: Final = "response_level"
 _TITLE: Final = "Fractile curves of scaled motions"
 
 
@@ -107,70 +107,70 @@ def fractile_curves(
     """
     runs = check_runs(runs, owner=_OWNER)
     shares = read_shares(fractiles, "fractiles", owner=_OWNER)
-    measure = measure_in(runs, intensity, period, motions, owner=_OWNER)
+    measure = measure_of_runs(runs, intensity, period, motions, owner=_OWNER)
     values = scalar_of(runs, response, label, owner=_OWNER)
-    lines = _lines(runs, measure, abs(values))
-    low = max(float(one.along[0]) for one in lines)
-    high = min(float(one.along[-1]) for one in lines)
+    curves = _response_curves(runs, measure, abs(values))
+    low = max(float(one.intensities[0]) for one in curves)
+    high = min(float(one.intensities[-1]) for one in curves)
     if not low < high:
         msg = (
             f"{_OWNER}: the motions have no range of {measure.name} in common: from {low:.4g} all "
             f"have been run, up to {high:.4g}; give them more scales"
         )
         raise StudyError(msg)
-    along = np.linspace(low, high, _POINTS)
-    requested = _levels(levels, values, lines)
-    responses = np.stack([one.at(along) for one in lines])
-    reached = np.stack([one.first(requested) for one in lines])
+    intensities = np.linspace(low, high, _CURVE_POINTS)
+    requested = _read_levels(levels, values, curves)
+    responses = np.stack([one.response_at(intensities) for one in curves])
+    reached = np.stack([one.first_intensities(requested) for one in curves])
     name = str(measure.name)
     found = build_dataset({}, {}, title=_TITLE, source="runs of scaled motions")
     for one, value, over in (
         ("motion_response", responses, (MOTION, name)),
         ("response_fractile", fractiles_of(responses, shares), ("quantile", name)),
         ("overturned_count", np.isinf(responses).sum(axis=0), (name,)),
-        ("intensity_fractile", fractiles_of(reached, shares), ("quantile", _LEVEL)),
-        ("unreached_count", np.isinf(reached).sum(axis=0), (_LEVEL,)),
+        ("intensity_fractile", fractiles_of(reached, shares), ("quantile", _LEVEL_DIM)),
+        ("unreached_count", np.isinf(reached).sum(axis=0), (_LEVEL_DIM,)),
     ):
         found = with_variables(found, {one: value}, over=over)
-    names = np.array([one.name for one in lines], dtype=object)
+    names = np.array([one.name for one in curves], dtype=object)
     found = with_variables(found, {MOTION: names, "quantile": shares})
-    found = with_labels(found, {name: (name, along, measure.attrs)})
-    found = with_variables(found, {_LEVEL: requested})
+    found = with_labels(found, {name: (name, intensities, measure.attrs)})
+    found = with_variables(found, {_LEVEL_DIM: requested})
     unit = values.attrs.get("units", "1")
-    for one in ("motion_response", "response_fractile", _LEVEL):
+    for one in ("motion_response", "response_fractile", _LEVEL_DIM):
         found[one].attrs["units"] = unit
     found["intensity_fractile"].attrs["units"] = measure.attrs.get("units", "1")
     attributes = period_attribute(runs, [intensity], period, owner=_OWNER)
     return found.assign_attrs(
         {**attributes_of_system(runs), "intensity": name, **attributes,
          "response": response if label is None else f"{response} {label}",
-         "verdict": _sentence(lines, low, high, measure) + _left_out(lines, runs)}
+         "verdict": _sentence(curves, low, high, measure) + _left_out_sentence(curves, runs)}
     )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
-class _Line:
+class _ResponseCurve:
     """The response of a motion along its intensity."""
 
     name: str
-    along: Array  # intensities of all runs with a verdict, ascending
+    intensities: Array  # intensities of all runs with a verdict, ascending
     # breakpoints of the response where the block stands: intensities and values
     points: Array
     values: Array
-    falls: tuple[tuple[float, float], ...]  # ranges where it overturns, ends included
+    overturning: tuple[tuple[float, float], ...]  # ranges where it overturns, ends included
 
-    def at(self, intensities: Array) -> Array:
+    def response_at(self, intensities: Array) -> Array:
         """Return the response at intensities, infinite where the block overturns."""
         found = np.interp(intensities, self.points, self.values)
-        for first, last in self.falls:
+        for first, last in self.overturning:
             found[(intensities >= first) & (intensities <= last)] = np.inf
         return found
 
-    def first(self, levels: Array) -> Array:
+    def first_intensities(self, levels: Array) -> Array:
         """Return the least intensities at which levels are reached; infinite where they are not."""
         highest = np.maximum.accumulate(self.values)
         place = np.searchsorted(highest, levels, side="left")
-        found = np.full(levels.shape, self.falls[0][0] if self.falls else np.inf)
+        found = np.full(levels.shape, self.overturning[0][0] if self.overturning else np.inf)
         for k, (level, right) in enumerate(zip(levels, place, strict=True)):
             if right == len(highest):
                 continue
@@ -182,7 +182,9 @@ class _Line:
         return found
 
 
-def _lines(runs: xr.Dataset, measure: xr.DataArray, values: xr.DataArray) -> list[_Line]:
+def _response_curves(
+    runs: xr.Dataset, measure: xr.DataArray, values: xr.DataArray
+) -> list[_ResponseCurve]:
     """Return the line of each motion."""
     verdict = overturns(runs)
     wide = [str(dim) for dim, size in verdict.sizes.items() if size > 1 and dim != MOTION]
@@ -193,16 +195,16 @@ def _lines(runs: xr.Dataset, measure: xr.DataArray, values: xr.DataArray) -> lis
             "value of anything else"
         )
         raise StudyError(msg)
-    along = wide[0]
-    others = [dim for dim in verdict.dims if dim not in (MOTION, along)]
+    axis = wide[0]
+    others = [dim for dim in verdict.dims if dim not in (MOTION, axis)]
 
     def rows(array: xr.DataArray) -> Array:
         laid = array.broadcast_like(verdict).isel(dict.fromkeys(others, 0))
-        return laid.transpose(MOTION, along).to_numpy().astype(np.float64)
+        return laid.transpose(MOTION, axis).to_numpy().astype(np.float64)
 
     intensities, responses, falls = rows(measure), rows(values), rows(verdict)
     names = runs[MOTION].to_numpy().astype(str)
-    found: list[_Line] = []
+    found: list[_ResponseCurve] = []
     for k, name in enumerate(names):
         known = ~np.isnan(falls[k]) & np.isfinite(intensities[k])
         known &= (falls[k] == 1.0) | np.isfinite(responses[k])
@@ -211,18 +213,20 @@ def _lines(runs: xr.Dataset, measure: xr.DataArray, values: xr.DataArray) -> lis
             raise StudyError(msg)
         order = np.argsort(intensities[k], kind="stable")
         order = order[known[order]]
-        ranges = _falls(runs, k, intensities[k], along)
+        ranges = _overturning_ranges(runs, k, intensities[k], axis)
         found.append(
-            _line(name, intensities[k][order], responses[k][order], falls[k][order] == 1.0, ranges)
+            _response_curve(
+                name, intensities[k][order], responses[k][order], falls[k][order] == 1.0, ranges
+            )
         )
     return found
 
 
-def _falls(
-    runs: xr.Dataset, motion: int, intensities: Array, along: str
+def _overturning_ranges(
+    runs: xr.Dataset, motion: int, intensities: Array, dim: str
 ) -> list[tuple[float, float]] | None:
     """Return the ranges that overturn, by the brackets of a dynamic analysis; None for a sweep."""
-    if along != SCALE or not all(one in runs for one in ("scale_above", "exceeds_above")):
+    if dim != SCALE or not all(one in runs for one in ("scale_above", "exceeds_above")):
         return None
     last = runs.isel({"limit_state": -1, MOTION: motion}, missing_dims="ignore").squeeze()
     above, below, after = (
@@ -232,47 +236,51 @@ def _falls(
     scales = np.log(runs[SCALE].to_numpy())
     rising = np.argsort(scales)
 
-    def of(scale: float) -> float:  # measures are powers of the scale
+    def intensity_at(scale: float) -> float:  # measures are powers of the scale
         return float(np.exp(np.interp(np.log(scale), scales[rising], np.log(intensities[rising]))))
 
     ranges: list[tuple[float, float]] = []
     start = None if not known.any() or after[known][0] == 1.0 else float(intensities.min())
-    for low, high, falls in zip(below[known], above[known], after[known], strict=True):
-        if falls == 1.0:
-            start = of(high)
+    for low, high, exceeds in zip(below[known], above[known], after[known], strict=True):
+        if exceeds == 1.0:
+            start = intensity_at(high)
         elif start is not None:
-            ranges.append((start, of(low)))
+            ranges.append((start, intensity_at(low)))
             start = None
     return [*ranges, (start, np.inf)] if start is not None else ranges
 
 
-def _line(
-    name: str, along: Array, values: Array, fell: Generic, told: list[tuple[float, float]] | None
-) -> _Line:
+def _response_curve(
+    name: str,
+    intensities: Array,
+    values: Array,
+    overturned: Generic,
+    ranges: list[tuple[float, float]] | None,
+) -> _ResponseCurve:
     """Return the line through runs of ascending intensity, some of which may have overturned."""
-    if not told:  # from the first of neighbours that overturned to the last
-        edges = np.diff(np.concatenate([[False], fell, [False]]).astype(int))
+    if not ranges:  # from the first of neighbours that overturned to the last
+        edges = np.diff(np.concatenate([[False], overturned, [False]]).astype(int))
         firsts, lasts = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) - 1
-        told = [
-            (float(along[i]), float(along[j]) if j + 1 < len(along) else np.inf)
+        ranges = [
+            (float(intensities[i]), float(intensities[j]) if j + 1 < len(intensities) else np.inf)
             for i, j in zip(firsts, lasts, strict=True)
         ]
-    stood = ~fell
-    x, y = along[stood].tolist(), values[stood].tolist()
-    for first, last in told if any(stood) else ():
+    stands = ~overturned
+    x, y = intensities[stands].tolist(), values[stands].tolist()
+    for first, last in ranges if any(stands) else ():
         # constant from the last standing run to the fall, and from its end to the next one
-        before, after = np.searchsorted(along[stood], [first, last], side="right")
+        before, after = np.searchsorted(intensities[stands], [first, last], side="right")
         if before > 0:
             x.append(first)
-            y.append(values[stood][before - 1])
-        if np.isfinite(last) and after < stood.sum():
+            y.append(values[stands][before - 1])
+        if np.isfinite(last) and after < stands.sum():
             x.append(last)
-            y.append(values[stood][after])
+            y.append(values[stands][after])
     order = np.argsort(x, kind="stable")
-    points, rest = np.array(x)[order], np.array(y)[order]
+    points, responses = np.array(x)[order], np.array(y)[order]
     if not len(points):
-        points, rest = along[:1], np.array([np.inf])
-    return _Line(name, along, points, rest, tuple(told))
+        points, responses = intensities[:1], np.array([np.inf])
+    return _ResponseCurve(name, intensities, points, responses, tuple(ranges))
 
 
 def fractiles_of(rows: Array, shares: Array) -> Array:
@@ -284,13 +292,13 @@ def fractiles_of(rows: Array, shares: Array) -> Array:
     return np.sort(rows, axis=0)[np.clip(place, 0, len(rows) - 1)]
 
 
-def _levels(value: Any, values: xr.DataArray, lines: Sequence[_Line]) -> Array:
+def _read_levels(value: Any, values: xr.DataArray, curves: Sequence[_ResponseCurve]) -> Array:
     """Read the levels of the response, or give those from the least to the greatest."""
     if value is None:
-        every = np.concatenate([one.values for one in lines])
+        every = np.concatenate([one.values for one in curves])
         every = every[np.isfinite(every)]
         ends = (float(every.min()), float(every.max())) if len(every) else (0.0, 1.0)
-        return np.linspace(*ends, _POINTS + 1)[1:]  # every motion has reached the least
+        return np.linspace(*ends, _CURVE_POINTS + 1)[1:]  # every motion has reached the least
     unit = str(values.attrs.get("units", "1"))
     if unit == Unit.ONE:
         listed = several(value, owner=_OWNER, name="levels", of="numbers")
@@ -304,30 +312,36 @@ def _levels(value: Any, values: xr.DataArray, lines: Sequence[_Line]) -> Array:
     return found
 
 
-def _sentence(lines: Sequence[_Line], low: float, high: float, measure: xr.DataArray) -> str:
+def _sentence(
+    curves: Sequence[_ResponseCurve], low: float, high: float, measure: xr.DataArray
+) -> str:
     """Return the verdict in words: how many motions overturned, and from where half of them do."""
     falls = [
-        [(max(first, low), last) for first, last in one.falls if last >= low and first <= high]
-        for one in lines
+        [
+            (max(first, low), last)
+            for first, last in one.overturning
+            if last >= low and first <= high
+        ]
+        for one in curves
     ]
     unit = unit_suffix(measure.attrs)
-    motions = f"{len(lines)} motion{'s' if len(lines) > 1 else ''}"
+    motions = f"{len(curves)} motion{'s' if len(curves) > 1 else ''}"
     text = f"Of {motions} {sum(map(bool, falls))} overturned at some "
     text += f"{str(measure.name).replace('_', ' ')} from {low:.4g} to {high:.4g}{unit}"
     # the number of overturned motions grows only where one begins to overturn
     for begin in sorted(first for each in falls for first, _ in each):
         fell = sum(any(first <= begin <= last for first, last in each) for each in falls)
-        if fell >= 0.5 * len(lines):
-            of_them = "half of them" if len(lines) > 1 else "first"
+        if fell >= 0.5 * len(curves):
+            of_them = "half of them" if len(curves) > 1 else "first"
             return f"{text}, {of_them} at {begin:.4g}{unit}."
     return f"{text}."
 
 
-def _left_out(lines: Sequence[_Line], runs: xr.Dataset) -> str:
+def _left_out_sentence(curves: Sequence[_ResponseCurve], runs: xr.Dataset) -> str:
     """Return in words how many runs were left out of the lines."""
     every = overturns(runs).size
-    lacking = every - sum(len(one.along) for one in lines)
-    if not lacking:
+    missing = every - sum(len(one.intensities) for one in curves)
+    if not missing:
         return ""
-    are = "is" if lacking == 1 else "are"
-    return f" {lacking} of {every} runs {are} left out, without a verdict, intensity or response."
+    verb = "is" if missing == 1 else "are"
+    return f" {missing} of {every} runs {verb} left out, without a verdict, intensity or response."

@@ -16,26 +16,26 @@ from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.variable import unit_suffix
 from rockframe.signals.arrays import Array
-from rockframe.studies.fragility.likelihood import log_shares
+from rockframe.studies.fragility.likelihood import log_interval_probability
 from rockframe.studies.fragility.words import in_own_units, measures_of
-from rockframe.studies.intensities import PERIOD_OF, measure_words
-from rockframe.studies.sweeps.axes import free_values
+from rockframe.studies.intensities import PERIOD_ATTRIBUTE, measure_words
+from rockframe.studies.sweeps.axes import read_free_values
 from rockframe.units import POSITIVE, Unit, check_own_unit, to_ratio
 
 _OWNER: Final = "annual_rate"
-_BY_RATE, _BY_PROBABILITY = ("intensity", "rate"), ("intensity", "probability", "years")
-_FINEST: Final = 0.02
+_RATE_COLUMNS, _PROBABILITY_COLUMNS = ("intensity", "rate"), ("intensity", "probability", "years")
+_MAX_STEP: Final = 0.02
 """Longest part of an integral, as a logarithm of intensity; a polynomial fits well within it."""
-_POINTS: Final = 5
+_GAUSS_POINTS: Final = 5
 """Points of Gauss-Legendre integration in each part."""
-_OF_FUNCTIONS: Final = 400
+_FUNCTION_POINTS: Final = 400
 """Number of intensities at which a hazard given as a function is evaluated."""
 _BINS: Final = 40
 """Number of bins of intensity for the contributions to the rate."""
-_SHARES: Final = (0.05, 0.5, 0.95)
-_LACKING: Final = 0.01
+_QUANTILES: Final = (0.05, 0.5, 0.95)
+_WARNING_SHARE: Final = 0.01
 """Share of the rate beyond the hazard curve above which a warning is given [1]."""
-_FAR: Final = 12.0
+_EXTRAPOLATION_RANGE: Final = 12.0
 """Range over which the ends of the hazard curve are extrapolated, as a logarithm of intensity."""
 
 
@@ -50,13 +50,17 @@ class HazardCurve:
         """Return the exponents of the power laws between the points [1]."""
         return -np.diff(np.log(self.rates)) / np.diff(np.log(self.intensities))
 
-    def beyond(self) -> tuple["HazardCurve", "HazardCurve"]:
+    def extrapolations(self) -> tuple["HazardCurve", "HazardCurve"]:
         """Return extrapolations of the curve below and above, by its first and last power law."""
         first, last = (float(one) for one in self.slopes()[[0, -1]])
-        reach = math.exp(_FAR)
+        reach = math.exp(_EXTRAPOLATION_RANGE)
         least, most = float(self.intensities[0]), float(self.intensities[-1])
-        below = np.array([self.rates[0] * math.exp(min(first * _FAR, 600.0)), self.rates[0]])
-        above = np.array([self.rates[-1], self.rates[-1] * math.exp(-min(last * _FAR, 600.0))])
+        below = np.array(
+            [self.rates[0] * math.exp(min(first * _EXTRAPOLATION_RANGE, 600.0)), self.rates[0]]
+        )
+        above = np.array(
+            [self.rates[-1], self.rates[-1] * math.exp(-min(last * _EXTRAPOLATION_RANGE, 600.0))]
+        )
         return (
             HazardCurve(np.array([least / reach, least]), below),
             HazardCurve(np.array([most, most * reach]), above),
@@ -127,13 +131,13 @@ def annual_rate(
     '1.48e-04'
     """
     curves = checked_dataset(fragility, owner=_OWNER)
-    measure = _measure(curves)
+    measure = _intensity_measure(curves)
     curves = in_own_units(curves, measure, owner=_OWNER)
     curve = read_hazard(hazard, curves[measure], between)
     status = curves["fragility_status"]
     dims = tuple(map(str, status.dims))
     places = (dict(zip(status.dims, place, strict=True)) for place in np.ndindex(status.shape))
-    rows = [_of_one(curves.isel(place), curve, measure) for place in places]
+    rows = [_rate_of_state(curves.isel(place), curve, measure) for place in places]
     arrays = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     found = build_dataset(
         {name: each.reshape((*status.shape, *each.shape[1:])) for name, each in arrays.items()},
@@ -141,15 +145,17 @@ def annual_rate(
         source="integral of a fragility over a hazard curve",
     )  # fmt: skip
     labels = {
-        "contributing_intensity": np.sqrt(_edges(curve)[1:] * _edges(curve)[:-1]),
-        "quantile": np.array(_SHARES),
+        "contributing_intensity": np.sqrt(_bin_edges(curve)[1:] * _bin_edges(curve)[:-1]),
+        "quantile": np.array(_QUANTILES),
     }
     kept = [str(name) for name in curves.coords if set(curves[name].dims) <= set(dims)]
     found = with_labels(found, {name: curves[name].variable for name in kept})
     found = with_variables(found, labels)
     for name in ("quantile_intensity", "contributing_intensity"):
         found[name].attrs["units"] = curves[measure].attrs.get("units", "1")
-    attributes = {key: curves.attrs[key] for key in (PERIOD_OF, "model") if key in curves.attrs}
+    attributes = {
+        key: curves.attrs[key] for key in (PERIOD_ATTRIBUTE, "model") if key in curves.attrs
+    }
     found = found.assign_attrs(
         {**attributes, "intensity": measure, "confidence": curves.attrs.get("confidence", math.nan)}
     )
@@ -157,35 +163,37 @@ def annual_rate(
     return found.assign_attrs(verdict=_sentence(found))
 
 
-def read_hazard(value: object, along: xr.DataArray, between: object) -> HazardCurve:
+def read_hazard(value: object, measure: xr.DataArray, between: object) -> HazardCurve:
     """Read a hazard curve over a measure, and refuse one that does not descend."""
-    name, unit = str(along.name), str(along.attrs.get("units", "1"))
+    name, unit = str(measure.name), str(measure.attrs.get("units", "1"))
     if callable(value):
         if between is None:
             msg = f"{_OWNER}: a hazard that is a function needs between, such as ('0.01 g_0', ...)"
             raise ComponentError(msg)
-        ends = _intensities(between, name, unit)
+        ends = _read_intensities(between, name, unit)
         if len(ends) != 2 or not 0.0 < ends[0] < ends[1]:
             msg = f"{_OWNER}: between must be two intensities that rise, got {shown(between)}"
             raise ComponentError(msg)
-        values = np.geomspace(float(ends[0]), float(ends[1]), _OF_FUNCTIONS)
+        values = np.geomspace(float(ends[0]), float(ends[1]), _FUNCTION_POINTS)
         rate = function_of(value, "intensities", owner=_OWNER, name="hazard")
         rates = np.broadcast_to(np.asarray(rate(values), dtype=np.float64), values.shape)
     elif isinstance(value, xr.DataArray) and value.ndim == 1:
         (dim,) = value.dims
         given_unit = str(value[dim].attrs.get("units", "1"))
-        values = _intensities((value[dim].to_numpy(), given_unit), name, unit)
+        values = _read_intensities((value[dim].to_numpy(), given_unit), name, unit)
         rates = value.to_numpy().astype(np.float64)
     elif isinstance(value, Mapping):
         table = cast("Mapping[str, Any]", value)
-        if set(table) not in (set(_BY_RATE), set(_BY_PROBABILITY)):
-            wanted = " or ".join(
-                ", ".join(map(repr, names)) for names in (_BY_RATE, _BY_PROBABILITY)
+        if set(table) not in (set(_RATE_COLUMNS), set(_PROBABILITY_COLUMNS)):
+            expected = " or ".join(
+                ", ".join(map(repr, names)) for names in (_RATE_COLUMNS, _PROBABILITY_COLUMNS)
             )
-            msg = f"{_OWNER}: a table of hazard has {wanted}; found {', '.join(map(shown, table))}"
+            msg = (
+                f"{_OWNER}: a table of hazard has {expected}; found {', '.join(map(shown, table))}"
+            )
             raise ComponentError(msg)
-        values = _intensities(table["intensity"], name, unit)
-        rates = _rates(table)
+        values = _read_intensities(table["intensity"], name, unit)
+        rates = _read_rates(table)
     else:
         msg = f"{_OWNER}: hazard must be a table, a DataArray or a function, got {shown(value)}"
         raise ComponentError(msg)
@@ -195,8 +203,8 @@ def read_hazard(value: object, along: xr.DataArray, between: object) -> HazardCu
             f"{values.size} and {rates.size}"
         )
         raise ComponentError(msg)
-    falls = np.all(np.diff(values) > 0.0) and np.all(np.diff(rates) < 0.0)
-    if not (falls and values[0] > 0.0 and rates[-1] > 0.0 and math.isfinite(rates[0])):
+    is_valid = np.all(np.diff(values) > 0.0) and np.all(np.diff(rates) < 0.0)
+    if not (is_valid and values[0] > 0.0 and rates[-1] > 0.0 and math.isfinite(rates[0])):
         msg = (
             f"{_OWNER}: in a hazard curve intensities above zero rise, and rates above zero fall; "
             f"found {shown(values.tolist())} and {shown(rates.tolist())}"
@@ -205,20 +213,20 @@ def read_hazard(value: object, along: xr.DataArray, between: object) -> HazardCu
     return HazardCurve(values, rates)
 
 
-def _intensities(value: object, name: str, unit: str) -> Array:
+def _read_intensities(value: object, name: str, unit: str) -> Array:
     pair = cast("tuple[Any, ...]", value) if isinstance(value, tuple) else ()
     own_measure = unit == Unit.ONE or unit not in map(str, Unit)
     if len(pair) == 2 and pair[1] == unit and own_measure:
         check_own_unit(pair[0], unit, owner=_OWNER, name="intensity")
-        return np.asarray(free_values(list(pair[0]), "intensity", owner=_OWNER)[0], float)
-    values, own = free_values(value, "intensity", owner=_OWNER, expected=unit)
+        return np.asarray(read_free_values(list(pair[0]), "intensity", owner=_OWNER)[0], float)
+    values, own = read_free_values(value, "intensity", owner=_OWNER, expected=unit)
     if own != unit:
         msg = f"{_OWNER}: {name} is in {unit}, got {shown(value)}"
         raise UnitsError(msg)
     return np.asarray(values, dtype=np.float64)
 
 
-def _rates(table: Mapping[str, Any]) -> Array:
+def _read_rates(table: Mapping[str, Any]) -> Array:
     """Return rates; from probabilities in some years by a Poisson process."""
     if "rate" in table:
         return np.asarray(table["rate"], dtype=np.float64)
@@ -230,7 +238,7 @@ def _rates(table: Mapping[str, Any]) -> Array:
     return -np.log1p(-chance) / years
 
 
-def _measure(dataset: xr.Dataset) -> str:
+def _intensity_measure(dataset: xr.Dataset) -> str:
     """Return the one measure of a fragility."""
     if "exceedance_probability" not in dataset or "fragility_status" not in dataset:
         msg = f"{_OWNER}: found no fragility; expected one of rf.fragility or rf.cloud_analysis"
@@ -242,38 +250,38 @@ def _measure(dataset: xr.Dataset) -> str:
     return several[0]
 
 
-_KNOWN: Final = (FragilityStatus.FITTED, FragilityStatus.SEPARATED)
+_WITH_FRAGILITY: Final = (FragilityStatus.FITTED, FragilityStatus.SEPARATED)
 
 
-def _of_one(one: xr.Dataset, curve: HazardCurve, measure: str) -> dict[str, Any]:
+def _rate_of_state(one: xr.Dataset, curve: HazardCurve, measure: str) -> dict[str, Any]:
     """Return rate and contributions of one limit state; NaN without a fragility."""
     names = (
         "annual_rate", "annual_rate_lower_bound", "annual_rate_upper_bound",
         "unreached_rate_below", "unreached_rate_above", "outside_trials_share",
     )  # fmt: skip
-    if int(one["fragility_status"]) not in _KNOWN:
-        sizes = {"rate_share": _BINS, "quantile_intensity": len(_SHARES)}
+    if int(one["fragility_status"]) not in _WITH_FRAGILITY:
+        sizes = {"rate_share": _BINS, "quantile_intensity": len(_QUANTILES)}
         none = {name: np.full(size, np.nan) for name, size in sizes.items()}
         return dict.fromkeys(names, np.nan) | none
     edges, parts = contributions(one, curve, measure)
     rate = float(parts.sum())
     with np.errstate(invalid="ignore"):  # a rate of zero has no shares
-        summed = np.concatenate([[0.0], np.cumsum(parts)]) / rate
+        cumulative = np.concatenate([[0.0], np.cumsum(parts)]) / rate
     logs = np.log(edges)
     bounds = (
-        _of_curve(one[f"exceedance_probability_{end}_bound"], one[measure], curve)
+        _rate_of_curve(one[f"exceedance_probability_{end}_bound"], one[measure], curve)
         for end in ("lower", "upper")
     )
-    beyond = (float(contributions(one, part, measure)[1].sum()) for part in curve.beyond())
-    least, most = np.interp(np.log(_of_trials(one, measure)), logs, summed)
-    numbers = rate, *bounds, *beyond, 1.0 - (most - least)
+    outside = (float(contributions(one, part, measure)[1].sum()) for part in curve.extrapolations())
+    least, most = np.interp(np.log(_range_of_trials(one, measure)), logs, cumulative)
+    numbers = rate, *bounds, *outside, 1.0 - (most - least)
     return dict(zip(names, numbers, strict=True)) | {
-        "rate_share": np.diff(np.interp(np.log(_edges(curve)), logs, summed)),
-        "quantile_intensity": np.exp(np.interp(_SHARES, summed, logs)),
+        "rate_share": np.diff(np.interp(np.log(_bin_edges(curve)), logs, cumulative)),
+        "quantile_intensity": np.exp(np.interp(_QUANTILES, cumulative, logs)),
     }
 
 
-def _of_trials(one: xr.Dataset, measure: str) -> tuple[float, float]:
+def _range_of_trials(one: xr.Dataset, measure: str) -> tuple[float, float]:
     """Return the least and the greatest intensity of trials.
 
     The curve is drawn over the range of all structures; a stripe may be a group of intensities
@@ -288,22 +296,24 @@ def _of_trials(one: xr.Dataset, measure: str) -> tuple[float, float]:
     )
 
 
-def _edges(curve: HazardCurve) -> Array:
+def _bin_edges(curve: HazardCurve) -> Array:
     return np.geomspace(curve.intensities[0], curve.intensities[-1], _BINS + 1)
 
 
 def contributions(one: xr.Dataset, curve: HazardCurve, measure: str) -> tuple[Array, Array]:
     """Return intensities, and the contributions to the rate between them [1/year]."""
-    edges, rates, slopes = _finely(curve)
+    edges, rates, slopes = _subdivided(curve)
     if "median_intensity" in one and "logistic_slope" not in one:
         median, spread = float(one["median_intensity"]), float(one["dispersion"])
-        return edges, of_lognormal(median, spread, edges, rates, slopes)
-    return edges, _by_points(
-        _interpolated(one["exceedance_probability"], one[measure]), edges, rates, slopes
+        return edges, lognormal_rates(median, spread, edges, rates, slopes)
+    return edges, _integrated(
+        _interpolator(one["exceedance_probability"], one[measure]), edges, rates, slopes
     )
 
 
-def of_lognormal(median: float, spread: float, edges: Array, rates: Array, slopes: Array) -> Array:
+def lognormal_rates(
+    median: float, spread: float, edges: Array, rates: Array, slopes: Array
+) -> Array:
     """Return the rate of a lognormal capacity in parts of a power law, :eq:`eq-rate-of-part`."""
     from scipy.special import ndtr
 
@@ -318,15 +328,15 @@ def of_lognormal(median: float, spread: float, edges: Array, rates: Array, slope
     shift = slopes * spread
     at_median = np.log(rates[:-1]) + slopes * np.log(edges[:-1] / median)
     with np.errstate(invalid="ignore"):  # without a spread eta is infinite
-        within = log_shares(eta[1:] + shift, eta[:-1] + shift)
-    grown = np.exp(at_median + 0.5 * shift**2 + within)
-    return grown - ndtr(eta[1:]) * rates[1:] + ndtr(eta[:-1]) * rates[:-1]
+        within = log_interval_probability(eta[1:] + shift, eta[:-1] + shift)
+    power_law_share = np.exp(at_median + 0.5 * shift**2 + within)
+    return power_law_share - ndtr(eta[1:]) * rates[1:] + ndtr(eta[:-1]) * rates[:-1]
 
 
-def _finely(curve: HazardCurve) -> tuple[Array, Array, Array]:
+def _subdivided(curve: HazardCurve) -> tuple[Array, Array, Array]:
     """Cut the curve into parts; give their ends, the rates there, and the slopes between."""
     logs = np.log(curve.intensities)
-    counts = np.maximum(1, np.ceil(np.diff(logs) / _FINEST)).astype(int)
+    counts = np.maximum(1, np.ceil(np.diff(logs) / _MAX_STEP)).astype(int)
     ends = [
         np.linspace(low, high, count, endpoint=False)
         for low, high, count in zip(logs[:-1], logs[1:], counts, strict=True)
@@ -336,11 +346,11 @@ def _finely(curve: HazardCurve) -> tuple[Array, Array, Array]:
     return np.exp(fine), rates, np.repeat(curve.slopes(), counts)
 
 
-def _by_points(
+def _integrated(
     probability: Callable[[Array], Array], edges: Array, rates: Array, slopes: Array
 ) -> Array:
     """Integrate any probability over the parts of the hazard."""
-    nodes, weights = leggauss(_POINTS)
+    nodes, weights = leggauss(_GAUSS_POINTS)
     logs = np.log(edges)
     half = 0.5 * np.diff(logs)
     at = (0.5 * (logs[1:] + logs[:-1]))[:, None] + half[:, None] * nodes
@@ -348,7 +358,7 @@ def _by_points(
     return half * ((probability(at) * density) @ weights)
 
 
-def _interpolated(curve: xr.DataArray, along: xr.DataArray) -> Callable[[Array], Array]:
+def _interpolator(curve: xr.DataArray, along: xr.DataArray) -> Callable[[Array], Array]:
     """Return the probability by log intensity: linear in normal scores, extrapolated."""
     from scipy.special import ndtr, ndtri
 
@@ -367,29 +377,29 @@ def _interpolated(curve: xr.DataArray, along: xr.DataArray) -> Callable[[Array],
     return at
 
 
-def _of_curve(probability: xr.DataArray, along: xr.DataArray, curve: HazardCurve) -> float:
+def _rate_of_curve(probability: xr.DataArray, along: xr.DataArray, curve: HazardCurve) -> float:
     if np.isnan(probability.to_numpy()).any():
         return math.nan
-    return float(_by_points(_interpolated(probability, along), *_finely(curve)).sum())
+    return float(_integrated(_interpolator(probability, along), *_subdivided(curve)).sum())
 
 
 def _warn_beyond_curve(found: xr.Dataset, curve: HazardCurve) -> None:
     """Warn if a part of the rate lies beyond the ends of the hazard curve."""
     unit = unit_suffix(found["quantile_intensity"].attrs)
     ends = {"below": curve.intensities[0], "above": curve.intensities[-1]}
-    lacking: list[str] = []
+    missing: list[str] = []
     for side, end in ends.items():
         with np.errstate(invalid="ignore", divide="ignore"):
             rate = found["annual_rate"] + found[f"unreached_rate_{side}"]
             share = float((found[f"unreached_rate_{side}"] / rate).max(skipna=True))
-        if share > _LACKING:
-            lacking.append(
+        if share > _WARNING_SHARE:
+            missing.append(
                 f"{side} {end:.4g}{unit}, where it ends, {100.0 * share:.2g} % of the rate"
             )
-    if lacking:
+    if missing:
         warn(
             f"{_OWNER}: the hazard curve does not reach where the limit states are exceeded: if it "
-            f"goes on as it ends, there lie {' and '.join(lacking)}; give a longer one",
+            f"goes on as it ends, there lie {' and '.join(missing)}; give a longer one",
             ModelWarning,
         )
 
@@ -402,7 +412,7 @@ def _sentence(found: xr.Dataset) -> str:
     known = rates[~np.isnan(rates)]
     if not len(known):
         return f"There is no fragility against {state}, and so no rate."
-    measure = measure_words(str(found.attrs["intensity"]), found.attrs.get(PERIOD_OF))
+    measure = measure_words(str(found.attrs["intensity"]), found.attrs.get(PERIOD_ATTRIBUTE))
     unit = unit_suffix(found["quantile_intensity"].attrs)
     if len(known) > 1:
         return f"Annual rate of {state}: from {known.min():.3g} to {known.max():.3g}."
@@ -418,6 +428,6 @@ def _sentence(found: xr.Dataset) -> str:
     text = f"Annual rate of {state}: {known[0]:.3g}, a return period of {years:.12g} years; "
     text += f"nine tenths of it come from {measure} between {low:.3g} and {high:.3g}{unit}"
     outside = float(last["outside_trials_share"].max())
-    if outside > _LACKING:
+    if outside > _WARNING_SHARE:
         text += f", {100.0 * outside:.2g} % from intensities beyond those of the runs"
     return f"{text}."

@@ -18,9 +18,14 @@ from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import OSCILLATOR
 from rockframe.simulation.system import System
-from rockframe.studies.sweeps.axes import in_unit
+from rockframe.studies.sweeps.axes import labels_in_unit
 from rockframe.studies.sweeps.case import store_of, unscaled_motions
-from rockframe.studies.sweeps.motions import ABBREVIATIONS, SPECTRAL, motion_of_case, named_motions
+from rockframe.studies.sweeps.motions import (
+    ABBREVIATIONS,
+    SPECTRAL_ACCELERATION,
+    motion_of_case,
+    named_motions,
+)
 from rockframe.units import (
     ACCELERATION,
     PERIOD,
@@ -34,17 +39,17 @@ from rockframe.units import (
 
 PeriodLike: TypeAlias = QuantityLike | tuple[Any, str] | Sequence[QuantityLike]
 
-RATIO: Final = "velocity_to_acceleration_ratio"
+VELOCITY_ACCELERATION_RATIO: Final = "velocity_to_acceleration_ratio"
 AVERAGE: Final = "average_spectral_acceleration"
-SHORT: Final = {
+MEASURE_ABBREVIATIONS: Final = {
     **ABBREVIATIONS,
     "PGD": "peak_ground_displacement",
     "CAV": "cumulative_absolute_velocity",
-    "PGV/PGA": RATIO,
+    "PGV/PGA": VELOCITY_ACCELERATION_RATIO,
     "Sa_avg": AVERAGE,
 }
 """Usual abbreviations of measures, and their names."""
-POWERS: Final = {
+SCALE_EXPONENTS: Final = {
     "peak_ground_acceleration": 1,
     "peak_ground_velocity": 1,
     "peak_ground_displacement": 1,
@@ -55,39 +60,39 @@ POWERS: Final = {
     "predominant_velocity_period": 0,
     "significant_duration_5_75": 0,
     "significant_duration_5_95": 0,
-    RATIO: 0,
+    VELOCITY_ACCELERATION_RATIO: 0,
     "spectral_displacement": 1,
     "spectral_velocity": 1,
     "absolute_spectral_acceleration": 1,
     "pseudo_spectral_velocity": 1,
-    SPECTRAL: 1,
+    SPECTRAL_ACCELERATION: 1,
     AVERAGE: 1,
 }
 """Powers of the scale of the motion with which measures grow."""
-_SPELLED: Final = {short.casefold(): name for short, name in SHORT.items()} | {
-    name.replace("_", " "): name for name in POWERS
+_SPELLINGS: Final = {short.casefold(): name for short, name in MEASURE_ABBREVIATIONS.items()} | {
+    name.replace("_", " "): name for name in SCALE_EXPONENTS
 }
 """Names of measures by their accepted spellings, in small letters."""
-PERIOD_OF: Final = "intensity_period"
+PERIOD_ATTRIBUTE: Final = "intensity_period"
 """Attribute that keeps the period of a spectral intensity, or those of an average [s]."""
 Periods: TypeAlias = float | tuple[float, ...] | None
 """Period of an oscillator, or periods over which spectral values are averaged [s]."""
-OSCILLATORS: Final = tuple(name for name in POWERS if SCHEMA[name].dims == OSCILLATOR)
+OSCILLATORS: Final = tuple(name for name in SCALE_EXPONENTS if SCHEMA[name].dims == OSCILLATOR)
 """Measures that need the period of an oscillator."""
-_SPECTRAL: Final = (*OSCILLATORS, AVERAGE)
+_PERIOD_DEPENDENT: Final = (*OSCILLATORS, AVERAGE)
 """Measures that depend on a period, or on several."""
 
 
-def spelled(value: object) -> object:
+def measure_name(value: object) -> object:
     """Return the name of a measure for an abbreviation, or another spelling."""
     written = " ".join(value.split()).casefold() if isinstance(value, str) else ""
-    return _SPELLED.get(written, value)
+    return _SPELLINGS.get(written, value)
 
 
 def measure_words(name: str, period: Any) -> str:
     """Write the name of a measure in words, for a spectral value with its period or periods [s]."""
     words = name.replace("_", " ")
-    if period is None or name not in _SPECTRAL:
+    if period is None or name not in _PERIOD_DEPENDENT:
         return words
     periods = np.atleast_1d(period)
     if name == AVERAGE:
@@ -95,16 +100,16 @@ def measure_words(name: str, period: Any) -> str:
     return f"{words} at {periods[0]:.6g} s"
 
 
-def of_study(name: str, period: Periods) -> dict[str, Any]:
+def measure_attributes(name: str, period: Periods) -> dict[str, Any]:
     """Return the attributes in which a dataset records its measure."""
-    return {"intensity": name} | of_period(period)
+    return {"intensity": name} | recorded_period(period)
 
 
-def of_period(period: Periods) -> dict[str, Any]:
+def recorded_period(period: Periods) -> dict[str, Any]:
     """Return the attribute in which a dataset records period or periods of a measure."""
     if period is None:
         return {}
-    return {PERIOD_OF: np.array(period) if isinstance(period, tuple) else period}
+    return {PERIOD_ATTRIBUTE: np.array(period) if isinstance(period, tuple) else period}
 
 
 @dataclass(frozen=True)
@@ -117,9 +122,11 @@ class Intensity:
     @classmethod
     def read(cls, value: object, period: PeriodLike | None, *, owner: str) -> "Intensity":
         """Read the arguments ``intensity`` and ``period``."""
-        value = spelled(value)
-        name = one_of_names(value, [*POWERS, *SHORT], owner=owner, name="intensity")
-        if name not in _SPECTRAL:
+        value = measure_name(value)
+        name = one_of_names(
+            value, [*SCALE_EXPONENTS, *MEASURE_ABBREVIATIONS], owner=owner, name="intensity"
+        )
+        if name not in _PERIOD_DEPENDENT:
             return cls(name, None)
         several = name == AVERAGE
         if period is None:
@@ -136,14 +143,14 @@ class Intensity:
             raise ComponentError(msg)
         return cls(name, periods)
 
-    def of(self, motion: GroundMotion) -> float:
+    def compute(self, motion: GroundMotion) -> float:
         """Return the measure of a motion, in SI units."""
         if isinstance(self.period, tuple):
             return float(average_spectral_acceleration(motion, (self.period, "s"))[self.name])
         if self.period is not None:
             found = response_spectrum(motion, [quantity(self.period, PERIOD)])[self.name]
             return float(found.squeeze())
-        if self.name == RATIO:
+        if self.name == VELOCITY_ACCELERATION_RATIO:
             names = "peak_ground_velocity", "peak_ground_acceleration"
             velocity, acceleration = (measure_of_ground(motion, one) for one in names)
             return velocity / acceleration
@@ -154,7 +161,7 @@ class Intensity:
         return SCHEMA[self.name].attributes()
 
 
-def measure_in(
+def measure_of_runs(
     runs: xr.Dataset, value: object, period: PeriodLike | None, motions: object, *, owner: str
 ) -> xr.DataArray:
     """Return a measure of the motion of each case: a known one, a column, or given numbers.
@@ -164,27 +171,27 @@ def measure_in(
     dims = runs["status"].dims
     if motions is not None:
         named_motions(motions)  # also where they are not needed
-    value = named_column(runs, value)
-    named = str(spelled(value))
+    value = column_of_runs(runs, value)
+    named = str(measure_name(value))
     known = isinstance(value, str) and named in runs.variables
-    if known and (named not in _SPECTRAL or _same_period(runs, named, period, owner)):
+    if known and (named not in _PERIOD_DEPENDENT or _has_period(runs, named, period, owner)):
         return runs[named]
     if isinstance(value, xr.DataArray) and value.dtype.kind not in "biuf":
         msg = f"{owner}: {value.name!r} has no numbers, but words or objects; it is no intensity"
         raise ComponentError(msg)
     if not isinstance(value, xr.DataArray):
         which = Intensity.read(value, period, owner=owner)
-        return intensity_in(runs, which, motions, owner=owner)
+        return intensity_of_runs(runs, which, motions, owner=owner)
     if value.name is None or not set(value.dims) <= set(dims):
         msg = (
             f"{owner}: an intensity of one's own needs a name and dimensions among "
             f"{', '.join(map(str, dims))}, got {value.name!r} over {value.dims}"
         )
         raise ComponentError(msg)
-    return _of_these_runs(runs, value, owner)
+    return _aligned_with_runs(runs, value, owner)
 
 
-def _of_these_runs(runs: xr.Dataset, array: xr.DataArray, owner: str) -> xr.DataArray:
+def _aligned_with_runs(runs: xr.Dataset, array: xr.DataArray, owner: str) -> xr.DataArray:
     """Return the user's numbers in the order of the runs' labels; NaN where one is missing."""
     for dim in array.dims:
         twice = dim in array.indexes and not array.indexes[dim].is_unique
@@ -202,46 +209,50 @@ def _of_these_runs(runs: xr.Dataset, array: xr.DataArray, owner: str) -> xr.Data
     return array
 
 
-def named_column(runs: xr.Dataset, value: object) -> object:
+def column_of_runs(runs: xr.Dataset, value: object) -> object:
     """Return a column of the runs by its name, unless a known measure has this name."""
-    known = spelled(value)
-    if isinstance(known, str) and known not in POWERS and known in runs.variables:
+    known = measure_name(value)
+    if isinstance(known, str) and known not in SCALE_EXPONENTS and known in runs.variables:
         return runs[known]
     return value
 
 
-def _same_period(runs: xr.Dataset, name: str, period: PeriodLike | None, owner: str) -> bool:
+def _has_period(runs: xr.Dataset, name: str, period: PeriodLike | None, owner: str) -> bool:
     """Return whether the runs have a spectral measure of the requested period."""
-    known = runs.attrs.get(PERIOD_OF, runs.attrs.get("spectral_period"))
+    known = runs.attrs.get(PERIOD_ATTRIBUTE, runs.attrs.get("spectral_period"))
     if period is None:
         return True
-    wanted: Any = Intensity.read(name, period, owner=owner).period
-    return known is not None and np.array_equal(np.atleast_1d(known), np.atleast_1d(wanted))
+    requested: Any = Intensity.read(name, period, owner=owner).period
+    return known is not None and np.array_equal(np.atleast_1d(known), np.atleast_1d(requested))
 
 
 def period_attribute(
     runs: xr.Dataset | None, measures: Iterable[object], period: PeriodLike | None, *, owner: str
 ) -> dict[str, Any]:
     """Return the period of a spectral measure, or those of an average, as an attribute."""
-    named = [spelled(one) for one in measures if not isinstance(one, xr.DataArray)]
+    named = [measure_name(one) for one in measures if not isinstance(one, xr.DataArray)]
     if period is not None:
-        several = AVERAGE if AVERAGE in named else SPECTRAL
-        return of_period(Intensity.read(several, period, owner=owner).period)
-    if runs is None or PERIOD_OF not in runs.attrs or not any(one in _SPECTRAL for one in named):
+        several = AVERAGE if AVERAGE in named else SPECTRAL_ACCELERATION
+        return recorded_period(Intensity.read(several, period, owner=owner).period)
+    if (
+        runs is None
+        or PERIOD_ATTRIBUTE not in runs.attrs
+        or not any(one in _PERIOD_DEPENDENT for one in named)
+    ):
         return {}
-    return {PERIOD_OF: runs.attrs[PERIOD_OF]}
+    return {PERIOD_ATTRIBUTE: runs.attrs[PERIOD_ATTRIBUTE]}
 
 
-def intensity_in(
+def intensity_of_runs(
     runs: xr.Dataset, intensity: Intensity, motions: object, *, owner: str
 ) -> xr.DataArray:
     """Return an intensity measure of the motion of each case of a sweep."""
     if intensity.name in runs.coords and intensity.period is None:
         return runs[intensity.name]
     before = motions_of_runs(runs, motions, owner=owner)
-    factor = _factors(runs, before, owner)
-    measured = of_motions(runs, before, intensity.of)
-    found = measured * np.abs(factor) ** POWERS[intensity.name]
+    factor = _scale_factors(runs, before, owner)
+    measured = map_motions(runs, before, intensity.compute)
+    found = measured * np.abs(factor) ** SCALE_EXPONENTS[intensity.name]
     return found.assign_attrs(intensity.attributes()).rename(intensity.name)
 
 
@@ -269,7 +280,7 @@ def motions_of_runs(runs: xr.Dataset, value: object, *, owner: str) -> dict[str,
     return found
 
 
-def of_motions(
+def map_motions(
     runs: xr.Dataset, motions: Mapping[str, GroundMotion], value: Callable[[GroundMotion], float]
 ) -> xr.DataArray:
     """Return a number of each case by a function of its motion."""
@@ -279,26 +290,28 @@ def of_motions(
     return xr.DataArray(values.reshape(names.shape), dims=names.dims, coords=names.coords)
 
 
-def _factors(runs: xr.Dataset, motions: Mapping[str, GroundMotion], owner: str) -> xr.DataArray:
+def _scale_factors(
+    runs: xr.Dataset, motions: Mapping[str, GroundMotion], owner: str
+) -> xr.DataArray:
     """Return the factor by which the motion of each case was multiplied."""
     axes = [one for one in json.loads(runs.attrs["axes_json"]) if one["changes"] == MOTION]
     if not axes:
         return xr.DataArray(1.0)
     name = axes[0]["name"]
-    labels = in_unit(runs[name], axes[0]["unit"], owner=owner)
+    labels = labels_in_unit(runs[name], axes[0]["unit"], owner=owner)
     if name == "scale":
         return labels
 
-    def of_unit(motion: GroundMotion) -> float:
+    def unit_factor(motion: GroundMotion) -> float:
         """Return the factor that reaches the unit of the target."""
         one = motion_of_case(motion, name, 1.0, runs.attrs.get("spectral_period"))
         at = int(np.argmax(np.abs(motion.si.horizontal.samples)))
         return abs(float(one.si.horizontal.samples[at] / motion.si.horizontal.samples[at]))
 
-    return labels * of_motions(runs, motions, of_unit)
+    return labels * map_motions(runs, motions, unit_factor)
 
 
-_OF_THE_BLOCK: Final = ("overturning_angle", "uplift_acceleration")
+_BLOCK_VARIABLES: Final = ("overturning_angle", "uplift_acceleration")
 """Variables among the measures that depend on the block alone."""
 
 
@@ -316,7 +329,7 @@ class ScaledIntensity:
         owner: str,
     ) -> None:
         self._motion, self._system = motion, system
-        name = spelled(text(name, owner=owner, name="intensity"))
+        name = measure_name(text(name, owner=owner, name="intensity"))
         self._damping = to_ratio(damping_ratio, owner=owner, name="damping_ratio")
         spectral = name in OSCILLATORS
         if spectral != (period is not None):
@@ -324,14 +337,14 @@ class ScaledIntensity:
             msg = f"{owner}: intensity {shown(name)} {needed}"
             raise ComponentError(msg)
         self.period = None if period is None else to_si(period, PERIOD, owner=owner, name="period")
-        known = sorted({*map(str, self._measures(motion)), *OSCILLATORS} - {*_OF_THE_BLOCK})
+        known = sorted({*map(str, self._measures(motion)), *OSCILLATORS} - {*_BLOCK_VARIABLES})
         if name not in known:
-            near = nearest(name, [*SHORT, *known])
+            near = nearest(name, [*MEASURE_ABBREVIATIONS, *known])
             msg = f"{owner}: intensity must be one of {', '.join(known)}, got {shown(name)}{near}"
             raise ComponentError(msg)
         self.name = str(name)
 
-    def at(self, scale: float) -> xr.DataArray:
+    def at_scale(self, scale: float) -> xr.DataArray:
         """Return the measure of the scaled motion; NaN unless the scale is above zero."""
         motion = self._motion.scaled(scale) if scale > 0.0 else self._motion
         found = self._measures(motion)[self.name].isel(dict.fromkeys(SCHEMA[self.name].dims, 0))

@@ -17,24 +17,24 @@ from rockframe.results.variables.bodies import BODIES, RESTRAINERS
 from rockframe.results.variables.requests import FORCE_SCALARS, POINT_PEAKS
 from rockframe.results.variables.variable import TIME, unit_suffix
 from rockframe.studies.confidence import SHARE
-from rockframe.studies.sweeps.axes import in_unit, in_units_of_schema
+from rockframe.studies.sweeps.axes import in_units_of_schema, labels_in_unit
 from rockframe.units import NOT_NEGATIVE, Condition, Measure, Unit, to_ratio, to_si
 
 UPLIFT: Final = "uplift"
 OVERTURNING: Final = "overturning"
-STATES: Final = "limits_json"
+LIMITS_ATTRIBUTE: Final = "limits_json"
 """Attribute by which a dynamic analysis keeps its limit states."""
-_OF_SAMPLES: Final = {"residual_displacement", *(row.name for row in FORCE_SCALARS)} | {
+_SAMPLED_SCALARS: Final = {"residual_displacement", *(row.name for row in FORCE_SCALARS)} | {
     row.name for row in (*BODIES, *RESTRAINERS) if row.name.startswith("peak_")
 }
 """Scalars of runs that were evaluated along their steps, as runs with histories are."""
-_AT_POINTS: Final = {row.name for row in POINT_PEAKS}
-_UP_TO_OVERTURNING: Final = {
-    name for name in (*_OF_SAMPLES, *_AT_POINTS) if name.startswith("peak_")
+_POINT_PEAKS: Final = {row.name for row in POINT_PEAKS}
+_PEAKS_UP_TO_OVERTURNING: Final = {
+    name for name in (*_SAMPLED_SCALARS, *_POINT_PEAKS) if name.startswith("peak_")
 }
 """Scalars that describe a run only up to the overturning angle."""
-_NEEDED: Final = ("status", "peak_relative_rotation", "first_uplift_time", "overturned")
-_TOLD: Final = ("run_json", "axes_json", "motions_json", "motion_names", "study_sha256")
+_NEEDED_VARIABLES: Final = ("status", "peak_relative_rotation", "first_uplift_time", "overturned")
+_SWEEP_ATTRIBUTES: Final = ("run_json", "axes_json", "motions_json", "motion_names", "study_sha256")
 """Attributes of a sweep."""
 
 
@@ -69,11 +69,11 @@ def limit_states(
     found: dict[str, LimitState] = {}
     for one in listed_limits(items, owner=owner, name=name):
         if isinstance(one, tuple):
-            state = _of_variable(cast("tuple[Any, ...]", one), owner)
+            state = _variable_limit(cast("tuple[Any, ...]", one), owner)
         elif isinstance(one, str) and one in (UPLIFT, OVERTURNING):
             state = LimitState(0.0 if one == UPLIFT else 1.0)
         else:
-            state = LimitState(_share(one, owner, name))
+            state = LimitState(_rotation_limit(one, owner, name))
         found.setdefault(state.name, state)
     found.pop(OVERTURNING, None)
     return (*found.values(), LimitState(1.0))
@@ -86,7 +86,7 @@ def listed_limits(value: object, *, owner: str, name: str = "limits") -> list[An
     return several(value, owner=owner, name=name, of="limit states")
 
 
-def _share(value: Any, owner: str, name: str) -> float:
+def _rotation_limit(value: Any, owner: str, name: str) -> float:
     """Read a rotation over the overturning angle."""
     if isinstance(value, str) and not any(letter.isdigit() for letter in value):
         words = (
@@ -98,7 +98,7 @@ def _share(value: Any, owner: str, name: str) -> float:
     return to_ratio(value, owner=owner, name=name, condition=SHARE, example="0.5")
 
 
-def _of_variable(items: tuple[Any, ...], owner: str) -> LimitState:
+def _variable_limit(items: tuple[Any, ...], owner: str) -> LimitState:
     """Read a limit state on a scalar of runs: its name, its limit, and the point or body."""
     name, value, label = (*items, None, None)[:3] if len(items) in (2, 3) else ("", None, None)
     if isinstance(name, str) and name and name not in SCHEMA:
@@ -149,15 +149,15 @@ def states_json(states: Sequence[LimitState]) -> str:
 def states_of(analysis: xr.Dataset) -> tuple[LimitState, ...]:
     """Return the limit states that a dynamic analysis, or a part of it, still has."""
     names = np.atleast_1d(analysis["limit_state"].to_numpy()).tolist()
-    every = [LimitState(*one) for one in json.loads(analysis.attrs[STATES])]
+    every = [LimitState(*one) for one in json.loads(analysis.attrs[LIMITS_ATTRIBUTE])]
     return tuple(state for state in every if state.name in names)
 
 
 def check_runs(value: object, *, owner: str) -> xr.Dataset:
     """Refuse anything but the result of a sweep; give its variables in the units of the schema."""
     runs = checked_dataset(value, owner=owner)
-    missing = [name for name in _NEEDED if name not in runs]
-    if missing or not set(_TOLD) <= set(runs.attrs):
+    missing = [name for name in _NEEDED_VARIABLES if name not in runs]
+    if missing or not set(_SWEEP_ATTRIBUTES) <= set(runs.attrs):
         what = f"a dataset without {', '.join(missing)}" if missing else "joined runs"
         what = what if missing or "end_state" not in runs.attrs else "a single run"
         msg = (
@@ -170,7 +170,7 @@ def check_runs(value: object, *, owner: str) -> xr.Dataset:
         msg = f"{owner}: found means of runs, which have no verdict; expected the runs themselves"
         raise SchemaError(msg)
     if "scale" in runs.coords and "capacity_scale" in runs:  # which is in multiples of the motion
-        scales = in_unit(runs["scale"], Unit.ONE, owner=owner)
+        scales = labels_in_unit(runs["scale"], Unit.ONE, owner=owner)
         runs = runs.assign_coords(scale=scales.variable)
     return in_units_of_schema(runs, owner=owner)
 
@@ -180,27 +180,27 @@ def exceeds(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
     overturned = overturns(runs)
     if state.rotation == 1.0:
         return overturned
-    known, fell = runs["peak_relative_rotation"].notnull(), _beyond_all(runs, state)
+    known, certain = runs["peak_relative_rotation"].notnull(), _exceeds_any_value(runs, state)
     if state.variable:
         values = scalar_of(runs, state.variable, state.label, owner="limits")
         beyond = values.notnull()
         if not math.isnan(state.value):
             beyond, known = abs(values) >= state.value, known & beyond
-        known = known | fell
+        known = known | certain
     elif state.rotation == 0.0:
         beyond = runs["first_uplift_time"].notnull()
     else:
         beyond = runs["peak_relative_rotation"] >= state.rotation
-    return (beyond | fell).astype(float).where(known)
+    return (beyond | certain).astype(float).where(known)
 
 
-def _beyond_all(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
+def _exceeds_any_value(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
     """Return which runs exceed a limit state for any value of its variable.
 
     A block that passed the overturning angle and stands in the end has not overturned; but scalars
     up to the overturning angle say nothing about later motion.
     """
-    followed = state.variable and state.variable not in _UP_TO_OVERTURNING
+    followed = state.variable and state.variable not in _PEAKS_UP_TO_OVERTURNING
     return (overturns(runs) if followed else runs["overturned"]) == 1
 
 
@@ -209,40 +209,42 @@ def demands(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
 
     A run exceeds from 1 on; for overturning, where it is infinite. NaN without a verdict.
     """
-    beyond = exceeds(runs, state)
-    fell = beyond if state.rotation == 1.0 else _beyond_all(runs, state)
+    exceeded = exceeds(runs, state)
+    certain = exceeded if state.rotation == 1.0 else _exceeds_any_value(runs, state)
     if state.variable:
-        size = abs(scalar_of(runs, state.variable, state.label, owner="limits")) / state.value
+        ratio = abs(scalar_of(runs, state.variable, state.label, owner="limits")) / state.value
     else:
-        size = runs["peak_relative_rotation"] / state.rotation
-    return size.where(fell != 1, np.inf).where(beyond.notnull())
+        ratio = runs["peak_relative_rotation"] / state.rotation
+    return ratio.where(certain != 1, np.inf).where(exceeded.notnull())
 
 
 def scalar_of(runs: xr.Dataset, name: str, label: object = None, *, owner: str) -> xr.DataArray:
     """Return a scalar of runs, for one point, body or restrainer if it has several."""
     known = isinstance(cast("Any", name), str)
     if not known or name not in runs or runs[name].dtype.kind not in "biuf":
-        msg = f"{owner}: the runs have no {shown(name)}{_instead(runs, name) if known else ''}"
+        msg = f"{owner}: the runs have no {shown(name)}{_scalar_hint(runs, name) if known else ''}"
         raise SchemaError(msg)
     values = runs[name]
-    beside = [dim for dim in values.dims if dim not in runs["status"].dims]
-    labels = values[beside[0]].to_numpy().astype(str).tolist() if beside else [""]
-    wanted = "" if label is None else str(label)
-    wanted = labels[0] if not wanted and len(labels) == 1 else wanted
-    if len(beside) > 1 or wanted not in labels:
+    extra_dims = [dim for dim in values.dims if dim not in runs["status"].dims]
+    labels = values[extra_dims[0]].to_numpy().astype(str).tolist() if extra_dims else [""]
+    requested = "" if label is None else str(label)
+    requested = labels[0] if not requested and len(labels) == 1 else requested
+    if len(extra_dims) > 1 or requested not in labels:
         msg = (
-            f"{owner}: {name} is of {' and '.join(map(str, beside)) or 'the whole'}; "
-            f"give one of {', '.join(map(repr, labels))}, got {wanted!r}"
+            f"{owner}: {name} is of {' and '.join(map(str, extra_dims)) or 'the whole'}; "
+            f"give one of {', '.join(map(repr, labels))}, got {requested!r}"
         )
         raise ComponentError(msg)
-    return values.isel({beside[0]: labels.index(wanted)}, drop=True) if beside else values
+    return (
+        values.isel({extra_dims[0]: labels.index(requested)}, drop=True) if extra_dims else values
+    )
 
 
-def _instead(runs: xr.Dataset, name: str) -> str:
+def _scalar_hint(runs: xr.Dataset, name: str) -> str:
     """Say which sweep has a scalar; or list the scalars."""
-    if name in _AT_POINTS:
+    if name in _POINT_PEAKS:
         return "; a sweep has it with points={...}"
-    if name in _OF_SAMPLES:
+    if name in _SAMPLED_SCALARS:
         return (
             "; a sweep has it with points={...}, which names points of the body, or with "
             "outputs=[], and then the histories of all cases, too"

@@ -13,7 +13,7 @@ from rockframe.errors import RockframeError, StudyError, nearest, shown
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import with_labels
 from rockframe.results.variables.studies import CASE
-from rockframe.studies.sweeps.arguments import OF_A_SWEEP
+from rockframe.studies.sweeps.arguments import SWEEP_ARGUMENT_NAMES
 from rockframe.studies.sweeps.axes import Axis, Changes, faults_of_values
 from rockframe.studies.sweeps.scenes import SweptScene
 from rockframe.units import Unit
@@ -50,12 +50,12 @@ class LineAxes:
             axis.name: xr.Variable(axis.name, axis.values, axis.attributes()) for axis in self.axes
         }
 
-    def arranged(self, runs: xr.Dataset) -> xr.Dataset:
+    def unstack(self, runs: xr.Dataset) -> xr.Dataset:
         """Return the runs with the dimensions of the axes instead of the rows of the table."""
-        return over_rows(runs, self.sizes, self.labels) if self.axes else runs
+        return unstack_cases(runs, self.sizes, self.labels) if self.axes else runs
 
 
-def over_rows(
+def unstack_cases(
     runs: xr.Dataset, sizes: Mapping[str, int], labels: Mapping[str, xr.Variable]
 ) -> xr.Dataset:
     """Return a dataset with several dimensions in place of the rows of a table."""
@@ -76,10 +76,10 @@ def read_line_axes(
     scene: SweptScene,
     *,
     owner: str,
-    others: Iterable[str],
-    beside: Sequence[Axis] = (),
+    argument_names: Iterable[str],
+    own_axes: Sequence[Axis] = (),
 ) -> LineAxes:
-    """Read the axes of an analysis; `others` are names of its arguments, `beside` its own axes."""
+    """Read the axes of an analysis; argument names are for proposals."""
     if value is None:
         return LineAxes()
     if not isinstance(value, Mapping):
@@ -87,20 +87,20 @@ def read_line_axes(
         raise StudyError(msg)
     found, faults = list[Axis](), list[str]()
     for name, values in cast("Mapping[Any, Any]", value).items():
-        if name in OF_A_SWEEP:
+        if name in SWEEP_ARGUMENT_NAMES:
             faults.append(f"{owner} takes no {name!r}, as rf.sweep does")
             continue
         try:
             found.append(scene.axis(str(name), values))
         except RockframeError as problem:
             reasons = problem.faults if isinstance(problem, StudyError) else (str(problem),)
-            argument = nearest(name, others)
+            argument = nearest(name, argument_names)
             faults += [one if argument in one else f"{one}{argument}" for one in reasons]
     for axis in found:
         if axis.changes is Changes.MOTION:
             faults.append(f"axis {axis.name!r} scales the motion, as scale does; give scale alone")
         faults += faults_of_values(axis.name, axis.values)
-    faults += scene.faults([*beside, *found])
+    faults += scene.faults([*own_axes, *found])
     if faults:
         raise StudyError(*faults)
     return LineAxes(tuple(found))

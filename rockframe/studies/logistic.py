@@ -18,19 +18,19 @@ class Logistic:
     coefficients: Array  # intercept and slope; of a step the logarithm in the middle of the gap
     covariance: Array
 
-    def at(self, logs: Array) -> Array:
+    def probability(self, logs: Array) -> Array:
         """Return the probability at logarithms of intensities."""
-        return self._of(self.coefficients, logs)
+        return self._evaluate(self.coefficients, logs)
 
-    def drawn(self, logs: Array, rng: np.random.Generator, count: int) -> Array:
+    def draw_curves(self, logs: Array, rng: np.random.Generator, count: int) -> Array:
         """Draw curves from the posterior of the coefficients; shape (count, intensities)."""
         if self.status is not FragilityStatus.FITTED:
-            return np.broadcast_to(self.at(logs), (count, len(logs)))
+            return np.broadcast_to(self.probability(logs), (count, len(logs)))
         root = np.linalg.cholesky(self.covariance)
         drawn = self.coefficients + rng.standard_normal((count, 2)) @ root.T
-        return self._of(drawn.T[:, :, None], logs)
+        return self._evaluate(drawn.T[:, :, None], logs)
 
-    def _of(self, coefficients: Array, logs: Array) -> Array:
+    def _evaluate(self, coefficients: Array, logs: Array) -> Array:
         from scipy.special import expit
 
         if self.status is FragilityStatus.NONE_EXCEEDED:
@@ -47,21 +47,21 @@ def fit_logistic(logs: Array, verdict: Generic) -> Logistic:
     from scipy import optimize
     from scipy.special import expit, log_expit
 
-    nothing = np.full(2, np.nan), np.full((2, 2), np.nan)
-    over = verdict.astype(bool)
-    if not over.any():
-        return Logistic(FragilityStatus.NONE_EXCEEDED, *nothing)
-    if over.all():
-        return Logistic(FragilityStatus.ALL_EXCEEDED, *nothing)
-    least, most = float(logs[over].min()), float(logs[~over].max())
+    undefined = np.full(2, np.nan), np.full((2, 2), np.nan)
+    exceeded = verdict.astype(bool)
+    if not exceeded.any():
+        return Logistic(FragilityStatus.NONE_EXCEEDED, *undefined)
+    if exceeded.all():
+        return Logistic(FragilityStatus.ALL_EXCEEDED, *undefined)
+    least, most = float(logs[exceeded].min()), float(logs[~exceeded].max())
     if most <= least:
         middle = np.array([0.5 * (most + least), np.inf])
-        return Logistic(FragilityStatus.SEPARATED, middle, nothing[1])
-    if float(logs[over].max()) <= float(logs[~over].min()):
-        return Logistic(FragilityStatus.NOT_RISING, *nothing)
+        return Logistic(FragilityStatus.SEPARATED, middle, undefined[1])
+    if float(logs[exceeded].max()) <= float(logs[~exceeded].min()):
+        return Logistic(FragilityStatus.NOT_RISING, *undefined)
     middle, spread = float(logs.mean()), float(logs.std())
     design = np.column_stack([np.ones(len(logs)), (logs - middle) / spread])
-    sign = np.where(over, 1.0, -1.0)
+    sign = np.where(exceeded, 1.0, -1.0)
 
     def value(at: Array) -> float:
         return -float(log_expit(sign * (design @ at)).sum())
@@ -76,7 +76,7 @@ def fit_logistic(logs: Array, verdict: Generic) -> Logistic:
     found: Any = optimize.minimize(
         value, np.zeros(2), method="trust-exact", jac=slope, hess=curvature, options={"gtol": 1e-10}
     )
-    back = np.array([[1.0, -middle / spread], [0.0, 1.0 / spread]])
-    best = back @ found.x
-    covariance = back @ np.linalg.inv(curvature(found.x)) @ back.T
+    unscale = np.array([[1.0, -middle / spread], [0.0, 1.0 / spread]])
+    best = unscale @ found.x
+    covariance = unscale @ np.linalg.inv(curvature(found.x)) @ unscale.T
     return Logistic(FragilityStatus.FITTED, best, np.asarray(covariance, dtype=np.float64))

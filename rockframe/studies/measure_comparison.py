@@ -15,21 +15,21 @@ from rockframe.results.outcome import Generic
 from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.studies import MOTION
 from rockframe.signals.arrays import Array
-from rockframe.studies.cloud import Cloud, cloud_of, read_least
-from rockframe.studies.fragility.trials import check_one_structure, laid_out
+from rockframe.studies.cloud import Cloud, fit_cloud, read_least
+from rockframe.studies.fragility.trials import check_one_structure, flatten_like
 from rockframe.studies.intensities import (
-    PERIOD_OF,
+    PERIOD_ATTRIBUTE,
     PeriodLike,
-    measure_in,
+    column_of_runs,
+    measure_of_runs,
     measure_words,
-    named_column,
     period_attribute,
 )
 from rockframe.studies.limit_states import check_runs, scalar_of
 from rockframe.studies.sweeps.motions import MotionsLike
 
 _OWNER: Final = "compare_intensities"
-_AGAINST: Final = 0.05
+_SIGNIFICANCE: Final = 0.05
 """p-value below which a slope of the residuals is reported as significant [1]."""
 Covariates = Mapping[str, Any]
 """Numbers of the motions by name: in order of motions, by their labels, or over ``motion``."""
@@ -117,46 +117,47 @@ def compare_intensities(
     runs = check_runs(runs, owner=_OWNER)
     values = scalar_of(runs, response, label, owner=_OWNER)
     floor = read_least(least, values, owner=_OWNER)
-    named, clouds, kept = list[str](), list[Cloud](), list[Generic]()
+    named, clouds, included_runs = list[str](), list[Cloud](), list[Generic]()
     if isinstance(measures, xr.DataArray):
         measures = [measures]
     listed = [
-        _with_period(one) for one in several(measures, owner=_OWNER, name="measures", of="measures")
+        _measure_and_period(one)
+        for one in several(measures, owner=_OWNER, name="measures", of="measures")
     ]
-    together = several(pooled, owner=_OWNER, name="pooled", of="names")
+    pooled_axes = several(pooled, owner=_OWNER, name="pooled", of="names")
     check_one_structure(
-        runs, together, [named_column(runs, one) for one, _ in listed], owner=_OWNER
+        runs, pooled_axes, [column_of_runs(runs, one) for one, _ in listed], owner=_OWNER
     )
     for one, period in listed:
-        measure = measure_in(runs, one, period, motions, owner=_OWNER)
+        measure = measure_of_runs(runs, one, period, motions, owner=_OWNER)
         attributes = period_attribute(runs, [one], period, owner=_OWNER)
-        cloud, those, _ = cloud_of(runs, measure, values, least=floor, owner=_OWNER)
-        if cloud.line is None:
+        cloud, included, _ = fit_cloud(runs, measure, values, least=floor, owner=_OWNER)
+        if cloud.regression is None:
             msg = (
-                f"{_OWNER}: {cloud.between.sum()} of {len(cloud.responses)} runs have a response "
-                f"and did not overturn, too few for a line over {measure.name}; give more motions, "
-                "or others"
+                f"{_OWNER}: {cloud.is_regressed.sum()} of {len(cloud.responses)} runs have a "
+                f"response and did not overturn, too few for a line over {measure.name}; give "
+                "more motions, or others"
             )
             raise StudyError(msg)
-        named.append(measure_words(str(measure.name), attributes.get(PERIOD_OF)))
+        named.append(measure_words(str(measure.name), attributes.get(PERIOD_ATTRIBUTE)))
         clouds.append(cloud)
-        kept.append(those)
-    if not clouds or any(not np.array_equal(kept[0], one) for one in kept):
+        included_runs.append(included)
+    if not clouds or any(not np.array_equal(included_runs[0], one) for one in included_runs):
         msg = f"{_OWNER}: measures must be one or more, all known of the same runs, got {named}"
         raise ComponentError(msg)
     if len(set(named)) < len(named):
         msg = f"{_OWNER}: measures are named twice: {', '.join(named)}"
         raise ComponentError(msg)
-    beside = {
-        name: laid_out(one, runs["status"]).astype(np.float64)[kept[0]]
-        for name, one in _covariates(runs, against).items()
+    covariates = {
+        name: flatten_like(one, runs["status"]).astype(np.float64)[included_runs[0]]
+        for name, one in _read_covariates(runs, against).items()
     }
-    found = _compared(named, clouds, beside)
+    found = _comparison_dataset(named, clouds, covariates)
     words = response if label is None else f"{response} {label}"
     return found.assign_attrs(response=words, verdict=_sentence(found))
 
 
-def _with_period(value: object) -> tuple[Any, Any]:
+def _measure_and_period(value: object) -> tuple[Any, Any]:
     if isinstance(value, tuple):
         pair = cast("tuple[Any, ...]", value)
         if len(pair) == 2 and isinstance(pair[0], str):
@@ -166,14 +167,16 @@ def _with_period(value: object) -> tuple[Any, Any]:
     return value, None
 
 
-def _covariates(runs: xr.Dataset, values: Sequence[str] | Covariates) -> dict[str, xr.DataArray]:
+def _read_covariates(
+    runs: xr.Dataset, values: Sequence[str] | Covariates
+) -> dict[str, xr.DataArray]:
     """Read what the response should not depend on: numbers of the motions by their names."""
     if isinstance(values, Mapping):
         table = values
-        return {str(name): _of_motions(runs, str(name), one) for name, one in table.items()}
+        return {str(name): _covariate_of_runs(runs, str(name), one) for name, one in table.items()}
     found: dict[str, xr.DataArray] = {}
     for name in several(values, owner=_OWNER, name="against", of="names"):
-        one = named_column(runs, name)
+        one = column_of_runs(runs, name)
         if not isinstance(one, xr.DataArray) or not set(one.dims) <= set(runs["status"].dims):
             msg = f"{_OWNER}: against names {shown(name)}, which is no coordinate of the runs"
             raise ComponentError(msg)
@@ -181,7 +184,7 @@ def _covariates(runs: xr.Dataset, values: Sequence[str] | Covariates) -> dict[st
     return found
 
 
-def _of_motions(runs: xr.Dataset, name: str, value: Any) -> xr.DataArray:
+def _covariate_of_runs(runs: xr.Dataset, name: str, value: Any) -> xr.DataArray:
     """Return the numbers of the motions to the runs."""
     if isinstance(value, xr.DataArray):
         return value
@@ -205,14 +208,14 @@ def _of_motions(runs: xr.Dataset, name: str, value: Any) -> xr.DataArray:
     return xr.DataArray(numbers, dims=runs[MOTION].dims, coords=runs[MOTION].coords)
 
 
-def _compared(
-    named: Sequence[str], clouds: Sequence[Cloud], beside: Mapping[str, Array]
+def _comparison_dataset(
+    names_of_measures: Sequence[str], clouds: Sequence[Cloud], covariates: Mapping[str, Array]
 ) -> xr.Dataset:
     """Return a dataset of the results of all measures."""
-    lines = [one.line for one in clouds if one.line is not None]
-    likely = np.stack([one.log_likelihoods() for one in clouds])
-    more = (likely - likely[0]) / math.log(2.0)
-    count = likely.shape[1]
+    lines = [one.regression for one in clouds if one.regression is not None]
+    log_likelihoods = np.stack([one.log_likelihoods() for one in clouds])
+    information = (log_likelihoods - log_likelihoods[0]) / math.log(2.0)
+    count = log_likelihoods.shape[1]
     values: dict[str, Any] = {
         "regression_slope": [one.slope for one in lines],
         "residual_dispersion": [one.dispersion for one in lines],
@@ -220,20 +223,20 @@ def _compared(
             one.dispersion / one.slope if one.slope > 0.0 else np.inf for one in lines
         ],
         "determination": [one.determination for one in lines],
-        "relative_sufficiency": more.mean(axis=1),
-        "relative_sufficiency_error": more.std(axis=1, ddof=1) / math.sqrt(count),
+        "relative_sufficiency": information.mean(axis=1),
+        "relative_sufficiency_error": information.std(axis=1, ddof=1) / math.sqrt(count),
         "line_count": [len(one.residuals) for one in lines],
         "cloud_overturned_count": [np.isinf(one.responses).sum() for one in clouds],
         "resting_count": [(one.responses == 0.0).sum() for one in clouds],
     }
-    if beside:
+    if covariates:
         tested = np.array([
-            [_dependence(cloud, values) for values in beside.values()] for cloud in clouds
+            [_residual_trend(cloud, values) for values in covariates.values()] for cloud in clouds
         ])  # fmt: skip
         values |= {"sufficiency_slope": tested[..., 0], "sufficiency_p_value": tested[..., 1]}
-    names = {"measure": np.array(list(named), dtype=object)}
-    if beside:
-        names["covariate"] = np.array(list(beside), dtype=object)
+    names = {"measure": np.array(list(names_of_measures), dtype=object)}
+    if covariates:
+        names["covariate"] = np.array(list(covariates), dtype=object)
     found = build_dataset(
         {name: np.array(one) for name, one in values.items()}, {}, over=("measure",),
         title="Comparison of intensity measures", source="least squares and logistic regression",
@@ -241,15 +244,15 @@ def _compared(
     return with_variables(found, names)
 
 
-def _dependence(cloud: Cloud, covariate: Array) -> tuple[float, float]:
+def _residual_trend(cloud: Cloud, covariate: Array) -> tuple[float, float]:
     """Return the slope of the residuals over a covariate, and its p-value."""
     from scipy.stats import linregress
 
-    along = covariate[cloud.between]
-    known = np.isfinite(along)
-    if cloud.line is None or known.sum() < 3 or np.ptp(along[known]) == 0.0:
+    values = covariate[cloud.is_regressed]
+    known = np.isfinite(values)
+    if cloud.regression is None or known.sum() < 3 or np.ptp(values[known]) == 0.0:
         return math.nan, math.nan
-    found: Any = linregress(along[known], cloud.line.residuals[known])
+    found: Any = linregress(values[known], cloud.regression.residuals[known])
     return float(found.slope), float(found.pvalue)
 
 
@@ -260,10 +263,11 @@ def _sentence(found: xr.Dataset) -> str:
     text = f"Of {found.sizes['measure']} measures {best} is the most efficient, with "
     text += f"{float(ratio.min()):.3g} of dispersion over power"
     if "sufficiency_p_value" in found:
-        chance = found["sufficiency_p_value"]
-        wrong = [
-            f"{chance['measure'][k].item()} with {chance['covariate'][j].item()}"
-            for k, j in np.argwhere(chance.to_numpy() < _AGAINST)
+        p_value = found["sufficiency_p_value"]
+        dependent = [
+            f"{p_value['measure'][k].item()} with {p_value['covariate'][j].item()}"
+            for k, j in np.argwhere(p_value.to_numpy() < _SIGNIFICANCE)
         ]
-        text += f"; residuals go with a covariate (p < {_AGAINST:g}): {', '.join(wrong) or 'none'}"
+        named = ", ".join(dependent) or "none"
+        text += f"; residuals go with a covariate (p < {_SIGNIFICANCE:g}): {named}"
     return f"{text}."

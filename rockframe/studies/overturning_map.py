@@ -17,16 +17,23 @@ from rockframe.signals.arrays import Array
 from rockframe.signals.motion import absolute_peak
 from rockframe.simulation.system import System, check_system
 from rockframe.studies.limit_states import overturns
-from rockframe.studies.lines import SCALE, SOURCE, VERDICT, Lines, read_rising, read_width
+from rockframe.studies.line_scan import (
+    SCALE,
+    SCAN_SOURCE,
+    VERDICT_DIM,
+    LineScan,
+    read_sorted,
+    read_width,
+)
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.system.options import Overturning
 from rockframe.system.rigid_ground import RigidGroundSetting
 from rockframe.units import ACCELERATION, FREQUENCY, RatioLike, quantity
 
 _OWNER: Final = "overturning_map"
-_STANDS: Final = -1.0
-_MOST_IMPACTS: Final = 1000
-_SAME_PEAK: Final = 1e-6
+_STANDING: Final = -1.0
+_MAX_IMPACTS: Final = 1000
+_PEAK_TOLERANCE: Final = 1e-6
 """Relative difference up to which peaks of pulses of one amplitude count as equal [1]."""
 
 
@@ -102,48 +109,50 @@ def overturning_map(
     {'amplitude': 3, 'frequency': 2}
     """
     check_system(system, _OWNER)
-    levels = read_rising(amplitude, ACCELERATION, "amplitude", owner=_OWNER)
-    frequencies = read_rising(frequency, FREQUENCY, "frequency", owner=_OWNER)
+    amplitudes = read_sorted(amplitude, ACCELERATION, "amplitude", owner=_OWNER)
+    frequencies = read_sorted(frequency, FREQUENCY, "frequency", owner=_OWNER)
     impact_count = whole_number(
-        impacts, owner=_OWNER, name="impacts", lowest=1, highest=_MOST_IMPACTS
+        impacts, owner=_OWNER, name="impacts", lowest=1, highest=_MAX_IMPACTS
     )
-    share = read_width(bracket_width, owner=_OWNER)
-    motions = {f"{one!r} {FREQUENCY.unit}": _made(pulse, one) for one in frequencies.tolist()}
+    width = read_width(bracket_width, owner=_OWNER)
+    motions = {f"{one!r} {FREQUENCY.unit}": _unit_pulse(pulse, one) for one in frequencies.tolist()}
 
-    def ways(runs: xr.Dataset) -> xr.DataArray:
+    def modes(runs: xr.Dataset) -> xr.DataArray:
         verdict = overturns(runs)
         counted = runs["impact_count"].clip(max=impact_count).astype(float)
-        return xr.where(verdict == 0.0, _STANDS, counted).where(verdict.notnull())
+        return xr.where(verdict == 0.0, _STANDING, counted).where(verdict.notnull())
 
-    lines = Lines(system, motions, {}, run, _OWNER, lambda runs: ways(runs).expand_dims(VERDICT))
-    along = lines.followed(levels, width=share)
-    counted = ways(along.scan)
+    lines = LineScan(
+        system, motions, {}, run, _OWNER, lambda runs: modes(runs).expand_dims(VERDICT_DIM)
+    )
+    result = lines.run_scan(amplitudes, width=width)
+    counted = modes(result.scan)
     found = with_variables(
-        along.scan,
-        {"impacts_before_overturning": _without_stands(counted.to_numpy())},
+        result.scan,
+        {"impacts_before_overturning": _nan_if_standing(counted.to_numpy())},
         over=tuple(map(str, counted.dims)),
     )
-    below, above, before, after = along.arrays((len(motions),))
+    below, above, before, after = result.arrays((len(motions),))
     of_frequencies = {
         "boundary_count": np.isfinite(below).sum(axis=1),
         "amplitude_below": below,
         "amplitude_above": above,
-        "impacts_below": _without_stands(before),
-        "impacts_above": _without_stands(after),
+        "impacts_below": _nan_if_standing(before),
+        "impacts_above": _nan_if_standing(after),
     }
     found = with_variables(found, of_frequencies, over=(MOTION,))
-    found = with_labels(found, _labels(system, levels, frequencies, motions.values()))
+    found = with_labels(found, _labels(system, amplitudes, frequencies, motions.values()))
     found = found.swap_dims({SCALE: "amplitude", MOTION: "frequency"})
     found.attrs |= {
         "title": "Overturning by pulses",
-        "source": SOURCE,
-        "bracket_width": share,
+        "source": SCAN_SOURCE,
+        "bracket_width": width,
         "impacts_told_apart": impact_count,
     }
     return found
 
 
-def _made(pulse: object, frequency: float) -> GroundMotion:
+def _unit_pulse(pulse: object, frequency: float) -> GroundMotion:
     """Return the pulse of a frequency, with an amplitude of one."""
     if isinstance(pulse, GroundMotion):
         described = pulse.to_dict()
@@ -166,15 +175,15 @@ def _made(pulse: object, frequency: float) -> GroundMotion:
         )
         raise ComponentError(msg)
     pulse = function_of(pulse, "amplitude", "frequency", owner=_OWNER, name="pulse")
-    made = pulse(quantity(1.0, ACCELERATION), quantity(frequency, FREQUENCY))
-    if not isinstance(made, GroundMotion):
-        msg = f"{_OWNER}: pulse must return a GroundMotion, got {shown(made)}"
+    motion = pulse(quantity(1.0, ACCELERATION), quantity(frequency, FREQUENCY))
+    if not isinstance(motion, GroundMotion):
+        msg = f"{_OWNER}: pulse must return a GroundMotion, got {shown(motion)}"
         raise ComponentError(msg)
-    return made
+    return motion
 
 
-def _without_stands(counts: Array) -> Array:
-    return np.where(counts == _STANDS, np.nan, counts)
+def _nan_if_standing(counts: Array) -> Array:
+    return np.where(counts == _STANDING, np.nan, counts)
 
 
 def _labels(
@@ -186,11 +195,11 @@ def _labels(
     if isinstance(setting, RigidGroundSetting):
         uplift = min(setting.uplift_accelerations)
         angular = 2.0 * math.pi * frequencies
-        own = setting.body.frequency_at(system.options.gravity)
-        rows.append(("relative_pulse_frequency", MOTION, angular / own))
+        block_frequency = setting.body.frequency_at(system.options.gravity)
+        rows.append(("relative_pulse_frequency", MOTION, angular / block_frequency))
         # of amplitude one, which need not be the peak, as in less than a quarter of a sine
         peaks = np.array([absolute_peak(one.si.horizontal.pieces) for one in pulses])
-        if np.ptp(peaks) <= _SAME_PEAK * peaks.max():
+        if np.ptp(peaks) <= _PEAK_TOLERANCE * peaks.max():
             rows.append(("relative_peak_ground_acceleration", SCALE, levels * peaks[0] / uplift))
     found = {name: (dim, values, SCHEMA[name].attributes()) for name, dim, values in rows}
     found["frequency"][2]["long_name"] = "cyclic frequency of the pulse"

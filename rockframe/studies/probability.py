@@ -20,7 +20,7 @@ from rockframe.simulation.system import System
 from rockframe.studies.confidence import clopper_pearson, read_level
 from rockframe.studies.limit_states import overturns
 from rockframe.studies.sweeps.arguments import SweepArguments
-from rockframe.studies.sweeps.axes import Axis, number_of
+from rockframe.studies.sweeps.axes import Axis, read_number
 from rockframe.studies.sweeps.memory import check_memory
 from rockframe.studies.sweeps.motions import MotionsLike, full_name
 from rockframe.studies.sweeps.scenes import SweptScene, motions_of_study, scene_of
@@ -36,8 +36,8 @@ class Sampling(StrEnum):
     SOBOL = "sobol"
 
 
-_CORRELATED: Final = Condition("between -1 and 1", lambda value: -1.0 < value < 1.0)
-_KINDS: Final = {
+_CORRELATION: Final = Condition("between -1 and 1", lambda value: -1.0 < value < 1.0)
+_DISTRIBUTIONS: Final = {
     "normal": "('normal', mean, standard deviation)",
     "lognormal": "('lognormal', median, standard deviation of the logarithm)",
     "uniform": "('uniform', least, greatest)",
@@ -45,7 +45,7 @@ _KINDS: Final = {
 
 
 @dataclass(frozen=True)
-class Spread:
+class RandomParameter:
     """A random parameter: its axis, its unit and its distribution."""
 
     name: str  # of the axis
@@ -53,16 +53,16 @@ class Spread:
     distribution: Any  # in that unit
 
 
-def read_spread(value: object, scene: SweptScene, *, owner: str) -> tuple[Spread, ...]:
+def read_spread(value: object, scene: SweptScene, *, owner: str) -> tuple[RandomParameter, ...]:
     """Read the argument ``spread``."""
     if not isinstance(value, Mapping) or not value:
         msg = f"{owner}: spread must give distributions by names of parameters, got {shown(value)}"
         raise ComponentError(msg)
-    found: list[Spread] = []
+    found: list[RandomParameter] = []
     faults: list[str] = []
     for name, one in cast("Mapping[Any, Any]", value).items():
         try:
-            found.append(_read(str(name), one, scene, owner))
+            found.append(_read_parameter(str(name), one, scene, owner))
         except RockframeError as problem:
             faults.append(str(problem))
     if faults:
@@ -88,7 +88,7 @@ def read_correlation(argument: object, names: Sequence[str], *, owner: str) -> A
                 raise ComponentError(msg)
             i, j = (names.index(one) for one in two)
             matrix[i, j] = matrix[j, i] = to_ratio(
-                value, owner=owner, name="correlation", condition=_CORRELATED, example="0.5"
+                value, owner=owner, name="correlation", condition=_CORRELATION, example="0.5"
             )
     else:
         try:
@@ -108,7 +108,7 @@ def read_correlation(argument: object, names: Sequence[str], *, owner: str) -> A
     return matrix
 
 
-def correlated(cube: Array, matrix: Array, *, stratified: bool) -> Array:
+def impose_correlation(cube: Array, matrix: Array, *, stratified: bool) -> Array:
     """Impose a correlation of normal scores on a sample of the unit cube, :eq:`eq-gaussian-copula`.
 
     A stratified sample keeps its values, in another order (Iman and Conover, 1982).
@@ -123,7 +123,9 @@ def correlated(cube: Array, matrix: Array, *, stratified: bool) -> Array:
     return np.take_along_axis(np.sort(cube, axis=0), order, axis=0)
 
 
-def drawn(spreads: tuple[Spread, ...], count: int, sampling: Sampling, seed: int) -> Array:
+def draw_sample(
+    spreads: tuple[RandomParameter, ...], count: int, sampling: Sampling, seed: int
+) -> Array:
     """Draw a sample from the unit cube: a column for each parameter, and one for the motion."""
     from scipy.stats import qmc
 
@@ -135,53 +137,55 @@ def drawn(spreads: tuple[Spread, ...], count: int, sampling: Sampling, seed: int
     return np.asarray(engine(size, rng=rng).random(count), dtype=np.float64)
 
 
-def _read(name: str, value: Any, scene: SweptScene, owner: str) -> Spread:
+def _read_parameter(name: str, value: Any, scene: SweptScene, owner: str) -> RandomParameter:
     from scipy import stats
 
     parts = list(value) if isinstance(value, tuple | list) else [value]
     if hasattr(parts[0], "ppf"):
-        return _frozen(name, parts, scene, owner)
-    if parts[0] not in _KINDS or len(parts) != 3:
-        known = ", ".join(_KINDS.values())
+        return _read_frozen(name, parts, scene, owner)
+    if parts[0] not in _DISTRIBUTIONS or len(parts) != 3:
+        known = ", ".join(_DISTRIBUTIONS.values())
         msg = (
             f"{owner}: {name} needs {known}, or a distribution of scipy.stats and its unit, "
             f"got {shown(value)}"
         )
         raise ComponentError(msg)
     kind, first, second = parts
-    axis = _axis(scene, name, first, owner)
+    axis = _axis_of(scene, name, first, owner)
     start = float(axis.values[0])
     if kind == "lognormal":
         log = to_ratio(second, owner=owner, name=name, condition=POSITIVE, example="0.2")
         if start <= 0.0:
             msg = f"{owner}: {name} needs a median above zero, got {shown(first)}"
             raise ComponentError(msg)
-        return Spread(axis.name, str(axis.unit), stats.lognorm(s=log, scale=start))
-    width = float(_axis(scene, name, second, owner).values[0])
+        return RandomParameter(axis.name, str(axis.unit), stats.lognorm(s=log, scale=start))
+    width = float(_axis_of(scene, name, second, owner).values[0])
     if kind == "normal" and width > 0.0:
-        return Spread(axis.name, str(axis.unit), stats.norm(loc=start, scale=width))
+        return RandomParameter(axis.name, str(axis.unit), stats.norm(loc=start, scale=width))
     if kind == "uniform" and width > start:
-        return Spread(axis.name, str(axis.unit), stats.uniform(loc=start, scale=width - start))
+        return RandomParameter(
+            axis.name, str(axis.unit), stats.uniform(loc=start, scale=width - start)
+        )
     wrong = "standard deviation above zero" if kind == "normal" else "greatest above the least"
     msg = f"{owner}: {name} needs a {wrong}, got {shown(second)}"
     raise ComponentError(msg)
 
 
-def _frozen(name: str, parts: list[Any], scene: SweptScene, owner: str) -> Spread:
+def _read_frozen(name: str, parts: list[Any], scene: SweptScene, owner: str) -> RandomParameter:
     """Read a distribution of scipy.stats, with the unit of its values."""
     distribution, unit = parts[0], (parts[1] if len(parts) > 1 else "")
     middle = float(distribution.ppf(0.5))
-    axis = _axis(scene, name, f"{middle!r} {unit}" if unit else middle, owner)
+    axis = _axis_of(scene, name, f"{middle!r} {unit}" if unit else middle, owner)
     if unit:
         measure = Measure("a value", Unit(str(axis.unit)), f"1 {unit}")
-        if number_of(f"1 {unit}", measure, owner=owner, name=name) != 1.0:
+        if read_number(f"1 {unit}", measure, owner=owner, name=name) != 1.0:
             wanted = "of pure ratios" if axis.unit == Unit.ONE else f"in {axis.unit}"
             msg = f"{owner}: {name} needs a distribution {wanted}, got one in {unit}"
             raise ComponentError(msg)
-    return Spread(axis.name, str(axis.unit), distribution)
+    return RandomParameter(axis.name, str(axis.unit), distribution)
 
 
-def _axis(scene: SweptScene, name: str, value: Any, owner: str) -> Axis:
+def _axis_of(scene: SweptScene, name: str, value: Any, owner: str) -> Axis:
     """Read one value as the axis of its name does."""
     with collected_warnings():  # a standard deviation may be an unusual value
         axis = scene.axis(name, [value])
@@ -192,11 +196,11 @@ def _axis(scene: SweptScene, name: str, value: Any, owner: str) -> Axis:
 
 
 _BINS: Final = 20
-_FEWEST: Final = 20
+_MIN_BIN_SIZE: Final = 20
 """Least number of cases in a bin."""
 
 
-class Matters(NamedTuple):
+class Sensitivity(NamedTuple):
     """Sensitivity of the verdict to a parameter."""
 
     # first-order index: variance of the share that overturns given the parameter, over that of the
@@ -204,53 +208,55 @@ class Matters(NamedTuple):
     first_order: float = np.nan
     # greatest difference between the parameter's distributions for the two verdicts; NaN where
     # values are words [1]
-    distance: float = np.nan
-    chance: float = np.nan  # p-value of the uneven shares if the parameter had no influence [1]
+    distribution_distance: float = np.nan
+    p_value: float = np.nan  # p-value of the uneven shares if the parameter had no influence [1]
 
 
-def ranked(columns: Mapping[str, Generic], verdict: Array) -> dict[str, Matters]:
+def rank_parameters(columns: Mapping[str, Generic], verdict: Array) -> dict[str, Sensitivity]:
     """Return the sensitivity of the verdict to each parameter, the greatest first.
 
     The index is the correlation ratio of groups of equal size, minus its expectation without
     dependence (the adjusted ratio, Kelley 1935): a first-order Sobol index from given data, within
     the width of the groups. The distance is that of Hornberger and Spear (1981).
     """
-    found = {name: _matters(values, verdict) for name, values in columns.items()}
+    found = {name: _sensitivity(values, verdict) for name, values in columns.items()}
     return dict(sorted(found.items(), key=lambda one: -one[1].first_order))
 
 
-def _matters(values: Generic, verdict: Array) -> Matters:
+def _sensitivity(values: Generic, verdict: Array) -> Sensitivity:
     from scipy.stats import chi2_contingency, ks_2samp
 
     count = len(verdict)
     falls = float(verdict.sum())
     if falls in (0.0, float(count)):
-        return Matters()
+        return Sensitivity()
     numbers = values.dtype.kind != "U"
     if numbers:
         order = np.argsort(np.argsort(values, kind="stable"), kind="stable")
-        groups = max(1, min(_BINS, count // _FEWEST))
-        place = order * groups // count
+        groups = max(1, min(_BINS, count // _MIN_BIN_SIZE))
+        group = order * groups // count
     else:
-        place = np.unique(values, return_inverse=True)[1]
-    size = np.bincount(place).astype(np.float64)
-    over = np.bincount(place, weights=verdict)
+        group = np.unique(values, return_inverse=True)[1]
+    size = np.bincount(group).astype(np.float64)
+    overturned = np.bincount(group, weights=verdict)
     groups = len(size)
     if groups < 2 or groups >= count:
-        return Matters()
+        return Sensitivity()
     share = falls / count
-    between = float((size * (over / size - share) ** 2).sum()) / (count * share * (1.0 - share))
+    between = float((size * (overturned / size - share) ** 2).sum()) / (
+        count * share * (1.0 - share)
+    )
     index = 1.0 - (1.0 - between) * (count - 1.0) / (count - groups)
-    test: Any = chi2_contingency(np.stack([over, size - over]), correction=False)
+    test: Any = chi2_contingency(np.stack([overturned, size - overturned]), correction=False)
     both: Any = ks_2samp(values[verdict == 1.0], values[verdict == 0.0]) if numbers else None
     distance = np.nan if both is None else float(both.statistic)
-    return Matters(max(index, 0.0), distance, float(test.pvalue))
+    return Sensitivity(max(index, 0.0), distance, float(test.pvalue))
 
 
 _OWNER: Final = "probability_of_overturning"
-SAMPLED: Final = "sampling"
+SAMPLING_ATTRIBUTE: Final = "sampling"
 """Attribute that records how cases were drawn."""
-_MOST_CASES: Final = 1_000_000_000
+_MAX_CASES: Final = 1_000_000_000
 
 
 @takes(SweepArguments)
@@ -337,19 +343,19 @@ def probability_of_overturning(
     scene = scene_of(system)
     spreads = read_spread(spread, scene, owner=_OWNER)
     matrix = read_correlation(correlation, [one.name for one in spreads], owner=_OWNER)
-    count = whole_number(cases, owner=_OWNER, name="cases", lowest=2, highest=_MOST_CASES)
-    way = one_of_words(Sampling, sampling, owner=_OWNER, name="sampling")
-    first = whole_number(seed, owner=_OWNER, name="seed", lowest=0)
+    count = whole_number(cases, owner=_OWNER, name="cases", lowest=2, highest=_MAX_CASES)
+    method = one_of_words(Sampling, sampling, owner=_OWNER, name="sampling")
+    start_seed = whole_number(seed, owner=_OWNER, name="seed", lowest=0)
     level = read_level(confidence, owner=_OWNER)
     named = motions_of_study(motions, scene)
-    wrong = check_memory(
+    faults = check_memory(
         {"numbers that are drawn": 1.0 + len(spreads)}, count, "draw fewer cases", owner=_OWNER
     )
-    if wrong:
-        raise StudyError(*wrong)
-    cube = drawn(spreads, count, way, first)
+    if faults:
+        raise StudyError(*faults)
+    cube = draw_sample(spreads, count, method, start_seed)
     if matrix is not None:
-        cube[:, 1:] = correlated(cube[:, 1:], matrix, stratified=way is Sampling.LATIN)
+        cube[:, 1:] = impose_correlation(cube[:, 1:], matrix, stratified=method is Sampling.LATIN)
     several = 1 if named is None else len(named)
     number = np.minimum((cube[:, 0] * several).astype(int), several - 1)
     # neighbours share their motion
@@ -362,13 +368,18 @@ def probability_of_overturning(
     if named is not None:
         table[MOTION] = np.array(list(named), dtype=object)[number]
     runs = sweep(system, named, cases=table, **run)
-    found = _counted(runs, [one.name for one in spreads], several=several > 1, level=level)
+    found = _with_probability(runs, [one.name for one in spreads], several=several > 1, level=level)
     return found.assign_attrs(
-        title="Probability of overturning", seed=first, confidence=level, **{SAMPLED: str(way)}
+        title="Probability of overturning",
+        seed=start_seed,
+        confidence=level,
+        **{SAMPLING_ATTRIBUTE: str(method)},
     )
 
 
-def _counted(runs: xr.Dataset, names: Sequence[str], *, several: bool, level: float) -> xr.Dataset:
+def _with_probability(
+    runs: xr.Dataset, names: Sequence[str], *, several: bool, level: float
+) -> xr.Dataset:
     """Add the probability, and what it depends on."""
     verdict = overturns(runs).squeeze().to_numpy()
     known = ~np.isnan(verdict)
@@ -377,27 +388,27 @@ def _counted(runs: xr.Dataset, names: Sequence[str], *, several: bool, level: fl
     columns: dict[str, Generic] = {name: runs[name].to_numpy()[known] for name in names}
     if several:
         columns[MOTION] = runs[MOTION].to_numpy()[known].astype(str)
-    order = ranked(columns, verdict[known])
+    sensitivities = rank_parameters(columns, verdict[known])
     share = falls / count if count else np.nan
     added = {
         "overturning_probability": share,
         "overturning_probability_lower_bound": lower,
         "overturning_probability_upper_bound": upper,
         "verdict_count": count,
-        "parameter": np.array(list(order), dtype=object),
-        "first_order_index": np.array([one.first_order for one in order.values()]),
-        "verdict_distance": np.array([one.distance for one in order.values()]),
-        "chance_probability": np.array([one.chance for one in order.values()]),
+        "parameter": np.array(list(sensitivities), dtype=object),
+        "first_order_index": np.array([one.first_order for one in sensitivities.values()]),
+        "verdict_distance": np.array([one.distribution_distance for one in sensitivities.values()]),
+        "chance_probability": np.array([one.p_value for one in sensitivities.values()]),
     }
-    most = next(iter(order), "")
+    strongest = next(iter(sensitivities), "")
     text = f"Overturns with probability {share:.3g}, from {float(lower):.3g} to {float(upper):.3g}"
     text += f" with confidence {level:g}, by {count} cases"
     if several:
         # the bounds hold for further cases of the same motions
         text += f" under these {len(np.unique(columns[MOTION]))} motions"
-    lacking = len(verdict) - count
-    if lacking:
-        text += f"; {lacking} without a verdict are left out"
-    if most and not np.isnan(order[most].first_order):
-        text += f"; {most} matters most"
+    missing = len(verdict) - count
+    if missing:
+        text += f"; {missing} without a verdict are left out"
+    if strongest and not np.isnan(sensitivities[strongest].first_order):
+        text += f"; {strongest} matters most"
     return with_variables(runs, added).assign_attrs(verdict=f"{text}.")

@@ -30,11 +30,11 @@ from rockframe.studies.sweeps.sweep import sweep
 from rockframe.units import NOT_NEGATIVE, TIME, QuantityLike, to_si
 
 _OWNER: Final = "earthquake_sequences"
-_SAME_STEP: Final = 1e-9
+_STEP_TOLERANCE: Final = 1e-9
 """Relative difference up to which two time steps are the same."""
-_MOST_PARTS: Final = 64
+_MAX_SUBDIVISIONS: Final = 64
 """Most parts into which an interval is divided for a common time step."""
-NUMBER: Final = "earthquake"
+EARTHQUAKE: Final = "earthquake"
 
 
 @takes(SequenceArguments)
@@ -91,34 +91,36 @@ def earthquake_sequences(
     2
     """
     check_system(system, _OWNER)
-    rest = to_si(pause, TIME, owner=_OWNER, name="pause", condition=NOT_NEGATIVE)
-    named = _sequences(sequences)
+    pause_time = to_si(pause, TIME, owner=_OWNER, name="pause", condition=NOT_NEGATIVE)
+    named = _read_sequences(sequences)
     joined = {
-        name: list(accumulate(each, lambda first, second: _joined(first, second, rest)))
+        name: list(accumulate(each, lambda first, second: _join(first, second, pause_time)))
         for name, each in named.items()
     }
     longest = max(len(each) for each in joined.values())
     motions = {
-        f"{name}, {number}": _joined(motion, None, rest)
+        f"{name}, {number}": _join(motion, None, pause_time)
         for name, each in joined.items()
         for number, motion in enumerate(each, start=1)
     }
-    there = np.arange(longest) < np.array([[len(each)] for each in joined.values()])
-    arranged = _arranged(sweep(system, motions, **run), there)
-    fell = overturns(arranged).transpose("sequence", NUMBER).to_numpy() == 1.0
+    exists = np.arange(longest) < np.array([[len(each)] for each in joined.values()])
+    arranged = _unstack_sequences(sweep(system, motions, **run), exists)
+    overturned = overturns(arranged).transpose("sequence", EARTHQUAKE).to_numpy() == 1.0
     labels = {
         "sequence": np.array(list(joined), dtype=object),
-        NUMBER: np.arange(1, longest + 1),
-        "overturning_earthquake": np.where(fell.any(axis=1), fell.argmax(axis=1) + 1, 0),
-        "pause": np.array([_pause(each[0], rest) for each in named.values()]),
+        EARTHQUAKE: np.arange(1, longest + 1),
+        "overturning_earthquake": np.where(
+            overturned.any(axis=1), overturned.argmax(axis=1) + 1, 0
+        ),
+        "pause": np.array([_actual_pause(each[0], pause_time) for each in named.values()]),
     }
     found = with_variables(arranged, labels)
     of_all = "1 sequence" if len(joined) == 1 else f"all {len(joined)} sequences"
-    verdict = f"Of {of_all} {int(fell.any(axis=1).sum())} overturned."
+    verdict = f"Of {of_all} {int(overturned.any(axis=1).sum())} overturned."
     return found.assign_attrs(title="Earthquakes in sequence", verdict=verdict)
 
 
-def _sequences(value: object) -> dict[str, list[GroundMotion]]:
+def _read_sequences(value: object) -> dict[str, list[GroundMotion]]:
     """Read the sequences, and check that their motions fit."""
     if isinstance(value, Mapping):
         named = by_words(cast("Mapping[Any, Any]", value), owner=_OWNER)
@@ -145,21 +147,21 @@ def _sequences(value: object) -> dict[str, list[GroundMotion]]:
     if not found:
         msg = f"{_OWNER}: found {shown(value)}; expected sequences of GroundMotions"
         raise ComponentError(msg)
-    return {name: _of_one_step(each) for name, each in found.items()}
+    return {name: _with_common_step(each) for name, each in found.items()}
 
 
-def _of_one_step(motions: list[GroundMotion]) -> list[GroundMotion]:
+def _with_common_step(motions: list[GroundMotion]) -> list[GroundMotion]:
     """Divide the intervals of motions, so that all have one time step; each stays as it is."""
     steps = [one.si.time_step for one in motions]
     least = min(steps)
-    ratios = [Fraction(step / least).limit_denominator(_MOST_PARTS) for step in steps]
+    ratios = [Fraction(step / least).limit_denominator(_MAX_SUBDIVISIONS) for step in steps]
     common = math.lcm(*(one.denominator for one in ratios))  # parts of the least step
     parts = [int(one * common) for one in ratios]
     fits = [
-        math.isclose(step, count * least / common, rel_tol=_SAME_STEP)
+        math.isclose(step, count * least / common, rel_tol=_STEP_TOLERANCE)
         for step, count in zip(steps, parts, strict=True)
     ]
-    if not all(fits) or max(parts) > _MOST_PARTS:
+    if not all(fits) or max(parts) > _MAX_SUBDIVISIONS:
         msg = (
             f"{_OWNER}: the motions have time steps from {least!r} s to {max(steps)!r} s, which "
             f"have no common part; resample them, for example motion.resampled('{least!r} s')"
@@ -171,64 +173,66 @@ def _of_one_step(motions: list[GroundMotion]) -> list[GroundMotion]:
     ]
 
 
-def _joined(first: GroundMotion, second: GroundMotion | None, rest: float) -> GroundMotion:
+def _join(first: GroundMotion, second: GroundMotion | None, pause_time: float) -> GroundMotion:
     """Join motions, or put still ground after one."""
-    if second is None and rest == 0.0:
+    if second is None and pause_time == 0.0:
         return first
-    still = _steps(first, rest)
+    still = _pause_steps(first, pause_time)
     both = [one for one in (first, second) if one is not None]
-    horizontal = _after([one.si.horizontal for one in both], still)
+    horizontal = _concatenate([one.si.horizontal for one in both], still)
     vertical = None
     if any(one.si.vertical is not None for one in both):
-        vertical = _after([one.si.vertical or _level(one.si.horizontal) for one in both], still)
+        vertical = _concatenate(
+            [one.si.vertical or _zero_vertical(one.si.horizontal) for one in both], still
+        )
     return GroundMotion(Motion(horizontal, vertical), name=", then ".join(one.name for one in both))
 
 
-def _steps(motion: GroundMotion, rest: float) -> int:
+def _pause_steps(motion: GroundMotion, pause_time: float) -> int:
     """Return the number of time steps in which the ground stands still."""
-    return max(1, round(rest / motion.si.time_step))
+    return max(1, round(pause_time / motion.si.time_step))
 
 
-def _pause(motion: GroundMotion, rest: float) -> float:
+def _actual_pause(motion: GroundMotion, pause_time: float) -> float:
     """Return the pause in a sequence; exactly the given one where it is whole time steps."""
-    found = _steps(motion, rest) * motion.si.time_step
-    return rest if math.isclose(found, rest, rel_tol=_SAME_STEP) else found
+    found = _pause_steps(motion, pause_time) * motion.si.time_step
+    return pause_time if math.isclose(found, pause_time, rel_tol=_STEP_TOLERANCE) else found
 
 
-def _level(horizontal: Signal) -> Signal:
+def _zero_vertical(horizontal: Signal) -> Signal:
     """Return a vertical component that is zero, of the length of the horizontal one."""
     still = np.zeros(horizontal.samples.size)
     return replace(horizontal, samples=still, polynomials=None, name="vertical")
 
 
-def _after(signals: Sequence[Signal], still: int) -> Signal:
+def _concatenate(signals: Sequence[Signal], still: int) -> Signal:
     """Put intervals of still ground after a signal, and then another one, if there is one."""
     first, *others = signals
     samples = [first.samples, np.zeros(still - len(others)), *(one.samples for one in others)]
-    pieces = [_six(first.pieces), np.zeros((still, COEFFICIENTS))]
-    pieces += [_six(one.pieces) for one in others]
+    pieces = [_padded(first.pieces), np.zeros((still, COEFFICIENTS))]
+    pieces += [_padded(one.pieces) for one in others]
     return Signal(first.time_step, np.concatenate(samples), np.concatenate(pieces), first.name)
 
 
-def _six(pieces: Array) -> Array:
+def _padded(pieces: Array) -> Array:
     return np.pad(pieces, ((0, 0), (0, COEFFICIENTS - pieces.shape[1])))
 
 
-def _arranged(runs: xr.Dataset, there: Generic) -> xr.Dataset:
+def _unstack_sequences(runs: xr.Dataset, exists: Generic) -> xr.Dataset:
     """Return the runs with dimensions of sequence and earthquake instead of motion."""
     found: dict[str, xr.Variable] = {}
-    gaps = not there.all()
+    gaps = not exists.all()
     for name, one in runs.data_vars.items():
         if one.dims != (MOTION,):
             continue
-        values = np.full(there.shape, np.nan) if gaps else np.empty(there.shape, dtype=one.dtype)
-        values[there] = one.to_numpy()
+        values = np.full(exists.shape, np.nan) if gaps else np.empty(exists.shape, dtype=one.dtype)
+        values[exists] = one.to_numpy()
         attributes = dict(one.attrs)
         if gaps and "flag_values" in attributes:
             attributes["flag_values"] = attributes["flag_values"].astype(np.float64)
-        found[str(name)] = xr.Variable(("sequence", NUMBER), values, attributes)
-    words = np.full(there.shape, NONE, dtype=object)
-    words[there] = runs[MESSAGE].to_numpy()
-    texts = xr.Variable(("sequence", NUMBER), words, runs[MESSAGE].attrs)
+        found[str(name)] = xr.Variable(("sequence", EARTHQUAKE), values, attributes)
+    words = np.full(exists.shape, NONE, dtype=object)
+    words[exists] = runs[MESSAGE].to_numpy()
+    texts = xr.Variable(("sequence", EARTHQUAKE), words, runs[MESSAGE].attrs)
     attributes = {name: one for name, one in runs.attrs.items() if name != CASE_COUNT}
     return xr.Dataset(found, coords={MESSAGE: texts}, attrs=attributes)

@@ -15,18 +15,24 @@ from rockframe.results.table import head
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.shared_arguments import takes
 from rockframe.simulation.system import System, check_system
-from rockframe.studies.intensities import POWERS, Intensity, motions_of_runs, of_motions, of_study
+from rockframe.studies.intensities import (
+    SCALE_EXPONENTS,
+    Intensity,
+    map_motions,
+    measure_attributes,
+    motions_of_runs,
+)
 from rockframe.studies.limit_states import overturns
-from rockframe.studies.line_axes import over_rows, read_line_axes
-from rockframe.studies.lines import (
-    CAPACITY,
+from rockframe.studies.line_axes import read_line_axes, unstack_cases
+from rockframe.studies.line_scan import (
+    CAPACITY_DEFINITION,
     SCALE,
-    SOURCE,
-    VERDICT,
-    Lines,
+    SCAN_SOURCE,
+    VERDICT_DIM,
+    LineScan,
     read_resolution,
-    read_rising,
     read_scales,
+    read_sorted,
     read_width,
 )
 from rockframe.studies.sweeps.arguments import SweepArguments
@@ -35,8 +41,8 @@ from rockframe.studies.sweeps.scenes import needed_motions, scene_of
 from rockframe.studies.sweeps.sweep import sweep
 from rockframe.units import LENGTH, PERIOD, Measure, QuantityLike, RatioLike, Unit
 
-_SLENDER: Final = Measure("a pure ratio", Unit.ONE, "4")
-_ROUNDING: Final = 1e-9
+_SLENDERNESS: Final = Measure("a pure ratio", Unit.ONE, "4")
+_NO_ECCENTRICITY: Final = 1e-9
 """Eccentricity of the centre of mass over the height that counts as none [1]."""
 
 
@@ -50,11 +56,11 @@ class BlockSizes:
         self, system: System, periods: Any, slenderness: Any, axes: object = None, *, owner: str
     ) -> None:
         check_system(system, owner)
-        self.system = _by_shape_factor(system, owner)
+        self.system = _with_shape_factor(system, owner)
         si = self.system.parts.block_si
-        periods = read_rising(periods, PERIOD, "periods", owner=owner)
+        periods = read_sorted(periods, PERIOD, "periods", owner=owner)
         entries = [si.height / si.width] if slenderness is None else slenderness
-        slenderness = read_rising(entries, _SLENDER, "slenderness", owner=owner)
+        slenderness = read_sorted(entries, _SLENDERNESS, "slenderness", owner=owner)
         # omega^2 = mu g / ((1 + mu) R0), Eq. (6)
         scale = si.frequency_at(system.options.gravity) ** 2 * si.radius
         radius = scale * (0.5 * periods / math.pi) ** 2
@@ -66,26 +72,32 @@ class BlockSizes:
         scene = scene_of(self.system)
         arguments = signature(overturning_spectrum).parameters
         # a wall has a height, too
-        beside = [part for part in self.system.parts.structural() if not isinstance(part, Block)]
-        shared = {name for part in beside for name in part.varied()}
+        other_parts = [
+            part for part in self.system.parts.structural() if not isinstance(part, Block)
+        ]
+        shared = {name for part in other_parts for name in part.varied()}
         sizes = {
             f"Block.{name}" if name in shared else name: (values, str(LENGTH.unit))
             for name, values in (("width", width), ("height", height))
         }
-        own = [scene.axis(name, each) for name, each in sizes.items()]
-        further = read_line_axes(axes, scene, owner=owner, others=arguments, beside=own)
-        self.columns = further.columns(sizes)
+        own_axes = [scene.axis(name, each) for name, each in sizes.items()]
+        other_axes = read_line_axes(
+            axes, scene, owner=owner, argument_names=arguments, own_axes=own_axes
+        )
+        self.columns = other_axes.columns(sizes)
         self._sizes = {"slenderness": len(slenderness), "rocking_period": len(periods)}
-        self._sizes |= further.sizes
+        self._sizes |= other_axes.sizes
         labels = build_dataset({"slenderness": slenderness, "rocking_period": periods}, {})
-        self._labels = {str(name): labels[name].variable for name in labels.coords} | further.labels
+        self._labels = {
+            str(name): labels[name].variable for name in labels.coords
+        } | other_axes.labels
 
-    def arranged(self, runs: xr.Dataset) -> xr.Dataset:
+    def unstack(self, runs: xr.Dataset) -> xr.Dataset:
         """Return the runs with the dimensions of the sizes instead of the rows of the table."""
-        return over_rows(runs, self._sizes, self._labels)
+        return unstack_cases(runs, self._sizes, self._labels)
 
 
-def _by_shape_factor(system: System, owner: str) -> System:
+def _with_shape_factor(system: System, owner: str) -> System:
     """Return a system whose block keeps its shape factor where width and height change.
 
     An inertia and a height of the centre of mass that were given would not change with them.
@@ -94,7 +106,7 @@ def _by_shape_factor(system: System, owner: str) -> System:
     if type(block) is not Block:
         fault = f"a {type(block or next(iter(system.parts.structural()))).__name__}"
     elif block.si.eccentricity != 0.0 or (
-        abs(block.si.centre_height - block.si.half_height) > _ROUNDING * block.si.height
+        abs(block.si.centre_height - block.si.half_height) > _NO_ECCENTRICITY * block.si.height
     ):
         fault = "a block whose centre of mass is not in its middle"
     elif system.parts.cap is not None:
@@ -177,7 +189,7 @@ def rocking_spectrum(
     heads = {head(name, unit): values for name, (values, unit) in sizes.columns.items()}
     named = needed_motions(motions, scene_of(system), owner=_ROCKING)
     runs = sweep(sizes.system, named, cases=heads, **run)
-    return sizes.arranged(runs).assign_attrs(title="Rocking spectrum")
+    return sizes.unstack(runs).assign_attrs(title="Rocking spectrum")
 
 
 @takes(SweepArguments, further="axes")
@@ -250,36 +262,38 @@ def overturning_spectrum(
     """
     sizes = BlockSizes(system, periods, slenderness, axes, owner=_OVERTURNING)
     scales = read_scales(scale, owner=_OVERTURNING)
-    share = read_width(bracket_width, owner=_OVERTURNING)
+    width = read_width(bracket_width, owner=_OVERTURNING)
     finest = read_resolution(resolution, owner=_OVERTURNING)
     measure = Intensity.read(intensity, period, owner=_OVERTURNING)
     named = needed_motions(motions, scene_of(system), owner=_OVERTURNING)
-    lines = Lines(
+    lines = LineScan(
         sizes.system, named, sizes.columns, run, _OVERTURNING,
-        lambda runs: overturns(runs).expand_dims(VERDICT),
+        lambda runs: overturns(runs).expand_dims(VERDICT_DIM),
     )  # fmt: skip
-    along = lines.followed(scales, width=share, resolution=finest)
-    scan = along.scan
+    result = lines.run_scan(scales, width=width, resolution=finest)
+    scan = result.scan
     shape = (scan.sizes[CASE], scan.sizes[MOTION])
-    shown = overturns(scan).transpose(CASE, MOTION, SCALE).to_numpy()
-    capacities, flips = along.capacities(shape), along.flips(shape)
+    verdicts = overturns(scan).transpose(CASE, MOTION, SCALE).to_numpy()
+    capacities, flips = result.capacities(shape), result.flips(shape)
     capacity = capacities["capacity_scale"]
-    unit = of_motions(scan, motions_of_runs(scan, named, owner=_OVERTURNING), measure.of)
-    powers = capacity ** np.where(np.isinf(capacity), 1, POWERS[measure.name])
+    unit_intensity = map_motions(
+        scan, motions_of_runs(scan, named, owner=_OVERTURNING), measure.compute
+    )
+    factors = capacity ** np.where(np.isinf(capacity), 1, SCALE_EXPONENTS[measure.name])
     values = {
         **capacities,
-        "capacity_intensity": unit.to_numpy() * powers,
+        "capacity_intensity": unit_intensity.to_numpy() * factors,
         "flip_count": flips["flip_count"],
-        "left_out_count": np.isnan(shown).sum(axis=-1),
+        "left_out_count": np.isnan(verdicts).sum(axis=-1),
         **flips,
     }
     found = with_variables(scan.drop_dims(SCALE), values, over=(CASE, MOTION))
     found["capacity_intensity"].attrs["units"] = measure.attributes()["units"]
-    return sizes.arranged(found).assign_attrs(
+    return sizes.unstack(found).assign_attrs(
         title="Overturning spectrum",
-        source=SOURCE,
-        **of_study(measure.name, measure.period),
-        capacity=CAPACITY,
+        source=SCAN_SOURCE,
+        **measure_attributes(measure.name, measure.period),
+        capacity=CAPACITY_DEFINITION,
         resolution=finest,
-        bracket_width=share,
+        bracket_width=width,
     )

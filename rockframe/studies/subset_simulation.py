@@ -27,24 +27,29 @@ from rockframe.signals.arrays import Array
 from rockframe.simulation.system import System
 from rockframe.studies.conditional_sampling import (
     Level,
-    bounds_of,
     family_shares,
-    probability_of,
+    sample_weights,
+    subset_bounds,
     subset_levels,
-    variation_of,
-    weights_of,
+    subset_probability,
+    subset_variation,
 )
 from rockframe.studies.confidence import read_level
 from rockframe.studies.limit_states import (
+    LIMITS_ATTRIBUTE,
     OVERTURNING,
-    STATES,
     LimitState,
     demands,
     limit_states,
     states_json,
 )
-from rockframe.studies.lines import INTERRUPTED, Rounds, rounds_of
-from rockframe.studies.probability import SAMPLED, Spread, read_correlation, read_spread
+from rockframe.studies.line_scan import INTERRUPTED_ENDING, SweepRounds, sweep_rounds
+from rockframe.studies.probability import (
+    SAMPLING_ATTRIBUTE,
+    RandomParameter,
+    read_correlation,
+    read_spread,
+)
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.memory import check_memory
 from rockframe.studies.sweeps.scenes import motions_of_study, scene_of
@@ -53,13 +58,13 @@ from rockframe.units import Condition, RatioLike, to_ratio
 
 _OWNER: Final = "subset_simulation"
 _SHARE: Final = Condition("from 0.01 to 0.5", lambda value: 0.01 <= value <= 0.5)
-_FEWEST: Final = 5
+_MIN_CHAINS: Final = 5
 """Least number of chains of a level."""
-_MOST_CASES: Final = 10_000_000
-_MOST_LEVELS: Final = 50
-_FEW_FAMILIES: Final = 5
+_MAX_CASES: Final = 10_000_000
+_MAX_LEVELS: Final = 50
+_MIN_FAMILIES: Final = 5
 """Number of families below which the coefficient of variation is itself uncertain."""
-_TOLD: Final = ("axes_json", "study_sha256")
+_TABLE_ATTRIBUTES: Final = ("axes_json", "study_sha256")
 """Attributes with the columns of a table, and the name by which this process knows it."""
 
 
@@ -168,50 +173,50 @@ def subset_simulation(
     spreads = read_spread(spread, scene, owner=_OWNER)
     matrix = read_correlation(correlation, [one.name for one in spreads], owner=_OWNER)
     state = _read_limit(limit)
-    count = whole_number(cases, owner=_OWNER, name="cases", lowest=10, highest=_MOST_CASES)
-    part = to_ratio(share, owner=_OWNER, name="share", condition=_SHARE, example="0.1")
-    if round(part * count) < _FEWEST:
+    count = whole_number(cases, owner=_OWNER, name="cases", lowest=10, highest=_MAX_CASES)
+    fraction = to_ratio(share, owner=_OWNER, name="share", condition=_SHARE, example="0.1")
+    if round(fraction * count) < _MIN_CHAINS:
         msg = (
-            f"{_OWNER}: share {part:g} of {count} cases are {round(part * count)} chains; expected "
-            f"{_FEWEST} at least: draw more cases"
+            f"{_OWNER}: share {fraction:g} of {count} cases are {round(fraction * count)} chains; "
+            f"expected {_MIN_CHAINS} at least: draw more cases"
         )
         raise ComponentError(msg)
-    most = whole_number(levels, owner=_OWNER, name="levels", lowest=1, highest=_MOST_LEVELS)
+    max_levels = whole_number(levels, owner=_OWNER, name="levels", lowest=1, highest=_MAX_LEVELS)
     first = whole_number(seed, owner=_OWNER, name="seed", lowest=0)
-    trust = read_level(confidence, owner=_OWNER)
+    level = read_level(confidence, owner=_OWNER)
     named = motions_of_study(motions, scene)
     wrong = check_memory(
-        {"samples": 2.0 + len(spreads)}, count * most, "draw fewer cases", owner=_OWNER
+        {"samples": 2.0 + len(spreads)}, count * max_levels, "draw fewer cases", owner=_OWNER
     )
     if wrong:
         raise StudyError(*wrong)
     requested = {**run, "points": points}
-    with rounds_of(system, named, requested, owner=_OWNER) as rounds:
+    with sweep_rounds(system, named, requested, owner=_OWNER) as rounds:
         sampler = _Sampler(rounds, spreads, matrix, list(named or ()), state)
-        every = subset_levels(
+        level_iterator = subset_levels(
             sampler.demand,
             sampler.size,
             np.inf if state.rotation == 1.0 else 1.0,
             count=count,
-            share=part,
-            most=most,
+            share=fraction,
+            max_levels=max_levels,
             rng=np.random.default_rng(first),
         )
-        found, whole = _collected(every, kept=rounds.store is not None)
-    if sampler.said and whole:
-        warn(f"{_OWNER}: in further rounds: {sampler.said[0]}", ModelWarning)
-    dataset = _labelled(sampler, found, trust, whole=whole)
-    if whole:
+        sampled, completed = _collect_levels(level_iterator, has_store=rounds.store is not None)
+    if sampler.warnings and completed:
+        warn(f"{_OWNER}: in further rounds: {sampler.warnings[0]}", ModelWarning)
+    dataset = _subset_dataset(sampler, sampled, level, completed=completed)
+    if completed:
         _warn_of_uncertain_probability(dataset)
     return dataset.assign_attrs({
         "title": "Subset simulation of a rocking system",
         "limit_state": state.name,
-        STATES: states_json([state]),
-        SAMPLED: "subset simulation",
+        LIMITS_ATTRIBUTE: states_json([state]),
+        SAMPLING_ATTRIBUTE: "subset simulation",
         "seed": first,
-        "share": part,
-        "confidence": trust,
-        "verdict": _sentence(dataset, state, trust, len(named or ()), whole=whole),
+        "share": fraction,
+        "confidence": level,
+        "verdict": _sentence(dataset, state, level, len(named or ()), completed=completed),
     })  # fmt: skip
 
 
@@ -238,13 +243,13 @@ class _Sampler:
     """Transforms normal scores to parameters, runs the cases, and collects the results."""
 
     def __init__(
-        self, rounds: Rounds, spreads: Sequence[Spread], matrix: Array | None,
+        self, rounds: SweepRounds, spreads: Sequence[RandomParameter], matrix: Array | None,
         names: Sequence[str], state: LimitState,
     ) -> None:  # fmt: skip
-        self.said: list[str] = []  # warnings beyond the first level
+        self.warnings: list[str] = []  # warnings beyond the first level
         self.runs: list[xr.Dataset] = []
         self._rounds, self._spreads, self._names, self._state = rounds, spreads, names, state
-        self._root = np.eye(len(spreads)) if matrix is None else np.linalg.cholesky(matrix)
+        self._cholesky = np.eye(len(spreads)) if matrix is None else np.linalg.cholesky(matrix)
 
     @property
     def size(self) -> int:
@@ -255,9 +260,9 @@ class _Sampler:
         """Run samples, a row of normal scores each; give their demands."""
         table = self._table(scores)
         with collected_warnings() if self.runs else nullcontext([]) as warned:
-            runs, whole = self._rounds.sweep(part, table, {}, further=bool(self.runs))
-        self.said += warned
-        if not whole:
+            runs, completed = self._rounds.sweep(part, table, {}, follow_up=bool(self.runs))
+        self.warnings += warned
+        if not completed:
             raise KeyboardInterrupt
         # if a function makes the motion, the sweep has a dimension for it
         self.runs.append(runs.isel({MOTION: 0}) if MOTION in runs.dims else runs)
@@ -268,7 +273,7 @@ class _Sampler:
         from scipy.special import ndtr
 
         count = len(self._spreads)
-        normal = scores[:, :count] @ self._root.T
+        normal = scores[:, :count] @ self._cholesky.T
         # each from the probability of its own tail, which loses no digits
         beyond = ndtr(-np.abs(normal))
         table: dict[str, Any] = {
@@ -285,23 +290,23 @@ class _Sampler:
         return table
 
 
-def _collected(every: Iterator[Level], *, kept: bool) -> tuple[list[Level], bool]:
+def _collect_levels(iterator: Iterator[Level], *, has_store: bool) -> tuple[list[Level], bool]:
     """Return the levels, and whether sampling was completed."""
     found: list[Level] = []
     try:
-        found.extend(every)
+        found.extend(iterator)
     except KeyboardInterrupt:
-        goes_on = "; the same call goes on, as it has a store" if kept else ""
-        words = f"{_OWNER}: interrupted at level {len(found) + 1}{goes_on}"
+        advice = "; the same call goes on, as it has a store" if has_store else ""
+        message = f"{_OWNER}: interrupted at level {len(found) + 1}{advice}"
         if not found:
-            raise StudyError(words) from None
-        warn(words, SolverWarning)
+            raise StudyError(message) from None
+        warn(message, SolverWarning)
         return found, False
     return found, True
 
 
-def _labelled(
-    sampler: _Sampler, found: Sequence[Level], confidence: float, *, whole: bool
+def _subset_dataset(
+    sampler: _Sampler, found: Sequence[Level], confidence: float, *, completed: bool
 ) -> xr.Dataset:
     """Return a dataset of the samples of all levels with their runs, and of the probability."""
     first = sampler.runs[0]
@@ -311,7 +316,7 @@ def _labelled(
     samples = samples.assign_coords(
         {CASE: (CASE, np.arange(samples.sizes[CASE]), first[CASE].attrs)}
     )
-    lower, upper = bounds_of(found, confidence)
+    lower, upper = subset_bounds(found, confidence)
     of_levels = build_dataset(
         {
             "sampling_level": np.arange(1, len(found) + 1),
@@ -319,10 +324,10 @@ def _labelled(
             "conditional_probability": np.array([one.share for one in found]),
             "acceptance_rate": np.array([one.acceptance for one in found]),
             "chain_count": np.array([one.chains for one in found]),
-            "exceedance_probability": probability_of(found) if whole else np.nan,
-            "exceedance_probability_lower_bound": lower if whole else 0.0,
+            "exceedance_probability": subset_probability(found) if completed else np.nan,
+            "exceedance_probability_lower_bound": lower if completed else 0.0,
             "exceedance_probability_upper_bound": upper,
-            "coefficient_of_variation": variation_of(found) if whole else np.nan,
+            "coefficient_of_variation": subset_variation(found) if completed else np.nan,
             "run_count": sum(one.runs for one in found),
             "left_out_count": sum(one.left_out for one in found),
             "family_count": int((family_shares(found) > 0.0).sum()),
@@ -333,12 +338,12 @@ def _labelled(
     of_samples = {
         "demand": np.concatenate([one.demands for one in found]),
         "sample_level": np.repeat(of_levels["sampling_level"], [len(one.demands) for one in found]),
-        "sample_weight": np.concatenate(weights_of(found)),
+        "sample_weight": np.concatenate(sample_weights(found)),
     }
-    known = {name: first.attrs[name] for name in _TOLD}
+    attributes = {name: first.attrs[name] for name in _TABLE_ATTRIBUTES}
     samples = samples.assign(of_levels.data_vars).assign_coords(of_levels.coords)
     samples = with_variables(samples, of_samples, over=(CASE,))
-    return samples.assign_attrs({**known, "source": of_levels.attrs["source"]})
+    return samples.assign_attrs({**attributes, "source": of_levels.attrs["source"]})
 
 
 def _warn_of_uncertain_probability(found: xr.Dataset) -> None:
@@ -352,7 +357,7 @@ def _warn_of_uncertain_probability(found: xr.Dataset) -> None:
             why = f"all samples of the last demand {most:.3g}, so that none leads on"
         msg = f"{_OWNER}: no sample exceeds the limit state, after {levels} levels: {why}"
         warn(msg, ModelWarning)
-    elif families < _FEW_FAMILIES:
+    elif families < _MIN_FAMILIES:
         warn(
             f"{_OWNER}: all samples that exceed descend from {families} of the first level, so "
             "that the coefficient of variation is hardly known; draw more cases",
@@ -361,27 +366,27 @@ def _warn_of_uncertain_probability(found: xr.Dataset) -> None:
 
 
 def _sentence(
-    found: xr.Dataset, state: LimitState, confidence: float, motions: int, *, whole: bool
+    found: xr.Dataset, state: LimitState, confidence: float, motions: int, *, completed: bool
 ) -> str:
     """Return the verdict in words: the probability, and the number of runs."""
-    does = "Overturns" if state.rotation == 1.0 else f"Exceeds {state.name}"
+    outcome = "Overturns" if state.rotation == 1.0 else f"Exceeds {state.name}"
     lower, upper = (
         float(found[f"exceedance_probability_{end}_bound"]) for end in ("lower", "upper")
     )
     probability = float(found["exceedance_probability"])
     if probability > 0.0:
         text = (
-            f"{does} with probability {probability:.2e}, from {lower:.2e} to {upper:.2e} with "
+            f"{outcome} with probability {probability:.2e}, from {lower:.2e} to {upper:.2e} with "
             f"confidence {confidence:g}, coefficient of variation "
             f"{float(found['coefficient_of_variation']):.2g}"
         )
     else:
-        text = f"{does} with a probability below {upper:.2e} with confidence {confidence:g}"
+        text = f"{outcome} with a probability below {upper:.2e} with confidence {confidence:g}"
     levels = found.sizes["sampling_level"]
     text += f", by {int(found['run_count'])} runs in {levels} level{'s' * (levels > 1)}"
     if motions > 1:
         text += f" under these {motions} motions"
-    lacking = int(found["left_out_count"])
-    if lacking:
-        text += f"; {lacking} without a verdict are left out"
-    return f"{text}." if whole else f"{text}{INTERRUPTED}"
+    missing = int(found["left_out_count"])
+    if missing:
+        text += f"; {missing} without a verdict are left out"
+    return f"{text}." if completed else f"{text}{INTERRUPTED_ENDING}"

@@ -16,12 +16,12 @@ from rockframe.measures.response import checked_periods, shortest_positive_perio
 from rockframe.motion.processing.samples import warn_of_coarse_samples
 from rockframe.motion.quantities import ArrayLike
 from rockframe.signals.arrays import Array
+from rockframe.suites.labelled_motions import LabelledMotions
 from rockframe.suites.target import TargetSpectrum, check_target
-from rockframe.suites.value import LabelledMotions
 from rockframe.units import PERIOD, POSITIVE, QuantityLike, RatioLike, to_ratio
 
-_USUAL_BAND: Final = (0.1, 4.0)
-_USUAL_COUNT: Final = 40
+_DEFAULT_BAND: Final = (0.1, 4.0)
+_DEFAULT_COUNT: Final = 40
 
 
 class Combination(StrEnum):
@@ -33,7 +33,7 @@ class Combination(StrEnum):
     GREATEST = "RotD100"
 
 
-_OF_PAIRS: Final = {
+_PAIR_VARIABLES: Final = {
     Combination.GEOMETRIC_MEAN: "geometric_mean_acceleration",
     Combination.MEDIAN: "median_rotated_acceleration",
     Combination.GREATEST: "greatest_rotated_acceleration",
@@ -46,9 +46,9 @@ class Candidates:
 
     # of n motions, or of n records where both components are combined
     labels: tuple[str, ...]
-    seconds: Array  # periods at which spectra are compared [s]
-    logarithms: Array  # of the spectra, not scaled
-    target: Array  # logarithm of the target
+    periods: Array  # periods at which spectra are compared [s]
+    log_spectra: Array  # of the spectra, not scaled
+    log_target: Array  # logarithm of the target
     deviations: Array  # its standard deviations
     factors: Array  # by which each is scaled, whatever the bounds [1]
     bounds: tuple[float, float]  # least and greatest factor
@@ -57,10 +57,10 @@ class Candidates:
 
     def residuals(self, factors: Array) -> Array:
         """Return the logarithms of scaled spectra over the target, shape (n, k)."""
-        return self.logarithms + np.log(factors)[:, None] - self.target
+        return self.log_spectra + np.log(factors)[:, None] - self.log_target
 
     @property
-    def within(self) -> NDArray[np.bool_]:
+    def within_bounds(self) -> NDArray[np.bool_]:
         """Return whether each factor lies within the bounds, shape (n,)."""
         low, high = self.bounds
         return (self.factors >= low) & (self.factors <= high)
@@ -79,47 +79,49 @@ def candidates_of(
     """Check the arguments of a selection, and compute the spectra that it needs."""
     target = check_target(target, owner=owner)
     kind = one_of_words(Combination, combination, owner=owner, name="combination")
-    seconds = usual_periods(target) if periods is None else checked_periods(periods, owner=owner)
+    seconds = default_periods(target) if periods is None else checked_periods(periods, owner=owner)
     fixed = seconds if conditioned_on is None else checked_periods(conditioned_on, owner=owner)
     every = np.unique(np.concatenate([seconds, fixed]))
     if periods is not None or conditioned_on is not None:
         every_period = fixed if periods is None else every
         signals = [motion.si.horizontal for motion in suite.values()]
         warn_of_coarse_samples(signals, shortest_positive_period(every_period), owner=owner)
-    goal = np.log(target.at_seconds(every, owner=owner))
+    log_target = np.log(target.at_seconds(every, owner=owner))
     labels, spectra, events = _spectra(suite, kind, every, target.damping_ratio, owner)
-    still = [label for label, row in zip(labels, spectra, strict=True) if not (row > 0.0).all()]
-    if still:
-        msg = f"{owner}: {still[0]!r} has no acceleration, and no factor brings it to a target"
+    motionless = [
+        label for label, row in zip(labels, spectra, strict=True) if not (row > 0.0).all()
+    ]
+    if motionless:
+        msg = f"{owner}: {motionless[0]!r} has no acceleration, and no factor brings it to a target"
         raise ComponentError(msg)
     logarithms = np.log(spectra)
-    held, compared = (np.searchsorted(every, one) for one in (fixed, seconds))
-    factors = np.exp((goal[held] - logarithms[:, held]).mean(axis=1))
+    conditioned, compared = (np.searchsorted(every, one) for one in (fixed, seconds))
+    factors = np.exp((log_target[conditioned] - logarithms[:, conditioned]).mean(axis=1))
     return Candidates(
         tuple(labels),
         seconds,
         logarithms[:, compared],
-        goal[compared],
+        log_target[compared],
         target.deviations_at(seconds),
         factors,
-        _bounds(bounds, owner),
+        _read_bounds(bounds, owner),
         tuple(events),
         {
             "target": target.name,
             "damping_ratio": target.damping_ratio,
             "combination": str(kind),
-            "conditioned_on": _conditioned(conditioned_on is not None, fixed),
+            "conditioned_on": _conditioning_words(conditioned_on is not None, fixed),
         },
     )
 
 
-def usual_periods(target: TargetSpectrum) -> Array:
+def default_periods(target: TargetSpectrum) -> Array:
     """Return the periods at which spectra are compared with a target by default [s]."""
-    low, high = (float(np.clip(one, *target.limits)) for one in _USUAL_BAND)
-    return np.geomspace(low, high, _USUAL_COUNT) if high > low else np.array([low])
+    low, high = (float(np.clip(one, *target.limits)) for one in _DEFAULT_BAND)
+    return np.geomspace(low, high, _DEFAULT_COUNT) if high > low else np.array([low])
 
 
-def _bounds(items: tuple[RatioLike, RatioLike] | None, owner: str) -> tuple[float, float]:
+def _read_bounds(items: tuple[RatioLike, RatioLike] | None, owner: str) -> tuple[float, float]:
     if items is None:
         return 0.0, np.inf
     values = several(items, owner=owner, name="bounds", of="factors")
@@ -152,13 +154,13 @@ def _spectra(
                 "and the suite has no pair"
             )
             raise ComponentError(msg)
-        found = rotated_spectrum(pairs, with_unit, damping_ratio)[_OF_PAIRS[kind]]
+        found = rotated_spectrum(pairs, with_unit, damping_ratio)[_PAIR_VARIABLES[kind]]
         motions = {record: pair.first for record, pair in pairs.items()}
     events = [str(motion.metadata.get("event", "")) for motion in motions.values()]
     return list(motions), found.isel(damping_ratio=0).to_numpy(), events
 
 
-def _conditioned(value: bool, fixed: Array) -> str:
+def _conditioning_words(value: bool, fixed: Array) -> str:
     if not value:
         return "the mean logarithm over all periods"
     if fixed.size == 1:

@@ -26,8 +26,8 @@ from rockframe.units import (
 Shape: TypeAlias = Callable[[Array], Array]
 """Accelerations [m s^-2] at periods [s]."""
 
-_HEIGHT: Final = 2.5
-_LEAST_CORRECTION: Final = 0.55
+_PLATEAU_AMPLIFICATION: Final = 2.5
+_MIN_DAMPING_CORRECTION: Final = 0.55
 
 
 class GroundType(StrEnum):
@@ -63,36 +63,40 @@ _EUROCODE: Final = {
 class _Eurocode8:
     """The elastic spectrum: a_g [m s^-2], S [1], T_B, T_C, T_D [s] and eta [1]."""
 
-    peak: float
-    soil: float
-    first: float
-    second: float
-    third: float
-    correction: float
+    ground_acceleration: float
+    soil_factor: float
+    corner_b: float
+    corner_c: float
+    corner_d: float
+    damping_correction: float
 
     def __call__(self, at: Array) -> Array:
         """Compute :eq:`eq-eurocode-8`."""
-        plateau = _HEIGHT * self.correction
-        longer = np.maximum(at, self.second)
-        rising = 1.0 + np.minimum(at, self.first) / self.first * (plateau - 1.0)
-        falling = plateau * self.second / longer * np.minimum(1.0, self.third / longer)
-        return self.peak * self.soil * np.where(at < self.first, rising, falling)
+        plateau = _PLATEAU_AMPLIFICATION * self.damping_correction
+        longer = np.maximum(at, self.corner_c)
+        rising = 1.0 + np.minimum(at, self.corner_b) / self.corner_b * (plateau - 1.0)
+        falling = plateau * self.corner_c / longer * np.minimum(1.0, self.corner_d / longer)
+        return (
+            self.ground_acceleration
+            * self.soil_factor
+            * np.where(at < self.corner_b, rising, falling)
+        )
 
 
 @dataclass(frozen=True)
 class _ASCE7:
     """The design spectrum: S_DS, S_D1 [m s^-2], the corner between them and T_L [s]."""
 
-    short: float
-    one: float
+    short_period: float
+    one_second: float
     corner: float
-    last: float
+    long_period: float
 
     def __call__(self, at: Array) -> Array:
         """Compute :eq:`eq-asce-7`."""
         longer = np.maximum(at, self.corner)
-        rising = self.short * (0.4 + 0.6 * at / (0.2 * self.corner))
-        falling = self.one / longer * np.minimum(1.0, self.last / longer)
+        rising = self.short_period * (0.4 + 0.6 * at / (0.2 * self.corner))
+        falling = self.one_second / longer * np.minimum(1.0, self.long_period / longer)
         return np.where(at < 0.2 * self.corner, rising, falling)
 
 
@@ -125,7 +129,7 @@ def eurocode_8(
         msg = f"{owner}: corner_periods must be T_B, T_C and T_D, increasing"
         raise ComponentError(msg)
     damping = to_ratio(damping_ratio, owner=owner, name="damping_ratio", condition=DAMPING_RATIO)
-    correction = max(math.sqrt(10.0 / (5.0 + 100.0 * damping)), _LEAST_CORRECTION)
+    correction = max(math.sqrt(10.0 / (5.0 + 100.0 * damping)), _MIN_DAMPING_CORRECTION)
 
     first, second, third = corners
     words = f"Eurocode 8, type {number}, ground {kind}, {peak:.4g} m/s^2"

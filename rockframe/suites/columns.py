@@ -17,7 +17,7 @@ from rockframe.results.variables.motions import RECORDS
 from rockframe.units import Measure, Unit, to_ratio, to_si
 
 if TYPE_CHECKING:
-    from rockframe.suites.value import LabelledMotions
+    from rockframe.suites.labelled_motions import LabelledMotions
 
 
 _COMPUTED: Final = ("time_step", "duration", "sample_count", "peak_ground_acceleration")
@@ -25,7 +25,7 @@ COLUMNS: Final = (*(row.name for row in RECORDS), "peak_ground_acceleration")
 """Columns that have a row in the schema, in order."""
 
 
-def column(name: str, motion: GroundMotion) -> Any:
+def column_value(name: str, motion: GroundMotion) -> Any:
     """Return the metadata of a motion."""
     if name in _COMPUTED:
         return _computed(name, motion)
@@ -42,7 +42,7 @@ def known_columns(motions: Mapping[str, GroundMotion]) -> dict[str, np.ndarray]:
     """Return the columns of the schema for which some motion has a value."""
     found: dict[str, np.ndarray] = {}
     for name in COLUMNS:
-        values = [column(name, motion) for motion in motions.values()]
+        values = [column_value(name, motion) for motion in motions.values()]
         if all(value is None for value in values):
             continue
         kind = SCHEMA[name].dtype
@@ -88,15 +88,17 @@ _EXAMPLES: Final = {
 Test = Callable[[Any], bool]
 
 
-def chosen(motions: Mapping[str, GroundMotion], criteria: Mapping[str, object]) -> list[str]:
+def matching_labels(
+    motions: Mapping[str, GroundMotion], criteria: Mapping[str, object]
+) -> list[str]:
     """Return the labels of the motions that meet all criteria."""
     for name in criteria:
         check_column(motions, name, owner=_OWNER)
-    tests = {name: _test(name, given) for name, given in criteria.items()}
+    tests = {name: _criterion(name, given) for name, given in criteria.items()}
     return [
         label
         for label, motion in motions.items()
-        if all(_passes(test, column(name, motion)) for name, test in tests.items())
+        if all(_passes(test, column_value(name, motion)) for name, test in tests.items())
     ]
 
 
@@ -109,13 +111,15 @@ def check_column(motions: Mapping[str, GroundMotion], name: object, *, owner: st
         raise ComponentError(msg)
 
 
-def order(motions: Mapping[str, GroundMotion], name: str, *, descending: bool) -> list[str]:
+def sorted_labels(motions: Mapping[str, GroundMotion], name: str, *, descending: bool) -> list[str]:
     """Return the labels in the order of a column; motions without a value come last."""
-    known = {label: column(name, motion) for label, motion in motions.items()}
-    there = [label for label, value in known.items() if not is_missing(value)]
-    as_text = any(isinstance(known[label], str) for label in there)
-    there.sort(key=lambda label: str(known[label]) if as_text else known[label], reverse=descending)
-    return [*there, *(label for label in known if label not in set(there))]
+    known = {label: column_value(name, motion) for label, motion in motions.items()}
+    with_value = [label for label, value in known.items() if not is_missing(value)]
+    as_text = any(isinstance(known[label], str) for label in with_value)
+    with_value.sort(
+        key=lambda label: str(known[label]) if as_text else known[label], reverse=descending
+    )
+    return [*with_value, *(label for label in known if label not in set(with_value))]
 
 
 def _passes(test: Test, value: Any) -> bool:
@@ -127,7 +131,7 @@ def is_missing(value: Any) -> bool:
     return value is None or value == "" or (isinstance(value, float) and math.isnan(value))
 
 
-def _test(name: str, argument: Any) -> Test:
+def _criterion(name: str, argument: Any) -> Test:
     if callable(argument):
         return function_of(argument, "value", owner=_OWNER, name=name)
     if isinstance(argument, tuple):
@@ -135,16 +139,16 @@ def _test(name: str, argument: Any) -> Test:
         if len(bounds) != 2:
             msg = f"{_OWNER}: {name} needs a range of two values, got {shown(argument)}"
             raise ComponentError(msg)
-        low, high = (None if bound is None else _value(name, bound) for bound in bounds)
+        low, high = (None if bound is None else _read_value(name, bound) for bound in bounds)
         return lambda value: (low is None or low <= value) and (high is None or value <= high)
     if isinstance(argument, Collection) and not isinstance(argument, str):
-        wanted = [_value(name, one) for one in cast("Collection[Any]", argument)]
-        return lambda value: _key(value) in map(_key, wanted)
-    one = _value(name, argument)
-    return lambda value: _key(value) == _key(one)
+        accepted = [_read_value(name, one) for one in cast("Collection[Any]", argument)]
+        return lambda value: _comparison_key(value) in map(_comparison_key, accepted)
+    one = _read_value(name, argument)
+    return lambda value: _comparison_key(value) == _comparison_key(one)
 
 
-def _value(name: str, value: Any) -> Any:
+def _read_value(name: str, value: Any) -> Any:
     row = SCHEMA.get(name) if name in COLUMNS else None
     if row is None or row.dtype == "str":
         return value
@@ -154,7 +158,7 @@ def _value(name: str, value: Any) -> Any:
     return to_ratio(value, owner=_OWNER, name=name, example="6")
 
 
-def _key(value: Any) -> Any:
+def _comparison_key(value: Any) -> Any:
     if isinstance(value, str):
         return value.strip().casefold()
     if isinstance(value, int | float):
@@ -162,7 +166,7 @@ def _key(value: Any) -> Any:
     return value
 
 
-_SHOWN: Final = 8
+_MAX_ROWS: Final = 8
 """Most motions that are shown in rows of their own."""
 
 
@@ -177,9 +181,9 @@ def suite_html(suite: "LabelledMotions") -> str:
         f'<tr style="background:transparent"><td style="{CELL}">{escape(label)}</td>'
         f'<td style="{CELL}">{escape(peak_words(motion))}</td><td style="{CELL}">'
         f"{curve(motion.si.horizontal.samples.tolist(), width=160.0, height=24.0)}</td></tr>"
-        for label, motion in list(suite.items())[:_SHOWN]
+        for label, motion in list(suite.items())[:_MAX_ROWS]
     )
-    left = len(suite) - _SHOWN
-    more = f"<div>and {left} more; <code>suite.table</code> has all</div>" if left > 0 else ""
+    omitted = len(suite) - _MAX_ROWS
+    more = f"<div>and {omitted} more; <code>suite.table</code> has all</div>" if omitted > 0 else ""
     table = f'<table style="{TABLE}">{lines}</table>{more}'
     return card(type(suite).__name__, rows, more=table)

@@ -6,8 +6,8 @@ from typing import Any, TypeVar
 from rockframe.errors import RecordWarning, collected_warnings, warn
 from rockframe.motion import GroundMotion
 from rockframe.motion.operations.matching import USUAL_PERIODS, Target
+from rockframe.suites.labelled_motions import LabelledMotions
 from rockframe.suites.target import TargetSpectrum
-from rockframe.suites.value import LabelledMotions
 from rockframe.units import PERIOD, to_si_values
 
 Suite = TypeVar("Suite", bound=LabelledMotions)

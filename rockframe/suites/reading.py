@@ -19,7 +19,7 @@ from rockframe.records import (
     read_components,
     request_of,
 )
-from rockframe.suites.records import RecordedComponent, assign_records, number_in_name
+from rockframe.suites.records import RecordedComponent, assign_records, sequence_number_of
 from rockframe.suites.stored import is_stored_suite, stored_suite
 from rockframe.suites.suite import MotionSuite
 from rockframe.units import QuantityLike
@@ -28,7 +28,7 @@ _OWNER: Final = "read_suite"
 _OTHER_MOTIONS: Final = {".vt2": "a velocity", ".dt2": "a displacement"}
 _COMPANIONS: Final = (*_OTHER_MOTIONS, ".pdf", ".xml")
 """Endings of files that come with records but are none: they are skipped without a warning."""
-_LISTED: Final = 3
+_MAX_LISTED: Final = 3
 
 
 @hinted()
@@ -95,41 +95,41 @@ def read_suite(
     ['east', 'north']
     """
     request = request_of(owner=_OWNER, unit=unit, time_step=time_step)
-    found = _Found()
+    reader = _SuiteReader()
     for file in files_of(path):
         if isinstance(file, Unread):
-            found.left.append(file)
+            reader.unread.append(file)
         elif is_stored_suite(file):
             return stored_suite(file, MotionSuite.from_dataset)
         else:
-            found.take(file, format, request)
-    found.complete()
-    level = {one.label: one.finished() for one in found.components if not one.vertical}
-    upwards = {one.label: one.finished() for one in found.components if one.vertical}
-    if not level:
-        raise _nothing(str(path), found, len(upwards))
-    _say(found)
-    reasons = {one.path: one.reason for one in found.left}
-    return MotionSuite(level, verticals=upwards, unread=reasons, remarks=found.remarks)
+            reader.read(file, format, request)
+    reader.complete()
+    horizontal = {one.label: one.with_metadata() for one in reader.components if not one.vertical}
+    verticals = {one.label: one.with_metadata() for one in reader.components if one.vertical}
+    if not horizontal:
+        raise _no_motions_error(str(path), reader, len(verticals))
+    _warn_of_unread(reader)
+    reasons = {one.path: one.reason for one in reader.unread}
+    return MotionSuite(horizontal, verticals=verticals, unread=reasons, remarks=reader.remarks)
 
 
-class _Found:
+class _SuiteReader:
     """Components, tables and faults found so far."""
 
     def __init__(self) -> None:
         self.components: list[RecordedComponent] = []
-        self.left: list[Unread] = []
+        self.unread: list[Unread] = []
         self.remarks: list[str] = []
         self._tables: dict[str, Known] = {}
         self._table = ""
         self._labels: set[str] = set()
         self._digests: dict[str, str] = {}
 
-    def take(self, file: Source, format_name: str | None, request: Request) -> None:
+    def read(self, file: Source, format_name: str | None, request: Request) -> None:
         """Read a file, or record why it was not read."""
         other = _OTHER_MOTIONS.get(file.suffix)
         if other is not None:
-            self.left.append(Unread(file.path, f"found {other}; expected an acceleration"))
+            self.unread.append(Unread(file.path, f"found {other}; expected an acceleration"))
             return
         try:
             table = peer_table(file)
@@ -139,24 +139,24 @@ class _Found:
                 return
             readings = read_components(file, format_name, request)
         except RecordError as problem:
-            self.left.append(Unread.of(file.path, problem))
+            self.unread.append(Unread.of(file.path, problem))
             return
         except ComponentError:
             raise
         except Exception as problem:
             # a fault of a reader excludes one file, not the folder, and is reported as such
             found = f"found what the reader fails at ({type(problem).__name__}: {problem})"
-            self.left.append(Unread(file.path, f"{found[:300]}; {PLEASE_REPORT}"))
+            self.unread.append(Unread(file.path, f"{found[:300]}; {PLEASE_REPORT}"))
             return
         if file.sha256 in self._digests:
             found = f"found a copy of {self._digests[file.sha256]}; expected each record once"
-            self.left.append(Unread(file.path, found))
+            self.unread.append(Unread(file.path, found))
             return
         self._digests[file.sha256] = file.path
         number = len(self._digests)
         for reading in readings:
             if isinstance(reading, RecordError):
-                self.left.append(Unread.of(reading.path, reading))
+                self.unread.append(Unread.of(reading.path, reading))
                 continue
             self.remarks += [one for one in reading.warnings if one not in self.remarks]
             label = self._label(reading, alone=len(readings) == 1)
@@ -168,25 +168,25 @@ class _Found:
                 recipe=reading.recipe,
             )
             component = RecordedComponent(label, motion, reading.vertical, file.path, number)
-            sequence_number = number_in_name(reading.file)
+            sequence_number = sequence_number_of(reading.file)
             if sequence_number is not None:
-                component.known["record_sequence_number"] = sequence_number
+                component.added_metadata["record_sequence_number"] = sequence_number
             self.components.append(component)
 
     def complete(self) -> None:
         """Add the metadata of tables, and group components."""
         tables = {name.casefold(): metadata for name, metadata in self._tables.items()}
-        there: set[str] = set()
+        matched: set[str] = set()
         for component in self.components:
             name = str(component.motion.metadata.get("source_file", "")).casefold()
             if name in tables:
-                there.add(name)
-                component.known |= tables[name]
+                matched.add(name)
+                component.added_metadata |= tables[name]
                 component.vertical = component.vertical or tables[name].get("axis") == "V"
-        self.left += [
+        self.unread += [
             Unread(f"{self._table}: {name}", "found no such file; expected it beside the table")
             for name in self._tables
-            if name.casefold() not in there
+            if name.casefold() not in matched
         ]
         self.remarks += assign_records(self.components)
 
@@ -201,26 +201,28 @@ class _Found:
         return label
 
 
-def _nothing(path: str, found: _Found, upwards: int) -> RecordError:
-    count = upwards + len(found.left)
+def _no_motions_error(path: str, reader: _SuiteReader, vertical_count: int) -> RecordError:
+    count = vertical_count + len(reader.unread)
     what = f"no horizontal component in {count} file{'' if count == 1 else 's'}"
-    if upwards:
-        what += f", {upwards} vertical ones"
-    listed = "; ".join(f"{one.path}: {one.reason}" for one in found.left[:_LISTED])
+    if vertical_count:
+        what += f", {vertical_count} vertical ones"
+    listed = "; ".join(f"{one.path}: {one.reason}" for one in reader.unread[:_MAX_LISTED])
     expected = "records of ground motions" + (f" (not read: {listed[:600]})" if listed else "")
     shown = path if len(path) <= 200 else f"{path[:197]}..."
     return RecordError(shown, found=what, expected=expected)
 
 
-def _say(found: _Found) -> None:
+def _warn_of_unread(reader: _SuiteReader) -> None:
     """Warn once, for all files together."""
-    left = [one for one in found.left if not one.path.casefold().endswith(_COMPANIONS)]
+    unread = [one for one in reader.unread if not one.path.casefold().endswith(_COMPANIONS)]
     words: list[str] = []
-    if left:
-        listed = "; ".join(f"{PurePath(one.path).name}: {one.reason}" for one in left[:_LISTED])
-        words.append(f"{len(left)} files not read ({listed}; suite.unread lists all)")
-    if found.remarks:
-        listed = "; ".join(found.remarks[:_LISTED])
-        words.append(f"{len(found.remarks)} worth a look ({listed}; suite.remarks lists all)")
+    if unread:
+        listed = "; ".join(
+            f"{PurePath(one.path).name}: {one.reason}" for one in unread[:_MAX_LISTED]
+        )
+        words.append(f"{len(unread)} files not read ({listed}; suite.unread lists all)")
+    if reader.remarks:
+        listed = "; ".join(reader.remarks[:_MAX_LISTED])
+        words.append(f"{len(reader.remarks)} worth a look ({listed}; suite.remarks lists all)")
     if words:
         warn(f"{_OWNER}: {'; '.join(words)}", RecordWarning)

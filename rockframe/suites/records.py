@@ -16,11 +16,11 @@ SECOND: Final = "H2"
 VERTICAL: Final = "V"
 HORIZONTAL: Final = (FIRST, SECOND)
 
-_OF_THE_SUITE: Final = ("record", "axis")
+_SUITE_METADATA: Final = ("record", "axis")
 _RSN: Final = re.compile(r"RSN(\d{1,6})_", re.IGNORECASE)
-_WHEN: Final = ("event_time", "date")
-_START: Final = "record_time"
-_WHERE: Final = ("network", "station", "sensor_location")
+_EVENT_TIME_KEYS: Final = ("event_time", "date")
+_START_KEY: Final = "record_time"
+_STATION_KEYS: Final = ("network", "station", "sensor_location")
 # band and instrument of a SEED channel, such as HN of HNE
 _INSTRUMENT: Final = re.compile(r"(?:^|\.)([FGDCESHBML][NLGH])[A-Z0-9](?:\s|$)")
 
@@ -35,15 +35,19 @@ class RecordedComponent:
     file: str  # path of its file
     number: int  # of its file, among those that were read: paths of files in memory are alike
     # other metadata; added to
-    known: dict[str, str | float | int] = field(default_factory=dict)
+    added_metadata: dict[str, str | float | int] = field(default_factory=dict)
 
     @property
     def metadata(self) -> dict[str, Any]:
         """Metadata from the file and other sources."""
-        own = {name: self.known[name] for name in _OF_THE_SUITE if name in self.known}
-        return {**self.known, **self.motion.metadata, **own}
+        own = {
+            name: self.added_metadata[name]
+            for name in _SUITE_METADATA
+            if name in self.added_metadata
+        }
+        return {**self.added_metadata, **self.motion.metadata, **own}
 
-    def finished(self) -> GroundMotion:
+    def with_metadata(self) -> GroundMotion:
         """Return the motion with its label and all metadata."""
         one = self.motion
         return GroundMotion(
@@ -51,7 +55,7 @@ class RecordedComponent:
         )
 
 
-def number_in_name(file: str) -> int | None:
+def sequence_number_of(file: str) -> int | None:
     """Return the record sequence number that PEER writes before the names of its files."""
     found = _RSN.match(file)
     return None if found is None else int(found.group(1))
@@ -66,13 +70,13 @@ def assign_records(components: Iterable[RecordedComponent]) -> list[str]:
     processing are used. H1 and H2 are in the order in which they were read, unless a table states
     it.
     """
-    held = list(components)
+    listed = list(components)
     remarks: list[str] = []
     names: set[str] = set()
-    lonely: list[RecordedComponent] = []
-    for members in _sorted_by(held, _group_of):
-        for part in [members] if _is_one(members) else _sorted_by(members, _instrument):
-            record = unique = _name_of(part[0])
+    unpaired: list[RecordedComponent] = []
+    for members in _group_by(listed, _group_key):
+        for part in [members] if _fits_one_record(members) else _group_by(members, _instrument):
+            record = unique = _record_name(part[0])
             if record in names:
                 unique = f"{record}, {' '.join(_instrument(part[0]))}".rstrip(", ")
             count = 1
@@ -81,12 +85,12 @@ def assign_records(components: Iterable[RecordedComponent]) -> list[str]:
                 unique = f"{record} ({count})"
             names.add(unique)
             for component in part:
-                component.known["record"] = unique
+                component.added_metadata["record"] = unique
             remarks += _assign(unique, part)
-            level = [one for one in part if not one.vertical]
-            lonely += level if len(level) == 1 else []
-    for members in _sorted_by(lonely, _event_and_station):
-        remarks += _why_apart(members)
+            horizontal = [one for one in part if not one.vertical]
+            unpaired += horizontal if len(horizontal) == 1 else []
+    for members in _group_by(unpaired, _event_and_station):
+        remarks += _unpaired_remarks(members)
     return remarks
 
 
@@ -105,17 +109,17 @@ def pairs_of(
     }
 
 
-def _sorted_by(
+def _group_by(
     components: Iterable[RecordedComponent], key: Callable[[RecordedComponent], tuple[str, ...]]
 ) -> list[list[RecordedComponent]]:
     """Group components by a key, and those of known start times by overlapping times."""
-    sorted_: dict[tuple[str, ...], list[RecordedComponent]] = {}
+    groups: dict[tuple[str, ...], list[RecordedComponent]] = {}
     for component in components:
-        sorted_.setdefault(key(component), []).append(component)
-    return [part for members in sorted_.values() for part in _at_one_time(members)]
+        groups.setdefault(key(component), []).append(component)
+    return [part for members in groups.values() for part in _split_by_time(members)]
 
 
-def _at_one_time(members: list[RecordedComponent]) -> list[list[RecordedComponent]]:
+def _split_by_time(members: list[RecordedComponent]) -> list[list[RecordedComponent]]:
     starts = [_start(one) for one in members]
     known = [start for start in starts if start is not None]
     if len(known) < len(members):
@@ -136,9 +140,9 @@ def _at_one_time(members: list[RecordedComponent]) -> list[list[RecordedComponen
 def _start(component: RecordedComponent) -> float | None:
     """Return the start time of a component whose earthquake is not known [s], else None."""
     metadata = component.metadata
-    if not _named_by_station(metadata) or any(metadata.get(key) for key in _WHEN):
+    if not _named_by_station(metadata) or any(metadata.get(key) for key in _EVENT_TIME_KEYS):
         return None
-    return epoch_seconds(metadata.get(_START))
+    return epoch_seconds(metadata.get(_START_KEY))
 
 
 def _named_by_station(metadata: Mapping[str, Any]) -> bool:
@@ -146,35 +150,37 @@ def _named_by_station(metadata: Mapping[str, Any]) -> bool:
     return bool(station) and "record_sequence_number" not in metadata
 
 
-def _group_of(component: RecordedComponent) -> tuple[str, ...]:
+def _group_key(component: RecordedComponent) -> tuple[str, ...]:
     """Return the metadata common to components that belong together."""
     metadata = component.metadata
     if "record_sequence_number" in metadata or _named_by_station(metadata):
-        return _record_of(component)
+        return _record_key(component)
     # files in two folders may have one name
     return (str(component.number),)
 
 
-def _record_of(component: RecordedComponent) -> tuple[str, ...]:
+def _record_key(component: RecordedComponent) -> tuple[str, ...]:
     metadata = component.metadata
     if "record_sequence_number" in metadata:
         return (f"RSN{metadata['record_sequence_number']}",)
     if not _named_by_station(metadata):
         return (component.file.replace("\\", "/").rsplit("/", 1)[-1],)
-    where = [metadata[key] for key in _WHERE if metadata.get(key)] or [metadata["station_name"]]
+    where = [metadata[key] for key in _STATION_KEYS if metadata.get(key)] or [
+        metadata["station_name"]
+    ]
     return (*_event(component), *map(str, where))
 
 
-def _name_of(component: RecordedComponent) -> str:
-    start = [] if _start(component) is None else [str(component.metadata[_START])]
-    return ", ".join((*start, *_record_of(component)))
+def _record_name(component: RecordedComponent) -> str:
+    start = [] if _start(component) is None else [str(component.metadata[_START_KEY])]
+    return ", ".join((*start, *_record_key(component)))
 
 
 def _event(component: RecordedComponent) -> tuple[str, ...]:
     metadata = component.metadata
-    when = next((metadata[key] for key in _WHEN if metadata.get(key)), None)
+    when = next((metadata[key] for key in _EVENT_TIME_KEYS if metadata.get(key)), None)
     if when is None and _start(component) is None:
-        when = metadata.get(_START)
+        when = metadata.get(_START_KEY)
     event = str(metadata.get("event", ""))
     parts = [event, "" if str(when) in event else when]
     return tuple(str(part) for part in parts if part)
@@ -183,7 +189,7 @@ def _event(component: RecordedComponent) -> tuple[str, ...]:
 def _event_and_station(component: RecordedComponent) -> tuple[str, ...]:
     metadata = component.metadata
     if not _named_by_station(metadata):
-        return _group_of(component)
+        return _group_key(component)
     station = metadata.get("station") or metadata.get("station_name")
     return (*_event(component), str(metadata.get("network", "")), str(station))
 
@@ -195,12 +201,12 @@ def _instrument(component: RecordedComponent) -> tuple[str, ...]:
     return ("" if found is None else found.group(1), str(metadata.get("processing", "")))
 
 
-def _is_one(members: list[RecordedComponent]) -> bool:
-    upwards = sum(one.vertical for one in members)
-    return upwards <= 1 and len(members) - upwards <= len(HORIZONTAL)
+def _fits_one_record(members: list[RecordedComponent]) -> bool:
+    verticals = sum(one.vertical for one in members)
+    return verticals <= 1 and len(members) - verticals <= len(HORIZONTAL)
 
 
-def _why_apart(members: list[RecordedComponent]) -> list[str]:
+def _unpaired_remarks(members: list[RecordedComponent]) -> list[str]:
     """Return in words why components of one station and time are no pair."""
     if len(members) < len(HORIZONTAL):
         return []
@@ -218,34 +224,34 @@ def _why_apart(members: list[RecordedComponent]) -> list[str]:
 
 
 def _assign(record: str, members: list[RecordedComponent]) -> list[str]:
-    level = [one for one in members if not one.vertical]
-    upwards = [one for one in members if one.vertical]
-    for one in upwards:
-        one.known["axis"] = VERTICAL
-    if not _is_one(members):
-        for one in level:
-            one.known.pop("axis", None)
-        for one in upwards:
-            one.known["record"] = one.label
-        found = f"{len(level)} horizontal and {len(upwards)} vertical components"
+    horizontal = [one for one in members if not one.vertical]
+    verticals = [one for one in members if one.vertical]
+    for one in verticals:
+        one.added_metadata["axis"] = VERTICAL
+    if not _fits_one_record(members):
+        for one in horizontal:
+            one.added_metadata.pop("axis", None)
+        for one in verticals:
+            one.added_metadata["record"] = one.label
+        found = f"{len(horizontal)} horizontal and {len(verticals)} vertical components"
         return [f"{record}: {found}, which are not put together"]
-    axes = sorted(str(one.known.get("axis", "")) for one in level)
+    axes = sorted(str(one.added_metadata.get("axis", "")) for one in horizontal)
     if axes != list(HORIZONTAL):
-        for one, axis in zip(level, HORIZONTAL, strict=False):
-            one.known["axis"] = axis
-    if len(level) < len(HORIZONTAL):
+        for one, axis in zip(horizontal, HORIZONTAL, strict=False):
+            one.added_metadata["axis"] = axis
+    if len(horizontal) < len(HORIZONTAL):
         return []
-    first, second = level
+    first, second = horizontal
     try:
         HorizontalPair(first.motion, second.motion)
     except ComponentError as problem:
-        for one in level:
-            one.known.pop("axis", None)
+        for one in horizontal:
+            one.added_metadata.pop("axis", None)
         return [f"{record}: {problem}"]
     try:
-        HorizontalPair(first.motion, second.motion, *(one.motion for one in upwards))
+        HorizontalPair(first.motion, second.motion, *(one.motion for one in verticals))
     except ComponentError as problem:
-        for one in upwards:
-            one.known["record"] = one.label
+        for one in verticals:
+            one.added_metadata["record"] = one.label
         return [f"{record}, without its vertical component: {problem}"]
     return []

@@ -15,11 +15,11 @@ from rockframe.results.joining import MOTION
 from rockframe.results.schema import SCHEMA, build_dataset, with_variables, without_fill_values
 from rockframe.signals.arrays import Array
 from rockframe.suites.candidates import Candidates, Combination, candidates_of
+from rockframe.suites.labelled_motions import LabelledMotions
 from rockframe.suites.target import TargetSpectrum
-from rockframe.suites.value import LabelledMotions
 from rockframe.units import QuantityLike, RatioLike, Unit
 
-USUAL_BOUNDS: Final = (0.25, 4.0)
+DEFAULT_BOUNDS: Final = (0.25, 4.0)
 """Bounds of scale factors that are usually accepted [1]."""
 _ROUNDING: Final = 1e-9
 
@@ -31,7 +31,7 @@ def scaling_to(
     *,
     periods: ArrayLike | Iterable[QuantityLike] | None = None,
     conditioned_on: ArrayLike | Iterable[QuantityLike] | None = None,
-    bounds: tuple[RatioLike, RatioLike] | None = USUAL_BOUNDS,
+    bounds: tuple[RatioLike, RatioLike] | None = DEFAULT_BOUNDS,
     combination: str = Combination.EACH,
 ) -> xr.Dataset:
     """Find the factor that scales each motion's spectrum to a target, and the remaining misfit.
@@ -110,20 +110,22 @@ def scaled_set(
 ) -> xr.Dataset:
     """Return a labelled dataset of a set of scaled motions and its target."""
     residuals = candidates.residuals(factors)[places]
-    logarithms = residuals + candidates.target
+    log_spectra = residuals + candidates.log_target
     low, high = candidates.bounds
-    edge = (factors[places] <= low * (1 + _ROUNDING)) | (factors[places] >= high * (1 - _ROUNDING))
+    at_bound = (factors[places] <= low * (1 + _ROUNDING)) | (
+        factors[places] >= high * (1 - _ROUNDING)
+    )
     of_each = build_dataset(
         {
             "scale_factor": factors[places],
             "spectral_misfit": np.sqrt((residuals**2).mean(axis=1)),
-            "scaled_spectral_acceleration": np.exp(logarithms),
+            "scaled_spectral_acceleration": np.exp(log_spectra),
         },
         {
             **candidates.attributes,
             "least_factor": low,
             "greatest_factor": high,
-            "factors_at_a_bound": int(edge.sum()),
+            "factors_at_a_bound": int(at_bound.sum()),
             **attributes,
         },
         over=(MOTION,),
@@ -131,10 +133,10 @@ def scaled_set(
         source="recurrence of Nigam and Jennings",
     )
     of_all = {
-        "target_spectral_acceleration": np.exp(candidates.target),
+        "target_spectral_acceleration": np.exp(candidates.log_target),
         "target_standard_deviation": candidates.deviations,
-        "set_median_acceleration": np.exp(logarithms.mean(axis=0)),
-        "set_standard_deviation": _spread_of(logarithms),
+        "set_median_acceleration": np.exp(log_spectra.mean(axis=0)),
+        "set_standard_deviation": _standard_deviation(log_spectra),
     }
     dataset = with_variables(of_each, of_all)
     labels = [candidates.labels[place] for place in places.tolist()]
@@ -142,7 +144,7 @@ def scaled_set(
     dataset = dataset.assign_coords(
         {
             MOTION: (MOTION, labels, {"long_name": "ground motion"}),
-            "period": ("period", candidates.seconds, meaning),
+            "period": ("period", candidates.periods, meaning),
         }
     )
     return without_fill_values(dataset)
@@ -163,7 +165,7 @@ def compared_target(found: xr.Dataset) -> TargetSpectrum | None:
     )
 
 
-def _spread_of(logarithms: Array) -> Array:
+def _standard_deviation(logarithms: Array) -> Array:
     """Return the standard deviation over a set, shape (k,); zero of a single motion."""
     if len(logarithms) < 2:
         return np.zeros(logarithms.shape[1])
@@ -183,7 +185,7 @@ def scaled_motions(
         raise SchemaError(msg)
     each = found.attrs["combination"] == Combination.EACH
     motions: dict[str, GroundMotion] = {}
-    upwards: dict[str, GroundMotion] = {}
+    verticals: dict[str, GroundMotion] = {}
     for place, value in enumerate(found[MOTION].to_numpy()):
         label = str(value)
         factor = float(found["scale_factor"][place])
@@ -197,13 +199,13 @@ def scaled_motions(
             raise ComponentError(msg)
         for name, motion in suite.verticals.items():
             if not each and motion.metadata.get("record") == label:
-                upwards[name] = _scaled(motion, factor, misfit)
-    return motions, upwards
+                verticals[name] = _scaled(motion, factor, misfit)
+    return motions, verticals
 
 
 def _scaled(motion: GroundMotion, factor: float, misfit: float) -> GroundMotion:
-    done = motion.scaled(factor)
-    metadata = {**done.metadata, "spectral_misfit": misfit}
-    return type(done)(
-        done.si, name=done.name, metadata=metadata, history=done.history, recipe=done.recipe
+    scaled = motion.scaled(factor)
+    metadata = {**scaled.metadata, "spectral_misfit": misfit}
+    return type(scaled)(
+        scaled.si, name=scaled.name, metadata=metadata, history=scaled.history, recipe=scaled.recipe
     )

@@ -15,14 +15,14 @@ from rockframe.proposals import hinted
 from rockframe.results.schema import with_variables
 from rockframe.signals.arrays import Array
 from rockframe.suites.candidates import Combination, candidates_of
-from rockframe.suites.scaling import USUAL_BOUNDS, scaled_set
+from rockframe.suites.labelled_motions import LabelledMotions
+from rockframe.suites.scaling import DEFAULT_BOUNDS, scaled_set
 from rockframe.suites.target import TargetSpectrum
-from rockframe.suites.value import LabelledMotions
 from rockframe.units import NOT_NEGATIVE, QuantityLike, RatioLike, to_ratio
 
-_MOST_STARTS: Final = 20
-_MOST_PASSES: Final = 50
-_GAIN: Final = 1e-12
+_MAX_STARTS: Final = 20
+_MAX_PASSES: Final = 50
+_MIN_GAIN: Final = 1e-12
 _REFERENCES: Final = (
     "Jayaram, Lin and Baker (2011), Earthquake Spectra 27, 797-815; Baker and Lee (2018), J. "
     "Earthquake Eng. 22, 708-723"
@@ -37,7 +37,7 @@ def selection_for(
     *,
     periods: ArrayLike | Iterable[QuantityLike] | None = None,
     conditioned_on: ArrayLike | Iterable[QuantityLike] | None = None,
-    bounds: tuple[RatioLike, RatioLike] | None = USUAL_BOUNDS,
+    bounds: tuple[RatioLike, RatioLike] | None = DEFAULT_BOUNDS,
     combination: str = Combination.EACH,
     spread_weight: RatioLike | None = None,
     per_event: int | None = None,
@@ -99,38 +99,38 @@ def selection_for(
         combination=combination,
         owner=owner,
     )
-    wanted = whole_number(count, owner=owner, name="count", lowest=1)
-    most = wanted
+    size = whole_number(count, owner=owner, name="count", lowest=1)
+    max_per_event = size
     if per_event is not None:
-        most = whole_number(per_event, owner=owner, name="per_event", lowest=1)
+        max_per_event = whole_number(per_event, owner=owner, name="per_event", lowest=1)
     deviates = bool(candidates.deviations.any())
     weight = float(deviates)
     if spread_weight is not None:
         weight = to_ratio(
             spread_weight, owner=owner, name="spread_weight", condition=NOT_NEGATIVE, example="1"
         )
-    allowed = np.flatnonzero(candidates.within)
-    if allowed.size < wanted:
+    allowed = np.flatnonzero(candidates.within_bounds)
+    if allowed.size < size:
         low, high = candidates.bounds
         total = len(candidates.labels)
         found = f"{allowed.size} of {total} motions have factors from {low:g} to {high:g}"
-        mended = "widen bounds, or lower count"
+        advice = "widen bounds, or lower count"
         if allowed.size == total:
-            found, mended = f"found {total} motion{'' if total == 1 else 's'}", "lower count"
-        msg = f"{owner}: {found}, too few for a set of {wanted}; {mended}"
+            found, advice = f"found {total} motion{'' if total == 1 else 's'}", "lower count"
+        msg = f"{owner}: {found}, too few for a set of {size}; {advice}"
         raise ComponentError(msg)
     search = _Search(
         candidates.residuals(candidates.factors)[allowed],
         candidates.deviations,
         weight,
-        _numbered([candidates.events[place] for place in allowed.tolist()]),
-        most,
+        _event_numbers([candidates.events[place] for place in allowed.tolist()]),
+        max_per_event,
     )
-    chosen = search.best(wanted)
+    chosen = search.best(size)
     if chosen is None:
         msg = (
-            f"{owner}: at most {most} motions of an earthquake make no set of {wanted}; raise "
-            "per_event, or lower count"
+            f"{owner}: at most {max_per_event} motions of an earthquake make no set of {size}; "
+            "raise per_event, or lower count"
         )
         raise ComponentError(msg)
     misfits = np.sqrt((search.residuals[chosen] ** 2).mean(axis=1))
@@ -155,7 +155,7 @@ class _Search:
     deviations: Array  # target of the spread
     weight: float  # of the spread
     events: NDArray[np.intp]  # earthquakes by numbers; -1 where it is not known
-    most: int  # most motions of one earthquake
+    max_per_event: int  # most motions of one earthquake
 
     def misfit(self, chosen: list[int]) -> float:
         """Compute :eq:`eq-set-misfit` of a set."""
@@ -166,23 +166,23 @@ class _Search:
         """Find a set of `count` candidates; None where there are too few earthquakes."""
         alone = np.argsort((self.residuals**2).mean(axis=1), kind="stable")
         found: list[tuple[float, list[int]]] = []
-        for first in alone[:_MOST_STARTS].tolist():
-            chosen = self._grown(first, count)
+        for first in alone[:_MAX_STARTS].tolist():
+            chosen = self._grow(first, count)
             if chosen is not None:
-                chosen = self._improved(chosen)
+                chosen = self._improve(chosen)
                 found.append((self.misfit(chosen), chosen))
         return min(found)[1] if found else None
 
     def _misfits(self, others: list[int]) -> Array:
         """Compute :eq:`eq-set-misfit` of a set with each candidate added in turn, shape (n,)."""
-        held = self.residuals[others]
+        chosen = self.residuals[others]
         count = len(others) + 1
-        mean = (held.sum(axis=0) + self.residuals) / count
+        mean = (chosen.sum(axis=0) + self.residuals) / count
         squares = mean**2
         if self.weight > 0.0:
             spread = np.zeros_like(mean)
             if count > 1:
-                total = (held**2).sum(axis=0) + self.residuals**2 - count * mean**2
+                total = (chosen**2).sum(axis=0) + self.residuals**2 - count * mean**2
                 spread = np.sqrt(np.maximum(total, 0.0) / (count - 1))
             squares = squares + self.weight * (spread - self.deviations) ** 2
         return np.sqrt(squares.mean(axis=1))
@@ -192,10 +192,10 @@ class _Search:
         free = np.ones(len(self.residuals), dtype=bool)
         free[others] = False
         numbers, counts = np.unique(self.events[others], return_counts=True)
-        full = numbers[(counts >= self.most) & (numbers >= 0)]
+        full = numbers[(counts >= self.max_per_event) & (numbers >= 0)]
         return free & ~np.isin(self.events, full)
 
-    def _grown(self, first: int, count: int) -> list[int] | None:
+    def _grow(self, first: int, count: int) -> list[int] | None:
         chosen = [first]
         while len(chosen) < count:
             misfits = np.where(self._allowed(chosen), self._misfits(chosen), np.inf)
@@ -205,15 +205,15 @@ class _Search:
             chosen.append(place)
         return chosen
 
-    def _improved(self, chosen: list[int]) -> list[int]:
+    def _improve(self, chosen: list[int]) -> list[int]:
         now = self.misfit(chosen)
-        for _ in range(_MOST_PASSES):
+        for _ in range(_MAX_PASSES):
             before = now
             for slot in range(len(chosen)):
                 others = chosen[:slot] + chosen[slot + 1 :]
                 misfits = np.where(self._allowed(others), self._misfits(others), np.inf)
                 place = int(np.argmin(misfits))
-                if misfits[place] < now * (1.0 - _GAIN):
+                if misfits[place] < now * (1.0 - _MIN_GAIN):
                     now = float(misfits[place])
                     chosen = [*others[:slot], place, *others[slot:]]
             if now >= before:
@@ -221,6 +221,6 @@ class _Search:
         return chosen
 
 
-def _numbered(events: list[str]) -> NDArray[np.intp]:
+def _event_numbers(events: list[str]) -> NDArray[np.intp]:
     numbers = {event: k for k, event in enumerate(dict.fromkeys(filter(None, events)))}
     return np.array([numbers.get(event, -1) for event in events], dtype=np.intp)

@@ -22,17 +22,17 @@ from rockframe.results.schema import build_dataset
 from rockframe.signals import Motion, Signal
 from rockframe.signals.motion import COEFFICIENTS, VERTICAL
 from rockframe.suites.columns import known_columns
+from rockframe.suites.labelled_motions import LabelledMotions
 from rockframe.suites.target import TargetSpectrum
-from rockframe.suites.value import LabelledMotions
 from rockframe.units import Unit
 
 _KIND: Final = "suite of ground motions"
 Suite = TypeVar("Suite", bound=LabelledMotions)
 _EXPECTED: Final = "a suite as MotionSuite.to_dataset().to_netcdf(...) writes it"
-_MOST_NUMBERS: Final = 20_000_000
+_MAX_NUMBERS: Final = 20_000_000
 _NAME: Final = "motion_name"
 _TARGET: Final = "target"
-_BAND: Final = (0.01, 20.0)
+_STORED_BAND: Final = (0.01, 20.0)
 """Range of periods in which a target without bounds of its own is stored [s]."""
 _PERIODS: Final = 501
 _TEXTS: Final = {
@@ -42,7 +42,7 @@ _TEXTS: Final = {
     "recipe": "constructor and arguments of an analytic motion, as JSON",
     _NAME: "what titles and messages call the motion",
 }
-_HELD: Final = {
+_RAGGED_ARRAYS: Final = {
     # variable: dimension, count, words of the count
     "acceleration": ("sample", "sample_count", ""),
     "vertical_acceleration": ("vertical_sample", "vertical_sample_count", "vertical samples"),
@@ -83,19 +83,19 @@ def suite_dataset(suite: LabelledMotions) -> xr.Dataset:
     }
     for name, values in texts.items():
         dataset[name] = (MOTION, np.array(values), {"long_name": _TEXTS[name]})
-    for name, (dim, count, words) in _HELD.items():
-        parts = [_arrays(motion.si)[name] for motion in motions.values()]
-        held = [part for part in parts if part is not None]
-        if not held:
+    for name, (dim, count, words) in _RAGGED_ARRAYS.items():
+        parts = [_sample_arrays(motion.si)[name] for motion in motions.values()]
+        present = [part for part in parts if part is not None]
+        if not present:
             continue
         if words:
             counts = np.array([0 if part is None else len(part) for part in parts])
             attributes = {"long_name": f"number of {words}", "units": str(Unit.ONE)}
             dataset[count] = (MOTION, counts, attributes)
         dataset[count].attrs["sample_dimension"] = dim
-        dims = (dim,) if held[0].ndim == 1 else (dim, "power")
+        dims = (dim,) if present[0].ndim == 1 else (dim, "power")
         attributes = {"units": str(Unit.METRE_PER_SECOND_SQUARED), "long_name": LONG_NAMES[name]}
-        dataset[name] = (dims, np.concatenate(held), attributes)
+        dataset[name] = (dims, np.concatenate(present), attributes)
         dataset[name].encoding["_FillValue"] = None
     labels = {"long_name": "ground motion"}
     dataset = dataset.assign_coords({MOTION: (MOTION, list(motions), labels)})
@@ -129,7 +129,7 @@ def stored_motions(dataset: xr.Dataset) -> tuple[dict[str, GroundMotion], dict[s
 def _table_of(target: TargetSpectrum) -> dict[str, Any]:
     """Return a target as a table: at its own periods, or at many if it is a formula."""
     own = getattr(getattr(target.shape, "logarithm", None), "logarithms", None)
-    low, high = np.clip(target.limits, *_BAND)
+    low, high = np.clip(target.limits, *_STORED_BAND)
     seconds = np.geomspace(low, high, _PERIODS) if own is None else np.exp(np.array(own))
     values = target.at_seconds(seconds, owner=_TARGET)
     spread = None if target.deviation is None else target.deviations_at(seconds).tolist()
@@ -178,8 +178,8 @@ def stored_suite(source: Source, read: Callable[[xr.Dataset], Suite]) -> Suite:
             warnings.simplefilter("ignore")
             # a file may declare more than it holds
             total = sum(math.prod(map(int, one.shape)) for one in file.variables.values())
-            if total > _MOST_NUMBERS:
-                expected = f"a suite of at most {_MOST_NUMBERS} numbers"
+            if total > _MAX_NUMBERS:
+                expected = f"a suite of at most {_MAX_NUMBERS} numbers"
                 raise source.refuse(found=f"{total} numbers declared", expected=expected)
             dataset = xr.open_dataset(NetCDF4DataStore(file), decode_times=False)
             return read(dataset.load())
@@ -193,13 +193,13 @@ def stored_suite(source: Source, read: Callable[[xr.Dataset], Suite]) -> Suite:
         raise source.refuse(found=found, expected=_EXPECTED) from problem
 
 
-def _arrays(si: Motion) -> dict[str, np.ndarray | None]:
-    upwards = si.vertical
+def _sample_arrays(si: Motion) -> dict[str, np.ndarray | None]:
+    vertical = si.vertical
     return {
         "acceleration": si.horizontal.samples,
-        "vertical_acceleration": None if upwards is None else upwards.samples,
+        "vertical_acceleration": None if vertical is None else vertical.samples,
         "acceleration_pieces": si.horizontal.polynomials,
-        "vertical_acceleration_pieces": None if upwards is None else upwards.polynomials,
+        "vertical_acceleration_pieces": None if vertical is None else vertical.polynomials,
     }
 
 
@@ -208,16 +208,22 @@ def _motions(dataset: xr.Dataset) -> dict[str, GroundMotion]:
     texts = {
         name: [str(one) for one in dataset[name].to_numpy()] for name in _TEXTS if name in dataset
     }
-    parts = {name: _parts(dataset, name, len(labels)) for name in _HELD}
+    parts = {name: _split_samples(dataset, name, len(labels)) for name in _RAGGED_ARRAYS}
     steps = dataset["time_step"].to_numpy()
     motions: dict[str, GroundMotion] = {}
     for k, label in enumerate(labels):
         step = float(steps[k])
-        samples, upwards, pieces, raised = (parts[name][k] for name in _HELD)
+        samples, vertical_samples, pieces, vertical_pieces = (
+            parts[name][k] for name in _RAGGED_ARRAYS
+        )
         if samples is None:
             msg = f"{label!r} has no samples"
             raise SchemaError(msg)
-        vertical = None if upwards is None else Signal(step, upwards, raised, name=VERTICAL)
+        vertical = (
+            None
+            if vertical_samples is None
+            else Signal(step, vertical_samples, vertical_pieces, name=VERTICAL)
+        )
         history = texts["history"][k]
         recipe = texts["recipe"][k]
         motion = GroundMotion(
@@ -234,7 +240,7 @@ def _motions(dataset: xr.Dataset) -> dict[str, GroundMotion]:
     return motions
 
 
-def _parts(dataset: xr.Dataset, name: str, count: int) -> list[np.ndarray | None]:
+def _split_samples(dataset: xr.Dataset, name: str, count: int) -> list[np.ndarray | None]:
     """Cut the samples of all motions into those of each."""
     if name not in dataset.variables:
         return [None] * count
@@ -242,7 +248,7 @@ def _parts(dataset: xr.Dataset, name: str, count: int) -> list[np.ndarray | None
     if name.endswith("_pieces") and values.shape[1:] != (COEFFICIENTS,):
         msg = f"{name!r} has the shape {values.shape}"
         raise SchemaError(msg)
-    counts = [int(one) for one in dataset[_HELD[name][1]].to_numpy()]
+    counts = [int(one) for one in dataset[_RAGGED_ARRAYS[name][1]].to_numpy()]
     if min(counts) < 0 or sum(counts) != len(values):
         msg = f"{name!r} has {len(values)} rows, but its counts add up to {sum(counts)}"
         raise SchemaError(msg)

@@ -14,12 +14,12 @@ from rockframe.measures import (
 )
 from rockframe.motion.quantities import ArrayLike
 from rockframe.proposals import proposing
+from rockframe.suites.labelled_motions import LabelledMotions
 from rockframe.suites.matching import matched
 from rockframe.suites.scaling import compared_target, scaled_motions, scaling_to
 from rockframe.suites.selection import selection_for
 from rockframe.suites.stored import stored_motions, suite_dataset
 from rockframe.suites.target import TargetSpectrum
-from rockframe.suites.value import LabelledMotions
 from rockframe.units import QuantityLike, RatioLike
 
 
@@ -214,9 +214,9 @@ class MotionSuite(LabelledMotions):
         found = target
         if not isinstance(found, xr.Dataset):
             found = self.scaling_to(found, **arguments)
-        motions, upwards = scaled_motions(self, found)
+        motions, verticals = scaled_motions(self, found)
         return type(self)(
-            motions, verticals=upwards, unread=self._unread, remarks=self._remarks,
+            motions, verticals=verticals, unread=self._unread, remarks=self._remarks,
             target=compared_target(found),
         )  # fmt: skip
 

@@ -29,7 +29,7 @@ from rockframe.units import (
 )
 
 _DEVIATION: Final = Condition("from 0 to 3", lambda value: 0.0 <= value <= 3.0)
-_USUAL: Final = 0.05
+_DEFAULT_DAMPING: Final = 0.05
 _ROUNDING: Final = 1e-9
 
 
@@ -66,7 +66,7 @@ class TargetSpectrum(metaclass=Proposing):
     name: str
     shape: Shape = field(repr=False)
     deviation: Shape | None = field(default=None, repr=False)
-    damping_ratio: float = _USUAL
+    damping_ratio: float = _DEFAULT_DAMPING
     limits: tuple[float, float] = (0.0, math.inf)
 
     def __post_init__(self) -> None:
@@ -89,7 +89,7 @@ class TargetSpectrum(metaclass=Proposing):
         accelerations: ArrayLike | Iterable[QuantityLike],
         *,
         standard_deviations: Sequence[float] | None = None,
-        damping_ratio: RatioLike = _USUAL,
+        damping_ratio: RatioLike = _DEFAULT_DAMPING,
         name: str = "table",
     ) -> Self:
         """Take a target from a table.
@@ -150,10 +150,10 @@ class TargetSpectrum(metaclass=Proposing):
             if deviations.shape != seconds.shape:
                 msg = f"{owner}: standard_deviations must be {seconds.size}, as the periods"
                 raise ComponentError(msg)
-            spread = _interpolated(seconds, deviations)
+            spread = _interpolation(seconds, deviations)
         return cls(
             name,
-            _Exponential(_interpolated(seconds, np.log(values))),
+            _Exponential(_interpolation(seconds, np.log(values))),
             spread,
             to_ratio(damping_ratio, owner=owner, name="damping_ratio", condition=DAMPING_RATIO),
             (float(seconds[0]), float(seconds[-1])),
@@ -217,7 +217,7 @@ class TargetSpectrum(metaclass=Proposing):
         spectrum_type: int = 1,
         soil_factor: RatioLike | None = None,
         corner_periods: Sequence[QuantityLike] | None = None,
-        damping_ratio: RatioLike = _USUAL,
+        damping_ratio: RatioLike = _DEFAULT_DAMPING,
     ) -> Self:
         """Take the horizontal elastic spectrum of Eurocode 8.
 
@@ -477,7 +477,7 @@ class _Constant:
         return np.full(at.size, self.value)
 
 
-def _interpolated(seconds: Array, values: Array) -> _Interpolated:
+def _interpolation(seconds: Array, values: Array) -> _Interpolated:
     return _Interpolated(tuple(np.log(seconds).tolist()), tuple(values.tolist()))
 
 

@@ -10,11 +10,11 @@ from scipy.stats import binom, norm
 
 import rockframe as rf
 from rockframe.studies.conditional_sampling import (
-    bounds_of,
-    probability_of,
+    sample_weights,
+    subset_bounds,
     subset_levels,
-    variation_of,
-    weights_of,
+    subset_probability,
+    subset_variation,
 )
 
 SEEDS = 200
@@ -35,11 +35,13 @@ def estimates(demand, size, limit, count, seeds=SEEDS):
     for seed in range(seeds):
         levels = list(
             subset_levels(
-                lambda _, scores: demand(scores), size, limit, count=count, share=0.1, most=12,
-                rng=np.random.default_rng(seed),
+                lambda _, scores: demand(scores), size, limit, count=count, share=0.1,
+                max_levels=12, rng=np.random.default_rng(seed),
             )
         )  # fmt: skip
-        rows.append((probability_of(levels), variation_of(levels), *bounds_of(levels, 0.95)))
+        rows.append(
+            (subset_probability(levels), subset_variation(levels), *subset_bounds(levels, 0.95))
+        )
     return np.array(rows).T
 
 
@@ -82,15 +84,15 @@ def test_more_samples_vary_less():
 def test_weights_make_the_whole_distribution():
     levels = list(
         subset_levels(
-            lambda _, scores: one_side(scores), 2, norm.isf(1e-5), count=20_000, share=0.1, most=9,
-            rng=np.random.default_rng(4),
+            lambda _, scores: one_side(scores), 2, norm.isf(1e-5), count=20_000, share=0.1,
+            max_levels=9, rng=np.random.default_rng(4),
         )
     )  # fmt: skip
     demands = np.concatenate([one.demands for one in levels])
-    weights = np.concatenate(weights_of(levels))
+    weights = np.concatenate(sample_weights(levels))
     assert weights.sum() == pytest.approx(1.0, abs=1e-12)
     assert weights[demands >= levels[-1].threshold].sum() == pytest.approx(
-        probability_of(levels), rel=1e-12
+        subset_probability(levels), rel=1e-12
     )
     for value in (-1.0, 0.5, 2.0, 3.0, 4.0):
         assert weights[demands >= value].sum() == pytest.approx(norm.sf(value), rel=0.12)
@@ -100,14 +102,16 @@ def test_weights_make_the_whole_distribution():
 
 def test_the_first_level_alone_counts_independent_samples():
     (level,) = subset_levels(
-        lambda _, scores: one_side(scores), 4, norm.isf(0.3), count=2000, share=0.1, most=5,
+        lambda _, scores: one_side(scores), 4, norm.isf(0.3), count=2000, share=0.1, max_levels=5,
         rng=np.random.default_rng(2),
     )  # fmt: skip
     exceeding = int(level.exceeds.sum())
-    assert probability_of([level]) == exceeding / 2000
+    assert subset_probability([level]) == exceeding / 2000
     # that of a binomial share
     share = exceeding / 2000
-    assert variation_of([level]) == pytest.approx(math.sqrt((1 - share) / share / 1999), rel=1e-9)
+    assert subset_variation([level]) == pytest.approx(
+        math.sqrt((1 - share) / share / 1999), rel=1e-9
+    )
 
 
 # a block under a pulse of random size ------------------------------------------------------------

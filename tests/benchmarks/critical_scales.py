@@ -26,7 +26,7 @@ from rockframe.signals.motion import absolute_peak
 from rockframe.simulation.certify.run_summary import RunSummary
 from rockframe.simulation.plan import plan_run
 from rockframe.simulation.run import compute_summary
-from rockframe.studies.flips import follow
+from rockframe.studies.flips import scan_scales
 
 DENSE = 2048
 LARGEST = 4.0
@@ -113,12 +113,17 @@ def dense(kind: str, system: rf.System, motion: rf.GroundMotion) -> Dense:
 def scan(truth: Dense, scales: int, most: int) -> tuple[int, float, int, bool]:
     """Return the flips found, by how much the first is late, the runs, and how far it looked."""
     row = np.unique(np.round(np.linspace(truth.start, DENSE, scales))).tolist()
-    found = follow(lambda place: truth.runs[round(place)], row, most=most, width=WIDTH)
+    found = scan_scales(lambda place: truth.runs[round(place)], row, max_runs=most, width=WIDTH)
     brackets = [(flip.below - 1.0, flip.above + 1.0) for flip in found.flips()]
     hits = sum(any(low <= k < high for low, high in brackets) for k in truth.flips())
-    first = next((place for place, run in found.shown.items() if run.overturned), math.inf)
+    first = next((place for place, run in found.runs.items() if run.overturned), math.inf)
     late = max(0.0, (first - truth.first - 1.0) / max(truth.first, 1))
-    return hits, 0.0 if late <= WIDTH else late, len(found.shown), found.up_to >= truth.first
+    return (
+        hits,
+        0.0 if late <= WIDTH else late,
+        len(found.runs),
+        found.resolved_up_to >= truth.first,
+    )
 
 
 def main() -> None:

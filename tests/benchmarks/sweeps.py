@@ -93,7 +93,7 @@ def costs(motion, axes, accuracy) -> dict[str, float]:
                 system.simulate(moved, **options, second_look=False)
 
     def swept(fewest):
-        study.FEWEST_IN_LANES = fewest
+        study.MIN_CASES_IN_LANES = fewest
         with ThreadPoolExecutor(1) as one:
             rf.sweep(SYSTEM, motion, axes=axes, **options, executor=one, progress=False)
 
@@ -107,7 +107,7 @@ def costs(motion, axes, accuracy) -> dict[str, float]:
 
 def rate(motion, axes, accuracy) -> float:
     """Return the cases a second of a whole sweep, from the call to the labelled dataset [s^-1]."""
-    study.FEWEST_IN_LANES = 1
+    study.MIN_CASES_IN_LANES = 1
     begun = time.perf_counter()
     rf.sweep(SYSTEM, motion, axes=axes, accuracy=accuracy, progress=False)
     return MANY / (time.perf_counter() - begun)
@@ -123,24 +123,24 @@ def table(name, count) -> dict[str, np.ndarray]:
 
 def monte_carlo(motion, name, accuracy) -> str:
     """Tell what a case of a random table costs [ms], and how many ran outside lanes."""
-    study.FEWEST_IN_LANES = 1
+    study.MIN_CASES_IN_LANES = 1
     system, cases = rf.System(BLOCK, *TABLES[name][0]), table(name, DRAWN)
-    run_in_lanes = chunk.run_in_lanes
-    ways = {"together": run_in_lanes, "one by one": lambda *_: iter(())}
+    run_assembled_together = chunk.run_assembled_together
+    ways = {"together": run_assembled_together, "one by one": lambda *_: iter(())}
     least = dict.fromkeys(ways, math.inf)
     job = plan_study(system, motion, {}, cases, accuracy=accuracy).job(range(DRAWN))
     inside = math.inf
     try:
         for _ in range(ROUNDS):
             for way, run in ways.items():
-                chunk.run_in_lanes = run
+                chunk.run_assembled_together = run
                 with _loops_timed() as spent:
                     least[way] = min(least[way], _once(lambda: run_chunk(job)))
                 inside = min(inside, spent[0]) if way == "together" else inside
-        chunk.run_in_lanes = run_in_lanes
+        chunk.run_assembled_together = run_assembled_together
         alone = 1.0 - float(np.mean(run_chunk(job).scalars[DRIVER] == Driver.IN_LANES))
     finally:
-        chunk.run_in_lanes = run_in_lanes
+        chunk.run_assembled_together = run_assembled_together
     told = ", ".join(f"{way} {1e3 * seconds / DRAWN:.3f} ms" for way, seconds in least.items())
     return f"{told} a case, {1e3 * inside / DRAWN:.3f} ms in lanes; {alone:.1%} outside lanes"
 
@@ -184,7 +184,7 @@ def gain(motion, axes) -> float:
 
 
 def _swept(motion, axes, threads) -> None:
-    study.FEWEST_IN_LANES = 1
+    study.MIN_CASES_IN_LANES = 1
     with ThreadPoolExecutor(threads) as pool:
         rf.sweep(SYSTEM, motion, axes=axes, accuracy="fast", executor=pool, progress=False)
 

@@ -193,7 +193,7 @@ class TestStudies:
     def test_many_cases_are_as_one(self, system, monkeypatch):
         """Side by side in lanes where it can be compiled; each comes to an end."""
         monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)
-        frictions = np.linspace(0.255, 0.4, 2 * study.FEWEST_IN_LANES if COMPILED else 50)
+        frictions = np.linspace(0.255, 0.4, 2 * study.MIN_CASES_IN_LANES if COMPILED else 50)
         runs = rf.sweep(system, PULSE, friction=frictions, accuracy="fast", progress=False)
         assert ("side by side" in runs.attrs["driver"]) == COMPILED
         assert int(runs.overturned.sum()) == 0

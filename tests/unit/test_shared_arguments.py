@@ -10,7 +10,11 @@ import rockframe as rf
 from rockframe.errors import StudyError
 from rockframe.shared_arguments import Argument, declared_in, documented_by, takes
 from rockframe.simulation.run_arguments import ComparedArguments, RunArguments, ScaleArguments
-from rockframe.studies.sweeps.arguments import OF_A_SWEEP, SequenceArguments, SweepArguments
+from rockframe.studies.sweeps.arguments import (
+    SWEEP_ARGUMENT_NAMES,
+    SequenceArguments,
+    SweepArguments,
+)
 
 SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
 PULSE = rf.GroundMotion.half_sine_pulse("1 m/s^2", "0.5 s")
@@ -138,7 +142,7 @@ def test_sweep_and_simulate_have_what_is_declared():
     of_sweep = inspect.signature(rf.sweep).parameters
     for name, one in declared_in(SweepArguments).items():
         assert of_sweep[name].default == one.default
-    assert set(OF_A_SWEEP) < set(of_sweep)
+    assert set(SWEEP_ARGUMENT_NAMES) < set(of_sweep)
     of_run = inspect.signature(rf.System.simulate).parameters
     only_of_a_run = {"self", "motion", "certify", "second_look"}
     assert set(get_type_hints(RunArguments)) == set(of_run) - only_of_a_run

@@ -14,24 +14,24 @@ from rockframe.results.schema import with_labels, with_variables
 from rockframe.results.variables.analyses import LIMIT_STATE
 from rockframe.simulation.soundness import share_words
 from rockframe.studies.confidence import read_level
-from rockframe.studies.fragility.labelling import Means, fragility_dataset
+from rockframe.studies.fragility.labelling import BoundSettings, fragility_dataset
 from rockframe.studies.fragility.likelihood import Bands, Fit
 from rockframe.studies.fragility.ordered import ordered_fits
 from rockframe.studies.fragility.trials import (
     StructureTrials,
     Trials,
-    laid_out,
+    flatten_like,
     motion_numbers,
     structures_of,
     trials_of_capacities,
     trials_of_runs,
 )
-from rockframe.studies.fragility.words import POOLED, sentences
+from rockframe.studies.fragility.words import POOLED_ATTRIBUTE, fragility_sentences
 from rockframe.studies.intensities import (
     Intensity,
     PeriodLike,
-    measure_in,
-    named_column,
+    column_of_runs,
+    measure_of_runs,
     period_attribute,
 )
 from rockframe.studies.limit_states import (
@@ -42,8 +42,8 @@ from rockframe.studies.limit_states import (
     limit_states,
     states_of,
 )
-from rockframe.studies.lines import SCALE
-from rockframe.studies.sweeps.axes import free_values
+from rockframe.studies.line_scan import SCALE
+from rockframe.studies.sweeps.axes import read_free_values
 from rockframe.studies.sweeps.motions import MotionsLike
 from rockframe.units import RatioLike
 
@@ -53,8 +53,8 @@ _CAPACITIES: Final = "capacities"
 _TRIALS: Final = ("runs", _CAPACITIES)
 _COMMON: Final = "common"
 _DISPERSIONS: Final = ("each", _COMMON)
-_MOST_MEASURES: Final = 2
-_MOST_LEFT_OUT: Final = 80
+_MAX_MEASURES: Final = 2
+_MAX_JACKKNIFE_MOTIONS: Final = 80
 """Motions up to which each is left out in turn; with more the sandwich has equal coverage."""
 
 
@@ -182,23 +182,23 @@ def fragility(
     if isinstance(runs, dict):
         arguments = {"limits": limits, "motions": motions, "pooled": pooled or None}
         others = [name for name, one in arguments.items() if one is not None]
-        return _of_counts(runs, intensity, period, bands, confidence, others)
+        return _fit_counts(runs, intensity, period, bands, confidence, others)
     runs = check_runs(runs, owner=_OWNER)
-    arguments = [named_column(runs, one) for one in _several(intensity)]
-    together = several(pooled, owner=_OWNER, name="pooled", of="names")
-    structures = structures_of(runs, together, arguments, owner=_OWNER)
+    arguments = [column_of_runs(runs, one) for one in _listed_measures(intensity)]
+    pooled_axes = several(pooled, owner=_OWNER, name="pooled", of="names")
+    structures = structures_of(runs, pooled_axes, arguments, owner=_OWNER)
     of_capacities = one_of_names(trials, _TRIALS, owner=_OWNER, name="trials") == _CAPACITIES
     if of_capacities and "capacity_scale" not in runs:
         msg = f"{_OWNER}: capacities are those of rf.incremental_dynamic_analysis, found a sweep"
         raise SchemaError(msg)
-    states = _states(runs, limits)
-    measures = [measure_in(runs, one, period, motions, owner=_OWNER) for one in arguments]
+    states = _read_states(runs, limits)
+    measures = [measure_of_runs(runs, one, period, motions, owner=_OWNER) for one in arguments]
     if len({one.name for one in measures}) < len(measures):
         msg = f"{_OWNER}: the two intensity measures are one, {measures[0].name}; give another"
         raise ComponentError(msg)
-    if alike := [str(one.name) for one in measures if one.name in structures.groups]:
+    if ambiguous := [str(one.name) for one in measures if one.name in structures.groups]:
         msg = (
-            f"{_OWNER}: the structures differ along {alike[0]}, which is also the name of the "
+            f"{_OWNER}: the structures differ along {ambiguous[0]}, which is also the name of the "
             "intensity measure; give the intensity as a DataArray of another name"
         )
         raise ComponentError(msg)
@@ -206,7 +206,7 @@ def fragility(
     sizes = [(len(np.unique(motion_numbers(one))), one.size)
              for one in structures.parts(verdicts[-1])]  # fmt: skip
     repeated = not of_capacities and any(motions < count for motions, count in sizes)
-    of_runs = Bands.JACKKNIFE if max(sizes)[0] <= _MOST_LEFT_OUT else Bands.SANDWICH
+    of_runs = Bands.JACKKNIFE if max(sizes)[0] <= _MAX_JACKKNIFE_MOTIONS else Bands.SANDWICH
     common = one_of_names(dispersion, _DISPERSIONS, owner=_OWNER, name="dispersion") == _COMMON
     if common and (of_capacities or len(measures) > 1 or bands == "profile"):
         msg = (
@@ -214,46 +214,54 @@ def fragility(
             "'jackknife' or 'sandwich'"
         )
         raise ComponentError(msg)
-    usual = of_runs if repeated or common else Bands.PROFILE
-    means = Means(_bands(bands, usual, len(measures)), read_level(confidence, owner=_OWNER))
-    by_motion = means.bands is not Bands.PROFILE and (repeated or common)
+    default_bands = of_runs if repeated or common else Bands.PROFILE
+    settings = BoundSettings(
+        _read_bands(bands, default_bands, len(measures)), read_level(confidence, owner=_OWNER)
+    )
+    by_motion = settings.bands is not Bands.PROFILE and (repeated or common)
     parts = zip(*(structures.parts(one) for one in (*verdicts, *measures)), strict=True)
     found: list[StructureTrials] = []
     fits: list[Fit] | None = [] if common else None
     analyses = structures.parts(runs) if of_capacities else repeat(runs)
     for part, analysis in zip(parts, analyses, strict=False):
-        those, along = part[: len(states)], part[len(states) :]
+        state_verdicts, along = part[: len(states)], part[len(states) :]
         if fits is not None:
-            fits += _ordered(those, along[0], states, means.bands)
-        for state, verdict in zip(states, those, strict=True):
+            fits += _fit_ordered(state_verdicts, along[0], states, settings.bands)
+        for state, verdict in zip(states, state_verdicts, strict=True):
             if of_capacities:
-                found.append(_of_capacities(analysis, state, verdict, along))
+                found.append(_trials_of_state(analysis, state, verdict, along))
             else:
                 found.append(trials_of_runs(verdict, along, by_motion=by_motion))
-    over = dict(zip(structures.groups, structures.shape, strict=True))
-    about: dict[str, Any] = {"trials": trials, "dispersions": dispersion}
-    if together:
-        about[POOLED] = ", ".join(together)
+    structure_sizes = dict(zip(structures.groups, structures.shape, strict=True))
+    attributes: dict[str, Any] = {"trials": trials, "dispersions": dispersion}
+    if pooled_axes:
+        attributes[POOLED_ATTRIBUTE] = ", ".join(pooled_axes)
     dataset = fragility_dataset(
-        found, {**over, "limit_state": len(states)},
-        [(str(one.name), dict(one.attrs)) for one in measures], means,
-        about | period_attribute(runs, arguments, period, owner=_OWNER), fits,
+        found, {**structure_sizes, "limit_state": len(states)},
+        [(str(one.name), dict(one.attrs)) for one in measures], settings,
+        attributes | period_attribute(runs, arguments, period, owner=_OWNER), fits,
     )  # fmt: skip
     dataset = with_labels(dataset, structures.coordinates)
     dataset = with_variables(dataset, labels_of_states(states))
     if of_capacities:
         below = np.array([int((~one.trials.has_lower).sum()) for one in found])
-        below = below.reshape((*over.values(), len(states)))
-        dataset = with_variables(dataset, {"below_scan_count": below}, over=(*over, *LIMIT_STATE))
-    dataset.attrs["verdict"] = f"{sentences(dataset)}{_sliding(runs, of_capacities=of_capacities)}"
+        below = below.reshape((*structure_sizes.values(), len(states)))
+        dataset = with_variables(
+            dataset, {"below_scan_count": below}, over=(*structure_sizes, *LIMIT_STATE)
+        )
+    dataset.attrs["verdict"] = (
+        f"{fragility_sentences(dataset)}{_sliding_sentence(runs, of_capacities=of_capacities)}"
+    )
     # a system that the sweep changed is not that of the runs
-    kept_attributes = ("model",) if structures.coordinates or together else ("model", "system_json")
+    kept_attributes = (
+        ("model",) if structures.coordinates or pooled_axes else ("model", "system_json")
+    )
     return dataset.assign_attrs(
         {name: runs.attrs[name] for name in kept_attributes if name in runs.attrs}
     )
 
 
-def _of_counts(
+def _fit_counts(
     counts: Mapping[Any, Any],
     measure: object,
     period: PeriodLike | None,
@@ -272,7 +280,7 @@ def _of_counts(
     intensity, exceeded, trials = (counts[name] for name in _COLUMNS)
     which = Intensity.read(measure, period, owner=_OWNER)
     expected = which.attributes()["units"]
-    values, unit = free_values(intensity, "intensity", owner=_OWNER, expected=expected)
+    values, unit = read_free_values(intensity, "intensity", owner=_OWNER, expected=expected)
     if unit != expected:
         msg = f"{_OWNER}: {which.name} is in {expected}, got {shown(intensity)}"
         raise UnitsError(msg)
@@ -288,22 +296,24 @@ def _of_counts(
             f"exceedances from 0 to that of the trials, got {shown(exceeded)} of {shown(trials)}"
         )
         raise ComponentError(msg)
-    means = Means(_bands(bands, Bands.PROFILE, 1), read_level(confidence, owner=_OWNER))
-    made = Trials.of_verdicts(np.log(values)[:, None], over, count)
+    settings = BoundSettings(
+        _read_bands(bands, Bands.PROFILE, 1), read_level(confidence, owner=_OWNER)
+    )
+    counted_trials = Trials.from_verdicts(np.log(values)[:, None], over, count)
     # the runs: at each intensity first those that exceeded, then the others
     times = np.column_stack([over, count - over]).astype(int).ravel()
     verdicts = np.repeat(np.tile([1.0, 0.0], len(values)), times)
     runs = np.repeat(np.repeat(values, 2), times)[:, None], verdicts
-    about: dict[str, Any] = {"trials": "trials"}
+    attributes: dict[str, Any] = {"trials": "trials"}
     found = fragility_dataset(
-        [StructureTrials(made, runs, 0, len(verdicts))],
-        {"limit_state": 1}, [(which.name, which.attributes())], means,
-        about | period_attribute(None, [measure], period, owner=_OWNER),
+        [StructureTrials(counted_trials, runs, 0, len(verdicts))],
+        {"limit_state": 1}, [(which.name, which.attributes())], settings,
+        attributes | period_attribute(None, [measure], period, owner=_OWNER),
     ).isel(limit_state=0)  # fmt: skip
-    return found.assign_attrs(verdict=sentences(found))
+    return found.assign_attrs(verdict=fragility_sentences(found))
 
 
-def _states(runs: xr.Dataset, limits: Iterable[object] | None) -> tuple[LimitState, ...]:
+def _read_states(runs: xr.Dataset, limits: Iterable[object] | None) -> tuple[LimitState, ...]:
     if "capacity_scale" not in runs:
         return limit_states(("uplift",) if limits is None else limits, owner=_OWNER)
     known = states_of(runs)
@@ -311,17 +321,17 @@ def _states(runs: xr.Dataset, limits: Iterable[object] | None) -> tuple[LimitSta
         return known
     states = limit_states(limits, owner=_OWNER)
     names = [state.name for state in known]
-    lacking = [state.name for state in states if state.name not in names]
-    if lacking:
+    missing = [state.name for state in states if state.name not in names]
+    if missing:
         msg = (
-            f"{_OWNER}: the dynamic analysis was not asked for {', '.join(lacking)}, which its own "
+            f"{_OWNER}: the dynamic analysis was not asked for {', '.join(missing)}, which its own "
             f"limits must name; it has {', '.join(names)}"
         )
         raise ComponentError(msg)
     return states
 
 
-def _of_capacities(
+def _trials_of_state(
     analysis: xr.Dataset, state: LimitState, verdict: xr.DataArray, measures: Sequence[xr.DataArray]
 ) -> StructureTrials:
     """Return the capacities that a dynamic analysis found for a limit state."""
@@ -332,22 +342,22 @@ def _of_capacities(
     return trials_of_capacities(one, verdict.notnull(), measures)
 
 
-def _ordered(
+def _fit_ordered(
     verdicts: Sequence[xr.DataArray],
-    along: xr.DataArray,
+    measure: xr.DataArray,
     states: Sequence[LimitState],
     bands: Bands,
 ) -> list[Fit]:
     """Fit all limit states of a structure with one dispersion."""
     rows = np.stack([one.to_numpy().ravel().astype(np.float64) for one in verdicts])
-    intensity = laid_out(along, verdicts[0]).astype(np.float64)
+    intensity = flatten_like(measure, verdicts[0]).astype(np.float64)
     kept = ~np.isnan(rows).any(axis=0) & (intensity > 0.0) & np.isfinite(intensity)
     names = [state.name for state in states]
     motions = motion_numbers(verdicts[0])[kept]
     return ordered_fits(np.log(intensity[kept]), rows[:, kept], motions, names, bands)
 
 
-def _sliding(runs: xr.Dataset, *, of_capacities: bool) -> str:
+def _sliding_sentence(runs: xr.Dataset, *, of_capacities: bool) -> str:
     """Say in how many runs friction would not hold the block; nothing if no friction was given."""
     if "would_slide" not in runs:
         return ""
@@ -356,19 +366,19 @@ def _sliding(runs: xr.Dataset, *, of_capacities: bool) -> str:
     return f" {words[0].upper()}{words[1:]}; these count as if it were held." if words else ""
 
 
-def _several(value: object) -> list[object]:
+def _listed_measures(value: object) -> list[object]:
     if isinstance(value, str | xr.DataArray):
         return [value]
     listed = list(value) if iterates(value) else []
-    if not 1 <= len(listed) <= _MOST_MEASURES:
+    if not 1 <= len(listed) <= _MAX_MEASURES:
         msg = f"{_OWNER}: intensity needs one measure, or two, got {shown(value)}"
         raise ComponentError(msg)
     return listed
 
 
-def _bands(value: str | None, usual: Bands, measures: int) -> Bands:
+def _read_bands(value: str | None, default: Bands, measures: int) -> Bands:
     if value is None:
-        return usual if measures == 1 or usual is not Bands.PROFILE else Bands.SANDWICH
+        return default if measures == 1 or default is not Bands.PROFILE else Bands.SANDWICH
     found = one_of_words(Bands, value, owner=_OWNER, name="bands")
     if found is Bands.PROFILE and measures > 1:
         msg = f"{_OWNER}: bands by profile are those of one intensity measure; use 'jackknife'"

@@ -15,34 +15,34 @@ from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import clopper_pearson
 from rockframe.studies.fragility.likelihood import Bands, Fit, boundary, fit, gap, jackknife
 from rockframe.studies.fragility.trials import StructureTrials, Trials
-from rockframe.studies.fragility.words import bounded
+from rockframe.studies.fragility.words import enough_trials
 
-_POINTS: Final = 101
+_CURVE_POINTS: Final = 101
 """Intensities at which a curve is given."""
-_SIDE: Final = 41
+_SURFACE_POINTS: Final = 41
 """Intensities of each of two measures."""
-_NO_DISPERSION: Final = 1e6
+_STEEPEST_SLOPE: Final = 1e6
 """Slopes beyond which a dispersion counts as zero: rays of an unbounded region go far beyond."""
-_MOST_STRIPES: Final = 30
+_MAX_STRIPES: Final = 30
 _BINS: Final = 10
 """Groups into which intensities are sorted that differ from run to run."""
-_OF_INTENSITY: Final = (
+_INTENSITY_VARIABLES: Final = (
     "median_intensity", "median_intensity_lower_bound", "median_intensity_upper_bound",
     "separation_lower_intensity", "separation_upper_intensity", "stripe_intensity",
 )  # fmt: skip
 """Variables in the unit of the intensity."""
-Labels = tuple[str, dict[str, Any]]
+MeasureLabel = tuple[str, dict[str, Any]]
 """Name and attributes of an intensity measure."""
 
 
 @dataclass(frozen=True)
-class Means:
+class BoundSettings:
     """How bounds are found."""
 
     bands: Bands  # from what
     confidence: float  # of the bounds [1]
 
-    def deviations(self, clusters: float = math.inf) -> float:
+    def standard_errors(self, clusters: float = math.inf) -> float:
         """Return standard errors from an estimate to its bound, by Student's t of few clusters."""
         from scipy.special import ndtri, stdtrit
 
@@ -51,58 +51,63 @@ class Means:
 
 
 @dataclass(frozen=True, eq=False)
-class _Fitted:
+class _FittedTrials:
     """Trials with their fit, its region by profile, and whether there are bounds."""
 
     trials: Trials
     fit: Fit
-    edge: Array | None
-    bounded: bool
+    boundary: Array | None
+    has_bounds: bool
     # if the trials of one measure are separated: the logarithms between which the median lies
     gap: tuple[float, float] | None
 
     @classmethod
-    def of(cls, found: StructureTrials, means: Means, given: Fit | None = None) -> "_Fitted":
+    def from_trials(
+        cls, found: StructureTrials, settings: BoundSettings, given: Fit | None = None
+    ) -> "_FittedTrials":
         """Fit, unless a fit is given, and find the region if it determines the bounds."""
-        trials, made = found.trials, given or fit(found.trials, means.bands)
-        parted = None
-        if made.status is FragilityStatus.SEPARATED and trials.measures == 1:
-            parted = gap(trials) or (math.nan, math.nan)
+        trials, fitted = found.trials, given or fit(found.trials, settings.bands)
+        separation = None
+        if fitted.status is FragilityStatus.SEPARATED and trials.measures == 1:
+            separation = gap(trials) or (math.nan, math.nan)
         # capacities separated by an intensity are close by chance: bounds based on their closeness
         # would hold in few samples
         counted = trials.cluster is None and not np.any(trials.has_lower & trials.has_upper)
-        bands = means.bands if parted is None else Bands.PROFILE
-        bounds = (parted is not None and counted) or made.status is FragilityStatus.FITTED
-        bounds = bounds and bounded(bands, found.independent) and made.complete
+        bands = settings.bands if separation is None else Bands.PROFILE
+        has_bounds = (separation is not None and counted) or fitted.status is FragilityStatus.FITTED
+        has_bounds = has_bounds and enough_trials(bands, found.independent) and fitted.complete
         edge = None
-        if bounds and bands is Bands.PROFILE:
-            edge = boundary(trials, made, means.confidence)
-        return cls(trials, made, edge, bounds, parted)
+        if has_bounds and bands is Bands.PROFILE:
+            edge = boundary(trials, fitted, settings.confidence)
+        return cls(trials, fitted, edge, has_bounds, separation)
 
 
 def fragility_dataset(
     found: Sequence[StructureTrials],
-    over: Mapping[str, int],
-    measures: Sequence[Labels],
-    means: Means,
+    sizes: Mapping[str, int],
+    measures: Sequence[MeasureLabel],
+    settings: BoundSettings,
     attributes: Mapping[str, Any],
     fits: Sequence[Fit] | None = None,
 ) -> xr.Dataset:
     """Fit capacities, unless fits are given, and label the results.
 
-    For each structure and limit state, with the sizes `over`, the last one varying fastest.
+    For each structure and limit state, with the `sizes`, the last one varying fastest.
     """
     items = [None] * len(found) if fits is None else fits
-    every = [_Fitted.of(one, means, each) for one, each in zip(found, items, strict=True)]
+    every = [
+        _FittedTrials.from_trials(one, settings, each)
+        for one, each in zip(found, items, strict=True)
+    ]
     values: dict[str, Any] = {
         "fragility_status": [one.fit.status for one in every],
         "trial_count": [one.trials.weight.sum() for one in found],
         "left_out_count": [one.left_out for one in found],
         "independent_count": [one.independent for one in found],
     }
-    alone = len(measures) == 1
-    if alone:
-        rows = [_parameters(each, means) for each in every]
+    single_measure = len(measures) == 1
+    if single_measure:
+        rows = [_parameters(each, settings) for each in every]
         values |= {name: [row[name] for row in rows] for name in rows[0]}
     else:
         values |= {
@@ -110,31 +115,31 @@ def fragility_dataset(
             "fitted_coefficient_error": [np.sqrt(np.diag(one.fit.covariance)) for one in every],
         }
     dataset = build_dataset(
-        _arranged(values, over),
-        {**attributes, "bands": str(means.bands), "confidence": means.confidence},
-        over=tuple(over), title="Fragility of a rocking system", source="greatest likelihood",
+        _reshaped(values, sizes),
+        {**attributes, "bands": str(settings.bands), "confidence": settings.confidence},
+        over=tuple(sizes), title="Fragility of a rocking system", source="greatest likelihood",
     )  # fmt: skip
-    if not alone:
+    if not single_measure:
         names = np.array(["intercept", *(name for name, _ in measures)], dtype=object)
         dataset = with_variables(dataset, {"coefficient": names})
-    dataset = _with_curves(dataset, every, over, measures, means)
-    if alone:
+    dataset = _with_curves(dataset, every, sizes, measures, settings)
+    if single_measure:
         runs = [one.runs for one in found if one.runs is not None]
-        runs = runs or _decided([one.trials for one in found])
-        dataset = with_stripes(dataset, runs, over, means.confidence)
-        for name in _OF_INTENSITY:
+        runs = runs or _capacity_verdicts([one.trials for one in found])
+        dataset = with_stripes(dataset, runs, sizes, settings.confidence)
+        for name in _INTENSITY_VARIABLES:
             if name in dataset and "units" in measures[0][1]:
                 dataset[name].attrs["units"] = measures[0][1]["units"]
     return dataset
 
 
-def _arranged(values: Mapping[str, Any], over: Mapping[str, int]) -> dict[str, Generic]:
+def _reshaped(values: Mapping[str, Any], sizes: Mapping[str, int]) -> dict[str, Generic]:
     """Return values of each structure and limit state, which are counted, their dimensions."""
     arrays = {name: np.asarray(each) for name, each in values.items()}
-    return {n: each.reshape(*over.values(), *each.shape[1:]) for n, each in arrays.items()}
+    return {n: each.reshape(*sizes.values(), *each.shape[1:]) for n, each in arrays.items()}
 
 
-def _parameters(each: _Fitted, means: Means) -> dict[str, float]:
+def _parameters(each: _FittedTrials, settings: BoundSettings) -> dict[str, float]:
     ends = (math.nan, math.nan)
     errors, log_errors, bounds = np.full(2, np.nan), np.full(2, np.nan), np.full((2, 2), np.nan)
     if each.gap is not None:
@@ -144,23 +149,23 @@ def _parameters(each: _Fitted, means: Means) -> dict[str, float]:
         log_median, spread = 0.5 * sum(ends), 0.0
     else:
         (log_median, log_spread), covariance = _log_parameters(each.fit)
-        spread, log_errors = _exp(log_spread), np.sqrt(np.diag(covariance))
+        spread, log_errors = _exponential(log_spread), np.sqrt(np.diag(covariance))
         errors = log_errors * np.array([1.0, spread])
-    if each.edge is not None:
-        bounds = _extremes(each.edge)
-    elif each.bounded:
+    if each.boundary is not None:
+        bounds = _parameter_ranges(each.boundary)
+    elif each.has_bounds:
         clusters = each.fit.clusters
         # a dispersion is positive: the interval is that of its logarithm
-        middle = np.array([log_median, math.log(spread) + _lacking(clusters)])
-        reach: Array = means.deviations(clusters) * log_errors
-        bounds = middle[:, None] + reach[:, None] * np.array([-1.0, 1.0])
-        bounds[1] = [_exp(one) for one in bounds[1]]
+        middle = np.array([log_median, math.log(spread) + _log_dispersion_bias(clusters)])
+        half_width: Array = settings.standard_errors(clusters) * log_errors
+        bounds = middle[:, None] + half_width[:, None] * np.array([-1.0, 1.0])
+        bounds[1] = [_exponential(one) for one in bounds[1]]
     return {
-        "median_intensity": _exp(log_median),
-        "median_intensity_lower_bound": _exp(bounds[0, 0]),
-        "median_intensity_upper_bound": _exp(bounds[0, 1]),
-        "separation_lower_intensity": _exp(ends[0]),
-        "separation_upper_intensity": _exp(ends[1]),
+        "median_intensity": _exponential(log_median),
+        "median_intensity_lower_bound": _exponential(bounds[0, 0]),
+        "median_intensity_upper_bound": _exponential(bounds[0, 1]),
+        "separation_lower_intensity": _exponential(ends[0]),
+        "separation_upper_intensity": _exponential(ends[1]),
         "log_median_error": float(errors[0]),
         "dispersion": spread,
         "dispersion_lower_bound": float(bounds[1, 0]),
@@ -169,7 +174,7 @@ def _parameters(each: _Fitted, means: Means) -> dict[str, float]:
     }
 
 
-def _exp(log: float) -> float:
+def _exponential(log: float) -> float:
     """Return the exponential of a logarithm: infinite where the intensity hardly matters."""
     with np.errstate(over="ignore"):
         return float(np.exp(log))
@@ -177,22 +182,22 @@ def _exp(log: float) -> float:
 
 def _log_parameters(fit: Fit) -> tuple[Array, Array]:
     """Return the logarithms of median and dispersion, and their covariance."""
-    best = _logs_of(fit.coefficients)
-    if fit.without is not None and fit.complete:
-        rows, alike = fit.without
-        return best, jackknife(best, _logs_of(rows.T).T, alike)
+    best = _log_median_dispersion(fit.coefficients)
+    if fit.leave_one_out is not None and fit.complete:
+        rows, multiplicity = fit.leave_one_out
+        return best, jackknife(best, _log_median_dispersion(rows.T).T, multiplicity)
     intercept, slope = (float(one) for one in fit.coefficients)
-    turn = np.array([[-1.0 / slope, intercept / slope**2], [0.0, -1.0 / slope]])
-    return best, turn @ fit.covariance @ turn.T
+    jacobian = np.array([[-1.0 / slope, intercept / slope**2], [0.0, -1.0 / slope]])
+    return best, jacobian @ fit.covariance @ jacobian.T
 
 
-def _logs_of(coefficients: Array) -> Array:
+def _log_median_dispersion(coefficients: Array) -> Array:
     intercept, slope = coefficients
     with np.errstate(invalid="ignore"):
         return np.stack([-intercept / slope, -np.log(slope)])
 
 
-def _lacking(clusters: float) -> float:
+def _log_dispersion_bias(clusters: float) -> float:
     """Return the mean deficit of the logarithm of a dispersion, :eq:`eq-fragility-lacking` [1]."""
     from scipy.special import digamma
 
@@ -201,10 +206,10 @@ def _lacking(clusters: float) -> float:
     return 0.5 * (math.log(0.5 * clusters) - float(digamma(0.5 * (clusters - 1.0))))
 
 
-def _extremes(edge: Array) -> Array:
+def _parameter_ranges(boundary_points: Array) -> Array:
     """Return the ranges of log-median and dispersion in a region of the coefficients."""
-    intercept, slope = edge
-    least = 0.0 if slope.max() > _NO_DISPERSION else 1.0 / slope.max()
+    intercept, slope = boundary_points
+    least = 0.0 if slope.max() > _STEEPEST_SLOPE else 1.0 / slope.max()
     if slope.min() <= 0.0:  # a curve that does not rise is likely enough, too
         return np.array([[-np.inf, np.inf], [least, np.inf]])
     medians = -intercept / slope
@@ -213,52 +218,52 @@ def _extremes(edge: Array) -> Array:
 
 def _with_curves(
     dataset: xr.Dataset,
-    every: Sequence[_Fitted],
-    over: Mapping[str, int],
-    measures: Sequence[Labels],
-    means: Means,
+    every: Sequence[_FittedTrials],
+    sizes: Mapping[str, int],
+    measures: Sequence[MeasureLabel],
+    settings: BoundSettings,
 ) -> xr.Dataset:
     """Add exceedance probabilities over the intensity, or over two of them."""
     from scipy.special import ndtr
 
-    count = _POINTS if len(measures) == 1 else _SIDE
-    sides = {name: _spaced(every, k, count) for k, (name, _) in enumerate(measures)}
-    mesh = np.meshgrid(*sides.values(), indexing="ij")
+    count = _CURVE_POINTS if len(measures) == 1 else _SURFACE_POINTS
+    grids = {name: _intensity_grid(every, k, count) for k, (name, _) in enumerate(measures)}
+    mesh = np.meshgrid(*grids.values(), indexing="ij")
     rows = np.stack([np.ones(mesh[0].size), *(np.log(one).ravel() for one in mesh)])
-    shares = ndtr(np.stack([_eta(each, rows, means) for each in every]))
+    shares = ndtr(np.stack([_eta(each, rows, settings) for each in every]))
     shares = shares.reshape(len(every), 3, *mesh[0].shape)
     ends = ("", "_lower_bound", "_upper_bound")
     values = {f"exceedance_probability{end}": shares[:, k] for k, end in enumerate(ends)}
-    dataset = with_variables(dataset, _arranged(values, over), over=(*over, *sides))
-    return with_labels(dataset, {name: (name, sides[name], about) for name, about in measures})
+    dataset = with_variables(dataset, _reshaped(values, sizes), over=(*sizes, *grids))
+    return with_labels(dataset, {name: (name, grids[name], about) for name, about in measures})
 
 
-def _eta(each: _Fitted, rows: Array, means: Means) -> Array:
+def _eta(each: _FittedTrials, rows: Array, settings: BoundSettings) -> Array:
     """Return eta and its bounds where coefficients multiply `rows`; shape (3, intensities)."""
     if each.gap is not None:
         eta = np.where(rows[1] < 0.5 * sum(each.gap), -np.inf, np.inf)
     else:
         eta = each.fit.coefficients @ rows
-    if each.edge is not None:
-        at = each.edge.T @ rows
+    if each.boundary is not None:
+        at = each.boundary.T @ rows
         return np.stack([eta, at.min(axis=0), at.max(axis=0)])
-    reach = np.full(len(eta), np.nan)
-    if each.bounded:
+    half_width = np.full(len(eta), np.nan)
+    if each.has_bounds:
         squares = np.einsum("ik,ij,jk->k", rows, each.fit.covariance, rows)
-        reach = means.deviations(each.fit.clusters) * np.sqrt(squares)
-    return np.stack([eta, eta - reach, eta + reach])
+        half_width = settings.standard_errors(each.fit.clusters) * np.sqrt(squares)
+    return np.stack([eta, eta - half_width, eta + half_width])
 
 
 def with_stripes(
     dataset: xr.Dataset,
     counted: Sequence[tuple[Array, Array]],
-    over: Mapping[str, int],
+    sizes: Mapping[str, int],
     confidence: float,
 ) -> xr.Dataset:
     """Add the number of exceedances by groups of intensities, with Clopper-Pearson bounds."""
     every = np.concatenate([columns[:, 0] for columns, _ in counted])
     every = np.unique(np.round(np.log(every[np.isfinite(every) & (every > 0.0)]), 9))
-    if len(every) > _MOST_STRIPES:
+    if len(every) > _MAX_STRIPES:
         cuts = np.quantile(every, np.linspace(0.0, 1.0, _BINS + 1))
         middles = 0.5 * (cuts[1:] + cuts[:-1])
     else:
@@ -282,11 +287,11 @@ def with_stripes(
         "stripe_fraction_lower_bound": lower,
         "stripe_fraction_upper_bound": upper,
     }
-    dataset = with_variables(dataset, _arranged(values, over), over=tuple(over))
+    dataset = with_variables(dataset, _reshaped(values, sizes), over=tuple(sizes))
     return with_variables(dataset, {"stripe_intensity": np.exp(middles)})
 
 
-def _decided(trials: Sequence[Trials]) -> list[tuple[Array, Array]]:
+def _capacity_verdicts(trials: Sequence[Trials]) -> list[tuple[Array, Array]]:
     """Return verdicts on capacities at intensities that divide them into equal groups."""
     every = [np.where(each.has_upper, each.upper[:, 0], each.lower[:, 0]) for each in trials]
     ends = np.concatenate(every)
@@ -303,7 +308,7 @@ def _decided(trials: Sequence[Trials]) -> list[tuple[Array, Array]]:
     return found
 
 
-def _spaced(every: Sequence[_Fitted], measure: int, count: int) -> Array:
+def _intensity_grid(every: Sequence[_FittedTrials], measure: int, count: int) -> Array:
     """Return intensities from the least to the greatest, with equal ratios."""
     ends = np.concatenate(
         [

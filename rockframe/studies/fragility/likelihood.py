@@ -17,14 +17,14 @@ from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.signals.arrays import Array
 from rockframe.studies.fragility.trials import Trials
 
-DIRECTIONS: Final = 360
+RAY_COUNT: Final = 360
 """Rays on which the boundary of a confidence region is found."""
-FLAT: Final = 1e-9
+ZERO_SLOPE: Final = 1e-9
 """Slope, over the spread of the logarithms of intensities, up to which it is a rounding error."""
 _DOUBLINGS: Final = 30
 """Number of times that the length of a ray is doubled; if its end is then still within the region,
 the region is unbounded along the ray."""
-_BLOCK: Final = 2_000_000
+_MAX_VALUES: Final = 2_000_000
 """Largest number of values in memory at once."""
 
 
@@ -45,17 +45,17 @@ class Fit:
     information: Array  # the observed one: curvature of the log-likelihood at its maximum
     covariance: Array  # of the coefficients
     # coefficients without each cluster in turn, and how many clusters are alike; NaN without a fit
-    without: tuple[Array, Array] | None = None
+    leave_one_out: tuple[Array, Array] | None = None
 
     @property
     def complete(self) -> bool:
         """Whether there is also a fit without each cluster, if those were requested."""
-        return self.without is None or bool(np.isfinite(self.without[0]).all())
+        return self.leave_one_out is None or bool(np.isfinite(self.leave_one_out[0]).all())
 
     @property
     def clusters(self) -> float:
         """Number of clusters of a jackknife; infinite for other fits."""
-        return math.inf if self.without is None else float(self.without[1].sum())
+        return math.inf if self.leave_one_out is None else float(self.leave_one_out[1].sum())
 
     @classmethod
     def none(cls, status: FragilityStatus, measures: int) -> "Fit":
@@ -69,43 +69,47 @@ def fit(trials: Trials, bands: Bands) -> Fit:
 
     By :eq:`eq-fragility-sandwich` and :eq:`eq-fragility-jackknife`.
     """
-    found = _fit(trials)
+    found = _maximum_likelihood(trials)
     if found.status is not FragilityStatus.FITTED:
         return found
     if bands is Bands.SANDWICH:
-        filling = _filling(trials, found.coefficients)
-        return replace(found, covariance=found.covariance @ filling @ found.covariance)
+        score_products = _score_products(trials, found.coefficients)
+        return replace(found, covariance=found.covariance @ score_products @ found.covariance)
     if bands is Bands.JACKKNIFE:
-        each = list(_without_each(trials))
-        rows = np.array([_near(rest, found.coefficients) for rest, _ in each])
-        without = rows, np.array([alike for _, alike in each])
-        return replace(found, covariance=jackknife(found.coefficients, *without), without=without)
+        each = list(_leave_one_out(trials))
+        rows = np.array([_refit(rest, found.coefficients) for rest, _ in each])
+        leave_one_out = rows, np.array([alike for _, alike in each])
+        return replace(
+            found,
+            covariance=jackknife(found.coefficients, *leave_one_out),
+            leave_one_out=leave_one_out,
+        )
     return found
 
 
-def jackknife(best: Array, rows: Array, alike: Array) -> Array:
+def jackknife(best: Array, rows: Array, multiplicity: Array) -> Array:
     """Return the covariance of estimates; each of the `rows` omits one cluster.
 
     By :eq:`eq-fragility-jackknife`.
     """
-    count = float(alike.sum())
+    count = float(multiplicity.sum())
     differences = rows - best
-    return (count - 1.0) / count * (differences.T @ (alike[:, None] * differences))
+    return (count - 1.0) / count * (differences.T @ (multiplicity[:, None] * differences))
 
 
-def _without_each(trials: Trials) -> Iterator[tuple[Trials, float]]:
+def _leave_one_out(trials: Trials) -> Iterator[tuple[Trials, float]]:
     """Return the trials without each cluster, or each trial, in turn, and how many are alike."""
     if trials.cluster is None:
         for row, weight in enumerate(trials.weight):
             rest = trials.weight.copy()
             rest[row] -= 1.0
-            yield trials.of_weights(rest), float(weight)
+            yield trials.with_weights(rest), float(weight)
         return
     for name in np.unique(trials.cluster):
-        yield trials.of_weights(np.where(trials.cluster == name, 0.0, trials.weight)), 1.0
+        yield trials.with_weights(np.where(trials.cluster == name, 0.0, trials.weight)), 1.0
 
 
-def _near(trials: Trials, start: Array) -> Array:
+def _refit(trials: Trials, start: Array) -> Array:
     """Return the most likely coefficients, by Newton's method if they are near known ones."""
     at = start
     for _ in range(20):
@@ -116,35 +120,35 @@ def _near(trials: Trials, start: Array) -> Array:
             break
         if np.abs(step).max() <= 1e-10 * np.abs(at).max():
             return at
-    return _fit(trials).coefficients
+    return _maximum_likelihood(trials).coefficients
 
 
-def _fit(trials: Trials) -> Fit:
+def _maximum_likelihood(trials: Trials) -> Fit:
     """Find the greatest likelihood, with the covariance of independent trials."""
     from scipy import linalg, optimize
 
-    without = _without_maximum(trials)
-    if without is FragilityStatus.SEPARATED and trials.measures == 1 and gap(trials) is None:
-        without = FragilityStatus.NOT_RISING
-    if without is not None:
-        return Fit.none(without, trials.measures)
+    reason = _why_no_maximum(trials)
+    if reason is FragilityStatus.SEPARATED and trials.measures == 1 and gap(trials) is None:
+        reason = FragilityStatus.NOT_RISING
+    if reason is not None:
+        return Fit.none(reason, trials.measures)
     upper, lower = _design(trials)
     ends = np.concatenate([upper[trials.has_upper], lower[trials.has_lower]])
     middle, spread = ends[:, 1:].mean(axis=0), ends[:, 1:].std(axis=0)
     size = 1 + trials.measures
     # coefficients of measures that are centred and have unit spread are of similar size
-    back = np.eye(size)
-    back[0, 1:] = -middle / spread
-    back[np.arange(1, size), np.arange(1, size)] = 1.0 / spread
+    unscale = np.eye(size)
+    unscale[0, 1:] = -middle / spread
+    unscale[np.arange(1, size), np.arange(1, size)] = 1.0 / spread
 
     def value(scaled: Array) -> float:
-        return -float(log_likelihood(trials, (back @ scaled)[:, None])[0])
+        return -float(log_likelihood(trials, (unscale @ scaled)[:, None])[0])
 
     def slope(scaled: Array) -> Array:
-        return -back.T @ scores(trials, back @ scaled).sum(axis=0)
+        return -unscale.T @ scores(trials, unscale @ scaled).sum(axis=0)
 
     def curvature(scaled: Array) -> Array:
-        return back.T @ information(trials, back @ scaled) @ back
+        return unscale.T @ information(trials, unscale @ scaled) @ unscale
 
     start = np.concatenate([[0.0], np.full(trials.measures, 1.0 / math.sqrt(trials.measures))])
     found: Any = optimize.minimize(
@@ -154,29 +158,29 @@ def _fit(trials: Trials) -> Fit:
     scaled = cast("Array", found.x)
     for _ in range(3):  # the last digits
         scaled = scaled - linalg.solve(curvature(scaled), slope(scaled), assume_a="pos")
-    best = back @ scaled
-    if trials.measures == 1 and scaled[1] <= FLAT:
+    best = unscale @ scaled
+    if trials.measures == 1 and scaled[1] <= ZERO_SLOPE:
         return Fit.none(FragilityStatus.NOT_RISING, trials.measures)
-    inside = information(trials, best)
-    return Fit(FragilityStatus.FITTED, best, inside, linalg.inv(inside))
+    observed = information(trials, best)
+    return Fit(FragilityStatus.FITTED, best, observed, linalg.inv(observed))
 
 
 def log_likelihood(trials: Trials, coefficients: Array) -> Array:
     """Return the logarithm of the likelihood, :eq:`eq-fragility-likelihood`."""
-    return trials.weight @ log_shares(*_etas(trials, coefficients))
+    return trials.weight @ log_interval_probability(*_etas(trials, coefficients))
 
 
 def scores(trials: Trials, coefficients: Array) -> Array:
     """Return the slope of each trial's share in the log-likelihood."""
-    return trials.weight[:, None] * slopes_of_shares(*_ends(trials, coefficients))
+    return trials.weight[:, None] * interval_scores(*_ends(trials, coefficients))
 
 
 def information(trials: Trials, coefficients: Array) -> Array:
     """Return observed information, the curvature of the log-likelihood with its sign changed."""
-    return curvature_of_shares(*_ends(trials, coefficients), trials.weight)
+    return interval_information(*_ends(trials, coefficients), trials.weight)
 
 
-def slopes_of_shares(upper: Array, lower: Array, eta_upper: Array, eta_lower: Array) -> Array:
+def interval_scores(upper: Array, lower: Array, eta_upper: Array, eta_lower: Array) -> Array:
     """Return the derivatives of the log shares between two ends by the coefficients.
 
     From the factors of the coefficients at the ends, and eta there; an open end has zeros and an
@@ -186,7 +190,7 @@ def slopes_of_shares(upper: Array, lower: Array, eta_upper: Array, eta_lower: Ar
     return at_upper[:, None] * upper - at_lower[:, None] * lower
 
 
-def curvature_of_shares(
+def interval_information(
     upper: Array, lower: Array, eta_upper: Array, eta_lower: Array, weight: Array | float = 1.0
 ) -> Array:
     """Return their curvature, summed up with weights, with its sign changed."""
@@ -216,19 +220,19 @@ def boundary(trials: Trials, found: Fit, level: float) -> Array:
     from scipy.special import chdtri
 
     drop = float(chdtri(1.0, 1.0 - level))
-    best, inside = found.coefficients, found.information
+    best, observed = found.coefficients, found.information
     if found.status is FragilityStatus.SEPARATED:
-        best, inside, greatest = _within(trials, 0.25 * drop)
+        best, observed, greatest = _point_within_region(trials, 0.25 * drop)
     else:
         greatest = float(log_likelihood(trials, best[:, None])[0])
-    angle = np.linspace(0.0, 2.0 * np.pi, DIRECTIONS, endpoint=False)
-    root = linalg.cholesky(inside, lower=True)
+    angle = np.linspace(0.0, 2.0 * np.pi, RAY_COUNT, endpoint=False)
+    root = linalg.cholesky(observed, lower=True)
     rays = linalg.solve_triangular(root.T, np.array([np.cos(angle), np.sin(angle)]))
-    length = np.full(DIRECTIONS, math.sqrt(drop))
-    block = max(1, _BLOCK // len(trials.weight))
-    for first in range(0, DIRECTIONS, block):
-        here = slice(first, first + block)
-        ray, reach = rays[:, here], length[here]
+    length = np.full(RAY_COUNT, math.sqrt(drop))
+    block = max(1, _MAX_VALUES // len(trials.weight))
+    for first in range(0, RAY_COUNT, block):
+        part = slice(first, first + block)
+        ray, reach = rays[:, part], length[part]
 
         def excess(reach: Array, ray: Array = ray) -> Array:
             at = best[:, None] + reach * ray
@@ -238,12 +242,12 @@ def boundary(trials: Trials, found: Fit, level: float) -> Array:
         for _ in range(_DOUBLINGS):  # lengthen each ray until its end is outside the region
             beyond = excess(reach)
             # the likelihood is zero where the upper end of a bracket is below its lower end
-            nowhere, within = ~np.isfinite(beyond), beyond < 0.0
-            if not (nowhere | within).any():
+            impossible, inside = ~np.isfinite(beyond), beyond < 0.0
+            if not (impossible | inside).any():
                 break
-            inner, outer = np.where(within, reach, inner), np.where(nowhere, reach, outer)
+            inner, outer = np.where(inside, reach, inner), np.where(impossible, reach, outer)
             further = np.minimum(2.0 * reach, 0.5 * (inner + outer))
-            reach = np.where(nowhere | within, further, reach)
+            reach = np.where(impossible | inside, further, reach)
         for _ in range(60):  # Newton's method: of a convex function it converges from above
             over = excess(reach)
             slope = -2.0 * _slopes_along(trials, best[:, None] + reach * ray, ray)
@@ -251,7 +255,7 @@ def boundary(trials: Trials, found: Fit, level: float) -> Array:
             reach = np.maximum(reach - step, 1e-3 * reach)
             if np.all(np.abs(step) <= 1e-10 * reach):
                 break
-        length[here] = reach
+        length[part] = reach
     edge = best[:, None] + length * rays
     if found.status is not FragilityStatus.SEPARATED:
         return edge
@@ -259,7 +263,7 @@ def boundary(trials: Trials, found: Fit, level: float) -> Array:
     return np.concatenate([edge, best[:, None] + 2.0**_DOUBLINGS * far], axis=1)
 
 
-def _within(trials: Trials, drop: float) -> tuple[Array, Array, float]:
+def _point_within_region(trials: Trials, drop: float) -> tuple[Array, Array, float]:
     """Return coefficients of separated trials, the information there, and the bound.
 
     The likelihood of separated trials has a bound but no maximum: it increases with the slope. At
@@ -297,7 +301,7 @@ def _slopes_along(trials: Trials, coefficients: Array, rays: Array) -> Array:
     return trials.weight @ (at_upper * (upper @ rays) - at_lower * (lower @ rays))
 
 
-def _without_maximum(trials: Trials) -> FragilityStatus | None:
+def _why_no_maximum(trials: Trials) -> FragilityStatus | None:
     """Say why the likelihood has no maximum: some change of the coefficients never lowers it."""
     from scipy import optimize
 
@@ -343,18 +347,18 @@ def _ends(trials: Trials, coefficients: Array) -> tuple[Array, Array, Array, Arr
 
 def _densities(upper: Array, lower: Array) -> tuple[Array, Array]:
     """Return the densities at both ends over the share between."""
-    share = log_shares(upper, lower)
+    share = log_interval_probability(upper, lower)
     return np.exp(_log_density(upper) - share), np.exp(_log_density(lower) - share)
 
 
-def log_shares(upper: Array, lower: Array) -> Array:
+def log_interval_probability(upper: Array, lower: Array) -> Array:
     """Return ln(Phi(upper) - Phi(lower)), to the last digits in both tails."""
     from scipy.special import log_ndtr
 
     # in the upper tail the complementary distribution keeps the digits
-    turned = lower + upper > 0.0
-    high = log_ndtr(np.where(turned, -lower, upper))
-    low = log_ndtr(np.where(turned, -upper, lower))
+    upper_tail = lower + upper > 0.0
+    high = log_ndtr(np.where(upper_tail, -lower, upper))
+    low = log_ndtr(np.where(upper_tail, -upper, lower))
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         return high + np.log(-np.expm1(np.where(np.isneginf(low), -np.inf, low - high)))
 
@@ -364,7 +368,7 @@ def _log_density(eta: Array) -> Array:
     return -0.5 * (eta * eta + math.log(2.0 * math.pi))
 
 
-def _filling(trials: Trials, best: Array) -> Array:
+def _score_products(trials: Trials, best: Array) -> Array:
     """Return products of the scores, summed over clusters, with the usual small-sample factor."""
     of_trial = scores(trials, best)
     if trials.cluster is None:

@@ -15,13 +15,13 @@ from rockframe.results.outcome import Generic
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.signals.arrays import Array
 from rockframe.studies.fragility.likelihood import (
-    FLAT,
+    ZERO_SLOPE,
     Bands,
     Fit,
-    curvature_of_shares,
+    interval_information,
+    interval_scores,
     jackknife,
-    log_shares,
-    slopes_of_shares,
+    log_interval_probability,
 )
 
 
@@ -38,30 +38,32 @@ def ordered_fits(
             )
             raise StudyError(msg)
     shares = verdicts.mean(axis=1) if verdicts.shape[1] else np.zeros(len(names))
-    some = (shares > 0.0) & (shares < 1.0)
+    informative = (shares > 0.0) & (shares < 1.0)
     found = [
         Fit.none(FragilityStatus.ALL_EXCEEDED if one > 0.0 else FragilityStatus.NONE_EXCEEDED, 1)
         for one in shares
     ]
-    if not some.any():
+    if not informative.any():
         return found
     # limit states exceeded by the same runs have the same capacity
-    _, places = np.unique(shares[some], return_inverse=True)
-    places = places.max() - places
-    first = [int(np.flatnonzero(places == k)[0]) for k in range(places.max() + 1)]
-    count = np.asarray(verdicts[some][first].sum(axis=0), dtype=np.intp)
-    best = _greatest(logs, count, len(first))
-    if best is None or best[-1] * float(logs.std()) <= FLAT:
+    _, ranks = np.unique(shares[informative], return_inverse=True)
+    ranks = ranks.max() - ranks
+    first = [int(np.flatnonzero(ranks == k)[0]) for k in range(ranks.max() + 1)]
+    count = np.asarray(verdicts[informative][first].sum(axis=0), dtype=np.intp)
+    best = _maximum_likelihood(logs, count, len(first))
+    if best is None or best[-1] * float(logs.std()) <= ZERO_SLOPE:
         status = FragilityStatus.SEPARATED if best is None else FragilityStatus.NOT_RISING
-        return [Fit.none(status, 1) if one else f for one, f in zip(some, found, strict=True)]
+        return [
+            Fit.none(status, 1) if one else f for one, f in zip(informative, found, strict=True)
+        ]
     covariance, rows = _covariance(logs, count, motions, best, bands)
-    inside = curvature_of_shares(*_ends(logs, count, best))
-    for state, place in zip(np.flatnonzero(some), places, strict=True):
-        pair = np.array([place, len(best) - 1])
+    observed = interval_information(*_ends(logs, count, best))
+    for state, rank in zip(np.flatnonzero(informative), ranks, strict=True):
+        pair = np.array([rank, len(best) - 1])
         square = np.ix_(pair, pair)
-        without = None if rows is None else (rows[:, pair], np.ones(len(rows)))
+        leave_one_out = None if rows is None else (rows[:, pair], np.ones(len(rows)))
         found[state] = Fit(
-            FragilityStatus.FITTED, best[pair], inside[square], covariance[square], without
+            FragilityStatus.FITTED, best[pair], observed[square], covariance[square], leave_one_out
         )
     return found
 
@@ -69,7 +71,7 @@ def ordered_fits(
 def _ends(logs: Array, count: Generic, at: Array) -> tuple[Array, Array, Array, Array]:
     """Return the factors of the coefficients at both ends of each verdict, and eta there.
 
-    As :func:`rockframe.studies.fragility.likelihood.slopes_of_shares` takes them.
+    As :func:`rockframe.studies.fragility.likelihood.interval_scores` takes them.
     """
     states = len(at) - 1
     upper, lower = np.zeros((2, len(logs), len(at)))
@@ -83,20 +85,22 @@ def _ends(logs: Array, count: Generic, at: Array) -> tuple[Array, Array, Array, 
     return upper, lower, eta_upper, eta_lower
 
 
-def _value(logs: Array, count: Generic, at: Array) -> float:
+def _log_likelihood(logs: Array, count: Generic, at: Array) -> float:
     """Return the log-likelihood, :eq:`eq-fragility-ordered`; minus infinity if out of order."""
     *_, upper, lower = _ends(logs, count, at)
     if np.any(upper <= lower):
         return -math.inf
-    return float(log_shares(upper, lower).sum())
+    return float(log_interval_probability(upper, lower).sum())
 
 
-_STEPS = 100
-_STEEPEST = 1e4
+_MAX_STEPS = 100
+_SEPARATED_SLOPE = 1e4
 """Slope, over the spread of the intensities, from which on trials are as good as separated."""
 
 
-def _greatest(logs: Array, count: Generic, states: int, start: Array | None = None) -> Array | None:
+def _maximum_likelihood(
+    logs: Array, count: Generic, states: int, start: Array | None = None
+) -> Array | None:
     """Find the greatest likelihood by Newton's method; None for separated trials."""
     from scipy.special import ndtri
 
@@ -111,17 +115,19 @@ def _greatest(logs: Array, count: Generic, states: int, start: Array | None = No
         at = np.append(ndtri(shares), 1.0)
     else:
         at = np.append(start[:-1] + start[-1] * middle, start[-1] * spread)
-    value = _value(scaled, count, at)
-    for _ in range(_STEPS):
+    value = _log_likelihood(scaled, count, at)
+    for _ in range(_MAX_STEPS):
         ends = _ends(scaled, count, at)
-        slope = slopes_of_shares(*ends).sum(axis=0)
-        step = np.linalg.lstsq(curvature_of_shares(*ends), slope)[0]
+        slope = interval_scores(*ends).sum(axis=0)
+        step = np.linalg.lstsq(interval_information(*ends), slope)[0]
         size = 1.0
-        while size > 1e-10 and not _value(scaled, count, at + size * step) >= value - 1e-12:
+        while (
+            size > 1e-10 and not _log_likelihood(scaled, count, at + size * step) >= value - 1e-12
+        ):
             size *= 0.5
         at = at + size * step
-        value = _value(scaled, count, at)
-        if not np.isfinite(at).all() or at[-1] > _STEEPEST:
+        value = _log_likelihood(scaled, count, at)
+        if not np.isfinite(at).all() or at[-1] > _SEPARATED_SLOPE:
             return None
         if np.abs(step).max() <= 1e-11 * max(1.0, float(np.abs(at).max())):
             break
@@ -137,22 +143,22 @@ def _covariance(
     names, place = np.unique(motions, return_inverse=True)
     if bands is Bands.SANDWICH:
         ends = _ends(logs, count, best)
-        inverse = np.linalg.inv(curvature_of_shares(*ends))
+        inverse = np.linalg.inv(interval_information(*ends))
         summed = np.zeros((len(names), len(best)))
-        np.add.at(summed, place, slopes_of_shares(*ends))
+        np.add.at(summed, place, interval_scores(*ends))
         factor = len(names) / (len(names) - 1.0) if len(names) > 1 else math.inf
         filled = factor * inverse @ summed.T @ summed @ inverse
         return np.asarray(filled, dtype=np.float64), None
     rows = np.full((len(names), len(best)), np.nan)
     for k in range(len(names)):
         kept = place != k
-        one = _of_fewer(logs[kept], count[kept], best)
+        one = _fit_without_motion(logs[kept], count[kept], best)
         if one is not None:
             rows[k] = one
     return jackknife(best, rows, np.ones(len(names))), rows
 
 
-def _of_fewer(logs: Array, count: Generic, best: Array) -> Array | None:
+def _fit_without_motion(logs: Array, count: Generic, best: Array) -> Array | None:
     """Find the greatest likelihood of some of the runs, from that of all; None without one.
 
     Limit states between which none of these runs ends have one capacity. Their intercepts would
@@ -164,5 +170,5 @@ def _of_fewer(logs: Array, count: Generic, best: Array) -> Array | None:
         return None
     place = np.searchsorted(kinds, np.arange(states), side="right") - 1
     first = np.searchsorted(place, np.arange(len(kinds) - 1))
-    found = _greatest(logs, kind, len(first), best[[*first, states]])
+    found = _maximum_likelihood(logs, kind, len(first), best[[*first, states]])
     return None if found is None else found[[*place, len(first)]]

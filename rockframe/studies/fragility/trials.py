@@ -19,7 +19,7 @@ from rockframe.errors import ComponentError, SchemaError, StudyError, shown
 from rockframe.results.outcome import Generic
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.signals.arrays import Array
-from rockframe.studies.lines import SCALE
+from rockframe.studies.line_scan import SCALE
 from rockframe.studies.sweeps.axes import Changes
 
 Values = TypeVar("Values", xr.DataArray, xr.Dataset)
@@ -47,31 +47,35 @@ class Structures:
 
 
 def structures_of(
-    runs: xr.Dataset, pooled: Sequence[str], items: Sequence[object], *, owner: str
+    runs: xr.Dataset, pooled: Sequence[str], measures: Sequence[object], *, owner: str
 ) -> Structures:
     """Find the structures of a sweep."""
-    axes, own = _axes(runs), _own(runs, items)
-    changed = _changed(axes, own)
+    axes, own_measures = _changes_of_axes(runs), _own_measures(runs, measures)
+    changed = _structural_axes(axes, own_measures)
     dims = [str(dim) for dim in runs["status"].dims]
     differing = [name for name in changed if name in runs.coords or name in dims]
-    lost = [name for name in changed if name not in differing]
-    if lost and CASE in dims:
-        msg = f"{owner}: found a sweep without its coordinate {lost[0]!r}, which tells cases apart"
+    missing = [name for name in changed if name not in differing]
+    if missing and CASE in dims:
+        msg = (
+            f"{owner}: found a sweep without its coordinate {missing[0]!r}, which tells cases apart"
+        )
         raise SchemaError(msg)
-    explained = {
-        str(dim) for name in (MOTION, *axes, *own) if name in runs.variables
+    known_dims = {
+        str(dim) for name in (MOTION, *axes, *own_measures) if name in runs.variables
         for dim in runs[name].dims
     }  # fmt: skip
-    foreign = [dim for dim in dims if dim not in {*explained, *axes, *own, MOTION, CASE}]
-    _check_motions(runs, foreign, owner, named=len(own) < len(items))
-    known = [*(name for name in differing if runs[name].dims), *foreign]
+    unknown_dims = [
+        dim for dim in dims if dim not in {*known_dims, *axes, *own_measures, MOTION, CASE}
+    ]
+    _check_motions(runs, unknown_dims, owner, named=len(own_measures) < len(measures))
+    known = [*(name for name in differing if runs[name].dims), *unknown_dims]
     if CASE in pooled and CASE in dims:  # stands for all columns of its table
         columns = [name for name in known if CASE in runs[name].dims]
         pooled = [*(one for one in pooled if one != CASE), *columns]
-    _check_pooled(pooled, (*changed, *foreign), known, owner)
+    _check_pooled(pooled, (*changed, *unknown_dims), known, owner)
     kept = [name for name in known if name not in pooled]
-    alone = [name for name in differing if not runs[name].dims]
-    found = _grouped(runs, dims, kept, alone)
+    scalar_names = [name for name in differing if not runs[name].dims]
+    found = _group_structures(runs, dims, kept, scalar_names)
     sizes = [np.bincount(group).max() for group in found.groups.values()]
     rest = [runs.sizes[dim] for dim in dims if dim not in found.groups]
     if np.prod(found.shape) > 1 and np.prod([*sizes, *rest]) == 1:
@@ -84,10 +88,10 @@ def structures_of(
 
 
 def check_one_structure(
-    runs: xr.Dataset, pooled: Sequence[str], values: Sequence[object], *, owner: str
+    runs: xr.Dataset, pooled: Sequence[str], measures: Sequence[object], *, owner: str
 ) -> None:
     """Refuse runs of several structures, except those that are treated as one."""
-    changed = _changed(_axes(runs), _own(runs, values))
+    changed = _structural_axes(_changes_of_axes(runs), _own_measures(runs, measures))
     several = [
         name
         for name in changed
@@ -108,7 +112,7 @@ def check_one_structure(
 
 def attributes_of_system(runs: xr.Dataset) -> dict[str, Any]:
     """Return the attributes that describe the system of runs, which a sweep may have changed."""
-    changed = any(name in runs.coords for name in _changed(_axes(runs), ()))
+    changed = any(name in runs.coords for name in _structural_axes(_changes_of_axes(runs), ()))
     names = ("model",) if changed else ("model", "system_json")
     return {name: runs.attrs[name] for name in names if name in runs.attrs}
 
@@ -126,12 +130,12 @@ def _check_pooled(
         raise ComponentError(msg)
 
 
-def _axes(runs: xr.Dataset) -> dict[str, str]:
+def _changes_of_axes(runs: xr.Dataset) -> dict[str, str]:
     """Return what each axis of a sweep changes."""
     return {one["name"]: one["changes"] for one in json.loads(runs.attrs["axes_json"])}
 
 
-def _own(runs: xr.Dataset, values: Sequence[object]) -> list[str]:
+def _own_measures(runs: xr.Dataset, values: Sequence[object]) -> list[str]:
     """Return the names of intensities that are numbers of the runs; no others of an axis' name."""
     arrays = [one for one in values if isinstance(one, xr.DataArray)]
     return [
@@ -140,18 +144,20 @@ def _own(runs: xr.Dataset, values: Sequence[object]) -> list[str]:
     ]  # fmt: skip
 
 
-def _changed(axes: Mapping[str, str], own: Sequence[str]) -> list[str]:
+def _structural_axes(axes: Mapping[str, str], own: Sequence[str]) -> list[str]:
     """Return the axes along which structures differ."""
     return [name for name in axes if name not in own and axes[name] != Changes.MOTION]
 
 
-def _check_motions(runs: xr.Dataset, foreign: Sequence[str], owner: str, *, named: bool) -> None:
+def _check_motions(
+    runs: xr.Dataset, unknown_dims: Sequence[str], owner: str, *, named: bool
+) -> None:
     """Refuse combined datasets of which the motions cannot be known."""
-    if foreign and named:
+    if unknown_dims and named:
         msg = (
-            f"{owner}: the sweep had no dimension {', '.join(map(repr, foreign))}; datasets that "
-            "were put together tell the motions of the first alone: fit each of them, or give the "
-            "intensity as a DataArray"
+            f"{owner}: the sweep had no dimension {', '.join(map(repr, unknown_dims))}; datasets "
+            "that were put together tell the motions of the first alone: fit each of them, or "
+            "give the intensity as a DataArray"
         )
         raise StudyError(msg)
     if MOTION in runs.dims and MOTION in runs.coords:
@@ -161,14 +167,14 @@ def _check_motions(runs: xr.Dataset, foreign: Sequence[str], owner: str, *, name
             raise StudyError(msg)
 
 
-def _grouped(
-    runs: xr.Dataset, dims: Sequence[str], kept: Sequence[str], alone: Sequence[str]
+def _group_structures(
+    runs: xr.Dataset, dims: Sequence[str], kept: Sequence[str], scalar_names: Sequence[str]
 ) -> Structures:
     """Return structures numbers along each dimension, and labels."""
     groups: dict[str, Generic] = {}
     coordinates = {
         str(name): runs[name].variable
-        for name in (*alone, *kept)
+        for name in (*scalar_names, *kept)
         if name in runs.coords and runs[name].ndim != 1
     }
     for dim in dims:
@@ -176,7 +182,9 @@ def _grouped(
         shared = dim in kept or any(dim in one.dims for one in coordinates.values())
         if not columns and not shared:
             continue
-        first, group = _alike([runs[name].to_numpy() for name in columns], runs.sizes[dim], shared)
+        first, group = _group_rows(
+            [runs[name].to_numpy() for name in columns], runs.sizes[dim], shared
+        )
         groups[dim] = group
         # labels of a dimension with several levels cannot be stored in a file
         plain = dim in runs.coords and runs.indexes[dim].nlevels == 1
@@ -186,9 +194,9 @@ def _grouped(
     return Structures(groups, coordinates)
 
 
-def _alike(columns: Sequence[Generic], size: int, apart: bool) -> tuple[Generic, Generic]:
+def _group_rows(columns: Sequence[Generic], size: int, separate: bool) -> tuple[Generic, Generic]:
     """Return the first place of each group of equal rows, and the group of each place."""
-    if apart:
+    if separate:
         return np.arange(size), np.arange(size)
     table = pd.DataFrame(dict(enumerate(columns)))
     group = table.groupby([*table], sort=False, dropna=False).ngroup().to_numpy()
@@ -210,18 +218,18 @@ class Trials:
     cluster: Generic | None
 
     @classmethod
-    def of_verdicts(
+    def from_verdicts(
         cls, logs: Array, exceeded: Array, trials: Array, cluster: Generic | None = None
     ) -> "Trials":
         """Return the trials of counts."""
-        both = np.concatenate([logs, logs])
-        over = np.repeat([True, False], len(logs))
+        ends = np.concatenate([logs, logs])
+        is_upper = np.repeat([True, False], len(logs))
         weight = np.concatenate([exceeded, trials - exceeded]).astype(np.float64)
         kept = weight > 0.0
         numbers = None if cluster is None else np.tile(cluster, 2)[kept]
-        return cls(both[kept], both[kept], ~over[kept], over[kept], weight[kept], numbers)
+        return cls(ends[kept], ends[kept], ~is_upper[kept], is_upper[kept], weight[kept], numbers)
 
-    def of_weights(self, weight: Array) -> "Trials":
+    def with_weights(self, weight: Array) -> "Trials":
         """Return the trials that have a weight above zero, with that weight."""
         kept = weight > 0.0
         return Trials(
@@ -250,7 +258,7 @@ def trials_of_runs(
     exceeded: xr.DataArray, measures: Sequence[xr.DataArray], *, by_motion: bool
 ) -> StructureTrials:
     """Return the trials of runs, each of which exceeds a limit state or does not."""
-    columns = np.column_stack([laid_out(one, exceeded).astype(np.float64) for one in measures])
+    columns = np.column_stack([flatten_like(one, exceeded).astype(np.float64) for one in measures])
     verdict = exceeded.to_numpy().ravel().astype(np.float64)
     runs = columns, verdict
     kept = ~np.isnan(verdict) & np.all(columns > 0.0, axis=1) & np.all(np.isfinite(columns), axis=1)
@@ -262,9 +270,9 @@ def trials_of_runs(
         size = len(points)
         over = np.bincount(place.ravel(), weights=verdict, minlength=size)
         every = np.bincount(place.ravel(), minlength=size).astype(np.float64)
-        found = Trials.of_verdicts(points, over.astype(np.float64), every)
+        found = Trials.from_verdicts(points, over.astype(np.float64), every)
     else:
-        found = Trials.of_verdicts(logs, verdict, np.ones(len(verdict)), cluster)
+        found = Trials.from_verdicts(logs, verdict, np.ones(len(verdict)), cluster)
     return StructureTrials(found, runs, int((~kept).sum()), motions)
 
 
@@ -279,13 +287,13 @@ def trials_of_capacities(
     scales = analysis[SCALE].to_numpy()
     below, above = _first_brackets(analysis, known, sizes)
     has_lower, has_upper = below > 0.0, np.isfinite(above)
-    rows = [_in_lines(measure, sizes, SCALE) for measure in measures]
+    rows = [_rows_of_lines(measure, sizes, SCALE) for measure in measures]
     lower, upper = (
         np.log(np.column_stack([at_scales(row, scales, scale) for row in rows]))
         for scale in (np.where(has_lower, below, scales[0]), np.where(has_upper, above, scales[-1]))
     )
     bounded = (has_lower | has_upper).astype(np.float64)
-    found = Trials(lower, upper, has_lower, has_upper, bounded, None).of_weights(bounded)
+    found = Trials(lower, upper, has_lower, has_upper, bounded, None).with_weights(bounded)
     count = len(found.weight)
     return StructureTrials(found, None, len(bounded) - count, count)
 
@@ -294,11 +302,11 @@ def _first_brackets(
     analysis: xr.Dataset, known: xr.DataArray, sizes: Mapping[str, int]
 ) -> tuple[Array, Array]:
     """Return for each line the scales between which the limit state is first exceeded."""
-    capacity = _in_lines(analysis["capacity_scale"], sizes)[:, 0]
+    capacity = _rows_of_lines(analysis["capacity_scale"], sizes)[:, 0]
     above, below = (
-        _in_lines(analysis[f"scale_{end}"], sizes, "flip") for end in ("above", "below")
+        _rows_of_lines(analysis[f"scale_{end}"], sizes, "flip") for end in ("above", "below")
     )
-    seen = _in_lines(known, sizes, SCALE)
+    seen = _rows_of_lines(known, sizes, SCALE)
     largest = np.where(seen, analysis[SCALE].to_numpy(), 0.0).max(axis=1)
     lower = np.zeros(len(capacity))
     for k, least in enumerate(capacity):
@@ -307,16 +315,16 @@ def _first_brackets(
     return lower, np.where(np.isfinite(capacity), capacity, np.inf)
 
 
-def _in_lines(values: xr.DataArray, sizes: Mapping[str, int], along: str = "") -> Generic:
+def _rows_of_lines(values: xr.DataArray, sizes: Mapping[str, int], along: str = "") -> Generic:
     """Arrange values in a row for each line, along a dimension; one value each without it."""
-    lacking = {dim: size for dim, size in sizes.items() if dim not in values.dims}
+    missing = {dim: size for dim, size in sizes.items() if dim not in values.dims}
     own = [along] if along in values.dims else []
-    laid = values.variable.set_dims({**lacking, **values.sizes}).transpose(*sizes, *own)
+    laid = values.variable.set_dims({**missing, **values.sizes}).transpose(*sizes, *own)
     count = math.prod(sizes.values())
     return laid.to_numpy().reshape((count, values.sizes[along] if own else 1))
 
 
-def laid_out(values: xr.DataArray, like: xr.DataArray) -> Generic:
+def flatten_like(values: xr.DataArray, like: xr.DataArray) -> Generic:
     """Arrange values in a row, in the order of others that have at least their dimensions."""
     return values.broadcast_like(like).transpose(*like.dims).to_numpy().ravel()
 
@@ -325,7 +333,7 @@ def motion_numbers(runs: xr.DataArray) -> Generic:
     """Return the number of the motion of each run, laid out in a row."""
     if MOTION not in runs.coords:
         return np.zeros(runs.size, dtype=np.intp)
-    return np.unique(laid_out(runs[MOTION], runs).astype(str), return_inverse=True)[1]
+    return np.unique(flatten_like(runs[MOTION], runs).astype(str), return_inverse=True)[1]
 
 
 def at_scales(measure: Generic, known: Array, scales: Array | float) -> Array:

@@ -13,16 +13,16 @@ from rockframe.results.variables.analyses import LIMIT_STATE, FragilityStatus
 from rockframe.results.variables.variable import unit_suffix
 from rockframe.signals.arrays import Array
 from rockframe.studies.fragility.likelihood import Bands
-from rockframe.studies.intensities import PERIOD_OF, measure_words
-from rockframe.studies.sweeps.axes import in_unit
+from rockframe.studies.intensities import PERIOD_ATTRIBUTE, measure_words
+from rockframe.studies.sweeps.axes import labels_in_unit
 
-POOLED: Final = "pooled"
+POOLED_ATTRIBUTE: Final = "pooled"
 """Attribute that names the structures that were treated as one."""
 _DIGITS: Final = (4, 3)
 """Of medians and of dispersions."""
 
 
-class Held(NamedTuple):
+class Coverage(NamedTuple):
     """Shares of simulated samples in which bounds of nominal 95 % held the true value [1]."""
 
     median: float
@@ -30,25 +30,25 @@ class Held(NamedTuple):
 
 
 COVERAGE: Final = {
-    Bands.PROFILE: {5: Held(0.90, 0.89), 10: Held(0.93, 0.93)},
-    Bands.JACKKNIFE: {5: Held(0.97, 0.99)},
+    Bands.PROFILE: {5: Coverage(0.90, 0.89), 10: Coverage(0.93, 0.93)},
+    Bands.JACKKNIFE: {5: Coverage(0.97, 0.99)},
     Bands.SANDWICH: {
-        10: Held(0.89, 0.80),
-        20: Held(0.92, 0.87),
-        40: Held(0.94, 0.91),
-        80: Held(0.95, 0.92),
+        10: Coverage(0.89, 0.80),
+        20: Coverage(0.92, 0.87),
+        40: Coverage(0.94, 0.91),
+        80: Coverage(0.95, 0.92),
     },
 }
 """By numbers of independent trials or motions; with fewer than the least there are no bounds, with
 the greatest they have nominal coverage. Measured, :ref:`coverage of bounds <coverage>`."""
 
 
-def bounded(bands: Bands, independent: int) -> bool:
+def enough_trials(bands: Bands, independent: int) -> bool:
     """Tell whether there are enough independent trials for bounds."""
     return independent >= min(COVERAGE[bands])
 
 
-def sentences(fragility: xr.Dataset) -> str:
+def fragility_sentences(fragility: xr.Dataset) -> str:
     """Say what was fitted to the last limit state, what was left out, and what bounds are.
 
     If it has no fit, as when no run overturns, also describe the last limit state with a fit.
@@ -56,30 +56,30 @@ def sentences(fragility: xr.Dataset) -> str:
     last = fragility.isel({dim: -1 for dim in LIMIT_STATE if dim in fragility.dims})
     status = last["fragility_status"].to_numpy().ravel()
     fitted = status == FragilityStatus.FITTED
-    messages = [_fit(last, status, fitted)]
+    messages = [_fit_sentence(last, status, fitted)]
     if fitted.any():
-        messages += _near_separation(last, fitted)
+        messages += _near_separation_sentences(last, fitted)
         independent, trials = (
             last[f"{name}_count"].to_numpy().ravel()[fitted] for name in ("independent", "trial")
         )
         bands, kind = Bands(last.attrs["bands"]), last.attrs["trials"]
-        messages += words_of_bounds(
+        messages += bound_sentences(
             bands, last.attrs["confidence"], independent, trials,
             kind="trials" if kind == "trials" else "motions", measures=len(measures_of(last)),
         )  # fmt: skip
     else:
-        messages += _of_another(fragility)
+        messages += _other_fit_sentences(fragility)
     if last.attrs.get("dispersions") == "common":
         messages.append("One dispersion is common to all limit states.")
-    known, lacking = (int(last[f"{name}_count"].sum()) for name in ("trial", "left_out"))
+    known, left_out = (int(last[f"{name}_count"].sum()) for name in ("trial", "left_out"))
     below = int(last["below_scan_count"].sum()) if "below_scan_count" in last else 0
     if below:  # a scan that starts too high does not separate them from zero
         messages.append(
             f"{below} of {known} capacities are only known to lie at or below the least scale."
         )
-    if lacking:
+    if left_out:
         messages.append(
-            f"{lacking} of {lacking + known} {last.attrs['trials']} are left out: they have no "
+            f"{left_out} of {left_out + known} {last.attrs['trials']} are left out: they have no "
             "verdict, or no intensity above zero."
         )
     return " ".join(messages)
@@ -90,18 +90,18 @@ def verdict_of_fragility(dataset: xr.Dataset) -> str:
     text = str(dataset.attrs.get("verdict", ""))
     if "independent_count" not in dataset:  # as of a cloud
         return text
-    own = sentences(dataset)
+    own = fragility_sentences(dataset)
     return text if text.startswith(own) else own
 
 
-def _of_another(fragility: xr.Dataset) -> list[str]:
+def _other_fit_sentences(fragility: xr.Dataset) -> list[str]:
     """Describe the last limit state with a fit, if it is not the last of all."""
     for number in reversed(range(fragility.sizes.get(*LIMIT_STATE, 1) - 1)):
         one = fragility.isel({LIMIT_STATE[0]: number})
         status = one["fragility_status"].to_numpy().ravel()
         fitted = status == FragilityStatus.FITTED
         if fitted.any() or (status == FragilityStatus.SEPARATED).any():
-            return [_fit(one, status, fitted)]
+            return [_fit_sentence(one, status, fitted)]
     return []
 
 
@@ -120,45 +120,48 @@ def in_own_units(fragility: xr.Dataset, measure: str, *, owner: str) -> xr.Datas
         name for name in map(str, fragility.variables)
         if name in (measure, "stripe_intensity") or name.startswith("median_intensity")
     ]  # fmt: skip
-    found = {name: in_unit(fragility[name], unit, owner=owner) for name in names}
+    found = {name: labels_in_unit(fragility[name], unit, owner=owner) for name in names}
     labels = {name: one for name, one in found.items() if name in fragility.coords}
     return fragility.assign_coords(labels).assign({
         name: one for name, one in found.items() if name not in labels
     })  # fmt: skip
 
 
-def _fit(last: xr.Dataset, status: Generic, fitted: Generic) -> str:
+def _fit_sentence(last: xr.Dataset, status: Generic, fitted: Generic) -> str:
     """Tell the fit of one structure, or the range of several."""
     names = measures_of(last)
-    over = " and ".join(measure_words(name, last.attrs.get(PERIOD_OF)) for name in names)
+    over = " and ".join(measure_words(name, last.attrs.get(PERIOD_ATTRIBUTE)) for name in names)
     state = str(last["limit_state"].item()) if "limit_state" in last.coords else "what was counted"
     by = ", ".join(map(str, last["fragility_status"].dims))
     aside = [f"{len(status)} structures by {by}"] if len(status) > 1 else []
-    aside += [f"pooled over {last.attrs[POOLED]}"] if POOLED in last.attrs else []
+    aside += (
+        [f"pooled over {last.attrs[POOLED_ATTRIBUTE]}"] if POOLED_ATTRIBUTE in last.attrs else []
+    )
     head = f"{state} ({'; '.join(aside)})" if aside else state
     if not fitted.any():
         whys = (FragilityStatus(one).name.lower().replace("_", " ") for one in status)
         why = ", ".join(dict.fromkeys(whys))
-        return f"Against {head} no lognormal capacity fits over {over}: {why}.{_separation(last)}"
+        text = f"Against {head} no lognormal capacity fits over {over}: {why}."
+        return text + _separation_sentence(last)
     rest = f"; to {int((~fitted).sum())} of them none fits" if not fitted.all() else ""
     if len(names) > 1:
         return f"Capacity against {head} fitted over {over}{rest}."
     unit = unit_suffix(last["median_intensity"].attrs)
     median, dispersion = (
-        _range(last[name].to_numpy().ravel()[fitted], digits)
+        _range_words(last[name].to_numpy().ravel()[fitted], digits)
         for name, digits in zip(("median_intensity", "dispersion"), _DIGITS, strict=True)
     )
     return f"Capacity against {head}: median {over} {median}{unit}, dispersion {dispersion}{rest}."
 
 
-def _range(values: Array, digits: int) -> str:
+def _range_words(values: Array, digits: int) -> str:
     least, most = float(values.min()), float(values.max())
     if len(values) == 1:
         return f"{least:.{digits}g}"
     return f"from {least:.{digits}g} to {most:.{digits}g}"
 
 
-def _separation(last: xr.Dataset) -> str:
+def _separation_sentence(last: xr.Dataset) -> str:
     """Say what is known of one structure whose trials are separated by an intensity."""
     status = last["fragility_status"].to_numpy().ravel()
     if list(status) != [FragilityStatus.SEPARATED] or "separation_lower_intensity" not in last:
@@ -181,13 +184,13 @@ def _separation(last: xr.Dataset) -> str:
     )
 
 
-def _near_separation(last: xr.Dataset, fitted: Generic) -> Iterator[str]:
+def _near_separation_sentences(last: xr.Dataset, fitted: Generic) -> Iterator[str]:
     """Say in how many fits a single motion keeps the trials from being separated."""
     if last.attrs["bands"] != Bands.JACKKNIFE or "dispersion" not in last:
         return
-    lacking = np.isnan(last["dispersion_upper_bound"].to_numpy().ravel()[fitted])
+    unbounded = np.isnan(last["dispersion_upper_bound"].to_numpy().ravel()[fitted])
     enough = last["independent_count"].to_numpy().ravel()[fitted] >= min(COVERAGE[Bands.JACKKNIFE])
-    count = int((lacking & enough).sum())
+    count = int((unbounded & enough).sum())
     if count:
         of = "" if len(fitted) == 1 else f" of {count} structure{'s' if count > 1 else ''}"
         yield (
@@ -196,7 +199,7 @@ def _near_separation(last: xr.Dataset, fitted: Generic) -> Iterator[str]:
         )
 
 
-def words_of_bounds(
+def bound_sentences(
     bands: Bands,
     confidence: float,
     independent: Array,

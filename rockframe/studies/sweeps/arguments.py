@@ -80,7 +80,7 @@ class SweepArguments(LengthArguments, SequenceArguments, total=False):
     """Options of sweeps, and of all analyses that pass them on."""
 
 
-OF_A_SWEEP: Final = (
+SWEEP_ARGUMENT_NAMES: Final = (
     *SweepArguments.__annotations__, "cases", "period", "output_step", "outputs", "points",
 )  # fmt: skip
 """Names of arguments that a misspelt axis may stand for."""

@@ -61,28 +61,28 @@ class Axis:
         return cls(values=values, **{**described, "changes": Changes(described["changes"])})
 
 
-def numbers_of(value: object, measure: Measure, name: str, *, owner: str = OWNER) -> Generic:
+def read_numbers(value: object, measure: Measure, name: str, *, owner: str = OWNER) -> Generic:
     """Read the values of an axis that has a unit, or is a pure number."""
     value = _with_own_unit(value)
     if measure.unit == Unit.ONE:
-        if (pair := _with_unit(value)) is not None:
+        if (pair := _values_and_unit(value)) is not None:
             check_own_unit(*pair, owner=owner, name=name)
             factor = to_ratio(f"1 {pair[1]}", owner=owner, name="unit")
             if np.ma.isMaskedArray(pair[0]) and np.ma.getmaskarray(pair[0]).any():
                 msg = f"{owner}: {name} has masked values; fill them in first"
                 raise ComponentError(msg)
-            value = products([float(one) for one in items_of(pair[0])], factor)
-        found = items_of(_as_python(value))
+            value = products([float(one) for one in as_list(pair[0])], factor)
+        found = as_list(_as_python(value))
         if not all(type(one) is float and math.isfinite(one) for one in found):
             example = measure.example
             found = [to_ratio(one, owner=owner, name=name, example=example) for one in found]
     else:
-        _refuse_bare(value, measure, name, owner)
+        _refuse_bare_numbers(value, measure, name, owner)
         found = to_si_values(_as_python(value), measure, owner=owner, name=name)
     return np.array(found, dtype=np.float64)
 
 
-def number_of(value: object, measure: Measure, *, owner: str, name: str) -> float:
+def read_number(value: object, measure: Measure, *, owner: str, name: str) -> float:
     """Read one value, which is a ratio where the unit of its measure is 1."""
     if measure.unit == Unit.ONE:
         return to_ratio(value, owner=owner, name=name)
@@ -100,9 +100,9 @@ def _with_own_unit(value: object) -> object:
     return value if own in (None, "", str(Unit.ONE)) else (value, own)
 
 
-def _refuse_bare(value: object, measure: Measure, name: str, owner: str) -> None:
+def _refuse_bare_numbers(value: object, measure: Measure, name: str, owner: str) -> None:
     """Refuse numbers without a unit, and say how to give several numbers a unit."""
-    first = next(iter(items_of(value)), None)
+    first = next(iter(as_list(value)), None)
     if isinstance(value, tuple) or not isinstance(first, Real | np.number):
         return
     msg = (
@@ -112,12 +112,12 @@ def _refuse_bare(value: object, measure: Measure, name: str, owner: str) -> None
     raise UnitsError(msg)
 
 
-def words_of(value: object, read: Callable[[object], object]) -> Generic:
+def read_words(value: object, read: Callable[[object], object]) -> Generic:
     """Read the values of an axis that are words."""
-    return np.array([str(read(word)) for word in items_of(value)])
+    return np.array([str(read(word)) for word in as_list(value)])
 
 
-def free_values(
+def read_free_values(
     value: object, name: str, *, owner: str = OWNER, expected: str = ""
 ) -> tuple[Generic, str | None]:
     """Read values for an argument whose meaning only the user knows.
@@ -125,11 +125,11 @@ def free_values(
     A unit of several quantities, such as ``g``, is taken as the `expected` one.
     """
     value = _with_own_unit(value)
-    unit = _unit_in(value)
+    unit = _unit_of(value)
     if unit is not None:
         measure = _measure_of(unit, name, owner, expected)
-        return numbers_of(value, measure, name, owner=owner), str(measure.unit)
-    items = _as_python(items_of(value))
+        return read_numbers(value, measure, name, owner=owner), str(measure.unit)
+    items = _as_python(as_list(value))
     array = np.array(items)
     if array.ndim != 1 or array.dtype.kind not in "ifbU":  # whole numbers beyond int64 are "u"
         msg = f"{owner}: {name} needs numbers, words or quantities in a row, got {shown(value)}"
@@ -141,11 +141,11 @@ def free_values(
         return array.astype(np.int64), str(Unit.ONE)
     if array.dtype.kind == "f":
         measure = Measure("a number", Unit.ONE, "2")
-        return numbers_of(items, measure, name, owner=owner), str(Unit.ONE)
+        return read_numbers(items, measure, name, owner=owner), str(Unit.ONE)
     return array, None
 
 
-def _with_unit(value: object) -> tuple[Any, str] | None:
+def _values_and_unit(value: object) -> tuple[Any, str] | None:
     """Return values and their unit, if one unit was given for all of them."""
     pair = cast("tuple[Any, ...]", value) if isinstance(value, tuple) else ()
     if len(pair) == 2 and isinstance(pair[1], str) and not isinstance(pair[0], str):
@@ -153,11 +153,11 @@ def _with_unit(value: object) -> tuple[Any, str] | None:
     return None
 
 
-def _unit_in(value: object) -> str | None:
+def _unit_of(value: object) -> str | None:
     """Return the unit of the given values; None for bare numbers and words."""
-    if (pair := _with_unit(value)) is not None:
+    if (pair := _values_and_unit(value)) is not None:
         return pair[1]
-    first = next(iter(items_of(value)), None)
+    first = next(iter(as_list(value)), None)
     if isinstance(value, pint.Quantity):
         first = value
     if isinstance(first, pint.Quantity):
@@ -177,14 +177,14 @@ def _measure_of(unit: str, name: str, owner: str, expected: str) -> Measure:
     for known in sorted(Unit, key=lambda one: one != expected):
         measure = Measure("a quantity", known, f"1 {known}")
         with suppress(UnitsError, ComponentError):
-            number_of(f"1 {unit}", measure, owner=owner, name=name)
+            read_number(f"1 {unit}", measure, owner=owner, name=name)
             return measure
     known = ", ".join(str(one) for one in Unit)
     msg = f"{owner}: {name} has the unit {shown(unit)}; expected that of a quantity in {known}"
     raise UnitsError(msg)
 
 
-def items_of(value: object) -> list[Any]:
+def as_list(value: object) -> list[Any]:
     """Return values as a sequence; a single value becomes a sequence of one."""
     if isinstance(value, str | bytes) or not isinstance(value, Iterable):
         return [value]
@@ -205,13 +205,13 @@ def _as_python(value: Any) -> Any:
     return value
 
 
-def in_unit(labels: xr.DataArray, unit: str | None, *, owner: str) -> xr.DataArray:
+def labels_in_unit(labels: xr.DataArray, unit: str | None, *, owner: str) -> xr.DataArray:
     """Return the labels of an axis in its unit, if a user has converted them to another one."""
     own = labels.attrs.get("units")
     if unit is None or own in (None, unit):
         return labels
     measure = Measure("a value", Unit(unit), f"1 {unit}")
-    factor = number_of(f"1 {own}", measure, owner=owner, name=str(labels.name))
+    factor = read_number(f"1 {own}", measure, owner=owner, name=str(labels.name))
     found = np.reshape(products(np.ravel(labels).astype(float).tolist(), factor), labels.shape)
     attributes = {**labels.attrs, "units": unit}
     return xr.DataArray(found, labels.coords, labels.dims, labels.name, attributes)
@@ -223,7 +223,7 @@ def in_units_of_schema(dataset: xr.Dataset, *, owner: str) -> xr.Dataset:
         name: SCHEMA[str(name)].unit for name, values in dataset.data_vars.items()
         if name in SCHEMA and values.attrs.get("units") not in (None, SCHEMA[str(name)].unit)
     }  # fmt: skip
-    found = {name: in_unit(dataset[name], unit, owner=owner) for name, unit in other.items()}
+    found = {name: labels_in_unit(dataset[name], unit, owner=owner) for name, unit in other.items()}
     return dataset.assign(found)
 
 
@@ -237,7 +237,7 @@ def faults_of_values(name: str, values: Generic) -> list[str]:
 
 
 Places: Final = NDArray[np.intp]
-MOST_CASES: Final = 1_000_000_000
+MAX_CASES: Final = 1_000_000_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -282,12 +282,12 @@ class Grid:
         """Lengths of the dimensions in that order."""
         return [self.sizes[name] for name in self.order]
 
-    def places(self, cases: range | Generic) -> dict[str, Generic]:
+    def indices(self, cases: range | Generic) -> dict[str, Generic]:
         """Return the places along all dimensions of cases, by their numbers in order of running."""
         found = np.unravel_index(np.asarray(cases, dtype=np.int64), self.shape)
         return dict(zip(self.order, found, strict=True))
 
-    def numbers(self, key: Sequence[Any]) -> Generic:
+    def case_numbers(self, key: Sequence[Any]) -> Generic:
         """Return the numbers, in the order of running, of the cases at places along all dimensions.
 
         For each dimension, in the order of `sizes`: a place, a slice or a sequence of places.
@@ -296,30 +296,30 @@ class Grid:
         for (name, size), one in zip(self.sizes.items(), key, strict=True):
             later = self.order[self.order.index(name) + 1 :]
             step = math.prod(self.sizes[each] for each in later)
-            places = np.arange(*one.indices(size)) if isinstance(one, slice) else np.asarray(one)
-            found = np.add.outer(found, np.where(places < 0, places + size, places) * step)
+            indices = np.arange(*one.indices(size)) if isinstance(one, slice) else np.asarray(one)
+            found = np.add.outer(found, np.where(indices < 0, indices + size, indices) * step)
         return found
 
-    def arranged(self, values: Generic) -> Generic:
+    def in_dimension_order(self, values: Generic) -> Generic:
         """Rearrange values from the order of running to that of the dimensions."""
-        apart = values.reshape([*self.shape, *values.shape[1:]])
-        moved = [self.order.index(name) for name in self.sizes]
-        rest = range(len(moved), apart.ndim)
-        return np.ascontiguousarray(apart.transpose([*moved, *rest]))
+        unraveled = values.reshape([*self.shape, *values.shape[1:]])
+        axes = [self.order.index(name) for name in self.sizes]
+        rest = range(len(axes), unraveled.ndim)
+        return np.ascontiguousarray(unraveled.transpose([*axes, *rest]))
 
-    def of_cases(self, cases: range | Generic) -> tuple[tuple[Axis, Generic], ...]:
+    def values_of_cases(self, cases: range | Generic) -> tuple[tuple[Axis, Generic], ...]:
         """Return for each axis its values in some cases."""
-        places = self.places(cases)
-        own = [(axis, axis.values[places[axis.name]]) for axis in self.axes]
-        rows = [(axis, axis.values[places[CASE]]) for axis in self.columns]
+        indices = self.indices(cases)
+        own = [(axis, axis.values[indices[axis.name]]) for axis in self.axes]
+        rows = [(axis, axis.values[indices[CASE]]) for axis in self.columns]
         return (*own, *rows)
 
     def motions_of(self, cases: range | Generic) -> Generic:
         """Return the numbers of the motions of some cases."""
-        places = self.places(cases)
+        indices = self.indices(cases)
         if self.motion_column is not None:
-            return self.motion_column[places[CASE]]
-        return places[MOTION]
+            return self.motion_column[indices[CASE]]
+        return indices[MOTION]
 
 
 @dataclass(frozen=True)

@@ -21,8 +21,8 @@ from rockframe.proposals import hinted, proposing
 from rockframe.results.variables.studies import MOTION, REPEATED
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import LEVELS, Accuracy
-from rockframe.studies.sweeps.axes import SYSTEM_AXES, Axis, Changes, in_unit, number_of
-from rockframe.studies.sweeps.chunk import AGAIN
+from rockframe.studies.sweeps.axes import SYSTEM_AXES, Axis, Changes, labels_in_unit, read_number
+from rockframe.studies.sweeps.chunk import REPEATED_LEVEL
 from rockframe.studies.sweeps.motions import full_name, motion_number, motion_of_case, named_motions
 from rockframe.studies.sweeps.scenes import SweptScene, scene_of
 from rockframe.studies.sweeps.store import Store
@@ -32,9 +32,9 @@ from rockframe.units import Measure, Unit
 NOT_GIVEN: Final = "must be given, as motions="
 """Words on a record that neither the result nor the process has."""
 _OWNER: Final = "case"
-_SHOWN: Final = 6
+_MAX_LISTED: Final = 6
 """Values that a message lists."""
-_REMEMBERED: Final = 16
+_CACHE_SIZE: Final = 16
 """Sweeps of this process whose functions and motions are kept at hand."""
 _studies: Final[OrderedDict[str, Study]] = OrderedDict()
 
@@ -132,11 +132,11 @@ def case(
     """
     if isinstance(runs, xr.Dataset):
         dataset = checked_dataset(runs, owner=_OWNER)
-        kept = store_of(dataset)
+        stored = store_of(dataset)
     else:
         from rockframe.studies.sweeps.sweep import open_study
 
-        dataset, kept = open_study(runs), Store.at(Path(runs))
+        dataset, stored = open_study(runs), Store.open(Path(runs))
     attributes: Mapping[str, Any] = cast("Mapping[str, Any]", dataset.attrs)
     if not {"axes_json", "motions_json", "run_json", "study_sha256"} <= set(attributes):
         msg = (
@@ -147,13 +147,13 @@ def case(
     full = {name if name in dataset.dims else full_name(name): one for name, one in labels.items()}
     axes = json.loads(attributes["axes_json"])
     units = {axis["name"]: axis["unit"] for axis in axes}
-    place = _place(dataset, full, units)
+    indices = _indices_of_case(dataset, full, units)
     values: dict[Axis, Any] = {}
     for described in axes:
-        value = _value(dataset, described["name"], place, described["unit"])
+        value = _value(dataset, described["name"], indices, described["unit"])
         values[Axis.from_dict(described, np.array([value]))] = value
-    name = _value(dataset, MOTION, place)
-    motion = unscaled_motions(attributes, [name], motions, kept)[name]
+    name = _value(dataset, MOTION, indices)
+    motion = unscaled_motions(attributes, [name], motions, stored)[name]
     swept = _scene(None if scene is None else scene_of(scene), attributes, _OWNER)
     of_scene = {axis: one for axis, one in values.items() if axis.changes in SYSTEM_AXES}
     system = swept.system(of_scene)
@@ -167,8 +167,8 @@ def case(
     for axis, value in values.items():
         if axis.changes is Changes.MOTION and motion is not None:
             motion = motion_of_case(motion, axis.name, value, attributes.get("spectral_period"))
-    if REPEATED in dataset and _value_of(dataset[REPEATED], place) == 1.0:
-        options["accuracy"] = LEVELS[AGAIN]
+    if REPEATED in dataset and _value_of(dataset[REPEATED], indices) == 1.0:
+        options["accuracy"] = LEVELS[REPEATED_LEVEL]
     return SweepCase(system, motion, options)
 
 
@@ -178,95 +178,97 @@ def system_of_case(dataset: xr.Dataset, *, owner: str) -> System:
     for described in json.loads(dataset.attrs["axes_json"]):
         if described["changes"] not in SYSTEM_AXES:
             continue
-        along = _along(dataset, described["name"], owner)
-        if along.size == 1:
-            value = in_unit(along, described["unit"], owner=owner).item()
+        labels = _coordinate(dataset, described["name"], owner)
+        if labels.size == 1:
+            value = labels_in_unit(labels, described["unit"], owner=owner).item()
             values[Axis.from_dict(described, np.array([value]))] = value
     return _scene(None, cast("Mapping[str, Any]", dataset.attrs), owner).system(values)
 
 
-def remembered(attributes: Mapping[str, Any]) -> Study | None:
+def cached_study(attributes: Mapping[str, Any]) -> Study | None:
     """Return the study of a dataset, if this process has made it."""
     return _studies.get(str(attributes.get("study_sha256")))
 
 
-def remember(study: Study) -> None:
+def cache_study(study: Study) -> None:
     """Keep the function and the motions of a sweep at hand."""
     _studies[study.digest] = study
     _studies.move_to_end(study.digest)
-    while len(_studies) > _REMEMBERED:
+    while len(_studies) > _CACHE_SIZE:
         _studies.popitem(last=False)
 
 
-def _place(
+def _indices_of_case(
     dataset: xr.Dataset, labels: dict[str, Any], units: Mapping[str, str | None]
 ) -> dict[str, int]:
     """Find where the case stands along each dimension."""
     dims = [str(dim) for dim in dataset["status"].dims]
     fixed = [str(name) for name in dataset.coords if not dataset[name].dims]
     unknown = [name for name in labels if name not in (*dims, *fixed)]
-    lacking = [name for name in dims if name not in labels and dataset.sizes[name] > 1]
+    missing = [name for name in dims if name not in labels and dataset.sizes[name] > 1]
     faults = [
         f"there is no axis {name!r}{nearest(name, (*dims, *fixed))}; there are {', '.join(dims)}"
         for name in unknown
     ]
-    faults += [f"give a value of {name!r}" for name in lacking]
+    faults += [f"give a value of {name!r}" for name in missing]
     if faults:
         msg = f"{_OWNER}: {'; '.join(faults)}"
         raise StudyError(msg)
     found = {
-        name: _position_of(dataset[name], name, value, units.get(name))
+        name: _index_of(dataset[name], name, value, units.get(name))
         for name, value in labels.items()
     }
     return {name: found.get(name, 0) for name in dims}
 
 
-def _position_of(labels: xr.DataArray, name: str, wanted: Any, unit: str | None) -> int:
+def _index_of(labels: xr.DataArray, name: str, requested: Any, unit: str | None) -> int:
     values = np.atleast_1d(labels.to_numpy())
     if name == MOTION:
-        return motion_number(wanted, values.tolist(), owner=_OWNER)
+        return motion_number(requested, values.tolist(), owner=_OWNER)
     near = ""
     if values.dtype.kind == "f":
-        if isinstance(wanted, int | float | np.number):
+        if isinstance(requested, int | float | np.number):
             number = math.inf
             with suppress(OverflowError):  # of a whole number larger than any float
-                number = float(wanted)
+                number = float(requested)
         else:
             own = Unit(labels.attrs["units"] if unit is None else unit)
-            values = np.atleast_1d(in_unit(labels, own, owner=_OWNER).to_numpy())
+            values = np.atleast_1d(labels_in_unit(labels, own, owner=_OWNER).to_numpy())
             measure = Measure("a value", own, f"{values[0]:g} {own}")
-            number = number_of(wanted, measure, owner=_OWNER, name=name)
+            number = read_number(requested, measure, owner=_OWNER, name=name)
         nearest = int(np.argmin(np.abs(values - number)))
         if np.isclose(values[nearest], number, rtol=1e-9, atol=0.0):
             return nearest
         near = f"; the nearest is {values[nearest]}"
     else:
-        typed = str(wanted).strip().casefold()  # as whole numbers and truth values are typed
+        typed = str(requested).strip().casefold()  # as whole numbers and truth values are typed
         for place, one in enumerate(values.tolist()):
-            if one == wanted or (isinstance(wanted, str) and str(one).casefold() == typed):
+            if one == requested or (isinstance(requested, str) and str(one).casefold() == typed):
                 return place
-    few = ", ".join(str(one) for one in values[:_SHOWN].tolist())
-    more = f", ...{near}" if len(values) > _SHOWN else ""
-    msg = f"{_OWNER}: {name} has no {shown(wanted)}; it has {few}{more}"
+    few = ", ".join(str(one) for one in values[:_MAX_LISTED].tolist())
+    more = f", ...{near}" if len(values) > _MAX_LISTED else ""
+    msg = f"{_OWNER}: {name} has no {shown(requested)}; it has {few}{more}"
     raise StudyError(msg)
 
 
 def _value(
-    dataset: xr.Dataset, name: str, place: Mapping[str, int], unit: str | None = None
+    dataset: xr.Dataset, name: str, indices: Mapping[str, int], unit: str | None = None
 ) -> Any:
     """Return the value of a coordinate in the case, also if it was selected before."""
-    return _value_of(in_unit(_along(dataset, name, _OWNER), unit, owner=_OWNER), place)
+    return _value_of(
+        labels_in_unit(_coordinate(dataset, name, _OWNER), unit, owner=_OWNER), indices
+    )
 
 
-def _along(dataset: xr.Dataset, name: str, owner: str) -> xr.DataArray:
+def _coordinate(dataset: xr.Dataset, name: str, owner: str) -> xr.DataArray:
     if name not in dataset.coords:
         msg = f"{owner}: found a sweep without its coordinate {name!r}; expected it, or its case"
         raise SchemaError(msg)
     return dataset[name]
 
 
-def _value_of(along: xr.DataArray, place: Mapping[str, int]) -> Any:
-    return along.isel({dim: place[str(dim)] for dim in along.dims}).item()
+def _value_of(labels: xr.DataArray, indices: Mapping[str, int]) -> Any:
+    return labels.isel({dim: indices[str(dim)] for dim in labels.dims}).item()
 
 
 def _scene(swept: SweptScene | None, attributes: Mapping[str, Any], owner: str) -> SweptScene:
@@ -274,12 +276,12 @@ def _scene(swept: SweptScene | None, attributes: Mapping[str, Any], owner: str) 
         return scene_of(System.from_dict(json.loads(attributes["system_json"])))
     if swept is not None:
         return swept
-    if (known := remembered(attributes)) is not None:
+    if (known := cached_study(attributes)) is not None:
         return known.scene
-    way = "give it as scene="
+    advice = "give it as scene="
     if owner != _OWNER:  # which takes no scene
-        way = "give rf.case(dataset, scene=...).simulate() instead of the case"
-    msg = f"{owner}: the scene was the function {attributes['function']}; {way}"
+        advice = "give rf.case(dataset, scene=...).simulate() instead of the case"
+    msg = f"{owner}: the scene was the function {attributes['function']}; {advice}"
     raise StudyError(msg)
 
 
@@ -287,7 +289,7 @@ def unscaled_motions(
     attributes: Mapping[str, Any],
     names: Iterable[str],
     value: object = None,
-    kept: Store | None = None,
+    stored: Store | None = None,
     *,
     needed: bool = True,
     owner: str = _OWNER,
@@ -295,16 +297,16 @@ def unscaled_motions(
     """Return the available motions of a sweep as they were before scaling."""
     every = json.loads(attributes["motion_names"]), json.loads(attributes["motions_json"])
     described = dict(zip(*every, strict=True))
-    study = remembered(attributes)
-    at_hand = {} if study is None else study.motions
-    if kept is not None:
-        at_hand = kept.motions()
+    study = cached_study(attributes)
+    available = {} if study is None else study.motions
+    if stored is not None:
+        available = stored.motions()
     records = {} if value is None else {one.sha256: one for one in named_motions(value).values()}
     found: dict[str, GroundMotion | None] = {}
     for name in names:
         one = described[name]
-        if one is None or name in at_hand:
-            found[name] = None if one is None else at_hand[name]
+        if one is None or name in available:
+            found[name] = None if one is None else available[name]
         elif one.get("constructor"):
             found[name] = GroundMotion.from_dict(one)
         elif one["sha256"] in records:
@@ -320,7 +322,7 @@ def unscaled_motions(
 def store_of(runs: xr.Dataset) -> Store | None:
     """Return the folder that a dataset was opened from, if it was and holds its study."""
     try:
-        found = Store.at(Path(str(runs.encoding.get("source", ""))))
+        found = Store.open(Path(str(runs.encoding.get("source", ""))))
     except StudyError:
         return None
     return found if found.digest == runs.attrs.get("study_sha256") else None

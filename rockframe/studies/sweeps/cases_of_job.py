@@ -12,7 +12,7 @@ from rockframe.motion.operations.scaling import multiplied
 from rockframe.signals import Motion
 from rockframe.simulation.plan import Plan, resolve_plan
 from rockframe.studies.sweeps.axes import SYSTEM_AXES, Axis, Changes
-from rockframe.studies.sweeps.motions import FACTOR, motion_of_case
+from rockframe.studies.sweeps.motions import SCALE_AXIS, motion_of_case
 from rockframe.studies.sweeps.scenes import SystemScene
 from rockframe.studies.sweeps.study import SweepJob
 from rockframe.system.assembly import Assembly
@@ -36,7 +36,7 @@ class CasesOfJob:
         self._scenes: dict[tuple[Any, ...], tuple[Assembly, list[str]]] = {}
         self._motion: tuple[object, GroundMotion | None] = (None, None)
 
-    def changed(self, change: Change) -> "CasesOfJob":
+    def with_change(self, change: Change) -> "CasesOfJob":
         """Return the same cases with other plans; their parts are shared."""
         other = CasesOfJob(self.job, change)
         other._scenes = self._scenes
@@ -78,18 +78,18 @@ class CasesOfJob:
         """Return the differences between cases that are words or counts."""
         return tuple(each[case] for axis, each in self._of_scene if axis.name not in self._numbers)
 
-    def _of(self, axis: Axis, values: list[Any], which: Places) -> Any:
+    def _values_of(self, axis: Axis, values: list[Any], which: Places) -> Any:
         """Return the value of an axis in many cases, which agree where it is no number."""
         numbers = self._numbers.get(axis.name)
         return values[which[0]] if numbers is None else Many(numbers[which])
 
     def scene_of_many(self, which: Places) -> tuple[Assembly, list[str]]:
         """Return the scene of many cases; the warnings are the same for all."""
-        values = {axis: self._of(axis, each, which) for axis, each in self._of_scene}
+        values = {axis: self._values_of(axis, each, which) for axis, each in self._of_scene}
         with collected_warnings() as warned:
             return self.job.scene.assembled(values), warned
 
-    def unscaled(self, case: int) -> GroundMotion | None:
+    def unscaled_motion(self, case: int) -> GroundMotion | None:
         """Return the motion of a case before it is scaled; the scene's unless there are others."""
         motion = self.job.motions[self.job.motion_of_case[case]]
         if motion is None and not self.can_run_in_lanes:  # a function adds it to its systems
@@ -98,22 +98,22 @@ class CasesOfJob:
 
     def length_key(self, case: int) -> tuple[float, float, bool] | None:
         """Return time step and the length of the motion of a case, and whether it is vertical."""
-        motion = self.unscaled(case)
+        motion = self.unscaled_motion(case)
         if motion is None:
             return None
         return motion.si.time_step, motion.si.duration, motion.si.vertical is not None
 
-    def ground(self, case: int) -> Motion | None:
+    def ground_motion(self, case: int) -> Motion | None:
         """Return the motion of a case only as numbers, which is cheaper."""
-        motion = self.unscaled(case)
-        if motion is None or [axis.name for axis, _ in self._scale] != [FACTOR]:
+        motion = self.unscaled_motion(case)
+        if motion is None or [axis.name for axis, _ in self._scale] != [SCALE_AXIS]:
             found = self.motion(case)
             return None if found is None else found.si
         return multiplied(motion.si, self._scale[0][1][case])
 
     def motion(self, case: int) -> GroundMotion | None:
         """Return the motion of a case; None where the ground stands still."""
-        motion = self.unscaled(case)
+        motion = self.unscaled_motion(case)
         if not self._scale:
             return motion
         if motion is None:
@@ -125,7 +125,7 @@ class CasesOfJob:
             self._motion = (key, motion_of_case(motion, axis.name, values[case], self.job.period))
         return self._motion[1]
 
-    def planned(self, case: int) -> tuple[Assembly, list[str], Plan]:
+    def plan(self, case: int) -> tuple[Assembly, list[str], Plan]:
         """Return the scene of a case, the warnings of its assembly, and the plan."""
         system, messages = self.scene(case)
         start = {axis.parameter: each[case] for axis, each in self._start}
@@ -134,8 +134,8 @@ class CasesOfJob:
     def plan_of_many(self, which: Places) -> tuple[Assembly, list[str], Plan]:
         """Return the same of many cases, with the motion of the first before it is scaled."""
         system, messages = self.scene_of_many(which)
-        start = {axis.parameter: self._of(axis, each, which) for axis, each in self._start}
-        return system, messages, self._plan(system, start, self.unscaled(int(which[0])))
+        start = {axis.parameter: self._values_of(axis, each, which) for axis, each in self._start}
+        return system, messages, self._plan(system, start, self.unscaled_motion(int(which[0])))
 
     def _plan(
         self, system: Assembly, start: Mapping[str, float], motion: GroundMotion | None

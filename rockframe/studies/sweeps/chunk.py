@@ -28,18 +28,18 @@ from rockframe.studies.sweeps.cases_of_job import CasesOfJob
 from rockframe.studies.sweeps.lanes import (
     Failed,
     Finished,
-    FinishedTogether,
-    run_in_lanes,
-    run_side_by_side,
-    when_compiled,
+    FinishedGroup,
+    compilation_check,
+    run_assembled_singly,
+    run_assembled_together,
 )
-from rockframe.studies.sweeps.study import FEWEST_IN_LANES, Histories, SweepJob
+from rockframe.studies.sweeps.study import MIN_CASES_IN_LANES, Histories, SweepJob
 
 SCREEN: Final = "screen"
 """The accuracy argument of screened sweeps."""
-FIRST: Final = AccuracyLevel.FAST
+FIRST_LEVEL: Final = AccuracyLevel.FAST
 """Level at which all cases run."""
-AGAIN: Final = AccuracyLevel.STANDARD
+REPEATED_LEVEL: Final = AccuracyLevel.STANDARD
 """Level at which cases with a doubtful verdict run again."""
 NO_TEXT: Final = 0
 """Place of the empty text in the texts of a chunk."""
@@ -67,7 +67,7 @@ class CaseResults:
     texts: tuple[str, ...]  # what is said of cases, each once; the first says nothing
 
 
-def _put_into(
+def _assign(
     columns: dict[str, Generic], count: int, name: str, where: Any, values: Generic | float
 ) -> None:
     """Put values of some cases, or of one, into a column.
@@ -75,15 +75,15 @@ def _put_into(
     Cases may have different numbers of bodies or restrainers: a column has room for the largest
     number, with NaN where a case has fewer.
     """
-    beside = np.shape(values)[np.ndim(where) if not isinstance(where, slice) else 1 :]
-    there = columns[name].shape[1:] if name in columns else beside
-    room = tuple(map(max, there, beside))
-    if name not in columns or there != room:
-        wider = np.full((count, *room), np.nan)
+    extra = np.shape(values)[np.ndim(where) if not isinstance(where, slice) else 1 :]
+    old_shape = columns[name].shape[1:] if name in columns else extra
+    shape = tuple(map(max, old_shape, extra))
+    if name not in columns or old_shape != shape:
+        wider = np.full((count, *shape), np.nan)
         if name in columns:
-            wider[(slice(None), *map(slice, there))] = columns[name]
+            wider[(slice(None), *map(slice, old_shape))] = columns[name]
         columns[name] = wider
-    columns[name][(where, *map(slice, beside))] = values
+    columns[name][(where, *map(slice, extra))] = values
 
 
 class CollectedResults:
@@ -108,7 +108,7 @@ class CollectedResults:
         self._message[here] = places[message]
         for kept, value in ((self._scalars, rows.scalars), (self._histories, rows.histories)):
             for name, values in value.items():
-                _put_into(kept, self._count, name, here, values[which])
+                _assign(kept, self._count, name, here, values[which])
 
     def rows(self) -> CaseResults:
         """Return the collected results."""
@@ -116,59 +116,64 @@ class CollectedResults:
         return CaseResults(self._status, self._scalars, self._histories, self._message, texts)
 
 
-def each_run(
-    cases: CasesOfJob, which: Sequence[int], stopped: Callable[[], bool], patience: float | None
-) -> Iterator[Finished | FinishedTogether | Failed]:
+def run_cases(
+    cases: CasesOfJob,
+    which: Sequence[int],
+    stopped: Callable[[], bool],
+    compile_timeout: float | None,
+) -> Iterator[Finished | FinishedGroup | Failed]:
     """Run cases."""
-    alone = set(which)
+    remaining = set(which)
     faults: dict[int, Exception] = {}
-    if patience is not None:
-        ready = when_compiled(patience)
-        for several in run_in_lanes(cases, which, stopped, ready):
+    if compile_timeout is not None:
+        ready = compilation_check(compile_timeout)
+        for several in run_assembled_together(cases, which, stopped, ready):
             if isinstance(several, Finished):
-                alone.discard(several.case)
+                remaining.discard(several.case)
             else:
-                alone.difference_update(several.cases.tolist())
+                remaining.difference_update(several.cases.tolist())
             yield several
-        for found in run_side_by_side(cases, sorted(alone), stopped, ready):
+        for found in run_assembled_singly(cases, sorted(remaining), stopped, ready):
             if isinstance(found, Failed):
                 faults[found.case] = found.problem
             else:
-                alone.discard(found.case)
+                remaining.discard(found.case)
                 yield found
-    for case in sorted(alone):
+    for case in sorted(remaining):
         if stopped():
             return
         try:
-            system, messages, plan = cases.planned(case)
+            system, messages, plan = cases.plan(case)
             response = compute_response(system, plan)
             if (fault := faults.get(case)) is not None:  # that it alone does not have
-                words = f"its run beside others failed ({type(fault).__name__}: {fault})"
-                messages = [*messages, f"{words}, and it ran alone: {PLEASE_REPORT}"]
+                text = f"its run beside others failed ({type(fault).__name__}: {fault})"
+                messages = [*messages, f"{text}, and it ran alone: {PLEASE_REPORT}"]
             yield Finished(case, system, response.trajectory, messages, response)
         except Exception as problem:  # any error affects only this case
             yield Failed(case, problem)
 
 
-def looks_of(
-    cases: CasesOfJob, run: Finished | FinishedTogether | Failed
+def verdict_looks(
+    cases: CasesOfJob, run: Finished | FinishedGroup | Failed
 ) -> list[tuple[int, Look]]:
     """Take the indications of each case's verdict from runs."""
-    if isinstance(run, FinishedTogether):
+    if isinstance(run, FinishedGroup):
         return run.looks()
     if isinstance(run, Failed):
         return []
-    duration = run_length(cases.job.arguments, cases.unscaled(run.case))
+    duration = run_length(cases.job.arguments, cases.unscaled_motion(run.case))
     return [(run.case, look_at(run.system.setting, run.summary, duration))]
 
 
-def in_doubt(
+def doubtful_cases(
     cases: CasesOfJob, first: Mapping[int, Look], stopped: Callable[[], bool]
 ) -> list[int]:
     """Run cases a second time, and give those whose verdict is not sure."""
     doubtful = set(first)
-    for run in each_run(cases.changed(second_look), sorted(first), stopped, cases.job.patience):
-        for case, look in looks_of(cases, run):
+    for run in run_cases(
+        cases.with_change(second_look), sorted(first), stopped, cases.job.compile_timeout
+    ):
+        for case, look in verdict_looks(cases, run):
             if is_sure(first[case], look):
                 doubtful.discard(case)
     return sorted(doubtful)
@@ -183,24 +188,24 @@ def run_chunk(job: SweepJob, stopped: Callable[[], bool] = lambda: False) -> Cas
     cases = CasesOfJob(job)
     collected = _Collector(len(cases), job)
     looks: dict[int, Look] = {}
-    for run in each_run(cases, range(len(cases)), stopped, job.patience):
-        collected.put(run)
+    for run in run_cases(cases, range(len(cases)), stopped, job.compile_timeout):
+        collected.add(run)
         if job.screened:
-            looks.update(looks_of(cases, run))
+            looks.update(verdict_looks(cases, run))
     if job.screened and not stopped():
-        doubtful = in_doubt(cases, looks, stopped)
-        collected.screen(looks, doubtful)
-        patience = None
-        if job.patience is not None and len(doubtful) >= FEWEST_IN_LANES:
-            patience = job.patience * len(doubtful) / len(cases)
-        again = cases.changed(lambda _, plan: replace(plan, accuracy=LEVELS[AGAIN]))
-        for run in each_run(again, doubtful, stopped, patience):
-            collected.put(run)
-            collected.compare(looks, looks_of(cases, run))
+        doubtful = doubtful_cases(cases, looks, stopped)
+        collected.add_screening(looks, doubtful)
+        compile_timeout = None
+        if job.compile_timeout is not None and len(doubtful) >= MIN_CASES_IN_LANES:
+            compile_timeout = job.compile_timeout * len(doubtful) / len(cases)
+        again = cases.with_change(lambda _, plan: replace(plan, accuracy=LEVELS[REPEATED_LEVEL]))
+        for run in run_cases(again, doubtful, stopped, compile_timeout):
+            collected.add(run)
+            collected.add_comparison(looks, verdict_looks(cases, run))
     return None if stopped() else collected.rows()
 
 
-def _told(run: Finished) -> tuple[list[str], Mapping[str, Generic | float]]:
+def _cautions_and_scalars(run: Finished) -> tuple[list[str], Mapping[str, Generic | float]]:
     """Return the warnings of a run, its scalars, and how it was run."""
     if run.response is not None:
         driver = Driver.AS_PYTHON if run.response.trajectory.as_python else Driver.ALONE
@@ -217,54 +222,54 @@ class _Collector(CollectedResults):
 
     def __init__(self, count: int, job: SweepJob) -> None:
         super().__init__(count)
-        self._kept, self._restrainers = job.histories, job.restrainers
+        self._histories_kept, self._restrainers = job.histories, job.restrainers
 
-    def put(self, run: Finished | FinishedTogether | Failed) -> None:
+    def add(self, run: Finished | FinishedGroup | Failed) -> None:
         """Note runs; for one without a verdict only its message."""
         if isinstance(run, Failed):
-            self._refuse(run.case, run.problem)
+            self._add_failure(run.case, run.problem)
             return
-        if isinstance(run, FinishedTogether):
-            self._finish_lanes(run)
+        if isinstance(run, FinishedGroup):
+            self._add_group(run)
             return
         try:
-            self._finish(run)
+            self._add_finished(run)
         except Exception as problem:  # as in the run itself
-            self._refuse(run.case, problem)
+            self._add_failure(run.case, problem)
 
-    def _finish(self, run: Finished) -> None:
+    def _add_finished(self, run: Finished) -> None:
         case, response = run.case, run.response
         if self._status[case] != RunStatus.NOT_RUN:  # of a first run
             self._clear(case)
-        cautions, scalars = _told(run)
+        cautions, scalars = _cautions_and_scalars(run)
         if self._restrainers and "peak_restrainer_force" in scalars:
             names = run.system.setting.link_names
             if names != self._restrainers:
                 cautions = [*cautions, f"its restrainers are {', '.join(names)}, not as labelled"]
-        self._say(case, "; ".join([*run.said, *cautions]) or NONE)
+        self._set_message(case, "; ".join([*run.warnings, *cautions]) or NONE)
         self._status[case] = run.summary.status
         if run.summary.overturned is None:
             self._clear(case)
             return
         self._put_scalars(case, scalars)
-        if self._kept is not None and response is not None and response.outputs.values:
-            self._put_histories(case, response.outputs.values, self._kept)
+        if self._histories_kept is not None and response is not None and response.outputs.values:
+            self._put_histories(case, response.outputs.values, self._histories_kept)
 
-    def _finish_lanes(self, run: FinishedTogether) -> None:
+    def _add_group(self, run: FinishedGroup) -> None:
         if np.any(self._status[run.cases] != RunStatus.NOT_RUN):  # of a first run
             self._clear(run.cases)
-        self._say(run.cases, "; ".join(run.said) or NONE)
+        self._set_message(run.cases, "; ".join(run.warnings) or NONE)
         self._status[run.cases] = run.status
         self._put_scalars(run.cases, {DRIVER: Driver.IN_LANES, **run.scalars})
 
-    def screen(self, every: Iterable[int], doubtful: Iterable[int]) -> None:
+    def add_screening(self, every: Iterable[int], doubtful: Iterable[int]) -> None:
         """Note which cases were screened, and whose verdict was in doubt."""
         for case in every:
             self._put_scalars(case, {REPEATED: 0.0, VERDICT_CHANGED: 0.0})
         for case in doubtful:
             self._put_scalars(case, {REPEATED: 1.0})
 
-    def compare(self, first: Mapping[int, Look], again: Iterable[tuple[int, Look]]) -> None:
+    def add_comparison(self, first: Mapping[int, Look], again: Iterable[tuple[int, Look]]) -> None:
         """Note whether the verdicts of cases differ from the first ones."""
         for case, look in again:
             verdict = look.overturned
@@ -277,7 +282,7 @@ class _Collector(CollectedResults):
                 continue
             # a value that is equal in several cases has no row for each
             row = value if np.ndim(value) else np.broadcast_to(value, np.shape(case))
-            _put_into(self._scalars, self._count, name, case, row)
+            _assign(self._scalars, self._count, name, case, row)
 
     def _put_histories(self, case: int, values: dict[str, Generic], kept: Histories) -> None:
         time = values[TIME[0]]
@@ -289,12 +294,12 @@ class _Collector(CollectedResults):
             if name != TIME[0] and name in values and SCHEMA[name].dims in (TIME, POINT_TIME):
                 row = np.full((*values[name].shape[:-1], kept.count), np.nan)
                 row[..., :count] = values[name][..., :count]
-                _put_into(self._histories, self._count, name, case, row)
+                _assign(self._histories, self._count, name, case, row)
 
-    def _refuse(self, case: int, problem: Exception) -> None:
+    def _add_failure(self, case: int, problem: Exception) -> None:
         """Note why a case has no run."""
         words = str(problem) if isinstance(problem, RockframeError) else ""
-        self._say(case, words or f"{type(problem).__name__}: {problem}")
+        self._set_message(case, words or f"{type(problem).__name__}: {problem}")
         self._clear(case)
         self._status[case] = RunStatus.REFUSED
 
@@ -302,5 +307,5 @@ class _Collector(CollectedResults):
         for column in (*self._scalars.values(), *self._histories.values()):
             column[case] = np.nan
 
-    def _say(self, case: int | Places, text: str) -> None:
+    def _set_message(self, case: int | Places, text: str) -> None:
         self._message[case] = self._texts.setdefault(text, len(self._texts))

@@ -17,12 +17,12 @@ from rockframe.errors import StudyError
 
 _CLAIMS: Final = "claims"
 """Folder of claims, in that of a study."""
-_BEAT: Final = 10.0
+_RENEWAL_INTERVAL: Final = 10.0
 """Time after which a running job renews its claims [s]."""
-_SILENCE: Final = 150.0
+_TIMEOUT: Final = 150.0
 """Time of silence after which a job is dead; longer than shared file systems keep what they told
 before [s]."""
-_PROCESSES: Final = Path("/proc")
+_PROC: Final = Path("/proc")
 
 
 class Claims:
@@ -33,17 +33,17 @@ class Claims:
         self._own: dict[int, Path] = {}
         # when a claim of another job was last changed by its machine's clock, and since when this
         # one has seen no other change, by its own clock
-        self._seen: dict[Path, tuple[int, float]] = {}
-        self._said = time.monotonic()
+        self._last_changes: dict[Path, tuple[int, float]] = {}
+        self._renewed = time.monotonic()
 
     def take(self, number: int) -> bool:
         """Claim a chunk, unless a living job has it; of several that try at once, one gets it."""
         claims = [*self._folder.glob(f"{number:06d}-*")]
-        last = max(claims, key=_heir, default=None)
+        last = max(claims, key=_generation, default=None)
         if last is not None and not self._is_dead(last):
             return False
         # the claim of a dead job stays: a file that is never removed cannot be removed twice
-        path = self._folder / f"{number:06d}-{0 if last is None else _heir(last) + 1:03d}"
+        path = self._folder / f"{number:06d}-{0 if last is None else _generation(last) + 1:03d}"
         try:
             self._folder.mkdir(exist_ok=True)
             return self._make(number, path)
@@ -56,7 +56,7 @@ class Claims:
         part = path.with_name(f".{path.name}.{os.urandom(8).hex()}.part")
         try:
             part.write_text(json.dumps(_this_job()), encoding="utf-8")
-            _link(part, path)
+            _link_or_copy(part, path)
         except (FileExistsError, FileNotFoundError):  # another job was faster, or has tidied up
             return False
         finally:
@@ -64,24 +64,24 @@ class Claims:
         self._own[number] = path
         return True
 
-    def let_go(self, number: int) -> None:
+    def release(self, number: int) -> None:
         """Give up a chunk that has been run, or will not be."""
         path = self._own.pop(number, None)
         if path is not None:
             with suppress(OSError):  # what stays is the claim of a dead job
                 path.unlink(missing_ok=True)
 
-    def let_all_go(self) -> None:
+    def release_all(self) -> None:
         """Give up all chunks."""
         for number in [*self._own]:
-            self.let_go(number)
+            self.release(number)
 
-    def live(self) -> None:
+    def renew(self) -> None:
         """Signal that this job is alive, if it has not done so for a while."""
         now = time.monotonic()
-        if now - self._said < _BEAT:
+        if now - self._renewed < _RENEWAL_INTERVAL:
             return
-        self._said = now
+        self._renewed = now
         for path in self._own.values():
             with suppress(OSError):
                 os.utime(path)
@@ -99,17 +99,17 @@ class Claims:
             changed, content = claim.stat().st_mtime_ns, claim.read_bytes()
         except OSError:  # given up at this moment
             return False
-        if _is_gone(content):
+        if _has_ended(content):
             return True
         now = time.monotonic()
-        before, since = self._seen.get(claim, (changed, now))
+        before, since = self._last_changes.get(claim, (changed, now))
         if before != changed:
             since = now
-        self._seen[claim] = changed, since
-        return now - since > _SILENCE
+        self._last_changes[claim] = changed, since
+        return now - since > _TIMEOUT
 
 
-def _link(part: Path, path: Path) -> None:
+def _link_or_copy(part: Path, path: Path) -> None:
     """Give a file its name, unless another has it, also where files cannot have two names."""
     try:
         path.hardlink_to(part)
@@ -120,7 +120,7 @@ def _link(part: Path, path: Path) -> None:
             file.write(part.read_text(encoding="utf-8"))
 
 
-def _heir(claim: Path) -> int:
+def _generation(claim: Path) -> int:
     """Return how many jobs had a chunk before the one that made a claim; -1 of a foreign file."""
     try:
         return int(claim.name.partition("-")[2])
@@ -130,17 +130,17 @@ def _heir(claim: Path) -> int:
 
 def _this_job() -> dict[str, Any]:
     """Describe this process, so that others on its machine can tell whether it lives."""
-    return {"machine": _machine(), "process": os.getpid(), "begun": _begun(os.getpid())}
+    return {"machine": _machine(), "process": os.getpid(), "begun": _start_of_process(os.getpid())}
 
 
-def _is_gone(said: bytes) -> bool:
+def _has_ended(content: bytes) -> bool:
     """Whether a claim is that of a process of this machine that has ended."""
     try:
-        job = json.loads(said)
+        job = json.loads(content)
         machine, process, begun = job["machine"], int(job["process"]), job["begun"]
     except (ValueError, TypeError, KeyError):  # damaged, or not yet written: its age decides
         return False
-    return begun is not None and machine == _machine() and _begun(process) != begun
+    return begun is not None and machine == _machine() and _start_of_process(process) != begun
 
 
 def _machine() -> list[str]:
@@ -148,15 +148,15 @@ def _machine() -> list[str]:
     found = [platform.node()]
     for path in ("sys/kernel/random/boot_id", "self/ns/pid"):
         with suppress(OSError):
-            place = _PROCESSES / path
+            place = _PROC / path
             found.append(os.readlink(place) if place.is_symlink() else place.read_text().strip())
     return found
 
 
-def _begun(process: int) -> str | None:
+def _start_of_process(process: int) -> str | None:
     """Return the start of a process of this machine; None if there is none or it is unknown."""
     with suppress(OSError, IndexError):
-        status = (_PROCESSES / str(process) / "stat").read_text()
+        status = (_PROC / str(process) / "stat").read_text()
         state, *rest = status.rpartition(")")[2].split()  # numbered from the third field on
         return None if state == "Z" else rest[18]
     return None

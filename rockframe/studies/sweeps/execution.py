@@ -24,7 +24,7 @@ from rockframe.studies.sweeps.study import SweepJob, worker_count
 
 _DELAY: Final = 1.0
 """Work that takes no longer shows no bar, unless one is requested [s]."""
-_GROWS: Final = "total grows"
+_TOTAL_GROWS: Final = "total grows"
 """Text of a bar when further cases are to come whose number is not known yet."""
 
 
@@ -48,7 +48,7 @@ class ProgressBar(Protocol):
         """Show the total, which no longer grows."""
 
 
-class _Silent(ProgressBar):
+class _NoBar(ProgressBar):
     """A bar that shows nothing."""
 
 
@@ -62,7 +62,7 @@ class _Bar(ProgressBar):
         self._bar: Any = None
 
     def name(self, part: str) -> None:
-        self._words = f"{self._owner}, {part} ({_GROWS})"
+        self._words = f"{self._owner}, {part} ({_TOTAL_GROWS})"
         if self._bar is not None:
             self._bar.set_description_str(self._words, refresh=False)
 
@@ -90,40 +90,40 @@ class _Bar(ProgressBar):
 
 
 @contextmanager
-def bar_of(value: object, *, owner: str, unit: str = "case") -> Generator[ProgressBar]:
+def progress_bar(value: object, *, owner: str, unit: str = "case") -> Generator[ProgressBar]:
     """Show a bar during some work."""
     if isinstance(value, ProgressBar):  # of the caller, who closes it
         yield value
         return
-    with closing(_made(value, owner, unit)) as bar:
+    with closing(_make_bar(value, owner, unit)) as bar:
         yield bar
 
 
-def _made(value: object, owner: str, unit: str) -> ProgressBar:
+def _make_bar(value: object, owner: str, unit: str) -> ProgressBar:
     if value is not None and not isinstance(value, bool):
         msg = f"{owner}: progress must be True, False or None, got {shown(value)}"
         raise ComponentError(msg)
     if value is False:
-        return _Silent()
+        return _NoBar()
     try:
         from tqdm import auto
     except ImportError as problem:
         if value is None:
-            return _Silent()
+            return _NoBar()
         msg = f"{owner}: progress=True needs tqdm (pip install 'rockframe[progress]')"
         raise ComponentError(msg) from problem
     kind: Any = auto.tqdm
     in_a_notebook = any("notebook" in one.__module__ for one in kind.__mro__)
     if value is None and not (in_a_notebook or sys.stderr.isatty()):
-        return _Silent()
+        return _NoBar()
     return _Bar(kind, owner, unit, _DELAY if value is None else 0.0)
 
 
-_PER_WORKER: Final = 2
+_CHUNKS_PER_WORKER: Final = 2
 """Chunks submitted at once for each worker, so that no worker waits for its next one."""
-_MANY: Final = 128
+_ASSUMED_WORKERS: Final = 128
 """Assumed number of workers of an executor that does not state it."""
-_GLANCE: Final = 0.2
+_POLL_INTERVAL: Final = 0.2
 """Longest wait during which an interrupt may be delayed [s]."""
 
 
@@ -131,7 +131,7 @@ _END: Final = Chunk(-1, range(0))
 """Marks the end of the chunks."""
 
 
-def workers_of(executor: Executor | None) -> int:
+def workers_of_executor(executor: Executor | None) -> int:
     """Return how many chunks an executor can run at once."""
     if executor is None:
         return worker_count()
@@ -142,15 +142,15 @@ def workers_of(executor: Executor | None) -> int:
     client: Any = getattr(executor, "_client", None)
     if hasattr(client, "nthreads"):  # dask; one that grows with the work may have none yet
         return max(1, sum(client.nthreads().values()))
-    return _MANY
+    return _ASSUMED_WORKERS
 
 
 def run_chunks(
     chunks: Iterable[Chunk | None],
     job_of: Callable[[Chunk], SweepJob],
-    take: Callable[[Chunk, CaseResults], None],
+    collect: Callable[[Chunk, CaseResults], None],
     executor: Executor | None,
-    glance: Callable[[], None] = lambda: None,
+    on_poll: Callable[[], None] = lambda: None,
 ) -> bool:
     """Run chunks, and yield their results as they are completed.
 
@@ -162,62 +162,62 @@ def run_chunks(
         raise ComponentError(msg)
     stop = Event()
     waiting = iter(chunks)
-    going: dict[Future[CaseResults | None], Chunk] = {}
-    with _own_threads() if executor is None else nullcontext(executor) as pool:
+    running: dict[Future[CaseResults | None], Chunk] = {}
+    with _thread_pool() if executor is None else nullcontext(executor) as pool:
         run = partial(run_chunk, stopped=stop.is_set) if executor is None else run_chunk
         try:
-            some_left = True
-            while some_left or going:
-                most = _PER_WORKER * workers_of(executor) if some_left else 0
-                while some_left and len(going) < most:
+            more_chunks = True
+            while more_chunks or running:
+                most = _CHUNKS_PER_WORKER * workers_of_executor(executor) if more_chunks else 0
+                while more_chunks and len(running) < most:
                     chunk = next(waiting, _END)
                     if chunk is None:
                         break
                     if chunk is _END:
-                        some_left = False
+                        more_chunks = False
                     else:
-                        going[_submitted(pool, run, job_of(chunk))] = chunk
-                if going:
-                    done, _ = wait(going, timeout=_GLANCE, return_when=FIRST_COMPLETED)
-                    _take_all(done, going, take)
-                elif some_left:
-                    time.sleep(_GLANCE)
-                glance()
+                        running[_submit(pool, run, job_of(chunk))] = chunk
+                if running:
+                    done, _ = wait(running, timeout=_POLL_INTERVAL, return_when=FIRST_COMPLETED)
+                    _collect_results(done, running, collect)
+                elif more_chunks:
+                    time.sleep(_POLL_INTERVAL)
+                on_poll()
             return True
         except KeyboardInterrupt:
             stop.set()
-            for one in going:
+            for one in running:
                 one.cancel()
-            done = {one for one in going if one.done() and not one.cancelled()}
-            _take_all({one for one in done if one.exception() is None}, going, take)
+            done = {one for one in running if one.done() and not one.cancelled()}
+            _collect_results({one for one in done if one.exception() is None}, running, collect)
             return False
         finally:
             stop.set()
-            for one in going:
+            for one in running:
                 one.cancel()
 
 
-def _submitted(
+def _submit(
     pool: Executor, run: Callable[..., CaseResults | None], job: SweepJob
 ) -> Future[CaseResults | None]:
     """Submit a job, also to a pool whose workers may have died in the meantime."""
     try:
         return pool.submit(run, job)
     except BrokenExecutor as problem:
-        raise _not_run(problem) from problem
+        raise _executor_error(problem) from problem
 
 
-def _not_run(problem: Exception) -> StudyError:
+def _executor_error(problem: Exception) -> StudyError:
     return StudyError(
         f"the executor could not run a chunk: {type(problem).__name__}: {problem}; with a process "
         "pool everything in the scene must be importable, and a worker must not have died"
     )
 
 
-def _take_all(
+def _collect_results(
     done: Iterable[Future[CaseResults | None]],
-    going: dict[Future[CaseResults | None], Chunk],
-    take: Callable[[Chunk, CaseResults], None],
+    running: dict[Future[CaseResults | None], Chunk],
+    collect: Callable[[Chunk, CaseResults], None],
 ) -> None:
     for one in done:
         try:
@@ -227,13 +227,13 @@ def _take_all(
         except RockframeError:
             raise
         except Exception as problem:
-            raise _not_run(problem) from problem
-        chunk = going.pop(one)
+            raise _executor_error(problem) from problem
+        chunk = running.pop(one)
         if rows is not None:
-            take(chunk, rows)
+            collect(chunk, rows)
 
 
-class _Caller(Executor):
+class _InlineExecutor(Executor):
     """Runs submitted work immediately, for platforms without threads."""
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
@@ -247,11 +247,11 @@ class _Caller(Executor):
 
 
 @contextmanager
-def _own_threads() -> Generator[Executor]:
+def _thread_pool() -> Generator[Executor]:
     try:
         Thread(target=int).start()
     except RuntimeError:  # as in a browser
-        yield _Caller()
+        yield _InlineExecutor()
         return
     with ThreadPoolExecutor(worker_count(), thread_name_prefix="rockframe") as pool:
         yield pool

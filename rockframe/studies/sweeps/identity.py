@@ -16,7 +16,7 @@ from rockframe.errors import StudyError, shown
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
 
-_OWN: Final = __name__.partition(".")[0]
+_PACKAGE: Final = __name__.partition(".")[0]
 
 
 def description_of(value: object) -> Any:
@@ -26,14 +26,14 @@ def description_of(value: object) -> Any:
     if isinstance(value, np.generic):
         return description_of(value.item())
     if isinstance(value, np.ndarray):
-        return _of_array(cast("Generic", value))
+        return _digest_of_array(cast("Generic", value))
     if isinstance(value, GroundMotion):
         return digest_of(description_of(value.si))
     if isinstance(value, Component):
         return {
             **value.to_dict(),
             "given": description_of(vars(value.given)),
-            **_written(type(value)),
+            **_source_of_class(type(value)),
         }
     if is_dataclass(value) and not isinstance(value, type):
         own = {
@@ -48,7 +48,7 @@ def description_of(value: object) -> Any:
     if isinstance(value, tuple | list):
         return [description_of(one) for one in cast("list[Any]", value)]
     if callable(value):
-        return _of_function(value)
+        return _describe_function(value)
     msg = (
         f"found {shown(value)}, of which nothing tells whether it is the same in another process; "
         "expected numbers, words, arrays, motions, components or dataclasses of them"
@@ -63,7 +63,7 @@ def digest_of(described: object) -> str:
 
 def difference(one: object, other: object) -> list[str]:
     """Name the entries in which two descriptions differ, with nested ones in brackets."""
-    a, b = _entries(one), _entries(other)
+    a, b = _named_entries(one), _named_entries(other)
     found: list[str] = []
     for name in dict.fromkeys([*a, *b]):
         if name in a and name in b and a[name] == b[name]:
@@ -75,7 +75,7 @@ def difference(one: object, other: object) -> list[str]:
     return found
 
 
-def _entries(described: object) -> dict[str, Any]:
+def _named_entries(described: object) -> dict[str, Any]:
     """Return named entries of a description: a dataclass, a mapping, or a list of named items."""
     if isinstance(described, dict):
         return cast("dict[str, Any]", described)
@@ -87,7 +87,7 @@ def _entries(described: object) -> dict[str, Any]:
     return {}
 
 
-def _of_array(values: Generic) -> str:
+def _digest_of_array(values: Generic) -> str:
     if values.dtype.kind in "OU":
         return digest_of([list(values.shape), values.astype(str).tolist()])
     little = values.astype(values.dtype.newbyteorder("<"))
@@ -95,32 +95,32 @@ def _of_array(values: Generic) -> str:
     return hashlib.sha256(about + little.tobytes()).hexdigest()
 
 
-def _of_function(function: Callable[..., object]) -> dict[str, str]:
+def _describe_function(function: Callable[..., object]) -> dict[str, str]:
     """Name a function, with a digest of its source, or else of its compiled code."""
     try:
         written = inspect.getsource(function)
     except (OSError, TypeError):
-        written = _of_code(getattr(function, "__code__", None))
-    return {"function": name_of(function), "source": digest_of(written)}
+        written = _describe_code(getattr(function, "__code__", None))
+    return {"function": name_of_function(function), "source": digest_of(written)}
 
 
-def _of_code(code: CodeType | None) -> list[Any]:
+def _describe_code(code: CodeType | None) -> list[Any]:
     """Describe compiled code, and the code of functions inside it."""
     if code is None:
         return []
     constants = [
-        _of_code(one) if isinstance(one, CodeType) else repr(one) for one in code.co_consts
+        _describe_code(one) if isinstance(one, CodeType) else repr(one) for one in code.co_consts
     ]
     return [code.co_code.hex(), code.co_names, constants]
 
 
-def name_of(function: Callable[..., object]) -> str:
+def name_of_function(function: Callable[..., object]) -> str:
     """Return the name of a function, or else of its class."""
     return getattr(function, "__qualname__", type(function).__name__)
 
 
 @cache
-def _written(kind: type) -> dict[str, str]:
+def _source_of_class(kind: type) -> dict[str, str]:
     """Describe the source of a class from outside rockframe, with everything defined beside it.
 
     The equations of a user's base are the classes, functions and constants beside its component.
@@ -128,12 +128,12 @@ def _written(kind: type) -> dict[str, str]:
     texts: list[Any] = []
     for one in kind.__mro__:
         module = inspect.getmodule(one)
-        if module is None or module.__name__.partition(".")[0] in (_OWN, "builtins"):
+        if module is None or module.__name__.partition(".")[0] in (_PACKAGE, "builtins"):
             continue
-        texts.append(_of_function(one))
+        texts.append(_describe_function(one))
         for name, each in sorted(vars(module).items()):
             if callable(each) and getattr(each, "__module__", None) == module.__name__:
-                texts.append(_of_function(each))
+                texts.append(_describe_function(each))
             # those of a script or a notebook are many, and most do not belong to the base
             elif isinstance(each, int | float | str) and module.__name__ != "__main__":
                 texts += [] if name.startswith("__") else [[name, each]]

@@ -21,9 +21,9 @@ from rockframe.studies.sweeps.axes import Grid
 from rockframe.studies.sweeps.chunk import DRIVER, SCREEN, CaseResults, CollectedResults, Driver
 from rockframe.studies.sweeps.scenes import SystemScene
 from rockframe.studies.sweeps.study import Histories, Study
-from rockframe.studies.sweeps.words import SCREENED, summed_up, whole_verdict
+from rockframe.studies.sweeps.words import SCREENING_VARIABLES, merge_similar_texts, whole_verdict
 
-ALWAYS: Final = tuple(
+COMMON_SCALARS: Final = tuple(
     row.name for row in EVENTS_AND_SCALARS if not row.dims and row.name != "status"
 )
 """Scalars that every run has."""
@@ -36,7 +36,7 @@ SIDE_BY_SIDE: Final = (
 
 
 @dataclass(frozen=True, eq=False)
-class Labels:
+class SweepLabels:
     """All that describes a sweep except its results."""
 
     grid: Grid  # the cases
@@ -46,7 +46,7 @@ class Labels:
     attributes: Mapping[str, str | float | int]  # of the dataset
 
 
-def sweep_labels(study: Study) -> Labels:
+def sweep_labels(study: Study) -> SweepLabels:
     """Return the labels of a sweep."""
     arguments = study.arguments
     scene, grid = study.scene, study.grid
@@ -69,30 +69,32 @@ def sweep_labels(study: Study) -> Labels:
         attributes["system_json"] = scene.assembly.json
     else:
         attributes["function"] = scene.name
-    return Labels(grid, tuple(study.motions), study.histories, arguments.points, attributes)
+    return SweepLabels(grid, tuple(study.motions), study.histories, arguments.points, attributes)
 
 
-def sweep_dataset(labels: Labels, found: Iterable[tuple[range, CaseResults]]) -> xr.Dataset:
+def sweep_dataset(labels: SweepLabels, found: Iterable[tuple[range, CaseResults]]) -> xr.Dataset:
     """Label the results."""
     grid = labels.grid
     collected = CollectedResults(grid.count)  # in the order of running, with gaps
     for cases, each in found:
         collected.put_rows(slice(cases.start, cases.stop), each)
     rows = collected.rows()
-    few, message = summed_up(rows.texts, rows.message)
+    few, message = merge_similar_texts(rows.texts, rows.message)
     gaps = np.full((grid.count, len(labels.points)), np.nan)
     scalars = {
         name: gaps if SCHEMA[name].dims else np.full(grid.count, np.nan)
-        for name in names_of_scalars(labels)
+        for name in scalar_names(labels)
     }
-    driver = _driver(rows.scalars.get(DRIVER, np.empty(0)))
+    driver = _driver_words(rows.scalars.get(DRIVER, np.empty(0)))
     scalars |= rows.scalars
     # what cannot be counted before it has run stays a flag, also where nothing has
     rows.scalars.clear()  # arranged values need not be in memory twice
-    values = {name: grid.arranged(scalars.pop(name)) for name in SCHEMA if name in scalars}
-    values["status"] = grid.arranged(rows.status)
+    values = {
+        name: grid.in_dimension_order(scalars.pop(name)) for name in SCHEMA if name in scalars
+    }
+    values["status"] = grid.in_dimension_order(rows.status)
     # as objects, each text is stored once
-    texts = np.array(few, dtype=object)[grid.arranged(message)]
+    texts = np.array(few, dtype=object)[grid.in_dimension_order(message)]
     messages = xr.Variable(tuple(grid.sizes), texts, SCHEMA[MESSAGE].attributes())
     runs = build_dataset(values, {}, over=tuple(grid.sizes))
     attributes = {
@@ -101,10 +103,10 @@ def sweep_dataset(labels: Labels, found: Iterable[tuple[range, CaseResults]]) ->
         "driver": driver,
         **labels.attributes,
     }
-    dataset = around_cases(labels, attributes).assign(runs.data_vars)
+    dataset = dataset_without_results(labels, attributes).assign(runs.data_vars)
     if rows.histories:
         histories = {
-            name: grid.arranged(rows.histories.pop(name))
+            name: grid.in_dimension_order(rows.histories.pop(name))
             for name in SCHEMA
             if name in rows.histories
         }
@@ -112,14 +114,16 @@ def sweep_dataset(labels: Labels, found: Iterable[tuple[range, CaseResults]]) ->
     return with_coordinates(dataset, labels, messages)
 
 
-def names_of_scalars(labels: Labels) -> tuple[str, ...]:
+def scalar_names(labels: SweepLabels) -> tuple[str, ...]:
     """Return scalars, and peaks at points, that all cases have, also before any has been run."""
-    screened = SCREENED if labels.attributes["accuracy"] == SCREEN else ()
+    screened = SCREENING_VARIABLES if labels.attributes["accuracy"] == SCREEN else ()
     peaks = tuple(row.name for row in POINT_PEAKS) if labels.points else ()
-    return ALWAYS + screened + peaks
+    return COMMON_SCALARS + screened + peaks
 
 
-def around_cases(labels: Labels, attributes: Mapping[str, str | float | int]) -> xr.Dataset:
+def dataset_without_results(
+    labels: SweepLabels, attributes: Mapping[str, str | float | int]
+) -> xr.Dataset:
     """Return the dataset of a sweep without its results."""
     sizes = labels.grid.sizes
     around: dict[str, Any] = {}
@@ -134,7 +138,7 @@ def around_cases(labels: Labels, attributes: Mapping[str, str | float | int]) ->
     return build_dataset(around, attributes, title="Sweep of a rocking system")
 
 
-def with_coordinates(dataset: xr.Dataset, labels: Labels, message: xr.Variable) -> xr.Dataset:
+def with_coordinates(dataset: xr.Dataset, labels: SweepLabels, message: xr.Variable) -> xr.Dataset:
     """Add the axes, and the messages of the cases."""
     dataset = dataset.assign_coords({**_coordinates(labels), MESSAGE: message})
     # the numbers of bodies, and the names of restrainers, that results are of
@@ -148,7 +152,7 @@ def with_coordinates(dataset: xr.Dataset, labels: Labels, message: xr.Variable) 
     return without_fill_values(with_variables(dataset, found))
 
 
-def _coordinates(labels: Labels) -> dict[str, xr.Variable]:
+def _coordinates(labels: SweepLabels) -> dict[str, xr.Variable]:
     grid = labels.grid
     found: dict[str, xr.Variable] = {}
     for axis in (*grid.axes, *grid.columns):
@@ -162,7 +166,7 @@ def _coordinates(labels: Labels) -> dict[str, xr.Variable]:
     return found
 
 
-def _driver(found: Generic) -> str:
+def _driver_words(found: Generic) -> str:
     """Say how cases were run, from a `Driver` for each; NaN for those without a result."""
     words = SIDE_BY_SIDE if (found == Driver.IN_LANES).any() else ALONE
     as_python = int((found == Driver.AS_PYTHON).sum())

@@ -35,7 +35,7 @@ from rockframe.solve.workspace import Status
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
 from rockframe.system.assembly import Assembly
 
-TOGETHER: Final = 512
+BATCH_SIZE: Final = 512
 """Cases that are prepared together, so that their motions do not fill the memory."""
 
 
@@ -46,7 +46,7 @@ class Finished:
     case: int  # its number in the job
     system: Assembly  # its scene
     summary: Summary  # what became of it
-    said: list[str]  # what was warned of when its scene was assembled
+    warnings: list[str]  # what was warned of when its scene was assembled
     # with the histories; of runs side by side, of which there is nothing to be warned, None
     response: Response | None = None
 
@@ -64,7 +64,7 @@ class LaneScene:
     """A scene under motions of one length and time step, ready for lanes."""
 
     system: Assembly
-    said: list[str]
+    warnings: list[str]
     run: LaneRun
     kind: Any
 
@@ -91,7 +91,7 @@ class _Group:
         """Run them, and give those without warnings."""
         scene_of, motion_of = (
             np.array([places[one[k]] for one in self.cases])
-            for k, places in ((1, _places(self.scenes)), (2, _places(self.motions)))
+            for k, places in ((1, _positions(self.scenes)), (2, _positions(self.motions)))
         )
         found = integrate_lanes(
             [scene.run for scene in self.scenes.values()], [*self.motions.values()],
@@ -101,14 +101,14 @@ class _Group:
             scene = self.scenes[number]
             summary = found.summary(k, scene.run.start.substeps)
             if has_no_cautions(scene.system, summary):
-                yield Finished(case, scene.system, summary, scene.said)
+                yield Finished(case, scene.system, summary, scene.warnings)
 
 
-def _places(keys: Iterable[Any]) -> dict[Any, int]:
+def _positions(keys: Iterable[Any]) -> dict[Any, int]:
     return {key: place for place, key in enumerate(keys)}
 
 
-def when_compiled(patience: float) -> Callable[[LaneScene], bool]:
+def compilation_check(timeout: float) -> Callable[[LaneScene], bool]:
     """Say whether there is machine code for scenes, compiled within some time [s]."""
     kinds: dict[Any, bool] = {}
 
@@ -116,13 +116,13 @@ def when_compiled(patience: float) -> Callable[[LaneScene], bool]:
         if scene.kind not in kinds:
             kinds[scene.kind] = False  # unless it can be compiled
             with compiling_for(f"a sweep in lanes ({scene.system.setting.model})"):
-                kinds[scene.kind] = can_run_in_lanes(scene.run, patience)
+                kinds[scene.kind] = can_run_in_lanes(scene.run, timeout)
         return kinds[scene.kind]
 
     return ready
 
 
-def run_side_by_side(
+def run_assembled_singly(
     cases: CasesOfJob,
     which: Sequence[int],
     stopped: Callable[[], bool],
@@ -130,19 +130,19 @@ def run_side_by_side(
 ) -> Iterator[Finished | Failed]:
     """Run what can run side by side."""
     scenes: dict[Any, LaneScene | None] = {}
-    for begin in range(0, len(which), TOGETHER):
+    for begin in range(0, len(which), BATCH_SIZE):
         groups: dict[Any, _Group] = {}
-        for case in which[begin : begin + TOGETHER]:
+        for case in which[begin : begin + BATCH_SIZE]:
             try:
                 key = (cases.scene_key(case), cases.start_key(case), cases.length_key(case))
                 if key not in scenes:
                     scenes[key] = None  # unless it can be prepared
-                    found = prepared(*cases.planned(case))
+                    found = prepare_lanes(*cases.plan(case))
                     scenes[key] = found if found is not None and ready(found) else None
                 if (scene := scenes[key]) is not None:
-                    moved = (id(cases.unscaled(case)), cases.motion_key(case)[1])
+                    moved = (id(cases.unscaled_motion(case)), cases.motion_key(case)[1])
                     group = groups.setdefault(scene.kind, _Group())
-                    group.add(case, scene, moved, cases.ground)
+                    group.add(case, scene, moved, cases.ground_motion)
             except RockframeError:  # which is reported when the case runs alone
                 continue
             except Exception as problem:
@@ -153,7 +153,7 @@ def run_side_by_side(
             yield from group.run()
 
 
-def prepared(system: Assembly, said: list[str], plan: Plan) -> LaneScene | None:
+def prepare_lanes(system: Assembly, messages: list[str], plan: Plan) -> LaneScene | None:
     """Prepare a scene for lanes; None if its runs need a closer look."""
     if plan.output_step is not None:
         return None  # samples are looked at, for friction
@@ -167,16 +167,16 @@ def prepared(system: Assembly, said: list[str], plan: Plan) -> LaneScene | None:
         duration=plan.duration, output_step=None, stop_at_overturning=plan.stop_at_overturning,
     )  # fmt: skip
     run = LaneRun(system.model, begin)
-    return LaneScene(system, said, run, batch_key(system.model))
+    return LaneScene(system, messages, run, batch_key(system.model))
 
 
 @dataclass(frozen=True)
-class FinishedTogether:
+class FinishedGroup:
     """Cases that have run and ended in the same way."""
 
     cases: Places  # their numbers in the job
     status: Status
-    said: list[str]  # what was warned of when their scenes were assembled, and of their runs
+    warnings: list[str]  # what was warned of when their scenes were assembled, and of their runs
     scalars: dict[str, Generic | float]  # of each, or of all
     look: Look  # indications of their verdicts, with arrays instead of numbers
 
@@ -200,12 +200,12 @@ class _Batch:
     rows: Any
 
 
-def run_in_lanes(
+def run_assembled_together(
     cases: CasesOfJob,
     which: Sequence[int],
     stopped: Callable[[], bool],
     ready: Callable[[LaneScene], bool],
-) -> Iterator[Finished | FinishedTogether]:
+) -> Iterator[Finished | FinishedGroup]:
     """Run what can be assembled together; cases are missing that cannot, or need a closer look."""
     if not cases.can_run_in_lanes:
         return
@@ -216,7 +216,7 @@ def run_in_lanes(
         alike.setdefault((cases.word_key(case), cases.length_key(case)), []).append(case)
     for members in alike.values():
         places = np.array(members, dtype=np.intp)
-        for _, group in each_way(lambda some: _assembled(cases, some), places):
+        for _, group in each_way(lambda some: _assemble_batch(cases, some), places):
             if ready(group.one):
                 kinds.setdefault(group.one.kind, []).append(group)
     for groups in kinds.values():
@@ -226,21 +226,23 @@ def run_in_lanes(
         order = np.argsort(every, kind="stable")  # neighbours share their motion
         ran: list[Places] = []
         found: list[Outcomes] = []
-        for begin in range(0, len(order), TOGETHER):
+        for begin in range(0, len(order), BATCH_SIZE):
             if stopped():
                 return
-            here = order[begin : begin + TOGETHER]
-            run, outcomes = _integrated(cases, groups[0].one, every[here], rows[here])
+            here = order[begin : begin + BATCH_SIZE]
+            run, outcomes = _integrate_batch(cases, groups[0].one, every[here], rows[here])
             ran.append(here[run])
             found.append(outcomes)
         here = np.concatenate(ran)
-        yield from _told(cases, groups, group_of[here], every[here], join_outcomes(found))
+        yield from _results_of_lanes(
+            cases, groups, group_of[here], every[here], join_outcomes(found)
+        )
 
 
-def _assembled(cases: CasesOfJob, some: Places) -> _Batch:
+def _assemble_batch(cases: CasesOfJob, some: Places) -> _Batch:
     """Assemble the scenes of cases; give the row of each for lanes."""
     first = int(some[0])
-    several, one = prepared(*cases.plan_of_many(some)), prepared(*cases.planned(first))
+    several, one = prepare_lanes(*cases.plan_of_many(some)), prepare_lanes(*cases.plan(first))
     if several is None or one is None:
         raise OnlyAlone
     rows = initial_rows(several.run.model, several.run.start, len(some))
@@ -249,7 +251,7 @@ def _assembled(cases: CasesOfJob, some: Places) -> _Batch:
     return _Batch(one, some, rows)
 
 
-def _integrated(
+def _integrate_batch(
     cases: CasesOfJob, one: LaneScene, some: Places, rows: Any
 ) -> tuple[Places, Outcomes]:
     """Run cases whose motions are available; give which these are."""
@@ -261,7 +263,7 @@ def _integrated(
         key = cases.motion_key(case)
         if key not in places:
             try:
-                motions.append(cases.ground(case))
+                motions.append(cases.ground_motion(case))
             except Exception:  # noqa: S112 - of which the case tells where it runs alone
                 continue
             places[key] = len(places)
@@ -272,9 +274,9 @@ def _integrated(
     return which, integrate_lanes([run], motions, which, np.array(motion_of, dtype=np.intp))
 
 
-def _told(
+def _results_of_lanes(
     cases: CasesOfJob, groups: Sequence[_Batch], group_of: Places, ran: Places, outcomes: Outcomes
-) -> Iterator[Finished | FinishedTogether]:
+) -> Iterator[Finished | FinishedGroup]:
     """Return the outcomes of runs, together for those that ended in the same way."""
     status, modes = outcomes.status, outcomes.modes
     # the mode tells whether those that stand may overturn later, and which slips are over
@@ -285,8 +287,8 @@ def _told(
     for k, (number, *_) in enumerate(ways.tolist()):
         substeps = groups[number].one.run.start.substeps
 
-        def work(some: Places, substeps: int = substeps) -> FinishedTogether:
-            return _summed_up(cases, ran[some], outcomes.summary_of_many(some, substeps))
+        def work(some: Places, substeps: int = substeps) -> FinishedGroup:
+            return _group_result(cases, ran[some], outcomes.summary_of_many(some, substeps))
 
         for some, found in each_way(work, np.flatnonzero(way_of == k)):
             alone[some] = False
@@ -301,18 +303,18 @@ def _told(
             yield Finished(int(ran[k]), system, summary, messages)
 
 
-def _summed_up(cases: CasesOfJob, some: Places, summary: Summary) -> FinishedTogether:
+def _group_result(cases: CasesOfJob, some: Places, summary: Summary) -> FinishedGroup:
     system, messages = cases.scene_of_many(some)
     missing: list[str] = []
     if not has_no_cautions(system, summary):
         raise OnlyAlone
     scalars = run_scalars(system, summary, missing)
     moving = in_motion(system, summary, missing)
-    duration = run_length(cases.job.arguments, cases.unscaled(int(some[0])))
+    duration = run_length(cases.job.arguments, cases.unscaled_motion(int(some[0])))
     look = look_at(system.setting, summary, duration)
     if missing:
         raise OnlyAlone
-    return FinishedTogether(
+    return FinishedGroup(
         some, summary.status, [*messages, *([STILL_MOVING] if moving else [])],
         {name: each.values if isinstance(each, Many) else each for name, each in scalars.items()},
         look,

@@ -18,13 +18,13 @@ from rockframe.studies.sweeps.study import Histories
 
 _FLOAT: Final = 8.0
 """Size of a number [bytes]."""
-_COPIES: Final = 2.5
+_COPY_FACTOR: Final = 2.5
 """Copies of a number in memory at once: in its chunk, in all, and partly in axis order."""
-LAZILY: Final = "they are read from the store as they are used (rf.open_study, lazy=True)"
-_TOLD: Final = 0.5
+LAZY_ADVICE: Final = "they are read from the store as they are used (rf.open_study, lazy=True)"
+_WARNING_SHARE: Final = 0.5
 """Share of the available memory above which the memory that a study needs is reported."""
-_MEMORY: Final = Path("/proc/meminfo")
-_GROUPS: Final = (
+_MEMINFO: Final = Path("/proc/meminfo")
+_CGROUP_FILES: Final = (
     # most, and now, of a container or a job: control groups of both versions
     (Path("/sys/fs/cgroup/memory.max"), Path("/sys/fs/cgroup/memory.current")),
     (
@@ -38,36 +38,36 @@ def check_memory(
     numbers: Mapping[str, float], cases: int, remedies: str, *, owner: str
 ) -> list[str]:
     """Say how much memory cases need, and whether it is available."""
-    sizes = {what: _FLOAT * _COPIES * each * cases for what, each in numbers.items()}
-    needed, there = sum(sizes.values()), available()
-    parts = ", ".join(f"{what} {_shown(size)}" for what, size in sizes.items())
+    sizes = {what: _FLOAT * _COPY_FACTOR * each * cases for what, each in numbers.items()}
+    needed, free = sum(sizes.values()), available_memory()
+    parts = ", ".join(f"{what} {_size_words(size)}" for what, size in sizes.items())
     text = (
-        f"{cases} cases need about {_shown(needed)} of memory ({parts}); {_shown(there)} are "
-        "available"
+        f"{cases} cases need about {_size_words(needed)} of memory ({parts}); {_size_words(free)} "
+        "are available"
     )
-    if needed > there:
+    if needed > free:
         return [f"{text}; {remedies}"]
-    if needed > _TOLD * there:
+    if needed > _WARNING_SHARE * free:
         warn(f"{owner}: {text}", SolverWarning)
     return []
 
 
-def available() -> float:
+def available_memory() -> float:
     """Return what this process may still use; infinite where the system does not tell [bytes]."""
     found = [math.inf]
     with suppress(OSError, ValueError, IndexError):
-        (line,) = (one for one in _MEMORY.read_text().splitlines() if "MemAvailable" in one)
+        (line,) = (one for one in _MEMINFO.read_text().splitlines() if "MemAvailable" in one)
         found.append(1024.0 * float(line.split()[1]))
     if len(found) == 1 and hasattr(os, "sysconf"):
         with suppress(OSError, ValueError):
             found.append(float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE"))
-    for most, now in _GROUPS:
+    for most, now in _CGROUP_FILES:
         with suppress(OSError, ValueError):  # "max" where there is no limit
             found.append(max(float(most.read_text()) - float(now.read_text()), 0.0))
     return min(found)
 
 
-def _shown(size: float) -> str:
+def _size_words(size: float) -> str:
     """Write a size in a readable unit."""
     for unit, large in (("TB", 1e12), ("GB", 1e9)):
         if size >= large:
@@ -75,7 +75,7 @@ def _shown(size: float) -> str:
     return f"{size / 1e6:.3g} MB"
 
 
-def numbers_of_case(
+def numbers_per_case(
     arguments: RunRequest, kept: Histories | None, *, screened: bool
 ) -> dict[str, float]:
     """Return how many numbers of each kind are kept for a case."""
@@ -91,7 +91,9 @@ def numbers_of_case(
     return numbers
 
 
-def remedies(arguments: RunRequest, histories: Histories | None, *, may_be_kept: bool) -> str:
+def memory_remedies(
+    arguments: RunRequest, histories: Histories | None, *, may_be_kept: bool
+) -> str:
     """Say what would need less memory."""
     ways = ["run fewer cases"]
     ways += ["give a store, from which they are read as they are used"] if may_be_kept else []

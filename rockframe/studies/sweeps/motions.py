@@ -15,9 +15,9 @@ from rockframe.units import ACCELERATION, TIME, VELOCITY, Measure, Unit
 
 NO_MOTION: Final = "none"
 """Name of a ground that stands still, as in the attributes of a run."""
-OF_THE_SCENE: Final = "of the scene"
+MOTION_OF_SCENE: Final = "of the scene"
 """Name of motions that a function puts into its systems."""
-_FEW: Final = 6
+_MAX_LISTED: Final = 6
 """Names that a message lists."""
 
 
@@ -34,19 +34,19 @@ class MotionAxis:
     measure: Measure  # kind of quantity
 
 
-SPECTRAL: Final = "pseudo_spectral_acceleration"
-FACTOR: Final = "scale"
-TARGETS: Final = {
-    FACTOR: MotionAxis("factor", Measure("a pure ratio", Unit.ONE, "2")),
+SPECTRAL_ACCELERATION: Final = "pseudo_spectral_acceleration"
+SCALE_AXIS: Final = "scale"
+MOTION_AXES: Final = {
+    SCALE_AXIS: MotionAxis("factor", Measure("a pure ratio", Unit.ONE, "2")),
     "peak_ground_acceleration": MotionAxis("peak", ACCELERATION),
     "peak_ground_velocity": MotionAxis("peak_velocity", VELOCITY),
-    SPECTRAL: MotionAxis("spectral_acceleration", ACCELERATION),
+    SPECTRAL_ACCELERATION: MotionAxis("spectral_acceleration", ACCELERATION),
 }
 """Axes that change the motion, by their names."""
 ABBREVIATIONS: Final = {
     "PGA": "peak_ground_acceleration",
     "PGV": "peak_ground_velocity",
-    "SA": SPECTRAL,
+    "SA": SPECTRAL_ACCELERATION,
 }
 """Of these axes."""
 
@@ -60,13 +60,13 @@ def motion_of_case(
     motion: GroundMotion, name: str, value: float, period: float | None
 ) -> GroundMotion:
     """Return the motion of a case."""
-    target = TARGETS[name]
+    target = MOTION_AXES[name]
     if target.measure.unit == Unit.ONE:
         return motion.scaled(value)
-    wanted: dict[str, Any] = {target.argument: f"{value!r} {target.measure.unit}"}
-    if name == SPECTRAL:
-        wanted["period"] = f"{period!r} {TIME.unit}"
-    return motion.scaled(**wanted)
+    arguments: dict[str, Any] = {target.argument: f"{value!r} {target.measure.unit}"}
+    if name == SPECTRAL_ACCELERATION:
+        arguments["period"] = f"{period!r} {TIME.unit}"
+    return motion.scaled(**arguments)
 
 
 def named_motions(value: object) -> dict[str, GroundMotion]:
@@ -77,7 +77,7 @@ def named_motions(value: object) -> dict[str, GroundMotion]:
     if isinstance(value, HorizontalPair):
         value = [value]
     if isinstance(value, Mapping):
-        named = _each_component(by_words(cast("Mapping[Any, Any]", value), owner=OWNER))
+        named = _split_pairs(by_words(cast("Mapping[Any, Any]", value), owner=OWNER))
     elif iterates(value) and not isinstance(value, str):
         several = list(value)
         pairs = (one.components if isinstance(one, HorizontalPair) else (one,) for one in several)
@@ -92,7 +92,7 @@ def named_motions(value: object) -> dict[str, GroundMotion]:
     return named
 
 
-def _each_component(named: Mapping[str, Any]) -> dict[str, Any]:
+def _split_pairs(named: Mapping[str, Any]) -> dict[str, Any]:
     """Return motions by name; the name of a component follows that of its pair."""
     found: dict[str, Any] = {}
     for name, one in named.items():
@@ -109,13 +109,13 @@ def _each_component(named: Mapping[str, Any]) -> dict[str, Any]:
     return found
 
 
-def motion_number(wanted: object, names: Sequence[str], *, owner: str) -> int:
+def motion_number(requested: object, names: Sequence[str], *, owner: str) -> int:
     """Return the number of the motion for a name or a number, also one given as text."""
-    if isinstance(wanted, str) and wanted in names:
-        return names.index(wanted)
-    typed = isinstance(wanted, str) and wanted in {str(place) for place in range(len(names))}
-    if typed or (isinstance(wanted, int | np.integer) and not isinstance(wanted, bool)):
-        number = int(cast("int | str", wanted))
+    if isinstance(requested, str) and requested in names:
+        return names.index(requested)
+    typed = isinstance(requested, str) and requested in {str(place) for place in range(len(names))}
+    if typed or (isinstance(requested, int | np.integer) and not isinstance(requested, bool)):
+        number = int(cast("int | str", requested))
         alike = [name for name in names if name.isdecimal() and int(name) == number]
         if alike and names.index(alike[0]) != number:
             msg = (
@@ -125,9 +125,9 @@ def motion_number(wanted: object, names: Sequence[str], *, owner: str) -> int:
             raise StudyError(msg)
         if 0 <= number < len(names):
             return number
-    few = ", ".join(map(repr, names[:_FEW])) + ", ..." * (len(names) > _FEW)
+    few = ", ".join(map(repr, names[:_MAX_LISTED])) + ", ..." * (len(names) > _MAX_LISTED)
     msg = (
-        f"{owner}: there is no motion {shown(wanted)}; expected a name, or a number from 0 to "
+        f"{owner}: there is no motion {shown(requested)}; expected a name, or a number from 0 to "
         f"{len(names) - 1}; there are {few}"
     )
     raise StudyError(msg)

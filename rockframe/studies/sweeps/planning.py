@@ -25,10 +25,20 @@ from rockframe.simulation.plan import (
     read_arguments,
     run_length,
 )
-from rockframe.studies.sweeps.axes import MOST_CASES, OWNER, Axis, Changes, Grid, faults_of_values
-from rockframe.studies.sweeps.chunk import AGAIN, FIRST, SCREEN
-from rockframe.studies.sweeps.memory import LAZILY, check_memory, numbers_of_case, remedies
-from rockframe.studies.sweeps.motions import NO_MOTION, OF_THE_SCENE, SPECTRAL, motion_number
+from rockframe.studies.sweeps.axes import MAX_CASES, OWNER, Axis, Changes, Grid, faults_of_values
+from rockframe.studies.sweeps.chunk import FIRST_LEVEL, REPEATED_LEVEL, SCREEN
+from rockframe.studies.sweeps.memory import (
+    LAZY_ADVICE,
+    check_memory,
+    memory_remedies,
+    numbers_per_case,
+)
+from rockframe.studies.sweeps.motions import (
+    MOTION_OF_SCENE,
+    NO_MOTION,
+    SPECTRAL_ACCELERATION,
+    motion_number,
+)
 from rockframe.studies.sweeps.scenes import (
     FunctionScene,
     SweptScene,
@@ -78,7 +88,7 @@ def kept_histories(
 
 Read = TypeVar("Read")
 
-_TAKEN: Final = {
+_RESERVED_NAMES: Final = {
     *TIME, *EVENT, *bodies.BODY, *bodies.RESTRAINER,
     *analyses.LIMIT_STATE, *analyses.STRIPE, *FLIP, *analyses.QUANTILE,  # in which axes stay
 } | {
@@ -100,7 +110,7 @@ class Faults:
     def __init__(self) -> None:
         self.found: list[str] = []
 
-    def tried(self, read: Callable[[], Read], otherwise: Read) -> Read:
+    def attempt(self, read: Callable[[], Read], otherwise: Read) -> Read:
         """Return what is read, or another value where that fails, and note why."""
         try:
             return read()
@@ -127,7 +137,7 @@ def plan_study(
     can be read lazily; None where the whole result is needed at once.
     """
     faults = Faults()
-    made = scene_of(scene)  # without it nothing else can be checked
+    swept = scene_of(scene)  # without it nothing else can be checked
     if isinstance(requested.get("initial"), xr.Dataset):
         faults.found.append(
             "initial cannot be the end of another run, whose system is one only; "
@@ -137,36 +147,38 @@ def plan_study(
     level = requested.get("accuracy")
     screened = isinstance(level, str) and level == SCREEN
     if screened:
-        requested["accuracy"] = FIRST
+        requested["accuracy"] = FIRST_LEVEL
     outputs = requested.setdefault("outputs", None)
-    arguments = faults.tried(lambda: read_arguments(faults.found, **requested), None)
-    nothing = OF_THE_SCENE if isinstance(made, FunctionScene) else NO_MOTION
+    arguments = faults.attempt(lambda: read_arguments(faults.found, **requested), None)
+    nothing = MOTION_OF_SCENE if isinstance(swept, FunctionScene) else NO_MOTION
     none: dict[str, GroundMotion | None] = {nothing: None}
-    named = {**faults.tried(lambda: motions_of_study(motions, made) or none, none)}
-    grid = _grid(made, axes, cases, list(named), faults)
-    if isinstance(made, SystemScene):
-        made = made.with_parts_of([*grid.columns, *grid.axes])
-    seconds = faults.tried(lambda: _period(period, [*grid.columns, *grid.axes]), None)
+    named = {**faults.attempt(lambda: motions_of_study(motions, swept) or none, none)}
+    grid = _read_grid(swept, axes, cases, list(named), faults)
+    if isinstance(swept, SystemScene):
+        swept = swept.with_parts_of([*grid.columns, *grid.axes])
+    seconds = faults.attempt(lambda: _read_period(period, [*grid.columns, *grid.axes]), None)
     if arguments is None or faults.found:
         raise StudyError(*faults.found)
-    handed_over = False
-    if screened and isinstance(made, SystemScene):
-        handed_over = not _pays_to_screen(made.assembly, named.values())
-        screened = not handed_over
-    if handed_over:
-        requested["accuracy"] = AGAIN
+    screening_skipped = False
+    if screened and isinstance(swept, SystemScene):
+        screening_skipped = not _is_screening_cheaper(swept.assembly, named.values())
+        screened = not screening_skipped
+    if screening_skipped:
+        requested["accuracy"] = REPEATED_LEVEL
         arguments = read_arguments(faults.found, **requested)
-    if not 0 < grid.count <= MOST_CASES:
-        faults.found.append(f"there are {grid.count} cases; expected 1 to {MOST_CASES}")
-    if isinstance(made, SystemScene) and arguments.duration is None and None in named.values():
+    if not 0 < grid.count <= MAX_CASES:
+        faults.found.append(f"there are {grid.count} cases; expected 1 to {MAX_CASES}")
+    if isinstance(swept, SystemScene) and arguments.duration is None and None in named.values():
         faults.found.append("nothing to simulate: give motions, or a duration for a still ground")
     of_runs = arguments
-    histories = faults.tried(lambda: kept_histories(made, named, of_runs, outputs), None)
+    histories = faults.attempt(lambda: kept_histories(swept, named, of_runs, outputs), None)
     if histories is not None and len({*map(default_output_step, named.values())}) > 1:
         arguments = replace(arguments, output_step=histories.step)  # at the times that are kept
-    numbers = numbers_of_case(arguments, histories, screened=screened)
-    way_out = LAZILY if kept else remedies(arguments, histories, may_be_kept=kept is False)
-    too_large = check_memory(numbers, grid.count, way_out, owner=OWNER)
+    numbers = numbers_per_case(arguments, histories, screened=screened)
+    advice = (
+        LAZY_ADVICE if kept else memory_remedies(arguments, histories, may_be_kept=kept is False)
+    )
+    too_large = check_memory(numbers, grid.count, advice, owner=OWNER)
     if kept and not faults.found:
         for text in too_large:
             warn(f"{OWNER}: {text}", SolverWarning)
@@ -175,28 +187,28 @@ def plan_study(
     if faults.found:
         raise StudyError(*faults.found)
     return Study(
-        made, grid, named, arguments, seconds, histories, screened=screened,
-        handed_over=handed_over, lazy=bool(too_large),
+        swept, grid, named, arguments, seconds, histories, screened=screened,
+        screening_skipped=screening_skipped, lazy=bool(too_large),
     )  # fmt: skip
 
 
-def _grid(
+def _read_grid(
     scene: SweptScene, axes: Mapping[str, object], cases: object, motions: list[str], faults: Faults
 ) -> Grid:
     """Read the axes and the table of cases, and give all cases under the motions of these names."""
     of_case: Generic | None = None
-    table = faults.tried(lambda: _table(cases), {})
+    table = faults.attempt(lambda: _read_table(cases), {})
     if MOTION in table:
         column = np.asarray(table.pop(MOTION)).tolist()
-        of_case = faults.tried(
+        of_case = faults.attempt(
             lambda: np.array(
                 [motion_number(one, motions, owner="cases") for one in column], np.intp
             ),
             None,
         )
-    rows = _read(scene, table, faults, repeats=True)
-    grid_axes = _read(scene, axes, faults, repeats=False)
-    faults.found += _twice(rows, grid_axes)
+    rows = _read_axes(scene, table, faults, repeats=True)
+    grid_axes = _read_axes(scene, axes, faults, repeats=False)
+    faults.found += _duplicate_faults(rows, grid_axes)
     faults.found += scene.faults([*rows, *grid_axes])
     lengths = {axis.name: len(axis.values) for axis in rows}
     lengths |= {} if of_case is None else {MOTION: len(of_case)}
@@ -206,7 +218,7 @@ def _grid(
     return Grid(tuple(grid_axes), tuple(rows), len(motions), of_case)
 
 
-def _pays_to_screen(system: Assembly, motions: Iterable[GroundMotion | None]) -> bool:
+def _is_screening_cheaper(system: Assembly, motions: Iterable[GroundMotion | None]) -> bool:
     """Say whether two runs by fixed steps cost less than one by tolerance.
 
     On rigid ground there are no more steps by tolerance. Under pulses in closed form there are
@@ -220,7 +232,7 @@ def _pays_to_screen(system: Assembly, motions: Iterable[GroundMotion | None]) ->
     )
 
 
-def _table(cases: object) -> dict[str, object]:
+def _read_table(cases: object) -> dict[str, object]:
     """Read the table of cases: its columns by their names, with the units in their heads."""
     if cases is None:
         return {}
@@ -244,12 +256,8 @@ def _table(cases: object) -> dict[str, object]:
     return table
 
 
-def _read(
-    scene: SweptScene,
-    arguments: Mapping[str, object],
-    faults: Faults,
-    *,
-    repeats: bool,
+def _read_axes(
+    scene: SweptScene, arguments: Mapping[str, object], faults: Faults, *, repeats: bool
 ) -> list[Axis]:
     """Read axes, or columns; note what is wrong."""
     found: list[Axis] = []
@@ -258,7 +266,7 @@ def _read(
         if fault:
             faults.found.append(fault)
             continue
-        axis = faults.tried(lambda name=name, values=values: scene.axis(name, values), None)
+        axis = faults.attempt(lambda name=name, values=values: scene.axis(name, values), None)
         if axis is None:
             continue
         found.append(axis)
@@ -272,13 +280,13 @@ def _name_fault(name: object) -> str | None:
         written = re.sub(r"[^\w.]", "_", name) if isinstance(name, str) else ""
         way = f"; write {written!r} for what is called so" if "." in written else ""
         return f"{shown(name)} cannot be the name of an axis{way}"
-    if name in _TAKEN:
+    if name in _RESERVED_NAMES:
         way = "; write 'System.rotation' for the option" if name == "rotation" else ""
         return f"axis {name!r} has the name of a result, or of a dimension of results{way}"
     return None
 
 
-def _twice(rows: Iterable[Axis], axes: Iterable[Axis]) -> list[str]:
+def _duplicate_faults(rows: Iterable[Axis], axes: Iterable[Axis]) -> list[str]:
     """Tell what is both a column and an axis, and motions that are scaled in two ways."""
     columns = [axis.name for axis in rows]
     along = [axis.name for axis in axes]
@@ -296,13 +304,15 @@ def _twice(rows: Iterable[Axis], axes: Iterable[Axis]) -> list[str]:
     return faults
 
 
-def _period(value: QuantityLike | None, axes: Iterable[Axis]) -> float | None:
-    needed = any(axis.changes is Changes.MOTION and axis.name == SPECTRAL for axis in axes)
+def _read_period(value: QuantityLike | None, axes: Iterable[Axis]) -> float | None:
+    needed = any(
+        axis.changes is Changes.MOTION and axis.name == SPECTRAL_ACCELERATION for axis in axes
+    )
     if needed != (value is not None):
         msg = (
-            f"{SPECTRAL} needs the period of its oscillator, for example period='0.5 s'"
+            f"{SPECTRAL_ACCELERATION} needs the period of its oscillator, such as period='0.5 s'"
             if needed
-            else f"period is that of {SPECTRAL}, which is no axis"
+            else f"period is that of {SPECTRAL_ACCELERATION}, which is no axis"
         )
         raise StudyError(msg)
     if value is None:

@@ -17,30 +17,30 @@ from rockframe.results.outcome import Generic
 from rockframe.results.schema import SCHEMA
 from rockframe.shared_arguments import suggestion
 from rockframe.simulation.system import System
-from rockframe.studies.sweeps.arguments import OF_A_SWEEP
+from rockframe.studies.sweeps.arguments import SWEEP_ARGUMENT_NAMES
 from rockframe.studies.sweeps.axes import (
     OWNER,
     Axis,
     Changes,
-    free_values,
-    items_of,
-    numbers_of,
-    words_of,
+    as_list,
+    read_free_values,
+    read_numbers,
+    read_words,
 )
-from rockframe.studies.sweeps.identity import name_of
-from rockframe.studies.sweeps.motions import TARGETS, full_name, named_motions
+from rockframe.studies.sweeps.identity import name_of_function
+from rockframe.studies.sweeps.motions import MOTION_AXES, full_name, named_motions
 from rockframe.system.assembly import Assembly, assemble_parts
 from rockframe.system.links import axis_name, link_labels
 from rockframe.system.options import NUMERIC_OPTIONS, Coupling, Restraint, Rotation, Sliding
 from rockframe.units import Measure, Unit, quantity
 
-STARTS: Final = {
+START_AXES: Final = {
     f"initial_{name}": (name, one.measure)
     for name, one in InitialState.declared().items()
     if one.measure is not None
 }
 """Axes by their names: which parameter of an initial state each changes, and its kind."""
-BY_FUNCTION: Final = "instead of the system give a function of the axis that returns a System"
+FUNCTION_ADVICE: Final = "instead of the system give a function of the axis that returns a System"
 """Advice for axes that no parameter of a scene's own parts has."""
 
 
@@ -66,16 +66,16 @@ class SystemScene:
     def axis(self, name: str, value: object) -> Axis:
         """Read an axis that names the motion's scale, an option, or a parameter of a part."""
         name = full_name(name)
-        of_run = _of_run(name, value)
+        of_run = _run_axis(name, value)
         if of_run is not None:
             return of_run
         kind, _, parameter = name.rpartition(".")
         if parameter in _OPTIONS and kind in ("", _SYSTEM):
-            return _of_option(name, parameter, value)
-        found = self._having(parameter, kind, self.assembly.parts.components)
-        found = found or self._having(parameter, kind, self._parts())
+            return _option_axis(name, parameter, value)
+        found = self._parts_with(parameter, kind, self.assembly.parts.components)
+        found = found or self._parts_with(parameter, kind, self._parts())
         if len(found) != 1:
-            raise StudyError(self._not_one(name, parameter, [part for _, part, _ in found]))
+            raise StudyError(self._ambiguity_fault(name, parameter, [part for _, part, _ in found]))
         ((slot, part, declared),) = found
         if not declared.single:
             msg = (
@@ -90,7 +90,7 @@ class SystemScene:
             )
             raise StudyError(msg)
         values, unit = _declared_values(value, declared, name)
-        _caution(declared, values, type(part).__name__)
+        _warn_of_unusual_values(declared, values, type(part).__name__)
         words = declared.__doc__ or parameter
         long_name = words.split(" [")[0].rstrip(".")
         return Axis(name, values, unit, long_name, Changes.PART, parameter, slot)
@@ -119,7 +119,7 @@ class SystemScene:
                 found.append(f"axes {names} of {type(part).__name__} determine its size twice")
             behind = part.left_behind([*values])
             if behind:
-                found.append(_left_behind(part, behind, values))
+                found.append(_unchanged_parameter_fault(part, behind, values))
         return found
 
     def with_parts_of(self, axes: Iterable[Axis]) -> "SystemScene":
@@ -142,7 +142,7 @@ class SystemScene:
                 by_slot.setdefault(axis.slot, {})[axis.parameter] = value
         changed = {slot: parts[slot].with_si(each) for slot, each in by_slot.items()}
         other = {
-            axis.parameter: _option(axis.parameter, value)
+            axis.parameter: _option_value(axis.parameter, value)
             for axis, value in values.items()
             if axis.changes is Changes.OPTION
         }
@@ -159,17 +159,17 @@ class SystemScene:
         options: dict[str, Any] = assembly.options.to_dict()
         return System(*assembly.parts.structural(), **options)
 
-    def _having(
+    def _parts_with(
         self, parameter: str, kind: str, parts: Mapping[str, Component]
     ) -> list[tuple[str, Component, Declared[Any, Any]]]:
         """Return the parts that have a parameter, with their slots and its declaration."""
         return [
             (slot, part, part.varied()[parameter])
             for slot, part in parts.items()
-            if parameter in part.varied() and kind in ("", *self._called(part))
+            if parameter in part.varied() and kind in ("", *self._names_of(part))
         ]
 
-    def _called(self, part: Component) -> list[str]:
+    def _names_of(self, part: Component) -> list[str]:
         """Return what axes may call a part: its class, and those that it is derived from.
 
         A link first what results call it, in one word: "restrainer 1" is restrainer_1.
@@ -181,11 +181,11 @@ class SystemScene:
         words = map(axis_name, own)
         return [*words, *own, *(kind.__name__ for kind in kinds if kind != Component)]
 
-    def _not_one(self, name: str, parameter: str, having: list[Component]) -> str:
+    def _ambiguity_fault(self, name: str, parameter: str, having: list[Component]) -> str:
         if having:
             kinds = [type(part).__name__ for part in having]
             if len(set(kinds)) < len(kinds):  # several links
-                kinds = [self._called(part)[0] for part in having]
+                kinds = [self._names_of(part)[0] for part in having]
             ways = " or ".join(f"'{kind}.{parameter}'" for kind in kinds)
             return (
                 f"axis {name!r} is a parameter of {' and '.join(kinds)}; name one, in "
@@ -193,7 +193,7 @@ class SystemScene:
             )
         parts = self._parts().values()
         known = [
-            f"{self._called(part)[0]}.{parameter}"
+            f"{self._names_of(part)[0]}.{parameter}"
             for part in parts
             if "." in name and parameter in part.varied()
         ]
@@ -202,22 +202,22 @@ class SystemScene:
                 f"axis {name!r} names no part that has {parameter!r}{suggestion(name, known)} "
                 f"There are {', '.join(known)}"
             )
-        known = [*TARGETS, *_OPTIONS, *STARTS]
+        known = [*MOTION_AXES, *_OPTIONS, *START_AXES]
         known += [one for part in parts for one, each in part.varied().items() if each.single]
         listed = ", ".join(dict.fromkeys(known))
-        if parameter in OF_A_SWEEP:
+        if parameter in SWEEP_ARGUMENT_NAMES:
             return f"axis {name!r} is an argument of the runs, alike in all; axes are {listed}"
         for part in parts:
-            if any(parameter in one.varied() for one in _made_of(part)):
+            if any(parameter in one.varied() for one in _inner_parts(part)):
                 return (
                     f"axis {name!r} is a parameter of a part of the {type(part).__name__}; "
-                    + BY_FUNCTION
+                    + FUNCTION_ADVICE
                 )
-        question = suggestion(parameter, [*known, *OF_A_SWEEP])
+        question = suggestion(parameter, [*known, *SWEEP_ARGUMENT_NAMES])
         return f"axis {name!r} names no parameter{question} There are {listed}"
 
 
-def _made_of(part: Component) -> list[Component]:
+def _inner_parts(part: Component) -> list[Component]:
     """Return the parts within a part, whose parameters no axis names."""
     if isinstance(part, Stack):
         return [*part.bodies, *part.interfaces]
@@ -238,10 +238,10 @@ class FunctionScene:
         argument = inspect.signature(self.function).parameters.get(name)
         if argument is None or argument.kind not in kinds:
             name = full_name(name)
-            of_run = _of_run(name, value)
+            of_run = _run_axis(name, value)
             if of_run is not None:
                 return of_run
-        values, unit = free_values(value, name)
+        values, unit = read_free_values(value, name)
         return Axis(name, values, unit, name.replace("_", " "), Changes.ARGUMENT, name)
 
     def faults(self, axes: Iterable[Axis]) -> list[str]:
@@ -252,7 +252,9 @@ class FunctionScene:
             signature.bind(**values)
         except TypeError as problem:
             unknown = [name for name in values if name not in signature.parameters]
-            question = suggestion(unknown[0], OF_A_SWEEP).removesuffix(".") if unknown else ""
+            question = (
+                suggestion(unknown[0], SWEEP_ARGUMENT_NAMES).removesuffix(".") if unknown else ""
+            )
             return [f"the axes do not fit the arguments of {self.name}: {problem}{question}"]
         return []
 
@@ -277,7 +279,7 @@ class FunctionScene:
     @property
     def name(self) -> str:
         """Name of the function."""
-        return name_of(self.function)
+        return name_of_function(self.function)
 
 
 SweptScene: TypeAlias = SystemScene | FunctionScene
@@ -310,7 +312,9 @@ def needed_motions(value: object, scene: SweptScene, *, owner: str) -> dict[str,
     return named
 
 
-def _left_behind(part: Component, behind: tuple[str, ...], values: Mapping[str, str]) -> str:
+def _unchanged_parameter_fault(
+    part: Component, behind: tuple[str, ...], values: Mapping[str, str]
+) -> str:
     """Say which axes would leave unchanged a parameter that depends on theirs."""
     names = [name for parameter, name in values.items() if part.left_behind([parameter])]
     axes = f"{'axis' if len(names) == 1 else 'axes'} {' and '.join(map(repr, names))}"
@@ -324,35 +328,35 @@ def _left_behind(part: Component, behind: tuple[str, ...], values: Mapping[str, 
     )
 
 
-def _of_run(name: str, value: object) -> Axis | None:
+def _run_axis(name: str, value: object) -> Axis | None:
     """Read an axis that scales the motion, or changes where runs start; None of any other."""
-    if name in TARGETS:
+    if name in MOTION_AXES:
         words = SCHEMA[name].long_name
-        return _of_numbers(name, value, TARGETS[name].measure, words, Changes.MOTION, name)
-    if name in STARTS:
-        parameter, measure = STARTS[name]
+        return _number_axis(name, value, MOTION_AXES[name].measure, words, Changes.MOTION, name)
+    if name in START_AXES:
+        parameter, measure = START_AXES[name]
         words = name.replace("_", " ")
-        return _of_numbers(name, value, measure, words, Changes.START, parameter)
+        return _number_axis(name, value, measure, words, Changes.START, parameter)
     return None
 
 
-def _of_numbers(
+def _number_axis(
     name: str, value: object, measure: Measure, words: str, changes: Changes, parameter: str
 ) -> Axis:
-    values = numbers_of(value, measure, name)
+    values = read_numbers(value, measure, name)
     return Axis(name, values, str(measure.unit), words, changes, parameter)
 
 
-def _of_option(name: str, option: str, value: object) -> Axis:
+def _option_axis(name: str, option: str, value: object) -> Axis:
     if option in NUMERIC_OPTIONS:
         one = NUMERIC_OPTIONS[option]
-        return _of_numbers(name, value, one.measure, one.description, Changes.OPTION, option)
+        return _number_axis(name, value, one.measure, one.description, Changes.OPTION, option)
     kind, words = _CHOICES[option]
-    values = words_of(value, lambda word: one_of_words(kind, word, owner=OWNER, name=name))
+    values = read_words(value, lambda word: one_of_words(kind, word, owner=OWNER, name=name))
     return Axis(name, values, None, words, Changes.OPTION, option)
 
 
-def _option(name: str, value: Any) -> Any:
+def _option_value(name: str, value: Any) -> Any:
     if name in _CHOICES:
         return _CHOICES[name][0](value)
     one = NUMERIC_OPTIONS[name]
@@ -366,16 +370,16 @@ def _declared_values(
     value: object, one: Declared[Any, Any], name: str
 ) -> tuple[Generic, str | None]:
     if isinstance(one, Count):
-        numbers = numbers_of(value, Measure("a whole number", Unit.ONE, "2"), name)
+        numbers = read_numbers(value, Measure("a whole number", Unit.ONE, "2"), name)
         return np.array([one.read(number, OWNER) for number in numbers.tolist()]), str(Unit.ONE)
     if isinstance(one, Flag):
-        return np.array([one.read(word, OWNER) for word in items_of(value)]), None
+        return np.array([one.read(word, OWNER) for word in as_list(value)]), None
     if one.measure is None:
-        return words_of(value, lambda word: one.read(word, OWNER)), None
-    return numbers_of(value, one.measure, name), str(one.measure.unit)
+        return read_words(value, lambda word: one.read(word, OWNER)), None
+    return read_numbers(value, one.measure, name), str(one.measure.unit)
 
 
-def _caution(one: Declared[Any, Any], values: Generic, owner: str) -> None:
+def _warn_of_unusual_values(one: Declared[Any, Any], values: Generic, owner: str) -> None:
     """Warn of unusual values, as the part itself would."""
     if isinstance(one, Choice | Text) or type(one).caution is Declared.caution:
         return

@@ -25,13 +25,13 @@ from rockframe.results.schema import SOURCE, history_line
 from rockframe.studies.sweeps.axes import Axis, Chunk, Grid, chunks_of
 from rockframe.studies.sweeps.chunk import CaseResults
 from rockframe.studies.sweeps.identity import difference
-from rockframe.studies.sweeps.labelling import Labels, sweep_labels
+from rockframe.studies.sweeps.labelling import SweepLabels, sweep_labels
 from rockframe.studies.sweeps.study import Histories, Study
 from rockframe.version import __version__
 
-_HEAD: Final = b"rockframe arrays 1 "
-_DIGEST: Final = 64
-_AGAIN: Final = "remove the file, and the same sweep makes it again"
+_MAGIC: Final = b"rockframe arrays 1 "
+_DIGEST_LENGTH: Final = 64
+_REMEDY: Final = "remove the file, and the same sweep makes it again"
 """What to do about a damaged file."""
 _BLOCK: Final = 4096
 """Usual allocation unit of file systems [bytes]."""
@@ -47,24 +47,24 @@ def write_arrays(path: Path, described: Mapping[str, Any], arrays: Mapping[str, 
     line = json.dumps({"described": dict(described), "arrays": shapes})
     body = b"".join([line.encode(), b"\n", *(values.tobytes() for values in plain.values())])
     digest = hashlib.sha256(body).hexdigest().encode()
-    write_whole(path, b"".join([_HEAD, digest, b"\n", body]))
+    write_atomically(path, b"".join([_MAGIC, digest, b"\n", body]))
 
 
 def read_arrays(path: Path) -> tuple[dict[str, Any], dict[str, Generic]]:
     """Read a file."""
     content = path.read_bytes()
-    start = len(_HEAD) + _DIGEST + 1
-    if not content.startswith(_HEAD):
+    start = len(_MAGIC) + _DIGEST_LENGTH + 1
+    if not content.startswith(_MAGIC):
         msg = (
-            f"{path}: found no file of a study; expected one that begins with {_HEAD.decode()!r}; "
-            f"{_AGAIN}"
+            f"{path}: found no file of a study; expected one that begins with {_MAGIC.decode()!r}; "
+            f"{_REMEDY}"
         )
         raise StudyError(msg)
-    digest, body = content[len(_HEAD) : start - 1], memoryview(content)[start:]
+    digest, body = content[len(_MAGIC) : start - 1], memoryview(content)[start:]
     if hashlib.sha256(body).hexdigest().encode() != digest:
         msg = (
             f"{path}: damaged: its contents ({len(content)} bytes) are not those that were "
-            f"written; {_AGAIN}"
+            f"written; {_REMEDY}"
         )
         raise StudyError(msg)
     end = content.index(b"\n", start)
@@ -87,11 +87,11 @@ def read_shapes(path: Path) -> dict[str, tuple[int, ...]]:
             head = json.loads(file.readline())
             return {name: tuple(shape) for name, _, shape in head["arrays"]}
         except (ValueError, KeyError, TypeError) as problem:
-            msg = f"{path}: damaged: {problem}; {_AGAIN}"
+            msg = f"{path}: damaged: {problem}; {_REMEDY}"
             raise StudyError(msg) from problem
 
 
-def write_whole(path: Path, content: bytes, *, replace: bool = True) -> None:
+def write_atomically(path: Path, content: bytes, *, replace: bool = True) -> None:
     """Write a file atomically, even if this process is killed."""
     part = path.with_name(f".{path.name}.{os.getpid()}.{os.urandom(4).hex()}.part")
     try:
@@ -113,20 +113,20 @@ def write_whole(path: Path, content: bytes, *, replace: bool = True) -> None:
 
 
 FORMAT: Final = 3
-IN_FOLDERS: Final = 4
+FOLDER_FORMAT: Final = 4
 """Format of studies whose chunks stand in folders of their own, since they are many."""
-FILES_OF_A_FOLDER: Final = 1000
+MAX_FILES_PER_FOLDER: Final = 1000
 """Most chunks of a folder; file systems, and tools that list folders, are slow with many more."""
-_WITHOUT_ORDER: Final = (1, 2)
+_OBSOLETE_FORMATS: Final = (1, 2)
 """Formats with motions in another order, whose digests left out what functions use."""
 _STUDY: Final = "study.json"
 _LABELS: Final = "labels.arrays"
 _FOLDERS: Final = "chunks-*/"
-_LEFT_OVER: Final = 3600.0
+_STALE_AGE: Final = 3600.0
 """Age from which on a half-written file belongs to a process that was killed [s]."""
 _COLUMN: Final = "motion of case"
 _SCALAR, _HISTORY, _MOTION = "scalar ", "history ", "motion "
-_OF_CHUNKS: Final = ("status", "message")
+_CHUNK_ARRAYS: Final = ("status", "message")
 """Arrays of every chunk besides scalars and histories."""
 _SAMPLED: Final = ("horizontal", "vertical")
 
@@ -144,24 +144,24 @@ class Store:
     in_folders: bool  # whether chunks stand in folders of their own
 
     @classmethod
-    def of_study(cls, path: Path, study: Study, chunk: int) -> "Store":
+    def open_or_create(cls, path: Path, study: Study, chunk: int) -> "Store":
         """Open the folder of a study, or make it."""
         try:
             if not (path / _STUDY).exists():
-                _make(path, study, chunk)
-            _remove_left_over(path)
+                _create(path, study, chunk)
+            _remove_stale_parts(path)
         except OSError as problem:
-            raise _cannot_be_kept(path, problem) from problem
-        kept = _read_head(path)
-        if kept["rockframe_version"] != __version__:
+            raise _storage_error(path, problem) from problem
+        head = _read_head(path)
+        if head["rockframe_version"] != __version__:
             msg = (
-                f"{path}: found a study of rockframe {kept['rockframe_version']}, whose numbers "
+                f"{path}: found a study of rockframe {head['rockframe_version']}, whose numbers "
                 f"may be others than those of this one, {__version__}; it can be read "
                 "(rf.open_study) and not gone on with: run the study again, in another folder"
             )
             raise StudyError(msg)
-        if kept["study_sha256"] != study.digest:
-            differs = difference(kept["study"], json.loads(json.dumps(study.to_dict())))
+        if head["study_sha256"] != study.digest:
+            differs = difference(head["study"], json.loads(json.dumps(study.to_dict())))
             msg = (
                 f"{path}: found another study, which differs in {', '.join(differs)}; expected "
                 "the one that is asked for: give another folder"
@@ -169,21 +169,21 @@ class Store:
             raise StudyError(msg)
         if not (path / _LABELS).exists():  # removed, as damaged files should be
             try:
-                _make(path, study, kept["cases_of_a_chunk"])
+                _create(path, study, head["cases_of_a_chunk"])
             except OSError as problem:
-                raise _cannot_be_kept(path, problem) from problem
-        return cls._of_head(path, kept)
+                raise _storage_error(path, problem) from problem
+        return cls._from_head(path, head)
 
     @classmethod
-    def at(cls, path: Path) -> "Store":
+    def open(cls, path: Path) -> "Store":
         """Open a folder that holds a study."""
-        return cls._of_head(path, _read_head(path))
+        return cls._from_head(path, _read_head(path))
 
     @classmethod
-    def _of_head(cls, path: Path, kept: Mapping[str, Any]) -> "Store":
+    def _from_head(cls, path: Path, head: Mapping[str, Any]) -> "Store":
         return cls(
-            path, kept["study_sha256"], kept["cases"], kept["cases_of_a_chunk"], kept["history"],
-            kept["rockframe_version"], kept["format"] == IN_FOLDERS,
+            path, head["study_sha256"], head["cases"], head["cases_of_a_chunk"], head["history"],
+            head["rockframe_version"], head["format"] == FOLDER_FORMAT,
         )  # fmt: skip
 
     def provenance(self) -> dict[str, str]:
@@ -194,7 +194,7 @@ class Store:
             "rockframe_version": self.version,
         }
 
-    def described(self) -> dict[str, Any]:
+    def description(self) -> dict[str, Any]:
         """Return the description of the study made when it was begun."""
         return _read_head(self.folder)["study"]
 
@@ -213,7 +213,7 @@ class Store:
     def put(self, chunk: Chunk, rows: CaseResults) -> None:
         """Store the results of a chunk."""
         arrays = {
-            **dict(zip(_OF_CHUNKS, (rows.status, rows.message), strict=True)),
+            **dict(zip(_CHUNK_ARRAYS, (rows.status, rows.message), strict=True)),
             **{f"{_SCALAR}{name}": each for name, each in sorted(rows.scalars.items())},
             **{f"{_HISTORY}{name}": each for name, each in sorted(rows.histories.items())},
         }
@@ -227,13 +227,13 @@ class Store:
             )
             raise StudyError(msg) from problem
 
-    def check(self) -> None:
+    def check_writable(self) -> None:
         """Check that results can be stored, before hours of work."""
         part = self.folder / f".{os.getpid()}.{os.urandom(4).hex()}.part"
         try:
             part.write_bytes(bytes(_BLOCK))
         except OSError as problem:
-            raise _cannot_be_kept(self.folder, problem) from problem
+            raise _storage_error(self.folder, problem) from problem
         finally:
             with suppress(OSError):
                 part.unlink(missing_ok=True)
@@ -250,7 +250,7 @@ class Store:
                 f"{chunk.cases.stop - 1}"
             )
             raise StudyError(msg)
-        status, message = (arrays.pop(name) for name in _OF_CHUNKS)
+        status, message = (arrays.pop(name) for name in _CHUNK_ARRAYS)
         scalars, histories = (
             {
                 name.removeprefix(kind): each
@@ -261,7 +261,7 @@ class Store:
         )
         return CaseResults(status, scalars, histories, message, tuple(texts))
 
-    def found(self) -> Iterator[tuple[range, CaseResults]]:
+    def results(self) -> Iterator[tuple[range, CaseResults]]:
         """Return all stored results."""
         for chunk in self.chunks():
             if self.has(chunk):
@@ -276,9 +276,9 @@ class Store:
                 plain = name.removeprefix(_SCALAR).removeprefix(_HISTORY)
                 # of unlike numbers of bodies or restrainers there is room for the most
                 found[plain] = tuple(map(max, found.get(plain, shape[1:]), shape[1:]))
-        return {name: found[name] for name in found if name not in _OF_CHUNKS}, len(files)
+        return {name: found[name] for name in found if name not in _CHUNK_ARRAYS}, len(files)
 
-    def labels(self) -> Labels:
+    def labels(self) -> SweepLabels:
         """Read the labels of the study."""
         described, arrays = _read(self.folder / _LABELS)
         axes, columns = (
@@ -296,13 +296,13 @@ class Store:
             which = None if kept["names"] is None else tuple(kept["names"])
             histories = Histories(which, kept["step"], kept["count"])
         points = tuple(BodyPoint(**one) for one in described["points"])
-        return Labels(grid, names, histories, points, described["attributes"])
+        return SweepLabels(grid, names, histories, points, described["attributes"])
 
     def motions(self) -> dict[str, GroundMotion | None]:
         """Read the motions of the study."""
         described, arrays = _read(self.folder / _LABELS)
         for k, (_, one) in enumerate(described["motions"]):
-            for component, held in _sampled(one).items():
+            for component, held in _sampled_components(one).items():
                 for what in held:
                     held[what] = arrays[f"{_MOTION}{k} {component} {what}"]
         return {
@@ -314,7 +314,7 @@ class Store:
         file = f"chunk-{chunk.number:06d}.arrays"
         if not self.in_folders:
             return self.folder / file
-        return self.folder / f"chunks-{chunk.number // FILES_OF_A_FOLDER:04d}" / file
+        return self.folder / f"chunks-{chunk.number // MAX_FILES_PER_FOLDER:04d}" / file
 
     def _described(self, chunk: Chunk) -> dict[str, Any]:
         return {
@@ -324,11 +324,11 @@ class Store:
         }
 
 
-def _cannot_be_kept(path: Path, problem: OSError) -> StudyError:
+def _storage_error(path: Path, problem: OSError) -> StudyError:
     return StudyError(f"the study cannot be kept in {path}: {problem}")
 
 
-def _make(path: Path, study: Study, chunk: int) -> None:
+def _create(path: Path, study: Study, chunk: int) -> None:
     """Write what a study is; ``study.json`` comes last, and stays what it is."""
     path.mkdir(parents=True, exist_ok=True)
     labels = sweep_labels(study)
@@ -340,21 +340,21 @@ def _make(path: Path, study: Study, chunk: int) -> None:
         "motions": [],  # in their order, in which cases are counted
     }
     for kind, axes in (("axes", labels.grid.axes), ("columns", labels.grid.columns)):
-        described[kind] = [(axis.to_dict(), _words(axis)) for axis in axes]
-        arrays |= {axis.name: axis.values for axis in axes if _words(axis) is None}
+        described[kind] = [(axis.to_dict(), _word_values(axis)) for axis in axes]
+        arrays |= {axis.name: axis.values for axis in axes if _word_values(axis) is None}
     if labels.grid.motion_column is not None:
         arrays[_COLUMN] = labels.grid.motion_column
     for k, (name, motion) in enumerate(study.motions.items()):
         one = None if motion is None else motion.to_dict(samples=True)
-        for component, held in _sampled(one).items():
+        for component, held in _sampled_components(one).items():
             for what, values in held.items():
                 arrays[f"{_MOTION}{k} {component} {what}"] = np.array(values)
                 held[what] = None
         described["motions"].append((name, one))
     write_arrays(path / _LABELS, described, arrays)
-    many = study.grid.count > FILES_OF_A_FOLDER * chunk
+    many = study.grid.count > MAX_FILES_PER_FOLDER * chunk
     head = {
-        "format": IN_FOLDERS if many else FORMAT,
+        "format": FOLDER_FORMAT if many else FORMAT,
         "rockframe_version": __version__,
         "history": history_line("begun"),
         "study_sha256": study.digest,
@@ -363,15 +363,15 @@ def _make(path: Path, study: Study, chunk: int) -> None:
         "study": study.to_dict(),
     }
     text = json.dumps(head, indent=1)
-    write_whole(path / _STUDY, f"{text}\n".encode(), replace=False)
+    write_atomically(path / _STUDY, f"{text}\n".encode(), replace=False)
 
 
-def _words(axis: Axis) -> list[str] | None:
+def _word_values(axis: Axis) -> list[str] | None:
     """Return the values of an axis that are words."""
     return axis.values.tolist() if axis.values.dtype.kind == "U" else None
 
 
-def _sampled(one: Mapping[str, Any] | None) -> dict[str, dict[str, Any]]:
+def _sampled_components(one: Mapping[str, Any] | None) -> dict[str, dict[str, Any]]:
     """Return the components that a motion is described by, where it is described by samples.
 
     What a constructor makes is described by its arguments, and ``vertical`` may be one of them.
@@ -392,9 +392,9 @@ def _read(path: Path) -> tuple[dict[str, Any], dict[str, Generic]]:
 def _read_head(path: Path) -> dict[str, Any]:
     file = path / _STUDY
     try:
-        kept: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
-        version, form = kept["rockframe_version"], kept["format"]
-        whole = {"study_sha256", "cases", "cases_of_a_chunk", "history", "study"} <= set(kept)
+        head: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+        version, form = head["rockframe_version"], head["format"]
+        whole = {"study_sha256", "cases", "cases_of_a_chunk", "history", "study"} <= set(head)
     except FileNotFoundError as problem:
         msg = f"{path}: found no study; expected a folder with {_STUDY}"
         raise StudyError(msg) from problem
@@ -404,30 +404,30 @@ def _read_head(path: Path) -> dict[str, Any]:
     except (ValueError, KeyError, TypeError) as problem:
         msg = f"{file}: damaged: {problem}"
         raise StudyError(msg) from problem
-    if form not in (FORMAT, IN_FOLDERS):
+    if form not in (FORMAT, FOLDER_FORMAT):
         why = "which this version cannot read"
-        if form in _WITHOUT_ORDER:
+        if form in _OBSOLETE_FORMATS:
             why = "which does not tell for certain whose results it holds"
         msg = (
             f"{path}: found a study of rockframe {version} (format {form}), {why}; this is "
-            f"rockframe {__version__} (formats {FORMAT} and {IN_FOLDERS}): run the study again, in "
-            "another folder"
+            f"rockframe {__version__} (formats {FORMAT} and {FOLDER_FORMAT}): run the study again, "
+            "in another folder"
         )
         raise StudyError(msg)
     if not whole:
         msg = f"{file}: damaged: entries are missing"
         raise StudyError(msg)
-    return kept
+    return head
 
 
-def _remove_left_over(path: Path) -> None:
+def _remove_stale_parts(path: Path) -> None:
     for part in (*path.glob(".*.part"), *path.glob(f"{_FOLDERS}.*.part")):
         with suppress(OSError):
-            if time.time() - part.stat().st_mtime > _LEFT_OVER:
+            if time.time() - part.stat().st_mtime > _STALE_AGE:
                 part.unlink()
 
 
-def begin_with(chunks: list[Chunk]) -> list[Chunk]:
+def staggered(chunks: list[Chunk]) -> list[Chunk]:
     """Let each process begin elsewhere, so that several on one study seldom ask for the same."""
     first = (os.getpid() * 2_654_435_761) % len(chunks) if chunks else 0
     return [*chunks[first:], *chunks[:first]]

@@ -18,30 +18,30 @@ from rockframe.studies.sweeps.scenes import FunctionScene, SweptScene, SystemSce
 from rockframe.system.assembly import Assembly
 from rockframe.version import __version__
 
-LONG_ENOUGH: Final = 1.0
+CHUNK_TIME: Final = 1.0
 """Target time of a chunk, so that submitting it costs little [s]."""
-LARGEST_CHUNK: Final = 10_000
-FEWEST_IN_LANES: Final = 16
+MAX_CHUNK: Final = 10_000
+MIN_CASES_IN_LANES: Final = 16
 """Number of cases below which lanes are partly empty and save almost nothing."""
-FEWEST_OF_LANES: Final = 64
+MIN_CHUNK_IN_LANES: Final = 64
 """Number of cases of a chunk below which lanes are partly empty."""
 COMPILING_SHARE: Final = 1.0
 """Longest time to compile what lanes need, over the time that they save in the sweep."""
-IN_LANES: Final = 0.25
+LANE_TIME_RATIO: Final = 0.25
 """Time of a run in lanes, over that of a run alone [1]."""
-_OVERHEAD: Final = 5e-4
+_RUN_OVERHEAD: Final = 5e-4
 """Time for a run, without its integration [s]."""
-_FIXED: Final = 4e-7
+_TIME_OF_FIXED_STEPS: Final = 4e-7
 """Time for an interval of the motion, with fixed sub-steps [s]."""
-_BY_TOLERANCE: Final = 2e-6
+_TIME_OF_ADAPTIVE_STEPS: Final = 2e-6
 """The same at the tolerance of the level standard [s]."""
-_SCREENED: Final = 2.5
+_SCREENING_RATIO: Final = 2.5
 """Time of a run and of one with 1.5 times as many steps, over that of the first."""
-_SLOWER: Final = 300.0
+_PYTHON_SLOWDOWN: Final = 300.0
 """Without compilation."""
-_SCENES_TOLD: Final = 16
+_INSPECTED_SCENES: Final = 16
 """Number of cases at which the result of a function is inspected."""
-_GOLDEN: Final = 0.6180339887498949
+_GOLDEN_RATIO: Final = 0.6180339887498949
 """The golden section, by whose multiples these cases are spread evenly, whatever their number."""
 
 
@@ -71,7 +71,7 @@ class SweepJob:
     period: float | None  # of the oscillator, where spectral values are a target [s]
     histories: Histories | None  # what is kept beside scalars
     # longest time to compile what lanes need [s]; None where no cases run in lanes
-    patience: float | None
+    compile_timeout: float | None
     # whether each is run twice, and again by tolerance where its verdict is in doubt
     screened: bool
     restrainers: tuple[str, ...]  # what results call those of all cases; nothing where unlike
@@ -90,7 +90,7 @@ class Study:
     # whether each case is run twice, and again by tolerance where its verdict is in doubt
     screened: bool = False
     # whether that was requested but each is run by tolerance, which costs less
-    handed_over: bool = field(default=False, compare=False)
+    screening_skipped: bool = field(default=False, compare=False)
     # whether the result is larger than the memory, which is no part of what it is
     lazy: bool = field(default=False, compare=False)
 
@@ -100,22 +100,22 @@ class Study:
         used, place = np.unique(number, return_inverse=True)
         every = list(self.motions.values())
         return SweepJob(
-            self.scene, self.grid.of_cases(cases), tuple(every[k] for k in used), place,
-            self.arguments, self.period, self.histories, self.patience, self.screened,
+            self.scene, self.grid.values_of_cases(cases), tuple(every[k] for k in used), place,
+            self.arguments, self.period, self.histories, self.compile_timeout, self.screened,
             self.restrainers,
         )  # fmt: skip
 
     @property
-    def patience(self) -> float | None:
+    def compile_timeout(self) -> float | None:
         """Longest time that compilation for lanes may take, a share of the time that they save [s].
 
         None if no cases run in lanes: without compilation, with histories or points, or if there
         are too few cases. Results are the same with and without lanes.
         """
         sampled = self.histories is not None or bool(self.arguments.points)
-        if not COMPILED or sampled or self.grid.count < FEWEST_IN_LANES:
+        if not COMPILED or sampled or self.grid.count < MIN_CASES_IN_LANES:
             return None
-        saved = (1.0 - IN_LANES) * self.grid.count * self._time_of_case() / worker_count()
+        saved = (1.0 - LANE_TIME_RATIO) * self.grid.count * self._time_of_case() / worker_count()
         return COMPILING_SHARE * saved
 
     def to_dict(self) -> dict[str, Any]:
@@ -123,7 +123,7 @@ class Study:
         # the source of a function need not determine its scenes
         scenes = [
             digest_of(description_of(one)) if isinstance(one, Assembly) else type(one).__name__
-            for one in self._some_scenes
+            for one in self._inspected_scenes
         ]
         return {"rockframe_version": __version__, **description_of(self), "scenes": scenes}
 
@@ -132,19 +132,21 @@ class Study:
         """What results call the restrainers; nothing where some of its scenes have others."""
         if isinstance(self.scene, SystemScene):
             return self.scene.assembly.setting.link_names
-        made = [one.setting.link_names for one in self._some_scenes if isinstance(one, Assembly)]
+        made = [
+            one.setting.link_names for one in self._inspected_scenes if isinstance(one, Assembly)
+        ]
         return made[0] if made and len(set(made)) == 1 else ()
 
     @cached_property
-    def _some_scenes(self) -> list[Assembly | Exception]:
+    def _inspected_scenes(self) -> list[Assembly | Exception]:
         """Some scenes that a function makes, or why it makes none."""
         if not isinstance(self.scene, FunctionScene):
             return []
         count = self.grid.count
-        spread = [int((k * _GOLDEN) % 1.0 * count) for k in range(_SCENES_TOLD)]
+        spread = [int((k * _GOLDEN_RATIO) % 1.0 * count) for k in range(_INSPECTED_SCENES)]
         found: list[Assembly | Exception] = []
         for case in sorted({*spread, count - 1}):
-            axes = self.grid.of_cases(range(case, case + 1))
+            axes = self.grid.values_of_cases(range(case, case + 1))
             values = {axis: each.item() for axis, each in axes if axis.changes in SYSTEM_AXES}
             try:
                 with collected_warnings():
@@ -162,16 +164,16 @@ class Study:
         """Estimate the time of a case among others [s]."""
         one = self._time_of_case()
         if as_python:
-            return one * _SLOWER
-        return one if self.patience is None else one * IN_LANES
+            return one * _PYTHON_SLOWDOWN
+        return one if self.compile_timeout is None else one * LANE_TIME_RATIO
 
     def chunk_size(self, workers: int, *, as_python: bool) -> int:
         """Return a chunk size that takes long enough and leaves work for all workers."""
-        size = LONG_ENOUGH / self.time_of_case(as_python=as_python)
+        size = CHUNK_TIME / self.time_of_case(as_python=as_python)
         fair = -(-self.grid.count // (4 * workers))
-        if self.patience is not None and not as_python:
-            fair = max(fair, FEWEST_OF_LANES)
-        return int(max(1, min(size, fair, LARGEST_CHUNK)))
+        if self.compile_timeout is not None and not as_python:
+            fair = max(fair, MIN_CHUNK_IN_LANES)
+        return int(max(1, min(size, fair, MAX_CHUNK)))
 
     def _time_of_case(self) -> float:
         """Estimate the time of a case alone, in machine code [s]."""
@@ -181,10 +183,12 @@ class Study:
         )
         tolerance = self.arguments.accuracy.rtol
         if tolerance is None:
-            one = _OVERHEAD + intervals * _FIXED
+            one = _RUN_OVERHEAD + intervals * _TIME_OF_FIXED_STEPS
         else:
-            one = (_OVERHEAD + intervals * _BY_TOLERANCE) * (2e-8 / float(tolerance)) ** 0.2
-        return one * (_SCREENED if self.screened else 1.0)
+            one = (_RUN_OVERHEAD + intervals * _TIME_OF_ADAPTIVE_STEPS) * (
+                2e-8 / float(tolerance)
+            ) ** 0.2
+        return one * (_SCREENING_RATIO if self.screened else 1.0)
 
 
 def worker_count() -> int:

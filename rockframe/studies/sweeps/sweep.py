@@ -22,31 +22,36 @@ from rockframe.simulation.system import System
 from rockframe.solve.accuracy import AccuracyLevel
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import OWNER, Chunk, chunks_of
-from rockframe.studies.sweeps.case import remember
+from rockframe.studies.sweeps.case import cache_study
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
 from rockframe.studies.sweeps.chunk import CaseResults
 from rockframe.studies.sweeps.claims import Claims
-from rockframe.studies.sweeps.execution import ProgressBar, bar_of, run_chunks, workers_of
-from rockframe.studies.sweeps.known import KnownCases
+from rockframe.studies.sweeps.execution import (
+    ProgressBar,
+    progress_bar,
+    run_chunks,
+    workers_of_executor,
+)
+from rockframe.studies.sweeps.known_cases import KnownCases
 from rockframe.studies.sweeps.labelling import sweep_dataset, sweep_labels
-from rockframe.studies.sweeps.lazily import lazy_dataset
+from rockframe.studies.sweeps.lazy_dataset import lazy_dataset
 from rockframe.studies.sweeps.motions import MotionsLike
 from rockframe.studies.sweeps.planning import plan_study
-from rockframe.studies.sweeps.store import Store, begin_with
+from rockframe.studies.sweeps.store import Store, staggered
 from rockframe.studies.sweeps.study import Study
-from rockframe.studies.sweeps.words import cases_verdict, not_screened, warn_of_missing_results
+from rockframe.studies.sweeps.words import cases_verdict, mark_not_screened, warn_of_missing_results
 from rockframe.system.options import Overturning, OverturningLike, PointsLike, SweepAccuracyLike
 from rockframe.system.own_base import OwnBase
 from rockframe.system.own_scene import OwnScene
 from rockframe.units import QuantityLike
 from rockframe.version import __version__
 
-_LARGEST_CHUNK: Final = 1_000_000
+_MAX_CHUNK: Final = 1_000_000
 _DAY: Final = 86_400.0
 """A day [s]."""
-_GLIMPSE: Final = 1e-3
+_TRIAL_SHARE: Final = 1e-3
 """Share of a run that shows whether its law can be compiled."""
-_LOOK: Final = 1.0
+_CHECK_INTERVAL: Final = 1.0
 """Time between two checks of the chunks run by other jobs [s]."""
 
 
@@ -181,8 +186,8 @@ def sweep(
         overturning=overturning,
         kept=store is not None,
     )
-    remember(study)
-    with bar_of(progress, owner=OWNER) as bar:
+    cache_study(study)
+    with progress_bar(progress, owner=OWNER) as bar:
         others = [known] if isinstance(known, PathLike) else several(
             known, owner=OWNER, name="known", of="folders"
         )  # fmt: skip
@@ -226,15 +231,15 @@ def open_study(path: str | PathLike[str], *, lazy: bool = False) -> xr.Dataset:
     >>> so_far = rf.open_study("study")  # doctest: +SKIP
     >>> so_far.verdict  # doctest: +SKIP
     """
-    kept = Store.at(folder_of(path))
-    if kept.version != __version__:
+    stored = Store.open(read_folder(path))
+    if stored.version != __version__:
         warn(
-            f"open_study: {kept.folder} was run by rockframe {kept.version}, whose numbers may be "
-            f"others than those of this one, {__version__}",
+            f"open_study: {stored.folder} was run by rockframe {stored.version}, whose numbers may "
+            f"be others than those of this one, {__version__}",
             ModelWarning,
         )
     later = truth(lazy, owner="open_study", name="lazy")
-    return stored_dataset(kept, lazy=later)
+    return stored_dataset(stored, lazy=later)
 
 
 def run_study(
@@ -250,25 +255,27 @@ def run_study(
 
     Also return whether it was completed. An interrupt may come when all cases have been run.
     """
-    workers = workers_of(executor)
+    workers = workers_of_executor(executor)
     as_python = not COMPILED
     if chunk is None:
         as_python = _runs_as_python(study)
         chunk = study.chunk_size(workers, as_python=as_python)
-    size = whole_number(chunk, owner=OWNER, name="chunk", lowest=1, highest=_LARGEST_CHUNK)
+    size = whole_number(chunk, owner=OWNER, name="chunk", lowest=1, highest=_MAX_CHUNK)
     _warn_of_long_study(study, workers, as_python=as_python, kept=store is not None)
     if store is None and known:
         msg = "known cases are copied into the store of the sweep; give store='a folder'"
         raise StudyError(msg)
-    others = KnownCases(study, map(folder_of, known))
+    others = KnownCases(study, map(read_folder, known))
     if store is None:
-        dataset, unfinished = _in_memory(study, size, executor, bar)
+        dataset, unfinished = _run_in_memory(study, size, executor, bar)
     else:
-        dataset, unfinished = _kept(study, folder_of(store), size, executor, bar, others)
+        dataset, unfinished = _run_with_store(
+            study, read_folder(store), size, executor, bar, others
+        )
     if unfinished:
         warn(f"{OWNER}: interrupted; {unfinished}", SolverWarning)
     if not study.lazy:
-        dataset = not_screened(dataset) if study.handed_over else dataset
+        dataset = mark_not_screened(dataset) if study.screening_skipped else dataset
         kept = study.histories
         warn_of_missing_results(dataset, () if kept is None else kept.names or ())
     return dataset, not unfinished
@@ -291,34 +298,34 @@ def _runs_as_python(study: Study) -> bool:
     if not COMPILED:
         return True
     try:
-        system, _, plan = CasesOfJob(study.job(range(1))).planned(0)
+        system, _, plan = CasesOfJob(study.job(range(1))).plan(0)
         own = any(isinstance(part, OwnBase) for part in system.parts.structural())
         if not own and not isinstance(system.setting, OwnScene):
             return False
-        glimpse = replace(plan.without_outputs(), duration=_GLIMPSE * plan.duration)
-        return compute_response(system, glimpse).trajectory.as_python
+        trial = replace(plan.without_outputs(), duration=_TRIAL_SHARE * plan.duration)
+        return compute_response(system, trial).trajectory.as_python
     except Exception:  # of which its run tells
         return False
 
 
-def _in_memory(
+def _run_in_memory(
     study: Study, size: int, executor: Executor | None, bar: ProgressBar
 ) -> tuple[xr.Dataset, str]:
     """Return the results, and of an interrupted study how far it came."""
     found: list[tuple[range, CaseResults]] = []
     bar.expect(study.grid.count)
 
-    def take(one: Chunk, rows: CaseResults) -> None:
+    def collect(one: Chunk, rows: CaseResults) -> None:
         found.append((one.cases, rows))
         bar.update(len(one.cases))
 
     chunks = chunks_of(study.grid.count, size)
-    whole = run_chunks(chunks, lambda one: study.job(one.cases), take, executor)
+    completed = run_chunks(chunks, lambda one: study.job(one.cases), collect, executor)
     dataset = sweep_dataset(sweep_labels(study), sorted(found, key=lambda one: one[0].start))
-    return dataset, "" if whole else cases_verdict(dataset)
+    return dataset, "" if completed else cases_verdict(dataset)
 
 
-def _kept(
+def _run_with_store(
     study: Study,
     folder: Path,
     size: int,
@@ -327,77 +334,81 @@ def _kept(
     others: KnownCases,
 ) -> tuple[xr.Dataset, str]:
     """Return the results, and of an interrupted study how far it came."""
-    kept = Store.of_study(folder, study, size)
-    every = kept.chunks()
-    missing = [one for one in every if not kept.has(one)]
+    stored = Store.open_or_create(folder, study, size)
+    every = stored.chunks()
+    missing = [one for one in every if not stored.has(one)]
     some = len(missing) < len(every)
     if missing:
-        kept.check()
+        stored.check_writable()
     if some:  # before hours of work
-        for _ in kept.found():
+        for _ in stored.results():
             pass
     done = study.grid.count - sum(len(one.cases) for one in missing)
     bar.expect(study.grid.count, done)
 
     claims = Claims(folder)
 
-    def take(one: Chunk, rows: CaseResults) -> None:
-        kept.put(one, others.filled(one, rows))
-        claims.let_go(one.number)
+    def collect(one: Chunk, rows: CaseResults) -> None:
+        stored.put(one, others.merge(one, rows))
+        claims.release(one.number)
         bar.update(len(one.cases))
 
-    free = _free(begin_with(missing) if some else missing, kept, others, claims, bar)
+    claimed = _claimed_chunks(staggered(missing) if some else missing, stored, others, claims, bar)
     try:
-        whole = run_chunks(
-            free, lambda one: study.job(others.lacking(one)), take, executor, claims.live
+        completed = run_chunks(
+            claimed,
+            lambda one: study.job(others.missing_cases(one)),
+            collect,
+            executor,
+            claims.renew,
         )
     finally:
-        claims.let_all_go()
-    if whole:
+        claims.release_all()
+    if completed:
         claims.clear()
-    dataset = stored_dataset(kept, lazy=study.lazy)
-    if whole or not study.lazy:
-        return dataset, "" if whole else cases_verdict(dataset)
-    run = sum(len(one.cases) for one in every if kept.has(one))
+    dataset = stored_dataset(stored, lazy=study.lazy)
+    if completed or not study.lazy:
+        return dataset, "" if completed else cases_verdict(dataset)
+    run = sum(len(one.cases) for one in every if stored.has(one))
     return dataset, f"{run} of {study.grid.count} cases have been run, and are kept"
 
 
-def _free(
-    missing: list[Chunk], kept: Store, others: KnownCases, claims: Claims, bar: ProgressBar
+def _claimed_chunks(
+    missing: list[Chunk], stored: Store, others: KnownCases, claims: Claims, bar: ProgressBar
 ) -> Iterator[Chunk | None]:
     """Return the chunks that no other job has, as they are claimed; None while others have them.
 
     Chunks that are fully known from other studies are stored here, and not returned.
     """
-    looked = -math.inf
+    checked = -math.inf
     while missing:
-        if time.monotonic() - looked < _LOOK:
+        if time.monotonic() - checked < _CHECK_INTERVAL:
             yield None
             continue
-        looked, later = time.monotonic(), list[Chunk]()
+        checked, later = time.monotonic(), list[Chunk]()
         for one in missing:
-            if not kept.has(one) and not len(others.lacking(one)):
-                kept.put(one, others.filled(one, None))
-            mine = not kept.has(one) and claims.take(one.number)
-            if kept.has(one):  # another job has run it, maybe a moment ago
-                claims.let_go(one.number)
+            if not stored.has(one) and not len(others.missing_cases(one)):
+                stored.put(one, others.merge(one, None))
+            claimed = not stored.has(one) and claims.take(one.number)
+            if stored.has(one):  # another job has run it, maybe a moment ago
+                claims.release(one.number)
                 bar.update(len(one.cases))
-            elif mine:
+            elif claimed:
                 yield one
             else:
                 later.append(one)
         missing = later
 
 
-def stored_dataset(kept: Store, *, lazy: bool) -> xr.Dataset:
+def stored_dataset(stored: Store, *, lazy: bool) -> xr.Dataset:
     """Return what a folder holds as a dataset, by which its motions are found again."""
-    dataset = lazy_dataset(kept) if lazy else sweep_dataset(kept.labels(), kept.found())
-    dataset = dataset.assign_attrs(kept.provenance())
-    dataset.encoding["source"] = str(kept.folder)  # as of a dataset that was read from a file
+    dataset = lazy_dataset(stored) if lazy else sweep_dataset(stored.labels(), stored.results())
+    dataset = dataset.assign_attrs(stored.provenance())
+    dataset.encoding["source"] = str(stored.folder)  # as of a dataset that was read from a file
     return dataset
 
 
-def folder_of(path: object, *, owner: str = "") -> Path:
+def read_folder(path: object, *, owner: str = "") -> Path:
     """Read the argument ``store``, of a function that is named in messages, if there is one."""
     if isinstance(path, PathLike) or (isinstance(path, str) and path):
         return Path(path)  # pyright: ignore[reportUnknownArgumentType]

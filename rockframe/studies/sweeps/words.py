@@ -19,10 +19,10 @@ from rockframe.simulation.run import NONE
 from rockframe.simulation.soundness import count_slides
 from rockframe.studies.sweeps.axes import OWNER
 
-SCREENED: Final = (REPEATED, VERDICT_CHANGED)
+SCREENING_VARIABLES: Final = (REPEATED, VERDICT_CHANGED)
 """Additional variables of the cases of a screened sweep."""
 _BROKEN: Final = "broken_restrainer_count"
-MOST_ALIKE: Final = 16
+MAX_SIMILAR_TEXTS: Final = 16
 """Most texts differing only in their numbers that are reported one by one."""
 _NUMBER: Final = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.]*\w)")
 
@@ -54,7 +54,7 @@ def whole_verdict(dataset: xr.Dataset) -> str:
 def cases_sentence(runs: xr.Dataset, these: str) -> str:
     """Describe the outcomes of cases in one sentence, counted in parts that fit in memory."""
     found, farthest = Counter[str](), 0.0
-    for part in _parts_of(runs):
+    for part in _stored_parts(runs):
         slips = slips_of_cases(part)
         farthest = slips.max(initial=farthest, where=slips > MIN_REPORTED_SLIP)
         found.update(_counts(part, slips))
@@ -65,9 +65,9 @@ def cases_sentence(runs: xr.Dataset, these: str) -> str:
         text += f"; {found['slid']} slid, by {farthest:.3g} m at most"
     if found["broke"]:
         text += f"; in {found['broke']} a restrainer broke"
-    lacking = found["cases"] - found["not run"] - found["overturned"] - found["stood"]
-    if lacking:
-        text += f"; {lacking} have no result"
+    missing = found["cases"] - found["not run"] - found["overturned"] - found["stood"]
+    if missing:
+        text += f"; {missing} have no result"
     if found["not run"]:
         text += f"; {found['not run']} have not been run"
     if found["screened"]:
@@ -89,7 +89,9 @@ def _counts(runs: xr.Dataset, slips: Generic) -> dict[str, int]:
     if _BROKEN in runs:
         which["broke"] = runs[_BROKEN] > 0
     if REPEATED in runs:
-        which |= {"screened": runs[REPEATED].notnull()} | {n: runs[n] == 1.0 for n in SCREENED}
+        which |= {"screened": runs[REPEATED].notnull()} | {
+            n: runs[n] == 1.0 for n in SCREENING_VARIABLES
+        }
     found = {name: int(np.count_nonzero(some)) for name, some in which.items()}
     if "would_slide" in runs:
         slides = count_slides(runs["would_slide"].to_numpy())
@@ -97,7 +99,7 @@ def _counts(runs: xr.Dataset, slips: Generic) -> dict[str, int]:
     return found | {"cases": int(np.count_nonzero(~np.isnan(status)))}
 
 
-def _parts_of(runs: xr.Dataset) -> Iterator[xr.Dataset]:
+def _stored_parts(runs: xr.Dataset) -> Iterator[xr.Dataset]:
     """Cut a dataset into the parts that are stored together."""
     status = runs["status"]
     lengths = status.encoding.get("preferred_chunks", {})
@@ -118,14 +120,14 @@ def slips_of_cases(runs: xr.Dataset) -> Generic:
     return most
 
 
-def not_screened(runs: xr.Dataset) -> xr.Dataset:
+def mark_not_screened(runs: xr.Dataset) -> xr.Dataset:
     """Report that a sweep to be screened was run by tolerance, which costs less."""
-    lacking = np.isnan(runs["peak_rotation"].to_numpy())
-    none = np.where(lacking, np.nan, 0.0) if lacking.any() else np.zeros(lacking.shape)
+    missing = np.isnan(runs["peak_rotation"].to_numpy())
+    none = np.where(missing, np.nan, 0.0) if missing.any() else np.zeros(missing.shape)
     dims = tuple(map(str, runs["peak_rotation"].dims))
     text = str(runs.attrs["verdict"]).removesuffix(".")
     words = "all ran at 'standard', which costs less here than 'screen'"
-    runs = with_variables(runs, dict.fromkeys(SCREENED, none), over=dims)
+    runs = with_variables(runs, dict.fromkeys(SCREENING_VARIABLES, none), over=dims)
     return runs.assign_attrs(verdict=f"{text}; {words}.")
 
 
@@ -133,21 +135,21 @@ def warn_of_missing_results(dataset: xr.Dataset, histories: Iterable[str]) -> No
     """Warn of cases without a result, of cautions, and of histories that no scene has."""
     status = dataset["status"].to_numpy().ravel()
     message = dataset[MESSAGE].to_numpy().ravel()
-    lacking = np.isnan(dataset["peak_rotation"].to_numpy().ravel())
+    missing = np.isnan(dataset["peak_rotation"].to_numpy().ravel())
     not_run = status == RunStatus.NOT_RUN
-    failed = lacking & ~not_run
+    failed = missing & ~not_run
     for which, kind, words in (
         (failed, SolverWarning, "have no result"),
         (not_run, SolverWarning, "have not been run"),
-        (~lacking & (message != NONE), ModelWarning, "have a result to be careful with"),
+        (~missing & (message != NONE), ModelWarning, "have a result to be careful with"),
     ):
         if which.any():
             text, those = _most_frequent(message[which].tolist())
-            said = "" if text == NONE else f"; of {those} of them it is said: {text}"
+            reason = "" if text == NONE else f"; of {those} of them it is said: {text}"
             count = f"{int(which.sum())} of {len(status)} cases"
-            warn(f"{OWNER}: {count} {words} (status, message){said}", kind)
+            warn(f"{OWNER}: {count} {words} (status, message){reason}", kind)
     absent = [name for name in histories if name not in dataset]
-    if absent and not lacking.all():
+    if absent and not missing.all():
         named = ", ".join(map(repr, absent))
         warn(f"{OWNER}: outputs names {named}, which no scene of the cases has", ModelWarning)
 
@@ -158,10 +160,10 @@ def _most_frequent(texts: Sequence[str]) -> tuple[str, int]:
     for text, count in Counter(texts).items():
         alike.setdefault(tuple(_NUMBER.split(text)), Counter())[text] = count
     words, counts = max(alike.items(), key=lambda one: one[1].total())
-    return _ranged(words, counts), counts.total()
+    return _text_with_ranges(words, counts), counts.total()
 
 
-def summed_up(texts: Sequence[str], message: Generic) -> tuple[tuple[str, ...], Generic]:
+def merge_similar_texts(texts: Sequence[str], message: Generic) -> tuple[tuple[str, ...], Generic]:
     """Report texts that differ only in their numbers as one, if there are more than a few."""
     alike: dict[tuple[str, ...], list[int]] = {}
     for place, text in enumerate(texts):
@@ -169,9 +171,9 @@ def summed_up(texts: Sequence[str], message: Generic) -> tuple[tuple[str, ...], 
     found: dict[str, int] = {}
     places = np.empty(len(texts), dtype=message.dtype)
     one_for = {
-        place: _ranged(words, [texts[k] for k in several])
+        place: _text_with_ranges(words, [texts[k] for k in several])
         for words, several in alike.items()
-        if len(several) > MOST_ALIKE
+        if len(several) > MAX_SIMILAR_TEXTS
         for place in several
     }
     for place, text in enumerate(texts):
@@ -179,7 +181,7 @@ def summed_up(texts: Sequence[str], message: Generic) -> tuple[tuple[str, ...], 
     return tuple(found), places[message]
 
 
-def _ranged(words: Sequence[str], texts: Iterable[str]) -> str:
+def _text_with_ranges(words: Sequence[str], texts: Iterable[str]) -> str:
     columns: Any = zip(*(_NUMBER.findall(text) for text in texts), strict=True)
     ranges = [sorted(set(column), key=float) for column in columns]
     spans = [each[0] if len(each) == 1 else f"{each[0]} to {each[-1]}" for each in ranges]

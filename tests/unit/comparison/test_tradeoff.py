@@ -462,7 +462,7 @@ def test_a_rung_is_timed_once_its_machine_code_is_there(monkeypatch):
     monkeypatch.setattr(module, "has_machine_code", lambda _: next(there))
     monkeypatch.setattr(module, "runs_as_python", lambda _: False)
     monkeypatch.setattr(module, "compute_response", counted)
-    monkeypatch.setattr(module, "_timed", timed)
+    monkeypatch.setattr(module, "_time_of_run", timed)
     rf.tradeoff(SYSTEM, PULSE, models="two pads", accuracies="standard", repeats=1, duration="1 s")
     assert done == ["untimed", "untimed", "timed"]
 

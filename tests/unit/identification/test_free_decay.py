@@ -9,7 +9,7 @@ import xarray as xr
 import rockframe as rf
 from rockframe.errors import ComponentError, ModelWarning, UnitsError
 from rockframe.identification.measured import History
-from rockframe.identification.prediction import let_go
+from rockframe.identification.prediction import release_response
 from rockframe.identification.swings import swings_of
 from rockframe.results.schema import SCHEMA
 from rockframe.solve.accuracy import accuracy_of
@@ -113,7 +113,7 @@ def test_the_motion_between_samples_is_that_of_a_run():
     run = system.simulate(
         duration="3 s", initial=rf.InitialState(rotation="0.1 rad"), output_step="1.7 ms"
     )
-    motion = let_go(system.assembly, 0.1, 3.0, accuracy_of("standard"))
+    motion = release_response(system.assembly, 0.1, 3.0, accuracy_of("standard"))
     np.testing.assert_allclose(motion.at(run.time.to_numpy()), run.rotation, atol=2e-8)
     times, sizes = motion.peaks()
     assert times[0] == 0.0

@@ -26,7 +26,7 @@ def test_errors_are_those_of_linear_regression(count, size):
     assert solution.leverages() == pytest.approx(np.diag(hat), rel=1e-9)
     covariance = squares.item() / freedom * np.linalg.inv(jacobian.T @ jacobian)
     assert found.standard_error == pytest.approx(np.sqrt(np.diag(covariance)), rel=1e-10)
-    assert found.reach == pytest.approx(stats.t.ppf(0.95, freedom), rel=1e-10)
+    assert found.half_width == pytest.approx(stats.t.ppf(0.95, freedom), rel=1e-10)
     scale = np.sqrt(np.diag(covariance))
     assert found.correlation == pytest.approx(covariance / np.outer(scale, scale), abs=1e-9)
 
@@ -59,5 +59,5 @@ def test_intervals_from_few_peaks_with_times_hold_the_true_value_as_often_as_the
         time = 1.0 + number + of_time * rng.normal(size=6)
         found = fit_peaks(LinearDecay(), MeasuredPeaks(rotation, np.ones(6), time), unknowns)
         errors = uncertainty_of(found, 0.95)
-        inside += abs(found.values[1] - 1.0) < errors.reach * errors.standard_error[1]
+        inside += abs(found.values[1] - 1.0) < errors.half_width * errors.standard_error[1]
     assert 0.92 <= inside / 200 <= 0.985

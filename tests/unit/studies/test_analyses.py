@@ -8,7 +8,7 @@ from unit.studies.analysed import BLOCK, FAST, QUIET, SYSTEM, checked, motions, 
 
 import rockframe as rf
 from rockframe.errors import ComponentError, SchemaError, StudyError
-from rockframe.studies.probability import ranked
+from rockframe.studies.probability import rank_parameters
 
 
 @pytest.fixture
@@ -195,7 +195,9 @@ def test_the_ranking_is_that_of_sobol_indices():
     rng = np.random.default_rng(8)
     a, b, c = rng.normal(size=(3, 40_000))
     verdict = (a + 0.5 * b > 0.0).astype(float)
-    found = ranked({"c": c, "b": b, "a": a, "word": rng.choice(["x", "y"], 40_000)}, verdict)
+    found = rank_parameters(
+        {"c": c, "b": b, "a": a, "word": rng.choice(["x", "y"], 40_000)}, verdict
+    )
     assert list(found)[:2] == ["a", "b"]
     grid = np.linspace(-8.0, 8.0, 20_001)
     for name, own, other in (("a", 1.0, 0.5), ("b", 0.5, 1.0)):
@@ -204,11 +206,11 @@ def test_the_ranking_is_that_of_sobol_indices():
         variance = np.trapezoid((share - 0.5) ** 2 * weight, grid)
         assert found[name].first_order == pytest.approx(variance / 0.25, abs=0.02)
     assert found["c"].first_order < 0.003
-    assert found["a"].chance < 1e-100
-    assert found["c"].chance > 1e-4
+    assert found["a"].p_value < 1e-100
+    assert found["c"].p_value > 1e-4
     expected = stats.ks_2samp(a[verdict == 1.0], a[verdict == 0.0]).statistic
-    assert found["a"].distance == expected
-    assert np.isnan(ranked({"a": a}, np.ones(40_000))["a"].first_order)
+    assert found["a"].distribution_distance == expected
+    assert np.isnan(rank_parameters({"a": a}, np.ones(40_000))["a"].first_order)
 
 
 # ensembles -----------------------------------------------------------------------------------

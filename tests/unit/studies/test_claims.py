@@ -15,12 +15,12 @@ import rockframe as rf
 from rockframe.errors import StudyError
 from rockframe.studies.sweeps import claims as module
 from rockframe.studies.sweeps.claims import Claims
-from rockframe.studies.sweeps.execution import workers_of
+from rockframe.studies.sweeps.execution import workers_of_executor
 from rockframe.studies.sweeps.study import Study
 
 pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
 
-KNOWS_PROCESSES = module._begun(os.getpid()) is not None
+KNOWS_PROCESSES = module._start_of_process(os.getpid()) is not None
 
 
 @pytest.fixture(scope="module")
@@ -81,11 +81,11 @@ def test_the_chunks_of_a_job_that_is_killed_go_to_another(whole, tmp_path, anoth
         another.communicate()
         begun = time.monotonic()
         going_on.result(timeout=300)
-    assert time.monotonic() - begun < 0.5 * module._SILENCE  # it does not wait for the dead
+    assert time.monotonic() - begun < 0.5 * module._TIMEOUT  # it does not wait for the dead
     is_whole(tmp_path / "study", whole, killed=True)
     run = run_by(tmp_path)
     assert set(run) == set(range(0, CASES, 3))
-    in_flight = 2 * workers_of(None)
+    in_flight = 2 * workers_of_executor(None)
     assert sum(run.values()) - len(run) <= in_flight
     assert max(run.values()) <= 2
 
@@ -105,8 +105,8 @@ def test_what_is_let_go_may_be_taken_again(tmp_path):
     assert one.take(3)
     assert not other.take(3)
     assert other.take(4)
-    one.let_all_go()
-    one.let_go(3)
+    one.release_all()
+    one.release(3)
     assert other.take(3)
     assert not one.take(4)
 
@@ -167,12 +167,12 @@ def test_a_claim_that_is_silent_for_long_is_that_of_a_dead_job(tmp_path, monkeyp
     monkeypatch.setattr(module.time, "monotonic", lambda: now[0])
     os.utime(path, (0, 0))  # clocks of other machines tell nothing
     assert not one.take(7)
-    now[0] += 0.9 * module._SILENCE
+    now[0] += 0.9 * module._TIMEOUT
     assert not one.take(7)
     os.utime(path)  # it lives
-    now[0] += 0.9 * module._SILENCE
+    now[0] += 0.9 * module._TIMEOUT
     assert not one.take(7)
-    now[0] += 1.1 * module._SILENCE
+    now[0] += 1.1 * module._TIMEOUT
     other = Claims(tmp_path)
     assert not other.take(7)  # it has not been looking for so long
     assert one.take(7)
@@ -186,18 +186,18 @@ def test_a_living_job_says_so(tmp_path, monkeypatch):
     assert one.take(1)
     (path,) = (tmp_path / "claims").iterdir()
     os.utime(path, (0, 0))
-    one.live()
+    one.renew()
     assert path.stat().st_mtime == 0
-    now[0] += 1.1 * module._BEAT
-    one.live()
+    now[0] += 1.1 * module._RENEWAL_INTERVAL
+    one.renew()
     assert time.time() - path.stat().st_mtime < 60.0
-    assert 5.0 * module._BEAT < module._SILENCE
+    assert 5.0 * module._RENEWAL_INTERVAL < module._TIMEOUT
 
 
 @pytest.mark.skipif(not KNOWS_PROCESSES, reason="the system does not tell of processes")
 def test_a_process_that_has_ended_is_dead_at_once(tmp_path):
     running = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)
-    its = {"process": running.pid, "begun": module._begun(running.pid)}
+    its = {"process": running.pid, "begun": module._start_of_process(running.pid)}
     claim(tmp_path, module._this_job() | its)
     one, other = Claims(tmp_path), Claims(tmp_path)
     assert not one.take(7)
@@ -219,7 +219,7 @@ def test_damaged_claims_delay_a_study_and_change_nothing(whole, tmp_path, monkey
         claim(folder, content, 10 + number)
     (folder / "claims" / "what is this").write_text("")
     (folder / "claims" / "000011-more").write_text("")
-    monkeypatch.setattr(module, "_SILENCE", 0.5)
+    monkeypatch.setattr(module, "_TIMEOUT", 0.5)
     the_sweep(folder)
     is_whole(folder, whole)
 
@@ -235,7 +235,7 @@ def test_a_job_that_fails_gives_its_chunks_up(tmp_path):
     assert not [*(tmp_path / "study" / "claims").iterdir()]
     begun = time.monotonic()
     the_sweep(tmp_path / "study")
-    assert time.monotonic() - begun < module._SILENCE
+    assert time.monotonic() - begun < module._TIMEOUT
 
 
 def test_where_a_claim_cannot_be_written_it_says_so(tmp_path):
@@ -255,10 +255,10 @@ def test_workers_are_those_of_the_executor():
         pass
 
     with ThreadPoolExecutor(5) as pool:
-        assert workers_of(pool) == 5
-    assert workers_of(Dask()) == 12
-    assert workers_of(None) >= 1
-    assert workers_of(Unknown()) > 50
+        assert workers_of_executor(pool) == 5
+    assert workers_of_executor(Dask()) == 12
+    assert workers_of_executor(None) >= 1
+    assert workers_of_executor(Unknown()) > 50
 
 
 @pytest.mark.parametrize("workers", [pytest.param(1, marks=pytest.mark.long), 3])

@@ -11,7 +11,7 @@ import rockframe as rf
 from rockframe.errors import ComponentError, StudyError, UnitsError
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.runs import RunStatus
-from rockframe.studies.cloud import Cloud, Line
+from rockframe.studies.cloud import Cloud, Regression
 from rockframe.studies.logistic import fit_logistic
 
 SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
@@ -136,8 +136,8 @@ def test_runs_that_stay_at_rest_count_apart(base):
 def test_coefficients_are_drawn_from_their_distributions():
     rng = np.random.default_rng(1)
     logs = rng.normal(size=15)
-    line = Line.through(logs, 0.3 + 1.2 * logs + 0.4 * rng.standard_normal(15))
-    intercept, slope, spread = line.drawn(np.random.default_rng(2), 40_000)
+    line = Regression.fit(logs, 0.3 + 1.2 * logs + 0.4 * rng.standard_normal(15))
+    intercept, slope, spread = line.draw_coefficients(np.random.default_rng(2), 40_000)
     error = np.sqrt(np.diag(line.covariance))
     for drawn, middle, size in (
         (intercept, line.intercept, error[0]),
@@ -155,7 +155,7 @@ def test_bounds_hold_the_curve_as_often_as_they_say():
     for _ in range(600):
         logs = rng.normal(0.0, 0.6, 30)
         response = np.exp(-1.0 + 1.3 * logs + 0.4 * rng.standard_normal(30))
-        drawn = Cloud.of(logs, response).drawn(at, level, rng, 1000)[:, 0]
+        drawn = Cloud.fit(logs, response).draw_curves(at, level, rng, 1000)[:, 0]
         low, high = np.quantile(drawn, [0.025, 0.975])
         held += low <= truth <= high
     assert 0.93 <= held / 600 <= 0.97
@@ -167,9 +167,9 @@ def test_a_curve_that_lies_above_one_half_all_along_has_a_median_of_zero(base):
     logs = rng.normal(0.5, 0.6, 12)
     response = np.exp(-2.0 + 1.5 * logs + 0.3 * rng.standard_normal(12))
     fell = np.arange(12) == np.argsort(logs)[-2]  # one alone
-    cloud = Cloud.of(logs, np.where(fell, np.inf, response))
+    cloud = Cloud.fit(logs, np.where(fell, np.inf, response))
     wide = np.linspace(logs.min() - 3.0, logs.max() + 3.0, 601)
-    curves = cloud.drawn(wide, 0.1, np.random.default_rng(0), 4000)
+    curves = cloud.draw_curves(wide, 0.1, np.random.default_rng(0), 4000)
     always = np.all(curves >= 0.5, axis=1)
     assert 0.05 < always.mean() < 0.95
     status = np.where(fell, RunStatus.OVERTURNED, RunStatus.COMPLETED).astype(np.int8)
@@ -206,9 +206,9 @@ def test_a_logistic_curve_without_a_fit_is_a_step_or_level():
     logs = np.array([0.0, 1.0, 2.0, 3.0])
     parted = fit_logistic(logs, np.array([0, 0, 1, 1]))
     assert parted.status is FragilityStatus.SEPARATED
-    assert parted.at(np.array([1.4, 1.6])).tolist() == [0.0, 1.0]
-    assert fit_logistic(logs, np.zeros(4)).at(logs).tolist() == [0.0] * 4
-    assert fit_logistic(logs, np.ones(4)).at(logs).tolist() == [1.0] * 4
+    assert parted.probability(np.array([1.4, 1.6])).tolist() == [0.0, 1.0]
+    assert fit_logistic(logs, np.zeros(4)).probability(logs).tolist() == [0.0] * 4
+    assert fit_logistic(logs, np.ones(4)).probability(logs).tolist() == [1.0] * 4
     assert fit_logistic(logs, np.array([1, 1, 0, 0])).status is FragilityStatus.NOT_RISING
 
 

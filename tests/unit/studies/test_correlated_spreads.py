@@ -8,7 +8,7 @@ from scipy import stats
 
 import rockframe as rf
 from rockframe.errors import ComponentError
-from rockframe.studies.probability import Sampling, correlated, drawn
+from rockframe.studies.probability import Sampling, draw_sample, impose_correlation
 
 SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
 PULSE = rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")
@@ -24,8 +24,8 @@ MATRIX = np.array([[1.0, 0.8, -0.5], [0.8, 1.0, 0.0], [-0.5, 0.0, 1.0]])
 @pytest.mark.parametrize("sampling", Sampling)
 def test_distributions_stay_and_ranks_go_together(sampling):
     count = 4096
-    cube = correlated(
-        drawn((None,) * 2, count, sampling, 3), MATRIX, stratified=sampling is Sampling.LATIN
+    cube = impose_correlation(
+        draw_sample((None,) * 2, count, sampling, 3), MATRIX, stratified=sampling is Sampling.LATIN
     )
     for column in cube.T:
         assert stats.kstest(column, "uniform").pvalue > 1e-3

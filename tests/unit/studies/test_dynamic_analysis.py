@@ -10,8 +10,8 @@ from unit.studies.analysed import FAST, QUIET, SYSTEM, checked, motions, whole_a
 
 import rockframe as rf
 from rockframe.errors import ComponentError, ModelWarning, SchemaError, SolverWarning
-from rockframe.studies import lines as of_lines
-from rockframe.studies.lines import Bracket, bracket_arrays, brackets_of, narrowed
+from rockframe.studies import line_scan as of_lines
+from rockframe.studies.line_scan import Bracket, bisect_brackets, bracket_arrays, find_brackets
 from rockframe.studies.sweeps import execution
 
 
@@ -290,7 +290,7 @@ def test_brackets_split_where_a_third_verdict_lies_between():
 
     scales = np.array([1.0, 1.5, 2.0, 3.0, 4.0])
     shown = np.array([[[verdict(s) for s in scales]]])
-    assert [one.below for one in brackets_of(scales, shown)] == [3.0]
+    assert [one.below for one in find_brackets(scales, shown)] == [3.0]
     scales = np.array([1.0, 1.25, 4.0])
     shown = np.array([[[verdict(s) for s in scales]]])
     runs = []
@@ -299,7 +299,7 @@ def test_brackets_split_where_a_third_verdict_lies_between():
         runs.append(part)
         return np.array([[verdict(s) for _, s in wanted]]), True
 
-    found, whole = narrowed(brackets_of(scales, shown), look, width=1e-6)
+    found, whole = bisect_brackets(find_brackets(scales, shown), look, width=1e-6)
     assert whole
     assert [one.above for one in found] == pytest.approx([1.234, 1.301, 3.3], rel=1e-6)
     assert [(one.before, one.after) for one in found] == [(-1.0, 2.0), (2.0, -1.0), (-1.0, 0.0)]
@@ -308,4 +308,4 @@ def test_brackets_split_where_a_third_verdict_lies_between():
     assert below.shape == above.shape == (1, 2, 3)
     assert np.isnan(before[0, 1]).tolist() == [False, True, True]
     nan = np.array([[[0.0, np.nan, 1.0]]])
-    assert [(one.below, one.above) for one in brackets_of(scales, nan)] == [(1.0, 4.0)]
+    assert [(one.below, one.above) for one in find_brackets(scales, nan)] == [(1.0, 4.0)]

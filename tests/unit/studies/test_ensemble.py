@@ -7,7 +7,7 @@ import rockframe as rf
 from rockframe.errors import ComponentError
 from rockframe.results.variables.runs import RunStatus
 from rockframe.studies.dynamic_analysis import verdict_of_analysis
-from rockframe.studies.probability import _counted, ranked
+from rockframe.studies.probability import _with_probability, rank_parameters
 
 SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
 HOW = {"free_vibration": "3 s", "progress": False}
@@ -62,7 +62,7 @@ def test_a_sample_tells_its_motions_and_what_was_left_out():
     assert rf.ensemble_statistics(drawn).member_count.item() == 40
     bare = drawn.drop_dims("parameter").copy(deep=True)
     fail(bare, case=slice(0, 7))
-    found = _counted(bare, ["scale"], several=True, level=0.95)
+    found = _with_probability(bare, ["scale"], several=True, level=0.95)
     assert found.verdict_count.item() == 33
     assert "7 without a verdict are left out" in found.verdict
 
@@ -124,5 +124,5 @@ def test_the_index_is_the_adjusted_correlation_ratio(count):
         parts = [verdict[np.argsort(values)][place == k] for k in range(groups)]
     within = sum(((part - part.mean()) ** 2).sum() for part in parts) / (count - groups)
     of_all = ((verdict - verdict.mean()) ** 2).sum() / (count - 1)
-    found = ranked({"a": values}, verdict)["a"]
+    found = rank_parameters({"a": values}, verdict)["a"]
     assert found.first_order == pytest.approx(1.0 - within / of_all, rel=1e-9)

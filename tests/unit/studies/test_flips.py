@@ -8,7 +8,7 @@ import pytest
 
 from rockframe.simulation.certify.run_summary import RunSummary
 from rockframe.solve.workspace import Status
-from rockframe.studies.flips import FINEST, flips_sentence, follow
+from rockframe.studies.flips import MIN_INTERVAL, flips_sentence, scan_scales
 
 ROW = [0.1 * k for k in range(41)]
 
@@ -36,7 +36,7 @@ def runs_of(peak, undecided=lambda scale: False):
 def test_one_flip_is_bracketed_as_narrowly_as_asked():
     for width in (1e-2, 1e-5, 1e-12):
         look, _ = runs_of(lambda scale: scale / math.pi)
-        [flip] = follow(look, ROW, most=100, width=width).flips()
+        [flip] = scan_scales(look, ROW, max_runs=100, width=width).flips()
         assert flip.overturns_above
         assert flip.below < math.pi <= flip.above
         assert flip.above - flip.below <= width * flip.above
@@ -47,24 +47,24 @@ def test_an_island_between_two_scales_is_found_where_peaks_tell_of_it():
         return 0.2 * scale + 0.8 * math.exp(-((10.0 * (scale - 1.55)) ** 2))
 
     look, asked = runs_of(peak)
-    found = follow(look, ROW, most=100, width=1e-4)
+    found = scan_scales(look, ROW, max_runs=100, width=1e-4)
     assert not any(peak(scale) >= 1.0 for scale in ROW if scale < 5.0)
     assert [flip.overturns_above for flip in found.flips()] == [True, False]
     for flip in found.flips():
         assert (peak(flip.below) < 1.0) != (peak(flip.above) < 1.0)
-    assert found.up_to == ROW[-1]
-    assert len(set(asked)) == len(asked) == len(found.shown) < 100
+    assert found.resolved_up_to == ROW[-1]
+    assert len(set(asked)) == len(asked) == len(found.runs) < 100
 
 
 def test_it_says_how_far_apart_the_runs_were():
     """An island that nothing tells of is missed, and the sentence promises nothing else."""
     look, _ = runs_of(lambda scale: 1.5 if 2.001 < scale < 2.099 else 0.05)
-    found = follow(look, ROW, most=100, width=1e-4)
+    found = scan_scales(look, ROW, max_runs=100, width=1e-4)
     assert found.flips() == []
-    assert found.up_to == ROW[-1]
+    assert found.resolved_up_to == ROW[-1]
     assert found.largest_gap == pytest.approx(0.1)
     assert flips_sentence(found, width=1e-4).endswith("41 scales tried up to 4, at most 0.1 apart.")
-    fine = follow(look, [0.05 * k for k in range(81)], most=100, width=1e-4)
+    fine = scan_scales(look, [0.05 * k for k in range(81)], max_runs=100, width=1e-4)
     assert fine.largest_gap < 2.099 - 2.001
     assert len(fine.flips()) == 2
 
@@ -72,14 +72,14 @@ def test_it_says_how_far_apart_the_runs_were():
 @pytest.mark.parametrize("gap", [0.1, 0.30000001, 0.0126, 0.00999, 9.91, 1e-9, 123.0])
 def test_a_gap_is_rounded_up(gap):
     look, _ = runs_of(lambda scale: 0.01)
-    text = flips_sentence(follow(look, [0.0, gap], most=2, width=1e-3), width=1e-3)
+    text = flips_sentence(scan_scales(look, [0.0, gap], max_runs=2, width=1e-3), width=1e-3)
     said = float(text.partition("at most ")[2].partition(" apart")[0])
     assert gap * (1.0 - 1e-9) <= said <= 1.1 * gap
 
 
 def test_a_run_without_a_verdict_leaves_a_gap():
     look, _ = runs_of(lambda scale: 0.05, undecided=lambda scale: 1.05 < scale < 1.45)
-    assert follow(look, ROW, most=41, width=1e-3).largest_gap == pytest.approx(0.5)
+    assert scan_scales(look, ROW, max_runs=41, width=1e-3).largest_gap == pytest.approx(0.5)
 
 
 def test_without_runs_to_spare_it_says_how_far_it_looked():
@@ -87,10 +87,10 @@ def test_without_runs_to_spare_it_says_how_far_it_looked():
         return 0.2 * scale + 0.8 * math.exp(-((10.0 * (scale - 1.55)) ** 2))
 
     look, asked = runs_of(peak)
-    found = follow(look, ROW, most=len(ROW), width=1e-4, resolution=0.02)
+    found = scan_scales(look, ROW, max_runs=len(ROW), width=1e-4, resolution=0.02)
     assert len(asked) == len(ROW)
     assert found.flips() == []
-    assert found.up_to == 0.0
+    assert found.resolved_up_to == 0.0
     said = flips_sentence(found, width=1e-4, resolution=0.02)
     assert said.endswith(
         "Beyond 0 some are more than 2 % apart, and a lesser scale between them may overturn."
@@ -104,11 +104,11 @@ def test_no_range_wider_than_the_resolution_hides_up_to_where_it_was_followed(re
     for length in (1.05, 2.0):
         wide = start * (1.0 + length * resolution)
         look, asked = runs_of(lambda at, wide=wide: 1.5 if start < at < wide else 0.01)
-        found = follow(look, [0.0, 1.0, 2.0], most=3000, width=1e-4, resolution=resolution)
-        assert found.up_to >= start
+        found = scan_scales(look, [0.0, 1.0, 2.0], max_runs=3000, width=1e-4, resolution=resolution)
+        assert found.resolved_up_to >= start
         assert [flip.overturns_above for flip in found.flips()][:1] == [True]
-        few = follow(look, [0.0, 1.0, 2.0], most=20, width=1e-4, resolution=resolution)
-        assert few.up_to < start
+        few = scan_scales(look, [0.0, 1.0, 2.0], max_runs=20, width=1e-4, resolution=resolution)
+        assert few.resolved_up_to < start
 
     # a base that does not lift holds at any lesser scale
     def still(scale):
@@ -116,18 +116,21 @@ def test_no_range_wider_than_the_resolution_hides_up_to_where_it_was_followed(re
 
     count = len(asked)
     assert (
-        follow(still, [0.0, 1.0, 2.0], most=3000, width=1e-4, resolution=resolution).up_to >= start
+        scan_scales(
+            still, [0.0, 1.0, 2.0], max_runs=3000, width=1e-4, resolution=resolution
+        ).resolved_up_to
+        >= start
     )
     assert min(asked[count + 3 :]) > 1.0
 
 
 def test_runs_without_a_verdict_are_neither():
     look, _ = runs_of(lambda scale: scale / 2.0, undecided=lambda scale: 1.8 < scale < 2.3)
-    found = follow(look, ROW, most=200, width=1e-4)
+    found = scan_scales(look, ROW, max_runs=200, width=1e-4)
     [flip] = found.flips()
     assert flip.below <= 1.8 + 1e-12
     assert flip.above >= 2.3 - 1e-12
-    assert 1.5 < found.up_to <= 1.8 + 1e-12
+    assert 1.5 < found.resolved_up_to <= 1.8 + 1e-12
     text = flips_sentence(found, width=1e-3)
     assert "5 runs could not be finished and have no verdict, the first at 1.9." in text
     assert "Overturns from 2.3 times the motion on" in text
@@ -135,9 +138,9 @@ def test_runs_without_a_verdict_are_neither():
 
 def test_runs_without_a_verdict_below_the_critical_scale_leave_it_uncertain():
     look, _ = runs_of(lambda scale: scale / math.pi, lambda scale: 0.0 < scale < 3.15)
-    found = follow(look, ROW, most=100, width=1e-3, resolution=0.01)
+    found = scan_scales(look, ROW, max_runs=100, width=1e-3, resolution=0.01)
     [flip] = found.flips()
-    assert (flip.below, found.up_to) == (0.0, 0.0)
+    assert (flip.below, found.resolved_up_to) == (0.0, 0.0)
     assert flip.above >= math.pi
     words = "Beyond 0 some are more than 1 % apart, and a lesser scale between them may overturn."
     assert words in flips_sentence(found, width=1e-3, resolution=0.01)
@@ -145,26 +148,28 @@ def test_runs_without_a_verdict_below_the_critical_scale_leave_it_uncertain():
 
 def test_no_lesser_scale_is_feared_where_the_least_overturns():
     look, _ = runs_of(lambda scale: 1.2)
-    text = flips_sentence(follow(look, ROW, most=41, width=1e-3, resolution=0.01), width=1e-3)
+    text = flips_sentence(
+        scan_scales(look, ROW, max_runs=41, width=1e-3, resolution=0.01), width=1e-3
+    )
     assert text == "Overturns without the motion; 41 scales tried up to 4, at most 0.1 apart."
 
 
 def test_nothing_is_feared_far_from_overturning_nor_looked_into_for_ever():
     look, asked = runs_of(lambda scale: 0.05 * abs(math.sin(40.0 * scale)))
-    follow(look, ROW, most=10_000, width=1e-3)
+    scan_scales(look, ROW, max_runs=10_000, width=1e-3)
     assert len(asked) == len(ROW)
     look, _ = runs_of(lambda scale: 0.9 + 0.09 * math.sin(1e6 * scale))
-    found = follow(look, ROW, most=10_000, width=1e-3)
-    scales = list(found.shown)
+    found = scan_scales(look, ROW, max_runs=10_000, width=1e-3)
+    scales = list(found.runs)
     assert len(scales) < 10_000
-    assert all(b - a > 0.49 * FINEST * b for a, b in pairwise(scales))
+    assert all(b - a > 0.49 * MIN_INTERVAL * b for a, b in pairwise(scales))
 
 
 def test_ranges_that_stand_again_are_named_up_to_three():
     row = [0.05 + 0.1 * k for k in range(40)]
     for length, ranges in ((2.0, 1), (1.0, 3), (0.5, 7)):
         look, _ = runs_of(lambda at, length=length: 1.5 if at % length >= 0.5 * length else 0.5)
-        found = follow(look, row, most=len(row), width=1e-6)
+        found = scan_scales(look, row, max_runs=len(row), width=1e-6)
         text = flips_sentence(found, width=1e-6)
         assert sum(not flip.overturns_above for flip in found.flips()) == ranges
         assert text.startswith(f"Overturns from {0.5 * length:g} times the motion on, stands again")
@@ -178,9 +183,9 @@ def test_an_interrupt_leaves_what_was_found_until_then():
         return 0.2 * scale + 0.8 * math.exp(-((10.0 * (scale - 1.55)) ** 2))
 
     look, asked = runs_of(peak)
-    how = {"most": 100, "width": 1e-4, "resolution": 0.05}
-    whole = follow(look, ROW, **how)
-    assert whole.whole
+    how = {"max_runs": 100, "width": 1e-4, "resolution": 0.05}
+    whole = scan_scales(look, ROW, **how)
+    assert whole.completed
     for count in range(1, len(asked)):
         look, _ = runs_of(peak)
         left = iter([None] * count)
@@ -190,13 +195,13 @@ def test_an_interrupt_leaves_what_was_found_until_then():
                 return look(scale)
             raise KeyboardInterrupt
 
-        found = follow(interrupted, ROW, **how)
-        assert not found.whole
-        assert sorted(found.shown) == sorted(asked[:count])
+        found = scan_scales(interrupted, ROW, **how)
+        assert not found.completed
+        assert sorted(found.runs) == sorted(asked[:count])
         assert "interrupted" in flips_sentence(found, width=1e-4)
         # up to there every flip that the whole analysis found lies in a bracket
         for flip in whole.flips():
             around = [one for one in found.flips() if one.below <= flip.below < one.above]
-            assert flip.above > found.up_to or around
+            assert flip.above > found.resolved_up_to or around
     with pytest.raises(KeyboardInterrupt):
-        follow(interrupted, ROW, most=100, width=1e-4)
+        scan_scales(interrupted, ROW, max_runs=100, width=1e-4)

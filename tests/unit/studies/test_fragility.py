@@ -138,7 +138,7 @@ def test_slopes_and_curvatures_are_those_of_the_likelihood():
 def test_the_tails_keep_their_digits():
     logs = np.log(np.array(LEVELS))[:, None]
     for weight in (1.0, 1e6):
-        trials = Trials.of_verdicts(logs, weight * np.array(EXCEEDED), weight * np.full(8, 40.0))
+        trials = Trials.from_verdicts(logs, weight * np.array(EXCEEDED), weight * np.full(8, 40.0))
         found = fit(trials, Bands.PROFILE)
         edge = boundary(trials, found, 0.95)
         drop = 2.0 * (
@@ -146,7 +146,7 @@ def test_the_tails_keep_their_digits():
         )
         assert drop == pytest.approx(stats.chi2.ppf(0.95, 1), rel=1e-5)
         assert parameters(found)[1] == pytest.approx(0.4292372, abs=1e-6)
-    far = Trials.of_verdicts(
+    far = Trials.from_verdicts(
         np.array([[0.0], [1.0], [9.0]]), np.array([1, 0, 1.0]), np.array([2, 1, 2.0])
     )
     assert np.isfinite(log_likelihood(far, np.array([[-300.0], [40.0]]))).all()
@@ -164,7 +164,7 @@ def test_bands_hold_as_often_as_they_say():
         verdict = (capacity[:, None] < levels).astype(float).ravel()
         cluster = np.repeat(np.arange(groups), len(levels))
         logs = np.tile(levels, groups)[:, None]
-        trials = Trials.of_verdicts(logs, verdict, np.ones(verdict.size), cluster)
+        trials = Trials.from_verdicts(logs, verdict, np.ones(verdict.size), cluster)
         for bands in held:
             found = fit(trials, bands)
             row = np.array([1.0, 0.3])
@@ -179,7 +179,7 @@ def test_two_measures_find_the_coefficients():
     first, second = np.exp(rng.normal(size=(2, 4000)) * 0.5)
     eta = -0.3 + 2.0 * np.log(first) + 1.0 * np.log(second)
     verdict = (rng.random(4000) < stats.norm.cdf(eta)).astype(float)
-    trials = Trials.of_verdicts(np.log(np.column_stack([first, second])), verdict, np.ones(4000))
+    trials = Trials.from_verdicts(np.log(np.column_stack([first, second])), verdict, np.ones(4000))
     found = fit(trials, Bands.SANDWICH)
     assert found.coefficients == pytest.approx([-0.3, 2.0, 1.0], abs=0.2)
     errors = np.sqrt(np.diag(found.covariance))
@@ -271,7 +271,7 @@ def test_runs_are_counted_by_what_they_exceed(runs):
     pga = np.array([one.peak_acceleration.m_as("m/s^2") for one in motions().values()])
     logs = np.log(np.outer(runs.scale.values, pga)).ravel()[:, None]
     cluster = np.tile(np.arange(6), 5)
-    trials = Trials.of_verdicts(logs, falls.astype(float).ravel(), np.ones(30), cluster)
+    trials = Trials.from_verdicts(logs, falls.astype(float).ravel(), np.ones(30), cluster)
     expected = fit(trials, Bands.SANDWICH)
     last = found.sel(limit_state="overturning")
     assert (np.log(last.median_intensity.item()), last.dispersion.item()) == pytest.approx(
@@ -281,25 +281,27 @@ def test_runs_are_counted_by_what_they_exceed(runs):
 
 
 def test_intensities_are_those_of_the_scaled_motions(runs):
-    from rockframe.studies.intensities import Intensity, intensity_in
+    from rockframe.studies.intensities import Intensity, intensity_of_runs
 
     motion = motions()["seed 2"].scaled(3.0)
     one = {"motion": "seed 2", "scale": 3.0}
     measures = rf.intensity_measures(motion)
     for name in ("PGA", "PGV", "CAV", "arias_intensity", "mean_period"):
         read = Intensity.read(name, None, owner="test")
-        found = intensity_in(runs, read, None, owner="test")
+        found = intensity_of_runs(runs, read, None, owner="test")
         found = found.sel({key: one[key] for key in found.dims})
         assert found.item() == pytest.approx(measures[read.name].item(), rel=1e-9), name
         assert found.attrs["units"] == measures[read.name].units
     read = Intensity.read("SA", "0.5 s", owner="test")
     spectrum = rf.response_spectrum(motion, ["0.5 s"]).pseudo_spectral_acceleration
-    found = intensity_in(runs, read, None, owner="test").sel(one)
+    found = intensity_of_runs(runs, read, None, owner="test").sel(one)
     assert found.item() == pytest.approx(spectrum.item(), rel=1e-9)
     to_target = rf.sweep(
         SYSTEM, motions(), peak_ground_velocity=(["0.3 m/s"]), accuracy="fast", progress=False
     )
-    pga = intensity_in(to_target, Intensity.read("PGA", None, owner="test"), None, owner="test")
+    pga = intensity_of_runs(
+        to_target, Intensity.read("PGA", None, owner="test"), None, owner="test"
+    )
     scaled = motions()["seed 2"].scaled(peak_velocity="0.3 m/s").peak_acceleration.m_as("m/s^2")
     assert pga.sel(motion="seed 2").item() == pytest.approx(scaled, rel=1e-9)
 

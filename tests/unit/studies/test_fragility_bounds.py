@@ -7,10 +7,10 @@ from scipy import optimize, stats
 
 import rockframe as rf
 from rockframe.studies.fragility import labelling
-from rockframe.studies.fragility.labelling import Means, fragility_dataset
+from rockframe.studies.fragility.labelling import BoundSettings, fragility_dataset
 from rockframe.studies.fragility.likelihood import Bands, FragilityStatus, boundary, fit
 from rockframe.studies.fragility.trials import StructureTrials, Trials
-from rockframe.studies.fragility.words import COVERAGE, bounded, words_of_bounds
+from rockframe.studies.fragility.words import COVERAGE, bound_sentences, enough_trials
 
 SCALES = np.array([0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0])
 MEASURE = ("peak_ground_acceleration", {"units": "m s^-2"})
@@ -52,7 +52,7 @@ def test_the_sandwich_is_that_of_its_definition(motions):
     """The factor for few clusters is 1.5 with three of them, 1.2 with six."""
     logs, over, cluster = runs_of(np.random.default_rng(4), motions, 0.5)
     best, covariance = by_hand(logs, over, cluster)
-    found = fit(Trials.of_verdicts(logs[:, None], over, np.ones(len(over)), cluster),
+    found = fit(Trials.from_verdicts(logs[:, None], over, np.ones(len(over)), cluster),
                 Bands.SANDWICH)  # fmt: skip
     assert found.coefficients == pytest.approx(best, rel=1e-5, abs=1e-6)
     assert found.covariance == pytest.approx(covariance, rel=1e-4, abs=1e-6)
@@ -60,7 +60,7 @@ def test_the_sandwich_is_that_of_its_definition(motions):
 
 def test_the_sandwich_of_counts_takes_each_trial_for_a_cluster():
     logs, over, count = np.log([0.5, 1.0, 2.0]), np.array([1.0, 2.0, 3.0]), np.full(3, 4.0)
-    found = fit(Trials.of_verdicts(logs[:, None], over, count), Bands.SANDWICH)
+    found = fit(Trials.from_verdicts(logs[:, None], over, count), Bands.SANDWICH)
     each = [(one, 1.0) for one, k in zip(logs, over, strict=True) for _ in range(int(k))]
     each += [(one, 0.0) for one, k in zip(logs, count - over, strict=True) for _ in range(int(k))]
     alone, verdict = np.array(each).T
@@ -71,7 +71,7 @@ def test_the_sandwich_of_counts_takes_each_trial_for_a_cluster():
 
 def test_the_jackknife_leaves_out_each_motion_in_turn():
     logs, over, cluster = runs_of(np.random.default_rng(4), 6, 0.5)
-    trials = Trials.of_verdicts(logs[:, None], over, np.ones(len(over)), cluster)
+    trials = Trials.from_verdicts(logs[:, None], over, np.ones(len(over)), cluster)
     found = fit(trials, Bands.JACKKNIFE)
     rows = np.array(
         [by_hand(*(each[cluster != one] for each in (logs, over, cluster)))[0] for one in range(6)]
@@ -85,10 +85,10 @@ def test_bounds_by_jackknife_are_those_of_its_definition():
     """Student's t of the motions but one, about a dispersion that is not too small on average."""
     motions = 6
     logs, over, cluster = runs_of(np.random.default_rng(4), motions, 0.5)
-    trials = Trials.of_verdicts(logs[:, None], over, np.ones(len(over)), cluster)
+    trials = Trials.from_verdicts(logs[:, None], over, np.ones(len(over)), cluster)
     found = fragility_dataset(
         [StructureTrials(trials, None, 0, motions)], {"limit_state": 1}, [MEASURE],
-        Means(Bands.JACKKNIFE, 0.9), {"trials": "runs"},
+        BoundSettings(Bands.JACKKNIFE, 0.9), {"trials": "runs"},
     ).isel(limit_state=0)  # fmt: skip
 
     def estimates(kept):
@@ -115,7 +115,7 @@ def test_bounds_by_jackknife_hold_with_few_motions():
     rng, samples = np.random.default_rng(9), []
     for _ in range(200):
         logs, over, cluster = runs_of(rng, 5, 0.4)
-        trials = Trials.of_verdicts(logs[:, None], over, np.ones(len(over)), cluster)
+        trials = Trials.from_verdicts(logs[:, None], over, np.ones(len(over)), cluster)
         samples.append((trials, 5))
     shares, count = held(samples, 0.4, Bands.JACKKNIFE)
     assert count >= 5
@@ -172,7 +172,7 @@ def held(samples, dispersion, bands):
     """Shares of samples in which the bounds hold the median, 1, and the dispersion."""
     found = fragility_dataset(
         [StructureTrials(trials, None, 0, independent) for trials, independent in samples],
-        {"limit_state": len(samples)}, [MEASURE], Means(bands, 0.95), {"trials": "runs"},
+        {"limit_state": len(samples)}, [MEASURE], BoundSettings(bands, 0.95), {"trials": "runs"},
     )  # fmt: skip
     fitted = found.fragility_status == FragilityStatus.FITTED
     assert found.median_intensity_lower_bound.where(~fitted).isnull().all()
@@ -190,7 +190,7 @@ def test_bounds_by_sandwich_hold_as_often_as_is_said(motions):
     rng, samples = np.random.default_rng(8), []
     for _ in range(200):
         logs, over, cluster = runs_of(rng, motions, 0.4)
-        trials = Trials.of_verdicts(logs[:, None], over, np.ones(len(over)), cluster)
+        trials = Trials.from_verdicts(logs[:, None], over, np.ones(len(over)), cluster)
         samples.append((trials, motions))
     shares, count = held(samples, 0.4, Bands.SANDWICH)
     for share, said in zip(shares, COVERAGE[Bands.SANDWICH][motions], strict=True):
@@ -218,14 +218,14 @@ def test_bounds_by_profile_hold_as_often_as_is_said(count):
 def test_too_few_motions_have_no_bounds():
     rng = np.random.default_rng(1)
     for bands, fewest in ((Bands.SANDWICH, 10), (Bands.PROFILE, 5)):
-        assert not bounded(bands, fewest - 1)
-        assert bounded(bands, fewest)
+        assert not enough_trials(bands, fewest - 1)
+        assert enough_trials(bands, fewest)
     logs, over, cluster = runs_of(rng, 9, 0.5)
-    trials = Trials.of_verdicts(logs[:, None], over, np.ones(len(over)), cluster)
+    trials = Trials.from_verdicts(logs[:, None], over, np.ones(len(over)), cluster)
     for independent, lacking in ((9, True), (10, False)):
         found = fragility_dataset(
             [StructureTrials(trials, None, 0, independent)], {"limit_state": 1}, [MEASURE],
-            Means(Bands.SANDWICH, 0.95), {"trials": "runs"},
+            BoundSettings(Bands.SANDWICH, 0.95), {"trials": "runs"},
         )  # fmt: skip
         assert found.median_intensity.notnull().all()
         for name in ("median_intensity", "dispersion", "exceedance_probability"):
@@ -236,7 +236,7 @@ def test_too_few_motions_have_no_bounds():
 def test_what_bounds_are_is_said():
     def said(bands, independent, trials=200, confidence=0.95, **more):
         counts = np.array([independent]), np.array([trials])
-        return " ".join(words_of_bounds(bands, confidence, *counts, kind="motions", **more))
+        return " ".join(bound_sentences(bands, confidence, *counts, kind="motions", **more))
 
     assert said(Bands.SANDWICH, 6) == ("There are no bounds: 6 motions are too few, 10 are needed.")
     assert said(Bands.SANDWICH, 12, confidence=0.9) == (
@@ -258,7 +258,7 @@ def test_what_bounds_are_is_said():
 
 def test_layouts_arrange_the_last_dimension_fastest():
     values = {"flat": np.arange(6), "deep": np.zeros((6, 4))}
-    found = labelling._arranged(values, {"width": 3, "limit_state": 2})
+    found = labelling._reshaped(values, {"width": 3, "limit_state": 2})
     assert found["flat"].tolist() == [[0, 1], [2, 3], [4, 5]]
     assert found["deep"].shape == (3, 2, 4)
 

@@ -48,7 +48,7 @@ def test_the_likelihood_is_greatest_where_a_general_search_finds_it(seed):
 
 def test_one_limit_state_is_the_usual_fit():
     logs, verdicts = sample(4)
-    trials = Trials.of_verdicts(
+    trials = Trials.from_verdicts(
         logs[:, None], verdicts[1], np.ones(len(logs)), np.arange(len(logs))
     )
     for bands in (Bands.SANDWICH, Bands.JACKKNIFE):
@@ -66,7 +66,7 @@ def test_bounds_hold_the_median_and_the_dispersion():
         logs, verdicts = sample(100 + seed, 40)
         fits = ordered_fits(logs, verdicts, np.arange(40), NAMES, Bands.JACKKNIFE)
         intercept, slope = fits[1].coefficients
-        rows, _ = fits[1].without
+        rows, _ = fits[1].leave_one_out
         each = np.stack([-rows[:, 0] / rows[:, 1], -np.log(rows[:, 1])], axis=1)
         best = np.array([-intercept / slope, -np.log(slope)])
         error = np.sqrt(39 / 40 * ((each - best) ** 2).sum(axis=0))
@@ -137,13 +137,13 @@ def test_without_a_motion_limit_states_that_the_same_runs_exceed_have_one_capaci
     motions = np.arange(len(logs))
     first, second = ordered_fits(logs, verdicts, motions, NAMES[:2], Bands.JACKKNIFE)
     kept = count != 1
-    one = Trials.of_verdicts(
+    one = Trials.from_verdicts(
         logs[kept, None], verdicts[0, kept], np.ones(kept.sum()), motions[kept]
     )
     expected = fit(one, Bands.PROFILE).coefficients
     for state in (first, second):
-        assert state.without is not None
-        rows = state.without[0]
+        assert state.leave_one_out is not None
+        rows = state.leave_one_out[0]
         np.testing.assert_allclose(rows[4], expected, rtol=1e-6)
         assert np.isfinite(rows).all()
 

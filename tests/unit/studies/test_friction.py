@@ -83,7 +83,7 @@ def test_cases_with_a_limit_leave_the_lanes_and_the_others_stay(monkeypatch, acc
     found = []
     monkeypatch.setattr(study, "COMPILING_SHARE", np.inf)
     for fewest in (1, 10**9):
-        monkeypatch.setattr(study, "FEWEST_IN_LANES", fewest)
+        monkeypatch.setattr(study, "MIN_CASES_IN_LANES", fewest)
         with pytest.warns(ModelWarning, match=SLIDES):
             runs = rf.sweep(
                 scene, PULSE, slippery=[False, True], scale=[0.1, 0.5, 1.0, 3.0], accuracy=accuracy

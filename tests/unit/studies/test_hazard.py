@@ -168,9 +168,9 @@ def test_points_integrate_a_lognormal_curve_as_its_closed_form(known):
     x = np.geomspace(*known, 101)
     median, spread = 6.0, 0.45
     values = xr.DataArray(ndtr(np.log(x / median) / spread), dims="x", coords={"x": x})
-    finely = hazard._finely(hazard.HazardCurve(VALUES * G, RATES))
-    by_points = hazard._by_points(hazard._interpolated(values, values.x), *finely)
-    exact = hazard.of_lognormal(median, spread, *finely)
+    finely = hazard._subdivided(hazard.HazardCurve(VALUES * G, RATES))
+    by_points = hazard._integrated(hazard._interpolator(values, values.x), *finely)
+    exact = hazard.lognormal_rates(median, spread, *finely)
     np.testing.assert_allclose(by_points, exact, rtol=1e-7, atol=1e-12 * exact.sum())
 
 

@@ -11,7 +11,7 @@ from own_example import example
 
 import rockframe as rf
 from rockframe.errors import StudyError
-from rockframe.studies.sweeps.identity import _written, description_of, digest_of
+from rockframe.studies.sweeps.identity import _source_of_class, description_of, digest_of
 from rockframe.studies.sweeps.planning import plan_study
 from rockframe.studies.sweeps.study import Study, SweepJob
 
@@ -283,7 +283,7 @@ GIVEN = {"frequency_ratio": 15, "damping_ratio": 0.05, "strength": 0.6, "hardeni
 
 def test_the_laws_of_a_users_base_are_told(tmp_path):
     def digest(module):
-        _written.cache_clear()
+        _source_of_class.cache_clear()
         pads = module.YieldingPads(**GIVEN)
         return digest_of(description_of(pads))
 
@@ -300,4 +300,4 @@ def test_the_laws_of_a_users_base_are_told(tmp_path):
         module.CONSTANT = 0.1
         assert digest(module) != plain
         del module.CONSTANT
-    _written.cache_clear()
+    _source_of_class.cache_clear()

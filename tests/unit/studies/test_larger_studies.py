@@ -12,7 +12,7 @@ from kept_sweep import as_bytes
 import rockframe as rf
 from rockframe.errors import ComponentError, SolverWarning, StudyError
 from rockframe.results.variables.runs import RunStatus
-from rockframe.studies.sweeps import lazily, memory, sweep, words
+from rockframe.studies.sweeps import lazy_dataset, memory, sweep, words
 from rockframe.studies.sweeps.store import Store, read_shapes
 
 pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning")
@@ -67,7 +67,7 @@ def dask_is_there(request, monkeypatch):
     if request.param:
         pytest.importorskip("dask", reason="dask is not installed")
     else:
-        monkeypatch.setattr(lazily, "find_spec", lambda _: None)
+        monkeypatch.setattr(lazy_dataset, "find_spec", lambda _: None)
     return request.param
 
 
@@ -89,7 +89,7 @@ def agrees(lazy, whole):
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
 @pytest.mark.parametrize("run", STUDIES)
 def test_what_is_read_lazily_is_what_is_there(run, tmp_path, dask_is_there, monkeypatch):
-    monkeypatch.setattr(lazily, "_BLOCK", 1)
+    monkeypatch.setattr(lazy_dataset, "_BLOCK_SIZE", 1)
     counted, counts = [], words._counts
     monkeypatch.setattr(words, "_counts", lambda *a: counted.append(a[0].sizes) or counts(*a))
     whole = run(accuracy="fast", store=tmp_path / "study")
@@ -121,7 +121,7 @@ def test_what_is_read_lazily_is_what_is_there(run, tmp_path, dask_is_there, monk
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
 def test_only_what_is_used_is_read(tmp_path, monkeypatch, dask_is_there):
     whole = on_a_grid(store=tmp_path / "study")
-    lazily._rows.cache_clear()
+    lazy_dataset._rows.cache_clear()
     read, plain = [], Store.get
     monkeypatch.setattr(Store, "get", lambda self, one: read.append(one.number) or plain(self, one))
     lazy = rf.open_study(tmp_path / "study", lazy=True)
@@ -139,13 +139,15 @@ def test_only_what_is_used_is_read(tmp_path, monkeypatch, dask_is_there):
 def test_what_is_still_to_come_is_a_gap(tmp_path, dask_is_there):
     on_a_grid(store=tmp_path / "study")
     (tmp_path / "study" / "chunk-000002.arrays").unlink()
-    lazily._rows.cache_clear()
+    lazy_dataset._rows.cache_clear()
     whole, lazy = (rf.open_study(tmp_path / "study", lazy=one) for one in (False, True))
     agrees(lazy, whole)
     assert int((lazy.status == RunStatus.NOT_RUN).sum()) == 7
     assert lazy.rockframe.verdict == whole.verdict
     on_a_grid(store=tmp_path / "study")
-    assert lazily.lazy_dataset(Store.at(tmp_path / "study")).status.max() < RunStatus.NOT_RUN
+    assert (
+        lazy_dataset.lazy_dataset(Store.open(tmp_path / "study")).status.max() < RunStatus.NOT_RUN
+    )
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
@@ -155,7 +157,7 @@ def test_damaged_files_are_told_of_when_they_are_read(tmp_path):
     content = bytearray(file.read_bytes())
     content[-3] ^= 1
     file.write_bytes(content)
-    lazily._rows.cache_clear()
+    lazy_dataset._rows.cache_clear()
     lazy = rf.open_study(tmp_path / "study", lazy=True)
     with pytest.raises(StudyError, match=r"chunk-000001.arrays: damaged"):
         lazy.peak_rotation.mean().compute()
@@ -175,10 +177,10 @@ def test_with_dask_statistics_stream(tmp_path, monkeypatch):
     whole = rf.sweep(SYSTEM, MOTIONS, **few, chunk=10, store=tmp_path / "study")
     size = whole.rotation.nbytes
     assert size > 1e7
-    monkeypatch.setattr(lazily, "_BLOCK", 10)
+    monkeypatch.setattr(lazy_dataset, "_BLOCK_SIZE", 10)
     lazy = rf.open_study(tmp_path / "study", lazy=True)
     assert max(lazy.rotation.data.chunksize[:2]) == 10
-    lazily._rows.cache_clear()
+    lazy_dataset._rows.cache_clear()
     tracemalloc.start()
     try:
         with dask.config.set(scheduler="synchronous"):
@@ -199,10 +201,10 @@ def test_with_dask_statistics_stream(tmp_path, monkeypatch):
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
 def test_blocks_follow_the_order_of_running(tmp_path):
     on_a_grid(store=tmp_path / "study", accuracy="fast", progress=False)
-    grid = Store.at(tmp_path / "study").labels().grid
+    grid = Store.open(tmp_path / "study").labels().grid
     assert grid.order == ("motion", "scale", "height")
     for most, expected in ((1, (1, 1, 1)), (2, (1, 1, 2)), (7, (1, 2, 3)), (30, (2, 4, 3))):
-        assert tuple(lazily.blocks(grid, most).values())[::-1] == expected
+        assert tuple(lazy_dataset.block_lengths(grid, most).values())[::-1] == expected
     numbers = grid.numbers((slice(None), slice(None), slice(None)))
     assert numbers.shape == tuple(grid.sizes.values())
     assert (grid.arranged(np.arange(grid.count)) == numbers).all()
@@ -211,7 +213,7 @@ def test_blocks_follow_the_order_of_running(tmp_path):
 def test_what_does_not_fit_is_read_from_its_store(tmp_path, monkeypatch):
     scales = np.linspace(0.1, 1, 100)
     whole = rf.sweep(SYSTEM, MOTIONS["weak"], scale=scales, free_vibration="5 s")
-    monkeypatch.setattr(memory, "available", lambda: 2e4)
+    monkeypatch.setattr(memory, "available_memory", lambda: 2e4)
     told = r"100 cases need about 0.058 MB of memory .* 0.02 MB are available; "
     with pytest.raises(StudyError, match=f"{told}run fewer cases or give a store, from which"):
         rf.sweep(SYSTEM, MOTIONS["weak"], scale=scales, free_vibration="5 s")
@@ -230,7 +232,7 @@ def test_what_does_not_fit_is_read_from_its_store(tmp_path, monkeypatch):
 
 
 def test_an_interrupted_study_that_does_not_fit_is_not_read(tmp_path, monkeypatch):
-    monkeypatch.setattr(memory, "available", lambda: 2e4)
+    monkeypatch.setattr(memory, "available_memory", lambda: 2e4)
     monkeypatch.setattr(Store, "get", lambda *_: pytest.fail("it has been read"))
     stopped = Interrupting(2)
     with pytest.warns(SolverWarning) as said:

@@ -12,7 +12,7 @@ import rockframe as rf
 from rockframe.errors import ComponentError, StudyError
 from rockframe.results.variables.runs import RunStatus
 from rockframe.studies.cloud import Cloud
-from rockframe.studies.measure_comparison import _dependence
+from rockframe.studies.measure_comparison import _residual_trend
 
 SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
 COUNT = 60
@@ -95,8 +95,8 @@ def test_chances_are_uniform_where_nothing_depends():
     chances = []
     for _ in range(400):
         logs = rng.normal(size=25)
-        cloud = Cloud.of(logs, np.exp(0.5 + logs + 0.4 * rng.standard_normal(25)))
-        chances.append(_dependence(cloud, rng.uniform(5, 7, 25))[1])
+        cloud = Cloud.fit(logs, np.exp(0.5 + logs + 0.4 * rng.standard_normal(25)))
+        chances.append(_residual_trend(cloud, rng.uniform(5, 7, 25))[1])
     assert stats.kstest(chances, "uniform").pvalue > 0.01
 
 

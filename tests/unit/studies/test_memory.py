@@ -34,13 +34,13 @@ MANY = 30_000
     ],
 )  # fmt: skip
 def test_what_cannot_fit_is_refused_before_it_begins(study, monkeypatch):
-    monkeypatch.setattr(memory, "available", lambda: 2e6)
+    monkeypatch.setattr(memory, "available_memory", lambda: 2e6)
     with pytest.raises(StudyError, match=r"cases need about .* [GM]B of memory .*; 2 MB are ava"):
         study()
 
 
 def test_what_needs_most_of_it_is_told_of(monkeypatch):
-    monkeypatch.setattr(memory, "available", lambda: 7e4)
+    monkeypatch.setattr(memory, "available_memory", lambda: 7e4)
     with pytest.warns(SolverWarning, match=r"sweep: 100 cases need about 0.058 MB of memory"):
         runs = rf.sweep(SYSTEM, PULSE, scale=np.linspace(0.1, 1, 100), free_vibration="5 s")
     assert runs.overturned.notnull().all()
@@ -49,9 +49,9 @@ def test_what_needs_most_of_it_is_told_of(monkeypatch):
 def test_what_is_told_is_what_is_taken(monkeypatch):
     motions = [PULSE, PULSE.scaled(1.1)]
     sizes = []  # of scalars, of histories, of both, and what there is
-    monkeypatch.setattr(memory, "available", lambda: 1e12)
-    shown = memory._shown
-    monkeypatch.setattr(memory, "_shown", lambda size: sizes.append(size) or shown(size))
+    monkeypatch.setattr(memory, "available_memory", lambda: 1e12)
+    shown = memory._size_words
+    monkeypatch.setattr(memory, "_size_words", lambda size: sizes.append(size) or shown(size))
     arguments = {
         "scale": np.linspace(0.1, 0.2, 40), "outputs": ["rotation", "base_shear"],
         "output_step": "1 ms", "duration": "5 s", "progress": False,
@@ -70,15 +70,15 @@ def test_what_is_told_is_what_is_taken(monkeypatch):
 
 def test_the_least_of_all_limits_counts(monkeypatch, tmp_path):
     machine, most, now = (tmp_path / name for name in ("meminfo", "max", "current"))
-    monkeypatch.setattr(memory, "_MEMORY", machine)
-    monkeypatch.setattr(memory, "_GROUPS", ((most, now),))
-    assert memory.available() > 1e7  # what the machine has, or infinite
+    monkeypatch.setattr(memory, "_MEMINFO", machine)
+    monkeypatch.setattr(memory, "_CGROUP_FILES", ((most, now),))
+    assert memory.available_memory() > 1e7  # what the machine has, or infinite
     machine.write_text("MemTotal: 9 kB\nMemAvailable:   4000 kB\n")
-    assert memory.available() == 4096e3
+    assert memory.available_memory() == 4096e3
     most.write_text("max\n")
     now.write_text("1000000\n")
-    assert memory.available() == 4096e3
+    assert memory.available_memory() == 4096e3
     most.write_text("3000000\n")
-    assert memory.available() == 2e6
+    assert memory.available_memory() == 2e6
     most.write_text("900000\n")
-    assert memory.available() == 0.0
+    assert memory.available_memory() == 0.0

@@ -111,7 +111,7 @@ def test_a_bar_is_closed_when_something_fails(bars):
     def stops(*_):
         raise RuntimeError
 
-    with pytest.raises(RuntimeError), execution.bar_of(True, owner="some") as bar:
+    with pytest.raises(RuntimeError), execution.progress_bar(True, owner="some") as bar:
         stops(bar.expect(3))
     assert bars[0].disable  # as tqdm leaves a bar that is closed
 
@@ -131,7 +131,7 @@ def test_in_a_notebook_the_widget_grows_too(monkeypatch):
             pass
 
     monkeypatch.setattr(tqdm_auto, "tqdm", Notebook)
-    with execution.bar_of(True, owner="some") as bar:
+    with execution.progress_bar(True, owner="some") as bar:
         bar.expect(2)
         bar.expect(5, 1)
     assert widget.max == 7

@@ -10,7 +10,7 @@ import rockframe as rf
 from rockframe.errors import RockframeError
 from rockframe.simulation.certify.second_look import Look, is_sure
 from rockframe.studies.sweeps import study
-from rockframe.studies.sweeps.study import FEWEST_IN_LANES
+from rockframe.studies.sweeps.study import MIN_CASES_IN_LANES
 
 pytestmark = [
     pytest.mark.wide,
@@ -106,7 +106,7 @@ def test_chunks_stores_and_lanes_change_nothing(runs, tmp_path, monkeypatch):
     monkeypatch.setattr(study, "COMPILING_SHARE", np.inf)
     cases = {**AXES, "scale": np.linspace(0.4, 1.1, 128).tolist()}
     lanes = rf.sweep(SYSTEM, shaking(), **cases, accuracy="screen")
-    assert lanes.repeated.size >= FEWEST_IN_LANES
+    assert lanes.repeated.size >= MIN_CASES_IN_LANES
     kept = rf.sweep(SYSTEM, shaking(), **cases, accuracy="screen", chunk=57, store=tmp_path / "s")
     several = rf.open_study(tmp_path / "s")
     few = rf.sweep(SYSTEM, shaking(), **AXES, accuracy="screen", chunk=1)

@@ -56,7 +56,7 @@ def both(monkeypatch, *arguments, accuracy="fast", **options):
     found = []
     monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)
     for fewest in (1, 10**9):
-        monkeypatch.setattr(study, "FEWEST_IN_LANES", fewest)
+        monkeypatch.setattr(study, "MIN_CASES_IN_LANES", fewest)
         found.append(rf.sweep(*arguments, accuracy=accuracy, **options))
     lanes, alone = found
     assert lanes.attrs["driver"].startswith("cases side by side")
@@ -172,7 +172,7 @@ def test_still_ground_and_inclined_bases(monkeypatch):
     "chunk", [7, *(pytest.param(size, marks=pytest.mark.long) for size in (1, 1000))]
 )
 def test_neighbours_chunks_and_executors_change_nothing(monkeypatch, chunk):
-    monkeypatch.setattr(study, "FEWEST_IN_LANES", 1)
+    monkeypatch.setattr(study, "MIN_CASES_IN_LANES", 1)
     monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)
     system = rf.System(BLOCK, PADS)
     axes = {"scale": np.linspace(0.2, 2.0, 12), "damping_ratio": [0.05, 0.2]}
@@ -204,7 +204,7 @@ def test_equations_that_work_in_lists_are_not_prepared_for_lanes(parts, accuracy
     """Lanes for them cannot be compiled: an attempt takes some seconds, and is told of."""
     planned = plan_study(rf.System(*parts), MOTIONS[0], {"scale": [1.0]}, None, accuracy=accuracy)
     case = in_lanes.CasesOfJob(planned.job(range(1)))
-    assert in_lanes.prepared(*case.planned(0)) is None
+    assert in_lanes.prepare_lanes(*case.plan(0)) is None
 
 
 @pytest.mark.parametrize("accuracy", ["fast", "standard"])
@@ -289,7 +289,7 @@ def test_what_fails_in_preparing_lanes_is_told_as_an_error(monkeypatch):
         msg = "no such lane"
         raise ZeroDivisionError(msg)
 
-    monkeypatch.setattr(study, "FEWEST_IN_LANES", 1)
+    monkeypatch.setattr(study, "MIN_CASES_IN_LANES", 1)
     monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)
     monkeypatch.setattr(in_lanes, "run_start", fails)
     told = r"beside others failed \(ZeroDivisionError: no such lane\).*error in rockframe"
@@ -306,7 +306,7 @@ def test_what_fails_in_preparing_lanes_is_told_as_an_error(monkeypatch):
         return rf.System(rf.Block(width=f"{width} m", height="3.6 m", mass="4 t"), PADS)
 
     monkeypatch.undo()
-    monkeypatch.setattr(study, "FEWEST_IN_LANES", 1)
+    monkeypatch.setattr(study, "MIN_CASES_IN_LANES", 1)
     monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)
     runs = rf.sweep(scene, MOTIONS[0], width=[0.8, 1.0], accuracy="fast")
     assert runs.status.values.ravel().tolist() == [1, 6]
@@ -320,7 +320,7 @@ def test_lanes_are_compiled_where_they_save_more_than_that_takes(monkeypatch):
     def patience(count, **options):
         axes = {"scale": np.linspace(0.1, 2.0, count)}
         planned = plan_study(system, shaking, axes, None, **options)
-        return planned.patience
+        return planned.compile_timeout
 
     monkeypatch.setattr(study, "worker_count", lambda: 2)
     assert patience(15, accuracy="fast") is None

@@ -9,12 +9,12 @@ from scipy import stats
 import rockframe as rf
 from rockframe.errors import ComponentError, ModelWarning, SolverWarning, StudyError
 from rockframe.results.schema import SCHEMA
-from rockframe.studies import lines
+from rockframe.studies import line_scan as lines
 from rockframe.studies.conditional_sampling import (
-    bounds_of,
-    probability_of,
+    subset_bounds,
     subset_levels,
-    variation_of,
+    subset_probability,
+    subset_variation,
 )
 from rockframe.studies.limit_states import LimitState, demands, exceeds, limit_states
 
@@ -192,7 +192,7 @@ def steps(values):
     return list(
         subset_levels(
             lambda _, scores: np.floor(values * scores[:, 0]) / values, 1, 3.0, count=2000,
-            share=0.1, most=12, rng=np.random.default_rng(3),
+            share=0.1, max_levels=12, rng=np.random.default_rng(3),
         )
     )  # fmt: skip
 
@@ -200,7 +200,9 @@ def steps(values):
 @pytest.mark.parametrize("values", [1.0, 2.0, 10.0])
 def test_a_demand_of_steps_has_its_probability(values):
     levels = steps(values)
-    assert probability_of(levels) == pytest.approx(stats.norm.sf(3.0), rel=4 * variation_of(levels))
+    assert subset_probability(levels) == pytest.approx(
+        stats.norm.sf(3.0), rel=4 * subset_variation(levels)
+    )
     for one in levels[:-1]:
         assert not np.any(one.demands == one.threshold)
 
@@ -212,13 +214,17 @@ def test_samples_without_an_answer_are_left_out():
         return found
 
     levels = list(
-        subset_levels(demand, 2, 3.0, count=2000, share=0.1, most=9, rng=np.random.default_rng(1))
+        subset_levels(
+            demand, 2, 3.0, count=2000, share=0.1, max_levels=9, rng=np.random.default_rng(1)
+        )
     )
-    assert probability_of(levels) == pytest.approx(stats.norm.sf(3.0), rel=4 * variation_of(levels))
+    assert subset_probability(levels) == pytest.approx(
+        stats.norm.sf(3.0), rel=4 * subset_variation(levels)
+    )
     assert 900 < levels[0].left_out < 1100
     assert all(one.left_out > 0 for one in levels)
     assert not any(np.isnan(one.demands).any() for one in levels[1:])
-    lower, upper = bounds_of(levels, 0.999)
+    lower, upper = subset_bounds(levels, 0.999)
     assert lower < stats.norm.sf(3.0) < upper
 
 

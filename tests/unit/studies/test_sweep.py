@@ -110,7 +110,7 @@ def test_cases_without_a_result_are_gaps_with_a_reason(plain):
     assert told.dims == plain.status.dims
     assert all("cannot rock" in text for text in told.sel(height=0.3).values.ravel())
     assert set(told.sel(height=[3.0, 4.0]).values.ravel()) <= {"none", STILL_MOVING}
-    for name in labelling.ALWAYS:
+    for name in labelling.COMMON_SCALARS:
         assert plain[name].dtype == np.float64
         assert squat[name].isnull().all()
     rest = plain.sel(height=[3.0, 4.0])
@@ -358,7 +358,7 @@ def test_a_history_that_no_scene_of_a_sweep_has_is_told():
 
 
 def test_further_rounds_of_an_analysis_leave_the_records_of_sweeps_at_hand(monkeypatch):
-    monkeypatch.setattr(of_cases, "_REMEMBERED", 2)
+    monkeypatch.setattr(of_cases, "_CACHE_SIZE", 2)
     pulse = np.sin(np.linspace(0.0, 2.0 * np.pi, 51))
     record, rigid = rf.GroundMotion.from_arrays((pulse, "m/s^2"), "0.02 s"), rf.System(BLOCK)
     runs = rf.sweep(rigid, record, **FAST)
@@ -431,7 +431,7 @@ def test_axes_of_the_initial_state_begin_runs_where_they_say(monkeypatch):
     found = []
     monkeypatch.setattr(study, "COMPILING_SHARE", np.inf)
     for fewest in (1, 10**9):
-        monkeypatch.setattr(study, "FEWEST_IN_LANES", fewest)
+        monkeypatch.setattr(study, "MIN_CASES_IN_LANES", fewest)
         start = rf.InitialState(vertical_velocity="0.01 m/s")
         runs = rf.sweep(system, None, **axes, duration="3 s", initial=start, accuracy="fast")
         found.append(runs.drop_attrs(deep=False))

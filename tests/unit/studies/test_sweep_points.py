@@ -158,7 +158,7 @@ def test_what_points_cannot_be_is_told_at_once():
 
 
 def test_more_values_than_memory_has_are_refused(monkeypatch):
-    monkeypatch.setattr(memory, "available", lambda: 4e5)
+    monkeypatch.setattr(memory, "available_memory", lambda: 4e5)
     arguments = {"scale": SCALES, "points": POINTS, "free_vibration": "1 s"}
     names = ["point_vertical_acceleration", "rotation"]
     with pytest.raises(
@@ -166,6 +166,6 @@ def test_more_values_than_memory_has_are_refused(monkeypatch):
     ):
         rf.sweep(ON_PADS, PULSE, **arguments, outputs=names, output_step="0.5 ms")
     rf.sweep(ON_PADS, PULSE, **arguments, outputs=["rotation"])
-    monkeypatch.setattr(memory, "available", lambda: 1e3)
+    monkeypatch.setattr(memory, "available_memory", lambda: 1e3)
     with pytest.raises(StudyError, match=r"3 cases need .*peaks at 3 points .*name fewer points"):
         rf.sweep(ON_PADS, PULSE, **arguments)

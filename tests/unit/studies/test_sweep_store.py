@@ -12,7 +12,7 @@ from rockframe.errors import ModelWarning, SolverWarning, StudyError
 from rockframe.results.variables.runs import RunStatus
 from rockframe.studies.sweeps import case as of_cases
 from rockframe.studies.sweeps import store
-from rockframe.studies.sweeps.store import read_arrays, write_arrays, write_whole
+from rockframe.studies.sweeps.store import read_arrays, write_arrays, write_atomically
 from rockframe.version import __version__
 
 pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
@@ -41,7 +41,7 @@ def test_what_is_kept_is_what_is_given(whole):
 @pytest.mark.wide
 def test_many_chunks_stand_in_folders_of_their_own(tmp_path, monkeypatch):
     folder, plain = tmp_path / "study", the_sweep()
-    monkeypatch.setattr(store, "FILES_OF_A_FOLDER", 4)
+    monkeypatch.setattr(store, "MAX_FILES_PER_FOLDER", 4)
     assert as_bytes(the_sweep(folder)) == as_bytes(plain)
     assert not list(folder.glob("chunk-*"))
     folders = sorted(folder.glob("chunks-*"))
@@ -275,7 +275,7 @@ def test_arrays_come_back_as_they_were(tmp_path):
         assert again[name].dtype == values.dtype
         assert again[name].shape == values.shape
         assert again[name].tobytes() == values.tobytes()
-    write_whole(path, b"x", replace=False)
+    write_atomically(path, b"x", replace=False)
     assert read_arrays(path)[0] == described
 
 

@@ -7,7 +7,11 @@ from kept_sweep import alike
 
 import rockframe as rf
 from rockframe.errors import ModelWarning
-from rockframe.studies.sweeps.words import MOST_ALIKE, summed_up, warn_of_missing_results
+from rockframe.studies.sweeps.words import (
+    MAX_SIMILAR_TEXTS,
+    merge_similar_texts,
+    warn_of_missing_results,
+)
 
 BLOCK = rf.Block(width="0.5 m", height="2 m", mass="400 kg")
 PULSE = rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")
@@ -66,14 +70,14 @@ def test_figures_of_a_part_are_entitled_by_its_own_verdict():
 @pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning")
 def test_texts_of_many_cases_are_summed_up(tmp_path):
     system = rf.System(BLOCK, rf.RigidGround(friction=0.1), sliding="checked")
-    scales = np.linspace(0.5, 1.3, 6 * MOST_ALIKE)
+    scales = np.linspace(0.5, 1.3, 6 * MAX_SIMILAR_TEXTS)
 
     def swept(**how):
         return rf.sweep(system, PULSE, scale=scales, free_vibration="5 s", **how)
 
     with pytest.warns(ModelWarning, match=r"of \d\d of them it is said: .* 0\.1"):
         many = swept()
-    assert len(set(many.message.values.ravel())) <= 1 + MOST_ALIKE
+    assert len(set(many.message.values.ravel())) <= 1 + MAX_SIMILAR_TEXTS
     few = rf.sweep(system, PULSE, scale=scales[:3], free_vibration="5 s")
     assert len(set(few.message.values.ravel())) == 3
     one = few.message.values[0, 0]
@@ -103,12 +107,15 @@ def test_of_many_cautions_the_most_frequent_is_told():
 
 
 def test_numbers_of_texts_become_ranges_and_words_stay():
-    texts = ["none", *(f"x2: {k / 10} m at {9 - k:.1e} s, Eq. (6)" for k in range(MOST_ALIKE + 1))]
+    texts = [
+        "none",
+        *(f"x2: {k / 10} m at {9 - k:.1e} s, Eq. (6)" for k in range(MAX_SIMILAR_TEXTS + 1)),
+    ]
     message = np.array([3, 0, 5, 1, len(texts) - 1])
-    few, places = summed_up(texts, message)
+    few, places = merge_similar_texts(texts, message)
     assert few == ("none", "x2: 0.0 to 1.6 m at -7.0e+00 to 9.0e+00 s, Eq. (6)")
     assert places.tolist() == [1, 0, 1, 1, 1]
-    assert summed_up(texts[:-1], message[:-1])[0] == tuple(texts[:-1])
+    assert merge_similar_texts(texts[:-1], message[:-1])[0] == tuple(texts[:-1])
 
 
 def test_a_part_of_a_fragility_tells_of_itself():

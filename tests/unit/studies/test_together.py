@@ -9,7 +9,7 @@ import pytest
 import rockframe as rf
 from rockframe.compiled import COMPILED
 from rockframe.studies.sweeps import chunk, study
-from rockframe.studies.sweeps.lanes import FinishedTogether
+from rockframe.studies.sweeps.lanes import FinishedGroup
 from rockframe.studies.sweeps.planning import plan_study
 
 pytestmark = [
@@ -87,22 +87,22 @@ def table(spreads, rng, count=COUNT):
 
 def both(monkeypatch, scene, cases, motion, **options):
     """Run a chunk together, and again with every scene on its own; tell how many ran together."""
-    monkeypatch.setattr(study, "FEWEST_IN_LANES", 1)
+    monkeypatch.setattr(study, "MIN_CASES_IN_LANES", 1)
     monkeypatch.setattr(study, "COMPILING_SHARE", float("inf"))
     planned = plan_study(scene, motion, {}, cases, **options)
     job = planned.job(range(planned.grid.count))
-    served, run_in_lanes = [0], chunk.run_in_lanes
+    served, run_assembled_together = [0], chunk.run_assembled_together
 
     def counted(*arguments):
-        for found in run_in_lanes(*arguments):
-            served[0] += len(found.cases) if isinstance(found, FinishedTogether) else 1
+        for found in run_assembled_together(*arguments):
+            served[0] += len(found.cases) if isinstance(found, FinishedGroup) else 1
             yield found
 
-    monkeypatch.setattr(chunk, "run_in_lanes", counted)
+    monkeypatch.setattr(chunk, "run_assembled_together", counted)
     together = chunk.run_chunk(job)
-    monkeypatch.setattr(chunk, "run_in_lanes", lambda *_: iter(()))
+    monkeypatch.setattr(chunk, "run_assembled_together", lambda *_: iter(()))
     alone = chunk.run_chunk(job)
-    monkeypatch.setattr(chunk, "run_in_lanes", run_in_lanes)
+    monkeypatch.setattr(chunk, "run_assembled_together", run_assembled_together)
     return together, alone, served[0]
 
 
@@ -159,7 +159,7 @@ def test_targets_other_than_a_factor_scale_the_motion(monkeypatch):
 
 def test_screened_studies(monkeypatch):
     rng = np.random.default_rng(13)
-    monkeypatch.setattr(chunk, "FEWEST_IN_LANES", 1)
+    monkeypatch.setattr(chunk, "MIN_CASES_IN_LANES", 1)
     small = {"Block.width": (0.4, 0.8, "m"), "Block.height": (2.0, 5.0, "m")}
     cases = table({**small, "scale": (0.5, 3.0, None)}, rng, 2 * COUNT)
     together, alone, served = both(

@@ -18,50 +18,56 @@ from rockframe.results.variables.studies import MESSAGE
 from rockframe.simulation.run import NONE
 from rockframe.studies.sweeps.axes import Chunk, Grid
 from rockframe.studies.sweeps.chunk import CaseResults
-from rockframe.studies.sweeps.labelling import around_cases, names_of_scalars, with_coordinates
+from rockframe.studies.sweeps.labelling import (
+    dataset_without_results,
+    scalar_names,
+    with_coordinates,
+)
 from rockframe.studies.sweeps.store import Store
 
 _STATUS: Final = "status"
-_AT_HAND: Final = 8
+_CACHED_CHUNKS: Final = 8
 """Chunks that stay in memory, as variables of the same cases are often used together."""
-_BLOCK: Final = 1_000_000
+_BLOCK_SIZE: Final = 1_000_000
 """Numbers of a block of dask, or those of a chunk where these are more."""
 _Key: TypeAlias = tuple[Any, ...]
 """For each dimension a whole number, a slice, or a sequence of whole numbers."""
 
 
-def lazy_dataset(kept: Store) -> xr.Dataset:
+def lazy_dataset(stored: Store) -> xr.Dataset:
     """Return the content of a folder as a dataset that is read when it is used.
 
     With dask its variables are dask arrays, whose blocks lie along the chunks.
     """
-    labels = kept.labels()
+    labels = stored.labels()
     grid, over = labels.grid, tuple(labels.grid.sizes)
-    shapes, done = kept.contents()
+    shapes, done = stored.contents()
     points = (len(labels.points),)
-    beside = {name: points if SCHEMA[name].dims else () for name in names_of_scalars(labels)}
-    beside |= {name: shape for name, shape in shapes.items() if name in SCHEMA}
+    extra_shapes = {name: points if SCHEMA[name].dims else () for name in scalar_names(labels)}
+    extra_shapes |= {name: shape for name, shape in shapes.items() if name in SCHEMA}
 
     def variable(name: str, kind: str, shape: tuple[int, ...]) -> xr.Variable:
         row = SCHEMA[name]
-        data = indexing.LazilyIndexedArray(_Column(kept, grid, name, kind, shape))
+        data = indexing.LazilyIndexedArray(_Column(stored, grid, name, kind, shape))
         # nobody knows yet whether there are gaps, so that all but texts and status may have some
         attributes = row.attributes("float64" if kind == "f8" else None)
         return xr.Variable((*over, *row.dims), data, attributes)
 
-    columns = {name: variable(name, "f8", beside[name]) for name in SCHEMA if name in beside}
+    columns = {
+        name: variable(name, "f8", extra_shapes[name]) for name in SCHEMA if name in extra_shapes
+    }
     attributes = {CASE_COUNT: grid.count, **labels.attributes}
-    dataset = around_cases(labels, attributes).assign(columns)
+    dataset = dataset_without_results(labels, attributes).assign(columns)
     dataset = dataset.assign({_STATUS: variable(_STATUS, "i1", ())})
     dataset = with_coordinates(dataset, labels, variable(MESSAGE, "O", ()))
-    together = blocks(grid, max(_BLOCK, kept.chunk))
+    lengths = block_lengths(grid, max(_BLOCK_SIZE, stored.chunk))
     if find_spec("dask") is not None:
-        dataset = dataset.chunk(together, token=f"{kept.digest} {done}")
-    dataset[_STATUS].encoding["preferred_chunks"] = together
+        dataset = dataset.chunk(lengths, token=f"{stored.digest} {done}")
+    dataset[_STATUS].encoding["preferred_chunks"] = lengths
     return dataset
 
 
-def blocks(grid: Grid, most: int) -> dict[str, int]:
+def block_lengths(grid: Grid, most: int) -> dict[str, int]:
     """Return the lengths of blocks of cases that follow one another in the order of running."""
     found: dict[str, int] = {}
     for dim in reversed(grid.order):
@@ -83,19 +89,21 @@ class _Column(BackendArray):
     def __getitem__(self, key: indexing.ExplicitIndexer) -> Any:
         """Read the requested values."""
         support = indexing.IndexingSupport.OUTER
-        return indexing.explicit_indexing_adapter(key, self.shape, support, self._picked)
+        return indexing.explicit_indexing_adapter(key, self.shape, support, self._select)
 
-    def _picked(self, key: _Key) -> Generic:
+    def _select(self, key: _Key) -> Generic:
         dims = len(self._grid.sizes)
-        numbers = self._grid.numbers(key[:dims])
-        found = self._of_cases(numbers.ravel()).reshape((*numbers.shape, *self._beside))
+        numbers = self._grid.case_numbers(key[:dims])
+        found = self._read_cases(numbers.ravel()).reshape((*numbers.shape, *self._beside))
         for axis, one in reversed([*enumerate(key[dims:], start=numbers.ndim)]):
             found = found[(*[slice(None)] * axis, one)]
         return found
 
-    def _of_cases(self, numbers: Generic) -> Generic:
+    def _read_cases(self, numbers: Generic) -> Generic:
         """Read cases by their numbers in the order of running."""
-        found = np.full((len(numbers), *self._beside), _GAPS.get(self._name, np.nan), self.dtype)
+        found = np.full(
+            (len(numbers), *self._beside), _FILL_VALUES.get(self._name, np.nan), self.dtype
+        )
         of_chunk = numbers // self._kept.chunk
         order = np.argsort(of_chunk, kind="stable")
         used, firsts = np.unique(of_chunk[order], return_index=True)
@@ -109,11 +117,11 @@ class _Column(BackendArray):
         return found
 
 
-_GAPS: Final[Mapping[str, Any]] = {_STATUS: RunStatus.NOT_RUN, MESSAGE: NONE}
+_FILL_VALUES: Final[Mapping[str, Any]] = {_STATUS: RunStatus.NOT_RUN, MESSAGE: NONE}
 """Values of cases that have not been run; NaN for other variables."""
 
 
-@lru_cache(maxsize=_AT_HAND)
+@lru_cache(maxsize=_CACHED_CHUNKS)
 def _rows(kept: Store, chunk: Chunk) -> CaseResults:
     return kept.get(chunk)
 

@@ -17,9 +17,9 @@ from rockframe.studies.sweeps.scenes import SystemScene
 from rockframe.studies.sweeps.store import Store
 from rockframe.studies.sweeps.study import Study
 
-_OWN: Final = ("grid", "motions")
+_MAY_DIFFER: Final = ("grid", "motions")
 """Fields in which studies may differ when one takes cases of the other."""
-_NOBODY: Final = -1
+_NOT_RUN: Final = -1
 
 
 class KnownCases:
@@ -29,38 +29,38 @@ class KnownCases:
         self._grid = study.grid
         self._sources = [_Source(study, folder) for folder in folders]
 
-    def lacking(self, chunk: Chunk) -> Generic:
+    def missing_cases(self, chunk: Chunk) -> Generic:
         """Return the numbers of the cases of a chunk that nobody has run."""
         if not self._sources:
             return np.asarray(chunk.cases)
-        source, _ = self._found(chunk)
-        return np.asarray(chunk.cases)[source == _NOBODY]
+        source, _ = self._locate(chunk)
+        return np.asarray(chunk.cases)[source == _NOT_RUN]
 
-    def filled(self, chunk: Chunk, run: CaseResults | None) -> CaseResults:
+    def merge(self, chunk: Chunk, run: CaseResults | None) -> CaseResults:
         """Return the results of a chunk: those just run, and those known from others."""
         if run is not None and len(run.status) == len(chunk.cases):
             return run
-        source, number = self._found(chunk)
+        source, number = self._locate(chunk)
         whole = CollectedResults(len(chunk.cases))
         if run is not None:
-            whole.put_rows(source == _NOBODY, run)
+            whole.put_rows(source == _NOT_RUN, run)
         for k, one in enumerate(self._sources):
-            of_chunk = number // one.kept.chunk
+            of_chunk = number // one.stored.chunk
             for old in np.unique(of_chunk[source == k]).tolist():
                 here = (source == k) & (of_chunk == old)
-                rows = one.kept.get(one.kept.chunk_at(old))
-                whole.put_rows(here, rows, number[here] - old * one.kept.chunk)
+                rows = one.stored.get(one.stored.chunk_at(old))
+                whole.put_rows(here, rows, number[here] - old * one.stored.chunk)
         return whole.rows()
 
-    def _found(self, chunk: Chunk) -> tuple[Generic, Generic]:
+    def _locate(self, chunk: Chunk) -> tuple[Generic, Generic]:
         """Return who has each case of a chunk, and its number there."""
-        places = self._grid.places(chunk.cases)
-        source = np.full(len(chunk.cases), _NOBODY)
+        places = self._grid.indices(chunk.cases)
+        source = np.full(len(chunk.cases), _NOT_RUN)
         number = np.zeros(len(chunk.cases), dtype=np.int64)
         for k, one in reversed([*enumerate(self._sources)]):
             there = one.numbers(places)
-            source[there != _NOBODY] = k
-            number[there != _NOBODY] = there[there != _NOBODY]
+            source[there != _NOT_RUN] = k
+            number[there != _NOT_RUN] = there[there != _NOT_RUN]
         return source, number
 
 
@@ -68,11 +68,11 @@ class _Source:
     """A study that has cases, and where they are in it."""
 
     def __init__(self, study: Study, folder: Path) -> None:
-        self.kept = Store.at(folder)
-        description = self.kept.described()
+        self.stored = Store.open(folder)
+        description = self.stored.description()
         own = json.loads(json.dumps(study.to_dict()))
         differs = difference(
-            *({k: v for k, v in d.items() if k not in _OWN} for d in (description, own))
+            *({k: v for k, v in d.items() if k not in _MAY_DIFFER} for d in (description, own))
         )
         if differs:
             msg = (
@@ -80,7 +80,7 @@ class _Source:
                 "that differs in motions and in values along its axes alone"
             )
             raise StudyError(msg)
-        self._grid = self.kept.labels().grid
+        self._grid = self.stored.labels().grid
         grids = self._grid, study.grid
         tables = any(grid.columns or grid.motion_column is not None for grid in grids)
         if tables or not isinstance(study.scene, SystemScene):
@@ -97,23 +97,23 @@ class _Source:
             )
             raise StudyError(msg)
         digests = [[digest for _, digest in each["motions"]] for each in (description, own)]
-        self._places = {MOTION: _places(digests[1], digests[0])}
+        self._positions = {MOTION: _positions(digests[1], digests[0])}
         there = {axis.name: axis.values.tolist() for axis in self._grid.axes}
         for axis in study.grid.axes:
-            self._places[axis.name] = _places(axis.values.tolist(), there[axis.name])
+            self._positions[axis.name] = _positions(axis.values.tolist(), there[axis.name])
 
     def numbers(self, places: Mapping[str, Generic]) -> Generic:
         """Return the numbers that cases have here, by their places in the other study."""
-        each = [self._places[dim][places[dim]] for dim in self._grid.order]
+        each = [self._positions[dim][places[dim]] for dim in self._grid.order]
         found = np.ravel_multi_index([np.maximum(one, 0) for one in each], self._grid.shape)
-        found[np.any(np.array(each) == _NOBODY, axis=0)] = _NOBODY
-        for old in np.unique(found[found != _NOBODY] // self.kept.chunk).tolist():
-            if not self.kept.has(self.kept.chunk_at(old)):  # not yet run
-                found[found // self.kept.chunk == old] = _NOBODY
+        found[np.any(np.array(each) == _NOT_RUN, axis=0)] = _NOT_RUN
+        for old in np.unique(found[found != _NOT_RUN] // self.stored.chunk).tolist():
+            if not self.stored.has(self.stored.chunk_at(old)):  # not yet run
+                found[found // self.stored.chunk == old] = _NOT_RUN
         return found
 
 
-def _places(wanted: list[Any], there: list[Any]) -> Generic:
+def _positions(wanted: list[Any], there: list[Any]) -> Generic:
     """Return the positions of values among others."""
     place = {one: k for k, one in enumerate(there)}
-    return np.array([place.get(one, _NOBODY) for one in wanted])
+    return np.array([place.get(one, _NOT_RUN) for one in wanted])

@@ -16,10 +16,10 @@ from rockframe.results.schema import build_dataset
 from rockframe.results.table import table as table_of
 from rockframe.suites.columns import (
     check_column,
-    chosen,
     known_columns,
-    order,
+    matching_labels,
     other_columns,
+    sorted_labels,
     suite_html,
 )
 from rockframe.suites.records import pairs_of
@@ -44,8 +44,8 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         target: TargetSpectrum | None = None,
     ) -> None:
         owner = type(self).__name__
-        self._motions = _named(motions, owner)
-        self._verticals = {} if verticals is None else _named(verticals, owner)
+        self._motions = _read_motions(motions, owner)
+        self._verticals = {} if verticals is None else _read_motions(verticals, owner)
         files = {} if unread is None else unread
         example = "{'a.AT2': 'an empty file'}"
         self._unread = {**by_names(files, owner=owner, name="unread", example=example)}
@@ -158,7 +158,7 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         >>> len(suite.select(magnitude=(6, None)))
         2
         """
-        labels = chosen(self, criteria)
+        labels = matching_labels(self, criteria)
         if not labels:
             wanted = ", ".join(f"{name}={given!r}" for name, given in criteria.items())
             msg = f"{type(self).__name__}.select: no motion has {wanted}"
@@ -198,7 +198,7 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
             found = f"{shown(unknown[0])}{nearest(unknown[0], self._motions)}"
             msg = f"{owner}: there is no motion {found}"
             raise ComponentError(msg)
-        return self._with({label: self._motions[label] for label in requested})
+        return self._with_motions({label: self._motions[label] for label in requested})
 
     def sort(self, by: str, *, descending: bool = False) -> Self:
         """Order the motions by a column; those without a value come last.
@@ -230,7 +230,7 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         """
         truth(descending, owner=f"{type(self).__name__}.sort", name="descending")
         check_column(self, by, owner=f"{type(self).__name__}.sort")
-        return self.only(order(self, by, descending=descending))
+        return self.only(sorted_labels(self, by, descending=descending))
 
     # changing -------------------------------------------------------------------------------
 
@@ -263,8 +263,8 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         """
         step = function_of(step, "motion", owner=f"{type(self).__name__}.changed", name="step")
         motions = {label: step(motion) for label, motion in self._motions.items()}
-        upwards = {label: step(motion) for label, motion in self._verticals.items()}
-        return type(self)(motions, verticals=upwards, unread=self._unread, remarks=self._remarks)
+        verticals = {label: step(motion) for label, motion in self._verticals.items()}
+        return type(self)(motions, verticals=verticals, unread=self._unread, remarks=self._remarks)
 
     def with_verticals(self) -> Self:
         """Add the vertical component of its record to each motion that has one.
@@ -300,30 +300,30 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         by_record.pop(None, None)
         motions: dict[str, GroundMotion] = {}
         for label, motion in self._motions.items():
-            upwards = by_record.get(motion.metadata.get("record"))
-            motions[label] = motion if upwards is None else motion.with_vertical(upwards)
+            vertical = by_record.get(motion.metadata.get("record"))
+            motions[label] = motion if vertical is None else motion.with_vertical(vertical)
         if all(motion.si.vertical is None for motion in motions.values()):
             words = (
                 f"{type(self).__name__}.with_verticals: no motion has a vertical component; set "
                 "them beside the motions before these are scaled one by one, or matched"
             )
             warn(words, RecordWarning)
-        return self._with(motions)
+        return self._with_motions(motions)
 
-    def _with(self, motions: Mapping[str, GroundMotion]) -> Self:
+    def _with_motions(self, motions: Mapping[str, GroundMotion]) -> Self:
         kept = {motion.metadata.get("record") for motion in motions.values()}
-        upwards = {
+        verticals = {
             label: one
             for label, one in self._verticals.items()
             if one.metadata.get("record") in kept
         }
         return type(self)(
-            motions, verticals=upwards, unread=self._unread, remarks=self._remarks,
+            motions, verticals=verticals, unread=self._unread, remarks=self._remarks,
             target=self._target,
         )  # fmt: skip
 
 
-def _named(value: object, owner: str) -> dict[str, GroundMotion]:
+def _read_motions(value: object, owner: str) -> dict[str, GroundMotion]:
     """Read motions with their labels."""
     motions: dict[str, Any] = {}
     if isinstance(value, Mapping):

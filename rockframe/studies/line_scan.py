@@ -30,38 +30,38 @@ from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.signals.arrays import Array
 from rockframe.simulation.system import System
 from rockframe.studies.sweeps.arguments import ExecutionArguments, SweepArguments
-from rockframe.studies.sweeps.axes import numbers_of
-from rockframe.studies.sweeps.case import remember
-from rockframe.studies.sweeps.execution import ProgressBar, bar_of
-from rockframe.studies.sweeps.motions import TARGETS
+from rockframe.studies.sweeps.axes import read_numbers
+from rockframe.studies.sweeps.case import cache_study
+from rockframe.studies.sweeps.execution import ProgressBar, progress_bar
+from rockframe.studies.sweeps.motions import MOTION_AXES
 from rockframe.studies.sweeps.planning import plan_study
-from rockframe.studies.sweeps.sweep import folder_of, run_study
+from rockframe.studies.sweeps.sweep import read_folder, run_study
 from rockframe.units import Condition, Measure, to_ratio
 from rockframe.version import __version__
 
 SCALE: Final = "scale"
-VERDICT: Final = "number of the verdict"
+VERDICT_DIM: Final = "number of the verdict"
 """Dimension of verdicts along lines; no axis can have such a name."""
-CAPACITY: Final = "least scale found to exceed"
+CAPACITY_DEFINITION: Final = "least scale found to exceed"
 """Definition of a capacity, for the attributes of datasets."""
-SOURCE: Final = f"rockframe {__version__}, scan and bisection of event-driven runs"
+SCAN_SOURCE: Final = f"rockframe {__version__}, scan and bisection of event-driven runs"
 """Source of the numbers of such analyses, for the attributes of datasets."""
-INTERRUPTED: Final = "; interrupted."
+INTERRUPTED_ENDING: Final = "; interrupted."
 """Ends the verdict of an analysis whose brackets are wider than asked."""
-MOST_ROUNDS: Final = 60
+MAX_ROUNDS: Final = 60
 """Most rounds of halving, whatever the width: by then neighbouring floats are reached."""
 _WIDTH: Final = Condition("from 1e-12 to 0.1", lambda value: 1e-12 <= value <= 0.1)
 _RESOLUTION: Final = Condition("from 1e-4 to 1", lambda value: 1e-4 <= value <= 1.0)
-_MOST_SCALES: Final = 100_000
+_MAX_SCALES: Final = 100_000
 
 
 @dataclass(frozen=True, eq=False)
-class Rounds:
+class SweepRounds:
     """What all sweeps of an analysis, made one after the other, have in common."""
 
     scene: System | Callable[..., System]  # as for :func:`rockframe.sweep`
     motions: Mapping[str, GroundMotion] | None
-    run: Mapping[str, Any]  # arguments of each sweep, and who makes the runs
+    options: Mapping[str, Any]  # arguments of each sweep, and who makes the runs
     store: Path | None
     bar: ProgressBar
 
@@ -71,49 +71,49 @@ class Rounds:
         cases: Any,
         axes: Mapping[str, Any],
         *,
-        further: bool = False,
-        **more: Any,
+        follow_up: bool = False,
+        **options: Any,
     ) -> tuple[xr.Dataset, bool]:
         """Run the cases of a part, whose name is used for its folder and on the bar.
 
         Also return whether this was not interrupted. Parts after the first are not recorded for
         :func:`rockframe.case`, as no result has them.
         """
-        arguments = {**self.run, **more}
-        means: Any = {
+        arguments = {**self.options, **options}
+        execution: Any = {
             name: arguments.pop(name, None) for name in ExecutionArguments.__annotations__
         }
-        del means["progress"]
-        means["store"] = None if self.store is None else self.store / part
+        del execution["progress"]
+        execution["store"] = None if self.store is None else self.store / part
         study = plan_study(self.scene, self.motions, axes, cases, **arguments)
-        if not further:
-            remember(study)
+        if not follow_up:
+            cache_study(study)
         self.bar.name(part)
-        return run_study(study, self.bar, **means)
+        return run_study(study, self.bar, **execution)
 
 
 @contextmanager
-def rounds_of(
+def sweep_rounds(
     scene: System | Callable[..., System],
     motions: Mapping[str, GroundMotion] | None,
-    run: Mapping[str, Any],
+    options: Mapping[str, Any],
     *,
     owner: str,
-) -> Generator[Rounds]:
+) -> Generator[SweepRounds]:
     """Make the folder of an analysis, if it has one, and its bar, which closes when it ends."""
-    value = run.get("store")
-    folder = None if value is None else folder_of(value, owner=owner)
+    value = options.get("store")
+    folder = None if value is None else read_folder(value, owner=owner)
     try:
         if folder is not None:
             folder.mkdir(parents=True, exist_ok=True)
     except OSError as problem:
         msg = f"{owner}: store {str(folder)!r} cannot be made: {problem}"
         raise StudyError(msg) from problem
-    with bar_of(run.get("progress"), owner=owner) as bar:
-        yield Rounds(scene, motions, run, folder, bar)
+    with progress_bar(options.get("progress"), owner=owner) as bar:
+        yield SweepRounds(scene, motions, options, folder, bar)
 
 
-Wanted = list[tuple[int, float]]
+LineScales = list[tuple[int, float]]
 """Numbers of lines, each with a scale at which it is to be run."""
 
 
@@ -133,15 +133,15 @@ class Bracket:
         """The scale in its middle."""
         return 0.5 * (self.below + self.above)
 
-    def halved(self, shown: float) -> Iterator["Bracket"]:
+    def halves(self, verdict: float) -> Iterator["Bracket"]:
         """Return the part that remains by the verdict of its middle; both parts by a third one."""
-        if shown != self.before:
-            yield replace(self, above=self.middle, after=shown)
-        if shown != self.after:
-            yield replace(self, below=self.middle, before=shown)
+        if verdict != self.before:
+            yield replace(self, above=self.middle, after=verdict)
+        if verdict != self.after:
+            yield replace(self, below=self.middle, before=verdict)
 
 
-def brackets_of(scales: Array, verdicts: Array) -> list[Bracket]:
+def find_brackets(scales: Array, verdicts: Array) -> list[Bracket]:
     """Find all changes among verdicts."""
     found: list[Bracket] = []
     for verdict, line in np.ndindex(verdicts.shape[:2]):
@@ -153,40 +153,43 @@ def brackets_of(scales: Array, verdicts: Array) -> list[Bracket]:
     return found
 
 
-def narrowed(
-    brackets: Sequence[Bracket], look: Callable[[str, Wanted], tuple[Array, bool]], *, width: float
+def bisect_brackets(
+    brackets: Sequence[Bracket],
+    run_at: Callable[[str, LineScales], tuple[Array, bool]],
+    *,
+    width: float,
 ) -> tuple[list[Bracket], bool]:
     """Halve brackets in rounds until they are narrow; return whether all of them are.
 
     This uses the verdicts of the runs of a named part, and whether all were made.
     """
     done: list[Bracket] = []
-    waiting = list(brackets)
-    whole = True
-    for number in range(1, MOST_ROUNDS + 1):
-        wide = [one for one in waiting if one.above - one.below > width * one.above]
-        done += [one for one in waiting if one.above - one.below <= width * one.above]
-        waiting = []
+    remaining = list(brackets)
+    completed = True
+    for number in range(1, MAX_ROUNDS + 1):
+        wide = [one for one in remaining if one.above - one.below > width * one.above]
+        done += [one for one in remaining if one.above - one.below <= width * one.above]
+        remaining = []
         if not wide:
             break
         # brackets of several verdicts may have the same middle
-        wanted = sorted({(one.line, one.middle) for one in wide})
+        requested = sorted({(one.line, one.middle) for one in wide})
         try:
-            found, whole = look(f"round {number:02d}", wanted)
+            found, completed = run_at(f"round {number:02d}", requested)
         except KeyboardInterrupt:  # between the runs of two rounds
-            done, whole = [*done, *wide], False
+            done, completed = [*done, *wide], False
             break
-        place = {case: k for k, case in enumerate(wanted)}
+        position = {case: k for k, case in enumerate(requested)}
         for one in wide:
-            shown = float(found[one.verdict, place[one.line, one.middle]])
-            if np.isnan(shown):
+            verdict = float(found[one.verdict, position[one.line, one.middle]])
+            if np.isnan(verdict):
                 done.append(one)
             else:
-                waiting += one.halved(shown)
-        if not whole:
+                remaining += one.halves(verdict)
+        if not completed:
             break
-    rising = sorted([*done, *waiting], key=lambda one: (one.verdict, one.line, one.below))
-    return rising, whole
+    ordered = sorted([*done, *remaining], key=lambda one: (one.verdict, one.line, one.below))
+    return ordered, completed
 
 
 def bracket_arrays(
@@ -205,23 +208,23 @@ def bracket_arrays(
 
 
 @dataclass(frozen=True, eq=False)
-class Seen:
+class LineVerdicts:
     """Verdicts of all lines at the scales that were run."""
 
     scales: Array  # all scales that were run along some line
     verdicts: Array  # over verdicts, lines and scales; NaN where a line was not run, or has none
-    moves: Generic  # over lines and scales: whether the base left the ground, or slid
+    moved: Generic  # over lines and scales: whether the base left the ground, or slid
 
-    def joined(self, cases: Wanted, verdicts: Array, moves: Generic) -> "Seen":
+    def with_runs(self, cases: LineScales, verdicts: Array, moved: Generic) -> "LineVerdicts":
         """Add cases, and what they showed."""
         lines, scales = (np.array(each) for each in zip(*cases, strict=True))
-        every = np.union1d(self.scales, scales)
-        known = np.full((*self.verdicts.shape[:2], len(every)), np.nan)
-        moved = np.ones(known.shape[1:], dtype=bool)
-        old, new = np.searchsorted(every, self.scales), np.searchsorted(every, scales)
-        known[..., old], moved[:, old] = self.verdicts, self.moves
-        known[:, lines, new], moved[lines, new] = verdicts, moves
-        return Seen(every, known, moved)
+        all_scales = np.union1d(self.scales, scales)
+        all_verdicts = np.full((*self.verdicts.shape[:2], len(all_scales)), np.nan)
+        all_moved = np.ones(all_verdicts.shape[1:], dtype=bool)
+        old, new = np.searchsorted(all_scales, self.scales), np.searchsorted(all_scales, scales)
+        all_verdicts[..., old], all_moved[:, old] = self.verdicts, self.moved
+        all_verdicts[:, lines, new], all_moved[lines, new] = verdicts, moved
+        return LineVerdicts(all_scales, all_verdicts, all_moved)
 
     def gaps(self, verdict: int, line: int) -> tuple[Array, Array]:
         """Return the intervals between runs, up to the one that ends at the first exceedance.
@@ -231,13 +234,13 @@ class Seen:
         """
         along = self.verdicts[verdict, line]
         (known,) = np.nonzero(~np.isnan(along))
-        (over,) = np.nonzero(along[known] == 1.0)
-        known = known[: over[0] + 1] if len(over) else known
+        (exceeding,) = np.nonzero(along[known] == 1.0)
+        known = known[: exceeding[0] + 1] if len(exceeding) else known
         known, far = known[:-1], known[1:]
-        there = self.moves[line, far]
-        return self.scales[known[there]], self.scales[far[there]]
+        counted = self.moved[line, far]
+        return self.scales[known[counted]], self.scales[far[counted]]
 
-    def middles(self, resolution: float) -> Wanted:
+    def gap_midpoints(self, resolution: float) -> LineScales:
         """Return lines and the middles of their gaps that are wider than the resolution."""
         found = set[tuple[int, float]]()
         for verdict, line in np.ndindex(self.verdicts.shape[:2]):
@@ -262,18 +265,18 @@ class Seen:
         return found
 
     @property
-    def first(self) -> Array:
+    def first_exceedance(self) -> Array:
         """The least scale that exceeds; infinite if none does, NaN without any verdict."""
         least = np.where(self.verdicts == 1.0, self.scales, np.inf).min(axis=-1)
         return np.where(np.isnan(self.verdicts).all(axis=-1), np.nan, least)
 
 
 @dataclass(frozen=True, eq=False)
-class FollowedLines:
+class LineResults:
     """Result of an analysis along lines."""
 
     scan: xr.Dataset  # the runs at the scales of the first row
-    seen: Seen  # verdicts of these runs and of those in their gaps
+    verdicts: LineVerdicts  # verdicts of these runs and of those in their gaps
     brackets: list[Bracket]
 
     def capacities(self, shape: tuple[int, ...]) -> dict[str, Array]:
@@ -281,8 +284,8 @@ class FollowedLines:
         _, above, _, after = self.arrays(shape)
         rising = np.where(after == 1.0, above, np.inf).min(axis=-1, initial=np.inf)
         return {
-            "capacity_scale": np.minimum(rising, self.seen.first.reshape(shape)),
-            "capacity_resolution": self.seen.resolution.reshape(shape),
+            "capacity_scale": np.minimum(rising, self.verdicts.first_exceedance.reshape(shape)),
+            "capacity_resolution": self.verdicts.resolution.reshape(shape),
         }
 
     def flips(self, shape: tuple[int, ...]) -> dict[str, Array]:
@@ -295,12 +298,12 @@ class FollowedLines:
 
     def arrays(self, shape: tuple[int, ...]) -> Iterator[Array]:
         """Return lower and upper scales of brackets, and the verdicts there."""
-        every = bracket_arrays(self.brackets, self.seen.verdicts.shape[:2])
+        every = bracket_arrays(self.brackets, self.verdicts.verdicts.shape[:2])
         return (one.reshape((*shape, -1)) for one in every)
 
 
 @dataclass(frozen=True, eq=False)
-class Lines:
+class LineScan:
     """Scene, motions and rows of the lines, and how their runs are made."""
 
     scene: System | Callable[..., System]  # as for :func:`rockframe.sweep`
@@ -309,94 +312,100 @@ class Lines:
     # none
     columns: Mapping[str, tuple[Array, str]]
     # how all of it is run. The scan and each round have a folder of their own in its store
-    run: SweepArguments
+    options: SweepArguments
     owner: str  # the calling public function, for messages
     # gives the verdicts of runs over ``verdict`` and their dimensions: whole numbers as floats, NaN
     # where there is none
     verdicts: Callable[[xr.Dataset], xr.DataArray]
 
-    def followed(
-        self, scales: Array, *, width: float, resolution: float | None = None, **kept: Any
-    ) -> FollowedLines:
+    def run_scan(
+        self, scales: Array, *, width: float, resolution: float | None = None, **histories: Any
+    ) -> LineResults:
         """Run all rows and motions at all scales, and narrow every change of a verdict.
 
         With a resolution the intervals below the first exceedance are made narrower than that
-        before. Only the runs of the scan have the histories `kept`. After an interrupt (Ctrl-C) the
+        before. Only the runs of the scan have `histories`. After an interrupt (Ctrl-C) the
         verdict of the scan says so.
         """
-        with rounds_of(self.scene, self.motions, self.run, owner=self.owner) as rounds:
-            heads = self._heads(slice(None))
-            scan, whole = rounds.sweep("scan", heads or None, {SCALE: scales}, **kept)
+        with sweep_rounds(self.scene, self.motions, self.options, owner=self.owner) as rounds:
+            columns = self._row_columns(slice(None))
+            scan, completed = rounds.sweep("scan", columns or None, {SCALE: scales}, **histories)
 
-            def look(part: str, wanted: Wanted) -> tuple[Array, bool]:
-                return self._at(rounds, part, wanted)[1:]
+            def run_at(part: str, requested: LineScales) -> tuple[Array, bool]:
+                return self._run_at(rounds, part, requested)[1:]
 
-            with collected_warnings() as warned:
-                seen = self._seen(scan)
-                if whole and resolution is not None:
-                    seen, whole = self._finer(rounds, seen, resolution)
-                found = brackets_of(seen.scales, seen.verdicts)
-                if whole:
-                    found, whole = narrowed(found, look, width=width)
-        if warned and whole:
-            warn(f"{self.owner}: in further rounds: {warned[0]}", ModelWarning)
-        if not whole:
-            scan.attrs["verdict"] = f"{str(scan.attrs['verdict']).removesuffix('.')}{INTERRUPTED}"
-            goes_on = "; the same call goes on, as it has a store" if rounds.store else ""
-            msg = f"{self.owner}: interrupted; brackets are wider than asked{goes_on}"
+            with collected_warnings() as messages:
+                verdicts = self._scan_verdicts(scan)
+                if completed and resolution is not None:
+                    verdicts, completed = self._refine_gaps(rounds, verdicts, resolution)
+                brackets = find_brackets(verdicts.scales, verdicts.verdicts)
+                if completed:
+                    brackets, completed = bisect_brackets(brackets, run_at, width=width)
+        if messages and completed:
+            warn(f"{self.owner}: in further rounds: {messages[0]}", ModelWarning)
+        if not completed:
+            scan.attrs["verdict"] = (
+                f"{str(scan.attrs['verdict']).removesuffix('.')}{INTERRUPTED_ENDING}"
+            )
+            advice = "; the same call goes on, as it has a store" if rounds.store else ""
+            msg = f"{self.owner}: interrupted; brackets are wider than asked{advice}"
             warn(msg, SolverWarning)
-        return FollowedLines(scan, seen, found)
+        return LineResults(scan, verdicts, brackets)
 
-    def _seen(self, runs: xr.Dataset) -> Seen:
+    def _scan_verdicts(self, runs: xr.Dataset) -> LineVerdicts:
         """Return the verdicts of the scan."""
         order = ([CASE] if self.columns else []) + [MOTION, SCALE]
-        shown = self.verdicts(runs).transpose(VERDICT, *order).to_numpy()
-        shown = shown.reshape(len(shown), -1, shown.shape[-1])
-        moves = _moves(runs).transpose(*order).to_numpy().reshape(shown.shape[1:])
-        return Seen(runs[SCALE].to_numpy(), shown, moves)
+        verdicts = self.verdicts(runs).transpose(VERDICT_DIM, *order).to_numpy()
+        verdicts = verdicts.reshape(len(verdicts), -1, verdicts.shape[-1])
+        moved = _has_moved(runs).transpose(*order).to_numpy().reshape(verdicts.shape[1:])
+        return LineVerdicts(runs[SCALE].to_numpy(), verdicts, moved)
 
-    def _finer(self, rounds: Rounds, seen: Seen, resolution: float) -> tuple[Seen, bool]:
+    def _refine_gaps(
+        self, rounds: SweepRounds, verdicts: LineVerdicts, resolution: float
+    ) -> tuple[LineVerdicts, bool]:
         """Run the gaps below the first exceedance; also return whether this was not interrupted."""
         tried = set[tuple[int, float]]()
-        for number in range(1, MOST_ROUNDS + 1):
+        for number in range(1, MAX_ROUNDS + 1):
             # where a middle has no verdict the gap stays
-            wanted = sorted({*seen.middles(resolution)} - tried)
-            if not wanted:
+            requested = sorted({*verdicts.gap_midpoints(resolution)} - tried)
+            if not requested:
                 break
-            tried |= set(wanted)
+            tried |= set(requested)
             try:
-                runs, shown, whole = self._at(rounds, f"finer {number:02d}", wanted)
+                runs, found, completed = self._run_at(rounds, f"finer {number:02d}", requested)
             except KeyboardInterrupt:  # between the runs of two rounds
-                return seen, False
-            seen = seen.joined(wanted, shown, _moves(runs).to_numpy())
-            if not whole:
-                return seen, False
-        return seen, True
+                return verdicts, False
+            verdicts = verdicts.with_runs(requested, found, _has_moved(runs).to_numpy())
+            if not completed:
+                return verdicts, False
+        return verdicts, True
 
-    def _at(self, rounds: Rounds, part: str, wanted: Wanted) -> tuple[xr.Dataset, Array, bool]:
+    def _run_at(
+        self, rounds: SweepRounds, part: str, requested: LineScales
+    ) -> tuple[xr.Dataset, Array, bool]:
         """Run each line at its own scale.
 
         Give runs, verdicts over verdicts and cases, and whether this was not interrupted.
         """
-        lines, scales = (np.array(each) for each in zip(*wanted, strict=True))
+        lines, scales = (np.array(each) for each in zip(*requested, strict=True))
         names = list(self.motions)
         rows, motions = np.divmod(lines, len(names))
-        cases = {**self._heads(rows), SCALE: scales, MOTION: [names[k] for k in motions]}
-        runs, whole = rounds.sweep(part, cases, {}, further=True)
-        return runs, self.verdicts(runs).transpose(VERDICT, CASE).to_numpy(), whole
+        cases = {**self._row_columns(rows), SCALE: scales, MOTION: [names[k] for k in motions]}
+        runs, completed = rounds.sweep(part, cases, {}, follow_up=True)
+        return runs, self.verdicts(runs).transpose(VERDICT_DIM, CASE).to_numpy(), completed
 
-    def _heads(self, rows: Any) -> dict[str, Any]:
+    def _row_columns(self, rows: Any) -> dict[str, Any]:
         columns = self.columns.items()
         return {head(name, unit): values[rows] for name, (values, unit) in columns}
 
 
-def _moves(runs: xr.Dataset) -> xr.DataArray:
+def _has_moved(runs: xr.Dataset) -> xr.DataArray:
     """Return in which runs a base lifted or slid, also one of a lower body."""
-    moves = runs["first_uplift_time"].notnull() | (runs["impact_count"] > 0)
-    moves |= runs["overturned"] == 1
+    moved = runs["first_uplift_time"].notnull() | (runs["impact_count"] > 0)
+    moved |= runs["overturned"] == 1
     for slip in (runs[name] for name in PEAK_SLIPS if name in runs):
-        moves |= ~(slip.max([dim for dim in slip.dims if dim not in moves.dims]) == 0.0)
-    return moves
+        moved |= ~(slip.max([dim for dim in slip.dims if dim not in moved.dims]) == 0.0)
+    return moved
 
 
 def read_resolution(value: object, *, owner: str) -> float:
@@ -404,9 +413,9 @@ def read_resolution(value: object, *, owner: str) -> float:
     return to_ratio(value, owner=owner, name="resolution", condition=_RESOLUTION, example="0.02")
 
 
-def read_rising(value: object, measure: Measure, name: str, *, owner: str) -> Array:
+def read_sorted(value: object, measure: Measure, name: str, *, owner: str) -> Array:
     """Read values above zero, sorted, equal ones once."""
-    values = np.unique(numbers_of(value, measure, name))
+    values = np.unique(read_numbers(value, measure, name))
     if not len(values) or values[0] <= 0.0:
         msg = f"{owner}: {name} must be above zero, got {shown(value)}"
         raise ComponentError(msg)
@@ -415,10 +424,10 @@ def read_rising(value: object, measure: Measure, name: str, *, owner: str) -> Ar
 
 def read_scales(value: object, *, owner: str) -> Array:
     """Read the scales of a scan."""
-    values = np.unique(numbers_of(value, TARGETS[SCALE].measure, SCALE))
-    if not 2 <= len(values) <= _MOST_SCALES or values[0] <= 0.0:
-        wanted = f"2 to {_MOST_SCALES} different numbers above zero"
-        msg = f"{owner}: scale needs {wanted}, got {shown(value)}"
+    values = np.unique(read_numbers(value, MOTION_AXES[SCALE].measure, SCALE))
+    if not 2 <= len(values) <= _MAX_SCALES or values[0] <= 0.0:
+        expected = f"2 to {_MAX_SCALES} different numbers above zero"
+        msg = f"{owner}: scale needs {expected}, got {shown(value)}"
         raise ComponentError(msg)
     return values
 
