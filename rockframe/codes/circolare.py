@@ -7,7 +7,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from rockframe.arguments import one_of_names
+from rockframe.arguments import checked_name
 from rockframe.codes.check import peaks_of, read_motions, rocking_block, scene_words
 from rockframe.components import Load
 from rockframe.errors import ComponentError
@@ -106,7 +106,7 @@ def circolare_2019(
     factor = to_ratio(
         confidence_factor, owner=_OWNER, name="confidence_factor", condition=_FACTOR, example="1.35"
     )
-    one_of_names(limit_state, (*LIMIT_STATES, SLD), owner=_OWNER, name="limit_state")
+    checked_name(limit_state, (*LIMIT_STATES, SLD), owner=_OWNER, name="limit_state")
     to_si(free_vibration, TIME, owner=_OWNER, name="free_vibration", condition=POSITIVE)
     if (elastic_period is None) == (limit_state == SLD):
         msg = f"{_OWNER}: elastic_period goes with limit_state='SLD', for example '0.2 s'"

@@ -10,7 +10,7 @@ from typing import Any, Final, TypeAlias, Unpack
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import several, whole_number
+from rockframe.arguments import checked_integer, checked_list
 from rockframe.comparison.models import model_ladder
 from rockframe.comparison.recommend import recommend
 from rockframe.errors import ComponentError, ModelWarning, SolverWarning, nearest, shown
@@ -172,11 +172,13 @@ def tradeoff(
     [[True, True]]
     """
     check_system(system, _OWNER)
-    repeats = whole_number(repeats, owner=_OWNER, name="repeats", lowest=1, highest=_MOST_REPEATS)
+    repeats = checked_integer(
+        repeats, owner=_OWNER, name="repeats", lowest=1, highest=_MOST_REPEATS
+    )
     models_of_scene = model_ladder(system)
     chosen = _chosen(models_of_scene, models)
     alone = isinstance(accuracies, str | float | int | Accuracy)
-    entries: list[Any] = [accuracies] if alone else several(
+    entries: list[Any] = [accuracies] if alone else checked_list(
         accuracies, owner=_OWNER, name="accuracies", of="accuracies"
     )  # fmt: skip
     if not entries:
@@ -277,7 +279,7 @@ def _timed(scene: System, plan: Plan) -> float:
 def _chosen(known: dict[str, System], models: object) -> dict[str, System]:
     if models is None:
         return known
-    requested = several(models, owner=_OWNER, name="models", of="models")
+    requested = checked_list(models, owner=_OWNER, name="models", of="models")
     unknown = [name for name in requested if not isinstance(name, str) or name not in known]
     if unknown or not requested:
         names = ", ".join(repr(name) for name in known)

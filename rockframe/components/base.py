@@ -7,7 +7,7 @@ from inspect import Signature, cleandoc
 from textwrap import fill
 from typing import Any, ClassVar, Final, Self
 
-from rockframe.arguments import by_names, several
+from rockframe.arguments import checked_list, checked_mapping
 from rockframe.components.alternatives import OneOf
 from rockframe.components.parameters import DERIVED, REQUIRED, Declared, SIValues
 from rockframe.components.registry import register_class
@@ -234,7 +234,7 @@ class Component(Immutable):
     @classmethod
     def _described(cls, description: Mapping[str, float | str]) -> dict[str, Any]:
         """Return the arguments in a description; refuse one of another class."""
-        description = by_names(
+        description = checked_mapping(
             description,
             owner=f"{cls.__name__}.from_dict",
             name="description",
@@ -318,7 +318,7 @@ class Component(Immutable):
         tuple of str
             Names of parameters; empty for most classes.
         """
-        for name in several(changed, owner=type(self).__name__, name="changed", of="names"):
+        for name in checked_list(changed, owner=type(self).__name__, name="changed", of="names"):
             self._check_name(name, self.varied() or self.parameters())
         return ()
 
@@ -342,7 +342,7 @@ class Component(Immutable):
         """
         example = "{'width': 0.8}"
         kind = type(self).__name__
-        values = by_names(values, owner=f"{kind}.with_si", name="values", example=example)
+        values = checked_mapping(values, owner=f"{kind}.with_si", name="values", example=example)
         if not values:
             return self
         for name in values:

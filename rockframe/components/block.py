@@ -3,7 +3,7 @@
 from collections.abc import Collection, Mapping
 from typing import Any, ClassVar, Final, Self, cast
 
-from rockframe.arguments import by_names
+from rockframe.arguments import checked_mapping
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.components.block_numbers import (
@@ -266,7 +266,7 @@ class Block(Component):
         <Quantity(4.0, 'meter')>
         """
         example = "{'width': 0.8}"
-        values = by_names(values, owner="Block.with_si", name="values", example=example)
+        values = checked_mapping(values, owner="Block.with_si", name="values", example=example)
         sizes = {name: values[name] for name in _BY_SIZE if name in values}
         if not sizes:
             return super().with_si(values)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any, Final
 
-from rockframe.arguments import iterates, one_of_words
+from rockframe.arguments import checked_choice, is_iterable
 from rockframe.components.frame_members import Member, MemberSI
 from rockframe.components.frame_regular import INFILL_THICKNESS, SLAB_THICKNESS, RegularFrame
 from rockframe.components.shapes.standing import CENTRED, centre_of_mass, mean_by_mass
@@ -201,7 +201,7 @@ def building_of(
     usual = CentreOfMass.MIDDLE if members is None else CentreOfMass.MEMBERS
     taken = usual
     if centre_of_mass is not None:
-        taken = one_of_words(CentreOfMass, centre_of_mass, owner=owner, name="centre_of_mass")
+        taken = checked_choice(CentreOfMass, centre_of_mass, owner=owner, name="centre_of_mass")
     if members is None:
         found = _regular(measures, owner, taken)
     else:
@@ -256,7 +256,7 @@ def _of_list(
 
     depth = None if measures.get("depth") is None else length("depth")
     width, height = length("width"), length("height")
-    if isinstance(members, str | Member | Mapping) or not iterates(members):
+    if isinstance(members, str | Member | Mapping) or not is_iterable(members):
         msg = f"{owner}: members must be a list of Member, got {shown(members)}"
         raise ComponentError(msg)
     built = tuple(_member(entry, k, owner) for k, entry in enumerate(members))

@@ -3,7 +3,7 @@
 from enum import StrEnum
 from typing import Any, ClassVar, Final, Literal
 
-from rockframe.arguments import one_of_words
+from rockframe.arguments import checked_choice
 from rockframe.components.base import Component
 from rockframe.components.parameters import (
     Choice,
@@ -370,7 +370,7 @@ class _Impact(Declared[Any, Any]):
     def read(self, value: object, owner: str) -> WallImpact | float:
         """Read the name of a law, or a number."""
         if isinstance(value, str) and value in list(WallImpact):
-            return one_of_words(WallImpact, value, owner=owner, name=self.name)
+            return checked_choice(WallImpact, value, owner=owner, name=self.name)
         return to_ratio(
             value, owner=owner, name=self.name, condition=self.condition,
             example=f'"{WallImpact.SORRENTINO}", "{WallImpact.NEWTON}" or -0.4',

@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Final, Generic, NoReturn, Self, TypeVar, overl
 
 import numpy as np
 
-from rockframe.arguments import one_of_words
+from rockframe.arguments import checked_choice
 from rockframe.errors import AccessError, ComponentError, shown
 from rockframe.proposals import hinted
 from rockframe.units import (
@@ -271,8 +271,8 @@ class Choice(Declared[Words, Words]):
         self.written_as = "{" + ", ".join(f'"{word}"' for word in type(default)) + "}"
 
     def read(self, value: object, owner: str) -> Words:
-        """Find the word, with :func:`rockframe.arguments.one_of_words`."""
-        return one_of_words(type(self.default), value, owner=owner, name=self.name)
+        """Find the word, with :func:`rockframe.arguments.checked_choice`."""
+        return checked_choice(type(self.default), value, owner=owner, name=self.name)
 
     def write(self, value: Words) -> str | None:
         """Write the word; None for the default."""

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Final, Self
 
-from rockframe.arguments import several
+from rockframe.arguments import checked_list
 from rockframe.components.base import Component
 from rockframe.components.block import Block
 from rockframe.components.block_numbers import BlockSI
@@ -76,10 +76,10 @@ class Stack(Component):
 
     def _keep(self, bodies: Sequence[Any], interfaces: object, offsets: object) -> None:
         """Check the arguments and store them."""
-        interfaces = several(interfaces, owner="Stack", name="interfaces", of="bases")
+        interfaces = checked_list(interfaces, owner="Stack", name="interfaces", of="bases")
         beside = None if offsets is None else [
             to_si(one, LENGTH, owner="Stack", name=f"offsets[{i}]") for i, one in
-            enumerate(several(offsets, owner="Stack", name="offsets", of="lengths"))
+            enumerate(checked_list(offsets, owner="Stack", name="offsets", of="lengths"))
         ]  # fmt: skip
         faults = [
             f"a body of a stack is a Block, got {shown(one)}"
@@ -207,7 +207,7 @@ class Stack(Component):
                 call = f"{type(self).__name__}.replace()"
                 raise unexpected_argument(call, name, values)
         bodies, interfaces, offsets = (changes.get(name, old) for name, old in values.items())
-        kept = several(bodies, owner="Stack", name="bodies", of="blocks")
+        kept = checked_list(bodies, owner="Stack", name="bodies", of="blocks")
         return type(self)(*kept, interfaces=interfaces, offsets=offsets)
 
     def _arguments(self) -> dict[str, Any]:
@@ -251,7 +251,7 @@ class Stack(Component):
         bodies, interfaces = (
             [
                 component_from_dict(one)
-                for one in several(
+                for one in checked_list(
                     described.get(name, ()), owner="Stack.from_dict", name=name, of="descriptions"
                 )
             ]

@@ -11,7 +11,14 @@ from typing import Any, Final
 import pandas as pd
 import xarray as xr
 
-from rockframe.arguments import by_names, checked_dataset, one_of_names, text, truth, whole_number
+from rockframe.arguments import (
+    checked_bool,
+    checked_dataset,
+    checked_integer,
+    checked_mapping,
+    checked_name,
+    checked_text,
+)
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.proposals import hinted
@@ -105,13 +112,13 @@ def to_pelicun(
     """
     import pandas as pd
 
-    identifier = text(component, owner=_PELICUN, name="component")
-    storeys = whole_number(offset, owner=_PELICUN, name="offset", lowest=-_MOST_STOREYS)
-    truth(directional, owner=_PELICUN, name="directional")
+    identifier = checked_text(component, owner=_PELICUN, name="component")
+    storeys = checked_integer(offset, owner=_PELICUN, name="offset", lowest=-_MOST_STOREYS)
+    checked_bool(directional, owner=_PELICUN, name="directional")
     measure, states = _fits(fragility, _PELICUN_MEASURES, owner=_PELICUN)
     kind, unit, size = _PELICUN_MEASURES[measure]
     if demand is not None:
-        _check_demand(text(demand, owner=_PELICUN, name="demand"), measure, kind)
+        _check_demand(checked_text(demand, owner=_PELICUN, name="demand"), measure, kind)
     if measure == SHORT["SA"]:
         kind = f"{kind}|{_period(fragility, _PELICUN):g}"
     row: dict[str, Any] = {
@@ -209,13 +216,13 @@ def to_openquake(
     >>> rf.export.to_openquake({"bookcase": found}, f"{tempfile.mkdtemp()}/model.xml").name
     'model.xml'
     """
-    one_of_names(loss, _LOSSES, owner=_OPENQUAKE, name="loss")
+    checked_name(loss, _LOSSES, owner=_OPENQUAKE, name="loss")
     for what, wanted in (("description", description), ("category", category)):
-        text(wanted, owner=_OPENQUAKE, name=what)
+        checked_text(wanted, owner=_OPENQUAKE, name=what)
     limit_given = None if no_damage_limit is None else to_ratio(
         no_damage_limit, owner=_OPENQUAKE, name="no_damage_limit", condition=POSITIVE
     )  # fmt: skip
-    fragilities = by_names(
+    fragilities = checked_mapping(
         fragilities, owner=_OPENQUAKE, name="fragilities", example="{'bookcase': fragility}"
     )
     if not fragilities:

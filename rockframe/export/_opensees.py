@@ -10,7 +10,7 @@ from typing import Any, Final, NamedTuple, cast
 
 import numpy as np
 
-from rockframe.arguments import one_of_words, whole_number
+from rockframe.arguments import checked_choice, checked_integer
 from rockframe.components import (
     Block,
     FrameEquivalent,
@@ -123,8 +123,8 @@ def to_opensees(
             msg = f"{_OWNER} needs a {kind.__name__}, got {shown(one)}"
             raise ComponentError(msg)
     _check(system)
-    count = whole_number(springs, owner=_OWNER, name="springs", lowest=2)
-    held = one_of_words(Dashpots, dashpots, owner=_OWNER, name="dashpots")
+    count = checked_integer(springs, owner=_OWNER, name="springs", lowest=2)
+    held = checked_choice(Dashpots, dashpots, owner=_OWNER, name="dashpots")
     checked_path(path, _KIND, overwrite=overwrite)
     base = _springs(system, count)
     run = system.simulate(

@@ -5,7 +5,7 @@ from typing import Final
 
 import xarray as xr
 
-from rockframe.arguments import one_of_words, several
+from rockframe.arguments import checked_choice, checked_list
 from rockframe.errors import ComponentError, shown
 from rockframe.identification.fitting import fit_history, fit_peaks
 from rockframe.identification.measured import (
@@ -175,7 +175,7 @@ def _check_swings(system: System) -> None:
 
 
 def _names(parameters: Sequence[str] | str) -> tuple[str, ...]:
-    names = tuple(several(parameters, owner=OWNER, name="parameters", of="names"))
+    names = tuple(checked_list(parameters, owner=OWNER, name="parameters", of="names"))
     if names and len(set(names)) == len(names):
         return names
     msg = f"{OWNER}: parameters must name one or more, each once, got {shown(parameters)}"
@@ -195,8 +195,8 @@ def _sought(
         return tuple(circumstances)
     if isinstance(data, MeasuredPeaks) and data.signed:
         circumstances.append(Circumstance.GAUGE_OFFSET)
-    listed = several(values, owner=OWNER, name="circumstances", of="names")
-    names = [one_of_words(Circumstance, one, owner=OWNER, name="circumstances") for one in listed]
+    listed = checked_list(values, owner=OWNER, name="circumstances", of="names")
+    names = [checked_choice(Circumstance, one, owner=OWNER, name="circumstances") for one in listed]
     for name in names:
         if name not in circumstances:
             needed = "times" if name is Circumstance.RELEASE_TIME else "their signs"

@@ -10,7 +10,7 @@ from typing import Any, Final, Generic, TypeVar, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import one_of_words
+from rockframe.arguments import checked_choice
 from rockframe.compiled import COMPILED
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
@@ -32,7 +32,7 @@ def signal_of(motion: object, component: object, *, owner: str) -> Signal:
     if not isinstance(motion, GroundMotion):
         msg = f"{owner}: motion needs a GroundMotion, got {shown(motion)}"
         raise ComponentError(msg)
-    which = one_of_words(GroundComponent, component, owner=owner, name="component")
+    which = checked_choice(GroundComponent, component, owner=owner, name="component")
     if which is GroundComponent.HORIZONTAL:
         return motion.si.horizontal
     if motion.si.vertical is None:

@@ -6,7 +6,7 @@ from typing import Any, Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import whole_number
+from rockframe.arguments import checked_integer
 from rockframe.errors import ComponentError, shown
 from rockframe.measures.common import Inputs, build_over, check_some
 from rockframe.measures.response import (
@@ -104,7 +104,7 @@ def rotated_spectrum(
     looked = _pairs(pair, owner=_SPECTRUM)
     seconds = checked_periods(periods, owner=_SPECTRUM)
     ratios = checked_ratios(damping_ratios, owner=_SPECTRUM)
-    count = whole_number(
+    count = checked_integer(
         directions, owner=_SPECTRUM, name="directions", lowest=2, highest=_MOST_DIRECTIONS
     )
     if count % 2:

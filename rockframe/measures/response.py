@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import one_of_words
+from rockframe.arguments import checked_choice
 from rockframe.errors import ComponentError, shown
 from rockframe.measures.common import Inputs, build_over, read_inputs
 from rockframe.motion import GroundMotion
@@ -98,7 +98,7 @@ def response_spectrum(
     looked = read_inputs(motion, component, owner=_OWNER)
     seconds = checked_periods(periods, owner=_OWNER)
     ratios = checked_ratios(damping_ratios, owner=_OWNER)
-    between = one_of_words(Interpolation, interpolation, owner=_OWNER, name="interpolation")
+    between = checked_choice(Interpolation, interpolation, owner=_OWNER, name="interpolation")
     if between is Interpolation.LINEAR and periods is not None:
         warn_of_coarse_samples(looked.things, shortest_of(seconds), owner=_OWNER, remedy=_REMEDY)
     return spectra_of(looked, seconds, ratios, between)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any, Final, TypeVar
 
-from rockframe.arguments import text, truth
+from rockframe.arguments import checked_bool, checked_text
 from rockframe.errors import ComponentError, shown
 from rockframe.motion.quantities import with_quantity
 from rockframe.proposals import Immutable, proposing
@@ -77,7 +77,8 @@ class MotionValue(Immutable):
                 raise ComponentError(msg)
         values = {
             "si": si,
-            "name": _one_line(text(name, owner=type(self).__name__, name="name")) or UNNAMED,
+            "name": _one_line(checked_text(name, owner=type(self).__name__, name="name"))
+            or UNNAMED,
             "metadata": MappingProxyType(entries),
             "history": tuple(map(_Line, history)),
             "recipe": None if recipe is None else MappingProxyType(dict(recipe)),
@@ -215,7 +216,7 @@ def to_dict(motion: MotionValue, *, samples: bool = False) -> dict[str, Any]:
     if motion.recipe is not None:
         return {**kind, **motion.recipe}
     known = {**kind, "constructor": None, "name": motion.name, "sha256": motion.sha256}
-    if not truth(samples, owner=f"{type(motion).__name__}.to_dict", name="samples"):
+    if not checked_bool(samples, owner=f"{type(motion).__name__}.to_dict", name="samples"):
         return known
     return {
         **known,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
 
 import numpy as np
 
-from rockframe.arguments import text
+from rockframe.arguments import checked_text
 from rockframe.errors import ComponentError, nearest, shown
 from rockframe.plot._axes import escaped, key
 from rockframe.plot._fonts import make_legible
@@ -108,7 +108,7 @@ class Sheet:
     def entitle(self, usual: str, title: str | None) -> None:
         """Write the title above a new figure; above given panels only if the caller set one."""
         if title is not None:
-            text(title, owner="rf.plot", name="title")
+            checked_text(title, owner="rf.plot", name="title")
         if self.own is not None:
             set_title(self.own, title or escaped(usual))
         elif title:

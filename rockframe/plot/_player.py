@@ -12,7 +12,7 @@ from typing import Any, Final, NamedTuple, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import text
+from rockframe.arguments import checked_text
 from rockframe.plot._artists import CONTACT, SOIL, Layout
 from rockframe.plot._axes import BLUE, GREEN, ORANGE, VERMILLION, units_of
 from rockframe.plot._checks import RUN, checked_run, draws
@@ -202,7 +202,7 @@ def player(
     sentence = (
         verdict_of_case(run, chosen.reader)
         if title is None
-        else text(title, owner="rf.plot.player", name="title")
+        else checked_text(title, owner="rf.plot.player", name="title")
     )
     data = {
         "times": [round(float(one), 6) for one in drawn.time[shown_at]],

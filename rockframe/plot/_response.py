@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import truth
+from rockframe.arguments import checked_bool
 from rockframe.dynamics.events import ContactState
 from rockframe.errors import ComponentError, nearest, shown
 from rockframe.plot._axes import (
@@ -233,7 +233,7 @@ def response(
         "rotation": chosen.unless_relative(ANGLE, rotation=rotation),
         "vertical": chosen.unless_relative(LENGTH, vertical=vertical),
     }
-    marked = truth(events, owner="rf.plot.response", name="events")
+    marked = checked_bool(events, owner="rf.plot.response", name="events")
     strips = strips_of(data)
     names = [
         name

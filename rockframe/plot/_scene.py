@@ -6,7 +6,7 @@ from typing import Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import truth
+from rockframe.arguments import checked_bool
 from rockframe.dynamics.events import LinkState
 from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.plot._artists import Drawer, SceneArtist, part_labels
@@ -89,7 +89,7 @@ def scene(
         raise ComponentError(refuse("scene", system))
     drawer = Drawer(geometry_of(system.assembly))
     at = Placement(drawer.geometry, UPRIGHT, system.restraint)
-    named = truth(legend, owner="rf.plot.scene", name="legend")
+    named = checked_bool(legend, owner="rf.plot.scene", name="legend")
     faults: list[str] = []
     marked = points_of(points, faults, owner="rf.plot.scene")
     if faults:

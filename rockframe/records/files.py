@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any, Final, TypeAlias, cast
 
-from rockframe.arguments import iterates
+from rockframe.arguments import is_iterable
 from rockframe.errors import RecordError, shown
 from rockframe.records.archives import (
     MAXIMUM_BYTES,
@@ -167,7 +167,7 @@ def files_of(given: object) -> Iterator[Source | Unread]:
     elif hasattr(given, "read"):
         name = getattr(given, "name", None)
         yield from _of_open(cast("IO[bytes]", given), name if isinstance(name, str) else _OPEN)
-    elif iterates(given) and not isinstance(given, str):
+    elif is_iterable(given) and not isinstance(given, str):
         for one in given:
             yield from files_of(one)
     else:

@@ -7,7 +7,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Final, cast
 
-from rockframe.arguments import iterates, one_of_names
+from rockframe.arguments import checked_name, is_iterable
 from rockframe.errors import ComponentError, shown
 from rockframe.notebook import card, number_with_unit
 from rockframe.proposals import proposing
@@ -159,7 +159,7 @@ class CodeCheck:
             No number has this symbol.
         """
         found = {one.symbol: one.value for several in self.lines.values() for one in several}
-        return found[one_of_names(symbol, found, owner="CodeCheck.value", name="symbol")]
+        return found[checked_name(symbol, found, owner="CodeCheck.value", name="symbol")]
 
     @property
     def passed(self) -> dict[str, bool]:
@@ -298,7 +298,7 @@ def checks_of(value: object, owner: str) -> list[CodeCheck]:
     several = [value] if isinstance(value, CodeCheck) else value
     if several is None:
         return []
-    if not iterates(several) or isinstance(several, str):
+    if not is_iterable(several) or isinstance(several, str):
         msg = f"{owner}: checks must be of rf.codes, one or a list of them, got {shown(several)}"
         raise ComponentError(msg)
     found = list(cast("Iterable[object]", several))

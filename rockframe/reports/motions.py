@@ -10,7 +10,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from rockframe import plot
-from rockframe.arguments import iterates
+from rockframe.arguments import is_iterable
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
 from rockframe.reports import page
@@ -91,7 +91,7 @@ def _named(value: object, owner: str) -> dict[str, GroundMotion]:
     if value is None:
         return {}
     several = [value] if isinstance(value, GroundMotion) else value
-    if not iterates(several) or isinstance(several, str):
+    if not is_iterable(several) or isinstance(several, str):
         msg = f"{owner}: motions must be a GroundMotion, or several, got {shown(value)}"
         raise ComponentError(msg)
     return dict(MotionSuite(cast("Iterable[GroundMotion]", several)))

@@ -9,7 +9,7 @@ from typing import Final, cast
 
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, text, truth
+from rockframe.arguments import checked_bool, checked_dataset, checked_text
 from rockframe.errors import (
     ComponentError,
     RecordWarning,
@@ -137,8 +137,8 @@ def report(
         dim for dim, index in dataset.indexes.items() if dim in dataset.dims and index.nlevels > 1
     ]
     dataset = dataset.reset_index(stacked)
-    truth(certify, owner=_OWNER, name="certify")
-    value = "" if title is None else text(title, owner=_OWNER, name="title")
+    checked_bool(certify, owner=_OWNER, name="certify")
+    value = "" if title is None else checked_text(title, owner=_OWNER, name="title")
     if motion is not None and not isinstance(cast("object", motion), GroundMotion):
         msg = f"{_OWNER}: motion must be a GroundMotion, got {shown(motion)}"
         raise ComponentError(msg)

@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, iterates, truth
+from rockframe.arguments import checked_bool, checked_dataset, is_iterable
 from rockframe.errors import SchemaError, shown
 from rockframe.proposals import hinted
 from rockframe.results.schema import SCHEMA, dated, without_fill_values
@@ -117,7 +117,7 @@ def concat(
         msg = f"{_OWNER}: found no runs; expected one at least"
         raise SchemaError(msg)
     _check_dimension(data, dim)
-    truth(histories, owner=_OWNER, name="histories")
+    checked_bool(histories, owner=_OWNER, name="histories")
     left_out = (*EVENT, *AFTER_END) if histories else (*EVENT, *AFTER_END, *TIME)
     parts = [run.drop_dims(left_out, errors="ignore") for run in data]
     common = set[Any].intersection(*(set(part.data_vars) for part in parts))
@@ -153,7 +153,7 @@ def concat(
 
 
 def _each(runs: object) -> Iterable[Any]:
-    if iterates(runs) and not isinstance(runs, str | xr.Dataset | xr.DataArray):
+    if is_iterable(runs) and not isinstance(runs, str | xr.Dataset | xr.DataArray):
         return runs
     msg = f"{_OWNER}: found {shown(runs)}; expected a list of datasets"
     raise SchemaError(msg)
@@ -274,7 +274,7 @@ def _same(one: object, other: object) -> bool:
 def _labelled(
     joined: xr.Dataset, dim: str, labels: Sequence[Any] | np.ndarray | xr.DataArray
 ) -> xr.Dataset:
-    if isinstance(labels, str) or not iterates(labels):
+    if isinstance(labels, str) or not is_iterable(labels):
         msg = f"{_OWNER}: labels must be a list of values, one for each run, got {shown(labels)}"
         raise SchemaError(msg)
     each = labels.to_numpy() if isinstance(labels, xr.DataArray) else list(labels)

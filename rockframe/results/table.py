@@ -8,7 +8,7 @@ from typing import Any, Final
 import pandas as pd
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, iterates, one_of_words
+from rockframe.arguments import checked_choice, checked_dataset, is_iterable
 from rockframe.errors import SchemaError
 from rockframe.proposals import hinted
 from rockframe.results.schema import SCHEMA
@@ -98,7 +98,7 @@ def table(
     >>> rf.table(response, units={"angle": "deg"})["peak_rotation [°]"].round(2).item()
     3.21
     """
-    kind = one_of_words(Contents, contents, owner=_OWNER, name="contents")
+    kind = checked_choice(Contents, contents, owner=_OWNER, name="contents")
     chosen = reader_units(units, owner=_OWNER)
     if isinstance(runs, xr.Dataset):
         run = _each_alone(chosen.of_all(runs), kind)
@@ -109,7 +109,7 @@ def table(
     several: Any = runs
     if isinstance(runs, Mapping):
         labels, several = _keys(runs), runs.values()
-    elif not iterates(several) or isinstance(several, str | xr.DataArray):
+    elif not is_iterable(several) or isinstance(several, str | xr.DataArray):
         several = [several]
     items = [
         _each_alone(chosen.of_all(checked_dataset(run, owner=_OWNER)), kind) for run in several

@@ -14,7 +14,7 @@ from typing import Any, Final, Literal, TypeAlias, Unpack, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import iterates
+from rockframe.arguments import is_iterable
 from rockframe.components import InitialState
 from rockframe.dynamics.protocol import Ending, Start
 from rockframe.errors import AssemblyError, ComponentError, RockframeError, nearest, shown
@@ -41,7 +41,7 @@ def listed(outputs: object) -> list[object]:
     """Return the argument ``outputs`` as a list."""
     if outputs is None:
         return []
-    if iterates(outputs) and not isinstance(outputs, str | Mapping):
+    if is_iterable(outputs) and not isinstance(outputs, str | Mapping):
         return list(outputs)
     return [outputs]
 

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from rockframe.arguments import by_names
+from rockframe.arguments import checked_mapping
 from rockframe.components import Component, InitialState, component_from_dict
 from rockframe.errors import RecordWarning, SchemaError, nearest, shown, warn
 from rockframe.motion import GroundMotion
@@ -160,7 +160,7 @@ def _joined(dataset: xr.Dataset, name: str, count: int) -> NDArray[Any]:
 
 def description_by_names(value: object) -> Mapping[str, Any]:
     """Return the description of a system as a mapping; refuse anything else."""
-    return by_names(value, owner="System", name="description", example="that of to_dict()")
+    return checked_mapping(value, owner="System", name="description", example="that of to_dict()")
 
 
 def parts_and_options(

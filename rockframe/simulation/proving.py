@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from typing import Any, Final
 
-from rockframe.arguments import whole_number
+from rockframe.arguments import checked_integer
 from rockframe.components import InitialState
 from rockframe.dynamics.alone import Alone
 from rockframe.dynamics.body import LEADING_CORNER
@@ -113,7 +113,7 @@ def prove(
     angle = to_si(
         angle_tolerance, ANGLE, owner=_OWNER, name="angle_tolerance", condition=_TOLERANCE
     )
-    most = whole_number(parts, owner=_OWNER, name="parts", lowest=1)
+    most = checked_integer(parts, owner=_OWNER, name="parts", lowest=1)
     within = Tolerances(restitution, factors, angle, most)
     assembly, plan = _planned(system, motion, initial, _OWNER)
     return proof_of(assembly, plan, scale=factor, within=within)

@@ -5,7 +5,7 @@ from typing import Any, Final, cast
 
 import pint
 
-from rockframe.arguments import several
+from rockframe.arguments import checked_list
 from rockframe.components import Block, Component
 from rockframe.errors import ComponentError, shown
 from rockframe.proposals import hinted
@@ -71,7 +71,7 @@ def register(
     >>> round(float(system.simulate(pulse, outputs=["roof_drift"]).peak_roof_drift), 3)
     0.184
     """
-    columns = several(columns, owner=_OWNER, name="columns", of="Variables")
+    columns = checked_list(columns, owner=_OWNER, name="columns", of="Variables")
     if isinstance(kind, Diagnostic) or (callable(kind) and not isinstance(kind, type)):
         _register_diagnostic(kind, columns, name, unit, long_name)
         return

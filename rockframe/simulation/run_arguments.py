@@ -6,7 +6,7 @@ from typing import Annotated, Final, TypeAlias, TypedDict
 
 import xarray as xr
 
-from rockframe.arguments import whole_number
+from rockframe.arguments import checked_integer
 from rockframe.components import InitialState
 from rockframe.proposals import proposing
 from rockframe.shared_arguments import Argument
@@ -160,7 +160,9 @@ class Certification:
         for name, (value, condition) in values.items():
             ratio = to_ratio(value, owner=owner, name=name, condition=condition)
             object.__setattr__(self, name, ratio)
-        most = whole_number(runs, owner=owner, name="runs", lowest=FEWEST_RUNS, highest=MOST_RUNS)
+        most = checked_integer(
+            runs, owner=owner, name="runs", lowest=FEWEST_RUNS, highest=MOST_RUNS
+        )
         object.__setattr__(self, "runs", most)
 
 

@@ -9,7 +9,7 @@ from typing import Any, Final, Literal, Self
 
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, truth
+from rockframe.arguments import checked_bool, checked_dataset
 from rockframe.components import InitialState
 from rockframe.errors import ComponentError, ModelWarning, SchemaError, warn
 from rockframe.motion import GroundMotion
@@ -224,7 +224,7 @@ class System(SystemValue):
             points=points,
             overturning=overturning,
         )
-        again = truth(second_look, owner="simulate", name="second_look")
+        again = checked_bool(second_look, owner="simulate", name="second_look")
         return run(self._assembly, plan, certification_of(certify), look_again=again)
 
     def to_opensees(self, motion: GroundMotion, path: str | Path, **options: Any) -> Path:

@@ -8,7 +8,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import several, whole_number
+from rockframe.arguments import checked_integer, checked_list
 from rockframe.errors import StudyError
 from rockframe.proposals import hinted
 from rockframe.results.outcome import Generic, overturns
@@ -260,8 +260,8 @@ def cloud_analysis(
     """
     runs = check_runs(runs, owner=_OWNER)
     level = read_level(confidence, owner=_OWNER)
-    seed = whole_number(seed, owner=_OWNER, name="seed", lowest=0)
-    together = several(pooled, owner=_OWNER, name="pooled", of="names")
+    seed = checked_integer(seed, owner=_OWNER, name="seed", lowest=0)
+    together = checked_list(pooled, owner=_OWNER, name="pooled", of="names")
     check_one_structure(runs, together, [named_column(runs, intensity)], owner=_OWNER)
     measure = measure_in(runs, intensity, period, motions, owner=_OWNER)
     values = scalar_of(runs, response, label, owner=_OWNER)

@@ -9,7 +9,7 @@ from typing import Final, Unpack
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import whole_number
+from rockframe.arguments import checked_integer
 from rockframe.components import InitialState
 from rockframe.errors import ComponentError, SolverWarning, warn
 from rockframe.motion import GroundMotion
@@ -149,8 +149,8 @@ def critical_scale(
     )
     share = read_width(bracket_width, owner=_OWNER)
     finest = read_resolution(resolution, owner=_OWNER)
-    count = whole_number(scales, owner=_OWNER, name="scales", lowest=2, highest=MOST_RUNS)
-    most = whole_number(runs, owner=_OWNER, name="runs", lowest=count, highest=MOST_RUNS)
+    count = checked_integer(scales, owner=_OWNER, name="scales", lowest=2, highest=MOST_RUNS)
+    most = checked_integer(runs, owner=_OWNER, name="runs", lowest=count, highest=MOST_RUNS)
     plan = plan_run(system.assembly, motion, outputs=None, **requested)
     measure = None
     if intensity is not None:

@@ -6,7 +6,7 @@ from typing import Any, Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, several
+from rockframe.arguments import checked_dataset, checked_list
 from rockframe.errors import ComponentError, SchemaError, nearest, shown
 from rockframe.proposals import hinted
 from rockframe.results.schema import build_dataset
@@ -86,7 +86,7 @@ def ensemble_statistics(
     if values.dtype.kind not in "biuf":
         msg = f"{_OWNER}: {values.name!r} has no numbers, but words or objects"
         raise ComponentError(msg)
-    together = several(pooled, owner=_OWNER, name="pooled", of="names")
+    together = checked_list(pooled, owner=_OWNER, name="pooled", of="names")
     level = np.nan if _dependent(values, runs.attrs, together) else requested
     ordered = np.sort(values.to_numpy().ravel().astype(np.float64))
     ordered = ordered[~np.isnan(ordered)]

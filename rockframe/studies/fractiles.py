@@ -7,7 +7,7 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import several
+from rockframe.arguments import checked_list
 from rockframe.errors import ComponentError, StudyError, shown
 from rockframe.motion.quantities import ArrayLike
 from rockframe.proposals import hinted
@@ -293,7 +293,7 @@ def _levels(value: Any, values: xr.DataArray, lines: Sequence[_Line]) -> Array:
         return np.linspace(*ends, _POINTS + 1)[1:]  # every motion has reached the least
     unit = str(values.attrs.get("units", "1"))
     if unit == Unit.ONE:
-        listed = several(value, owner=_OWNER, name="levels", of="numbers")
+        listed = checked_list(value, owner=_OWNER, name="levels", of="numbers")
         found = np.array([to_ratio(one, owner=_OWNER, name="levels") for one in listed])
     else:
         measure = Measure("a response", Unit(unit), f"1 {unit}")

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from numpy.polynomial.legendre import leggauss
 
-from rockframe.arguments import checked_dataset, function_of
+from rockframe.arguments import checked_dataset, checked_function
 from rockframe.errors import ComponentError, ModelWarning, SchemaError, UnitsError, shown, warn
 from rockframe.proposals import hinted
 from rockframe.results.schema import build_dataset, with_labels, with_variables
@@ -169,7 +169,7 @@ def read_hazard(value: object, along: xr.DataArray, between: object) -> HazardCu
             msg = f"{_OWNER}: between must be two intensities that rise, got {shown(between)}"
             raise ComponentError(msg)
         values = np.geomspace(float(ends[0]), float(ends[1]), _OF_FUNCTIONS)
-        rate = function_of(value, "intensities", owner=_OWNER, name="hazard")
+        rate = checked_function(value, "intensities", owner=_OWNER, name="hazard")
         rates = np.broadcast_to(np.asarray(rate(values), dtype=np.float64), values.shape)
     elif isinstance(value, xr.DataArray) and value.ndim == 1:
         (dim,) = value.dims

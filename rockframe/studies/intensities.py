@@ -8,7 +8,7 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import one_of_names, text
+from rockframe.arguments import checked_name, checked_text
 from rockframe.errors import ComponentError, SchemaError, StudyError, nearest, shown
 from rockframe.measures import average_spectral_acceleration, intensity_measures, response_spectrum
 from rockframe.measures.intensity import measure_of_ground
@@ -118,7 +118,7 @@ class Intensity:
     def read(cls, value: object, period: PeriodLike | None, *, owner: str) -> "Intensity":
         """Read the arguments ``intensity`` and ``period``."""
         value = spelled(value)
-        name = one_of_names(value, [*POWERS, *SHORT], owner=owner, name="intensity")
+        name = checked_name(value, [*POWERS, *SHORT], owner=owner, name="intensity")
         if name not in _SPECTRAL:
             return cls(name, None)
         several = name == AVERAGE
@@ -316,7 +316,7 @@ class ScaledIntensity:
         owner: str,
     ) -> None:
         self._motion, self._system = motion, system
-        name = spelled(text(name, owner=owner, name="intensity"))
+        name = spelled(checked_text(name, owner=owner, name="intensity"))
         self._damping = to_ratio(damping_ratio, owner=owner, name="damping_ratio")
         spectral = name in OSCILLATORS
         if spectral != (period is not None):

@@ -9,7 +9,7 @@ from typing import Any, Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, several
+from rockframe.arguments import checked_dataset, checked_list
 from rockframe.errors import ComponentError, SchemaError, nearest, shown
 from rockframe.results.outcome import Generic, overturns
 from rockframe.results.schema import SCHEMA
@@ -83,7 +83,7 @@ def listed_limits(value: object, *, owner: str, name: str = "limits") -> list[An
     """Return the given limit states as a list, also a single one."""
     if isinstance(value, str | int | float):
         return [value]
-    return several(value, owner=owner, name=name, of="limit states")
+    return checked_list(value, owner=owner, name=name, of="limit states")
 
 
 def _share(value: Any, owner: str, name: str) -> float:

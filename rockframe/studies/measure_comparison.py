@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from rockframe.arguments import several
+from rockframe.arguments import checked_list
 from rockframe.errors import ComponentError, StudyError, shown
 from rockframe.proposals import hinted
 from rockframe.results.outcome import Generic
@@ -121,9 +121,10 @@ def compare_intensities(
     if isinstance(measures, xr.DataArray):
         measures = [measures]
     listed = [
-        _with_period(one) for one in several(measures, owner=_OWNER, name="measures", of="measures")
+        _with_period(one)
+        for one in checked_list(measures, owner=_OWNER, name="measures", of="measures")
     ]
-    together = several(pooled, owner=_OWNER, name="pooled", of="names")
+    together = checked_list(pooled, owner=_OWNER, name="pooled", of="names")
     check_one_structure(
         runs, together, [named_column(runs, one) for one, _ in listed], owner=_OWNER
     )
@@ -172,7 +173,7 @@ def _covariates(runs: xr.Dataset, values: Sequence[str] | Covariates) -> dict[st
         table = values
         return {str(name): _of_motions(runs, str(name), one) for name, one in table.items()}
     found: dict[str, xr.DataArray] = {}
-    for name in several(values, owner=_OWNER, name="against", of="names"):
+    for name in checked_list(values, owner=_OWNER, name="against", of="names"):
         one = named_column(runs, name)
         if not isinstance(one, xr.DataArray) or not set(one.dims) <= set(runs["status"].dims):
             msg = f"{_OWNER}: against names {shown(name)}, which is no coordinate of the runs"
@@ -194,7 +195,7 @@ def _of_motions(runs: xr.Dataset, name: str, value: Any) -> xr.DataArray:
             raise ComponentError(msg)
         values = [table[str(one)] for one in labels.ravel()]
     else:
-        values = several(value, owner=_OWNER, name=f"against[{name!r}]", of="numbers")
+        values = checked_list(value, owner=_OWNER, name=f"against[{name!r}]", of="numbers")
         if runs[MOTION].dims != (MOTION,) or len(values) != labels.size:
             msg = (
                 f"{_OWNER}: against has {len(values)} numbers of {name} for {labels.size} motions; "

@@ -7,7 +7,7 @@ from typing import Any, Final, Unpack
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import function_of, whole_number
+from rockframe.arguments import checked_function, checked_integer
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
 from rockframe.results.schema import SCHEMA, with_labels, with_variables
@@ -104,7 +104,7 @@ def overturning_map(
     check_system(system, _OWNER)
     levels = read_rising(amplitude, ACCELERATION, "amplitude", owner=_OWNER)
     frequencies = read_rising(frequency, FREQUENCY, "frequency", owner=_OWNER)
-    impact_count = whole_number(
+    impact_count = checked_integer(
         impacts, owner=_OWNER, name="impacts", lowest=1, highest=_MOST_IMPACTS
     )
     share = read_width(bracket_width, owner=_OWNER)
@@ -165,7 +165,7 @@ def _made(pulse: object, frequency: float) -> GroundMotion:
             f"rf.GroundMotion.sine_pulse, got {shown(pulse)}"
         )
         raise ComponentError(msg)
-    pulse = function_of(pulse, "amplitude", "frequency", owner=_OWNER, name="pulse")
+    pulse = checked_function(pulse, "amplitude", "frequency", owner=_OWNER, name="pulse")
     made = pulse(quantity(1.0, ACCELERATION), quantity(frequency, FREQUENCY))
     if not isinstance(made, GroundMotion):
         msg = f"{_OWNER}: pulse must return a GroundMotion, got {shown(made)}"

@@ -8,7 +8,7 @@ from typing import Any, Final, NamedTuple, Unpack, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import one_of_words, whole_number
+from rockframe.arguments import checked_choice, checked_integer
 from rockframe.errors import ComponentError, RockframeError, StudyError, collected_warnings, shown
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import with_variables
@@ -337,9 +337,9 @@ def probability_of_overturning(
     scene = scene_of(system)
     spreads = read_spread(spread, scene, owner=_OWNER)
     matrix = read_correlation(correlation, [one.name for one in spreads], owner=_OWNER)
-    count = whole_number(cases, owner=_OWNER, name="cases", lowest=2, highest=_MOST_CASES)
-    way = one_of_words(Sampling, sampling, owner=_OWNER, name="sampling")
-    first = whole_number(seed, owner=_OWNER, name="seed", lowest=0)
+    count = checked_integer(cases, owner=_OWNER, name="cases", lowest=2, highest=_MOST_CASES)
+    way = checked_choice(Sampling, sampling, owner=_OWNER, name="sampling")
+    first = checked_integer(seed, owner=_OWNER, name="seed", lowest=0)
     level = read_level(confidence, owner=_OWNER)
     named = motions_of_study(motions, scene)
     wrong = check_memory(

@@ -10,7 +10,7 @@ from typing import Any, Final, Unpack, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import by_words, iterates, several
+from rockframe.arguments import checked_list, is_iterable, with_string_keys
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
 from rockframe.results.joining import CASE_COUNT
@@ -121,8 +121,8 @@ def earthquake_sequences(
 def _sequences(value: object) -> dict[str, list[GroundMotion]]:
     """Read the sequences, and check that their motions fit."""
     if isinstance(value, Mapping):
-        named = by_words(cast("Mapping[Any, Any]", value), owner=_OWNER)
-    elif iterates(value) and not isinstance(value, str):
+        named = with_string_keys(cast("Mapping[Any, Any]", value), owner=_OWNER)
+    elif is_iterable(value) and not isinstance(value, str):
         listed = list(value)
         if len(listed) > 1 and all(isinstance(one, GroundMotion) for one in listed):
             msg = (
@@ -135,7 +135,7 @@ def _sequences(value: object) -> dict[str, list[GroundMotion]]:
         named = {}
     found: dict[str, list[GroundMotion]] = {}
     for name, each in named.items():
-        motions = [each] if isinstance(each, GroundMotion) else several(
+        motions = [each] if isinstance(each, GroundMotion) else checked_list(
             each, owner=_OWNER, name=repr(name), of="GroundMotions"
         )  # fmt: skip
         if not motions or not all(isinstance(one, GroundMotion) for one in motions):

@@ -7,7 +7,7 @@ from typing import Any, Final, Unpack
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import whole_number
+from rockframe.arguments import checked_integer
 from rockframe.errors import (
     ComponentError,
     ModelWarning,
@@ -168,7 +168,7 @@ def subset_simulation(
     spreads = read_spread(spread, scene, owner=_OWNER)
     matrix = read_correlation(correlation, [one.name for one in spreads], owner=_OWNER)
     state = _read_limit(limit)
-    count = whole_number(cases, owner=_OWNER, name="cases", lowest=10, highest=_MOST_CASES)
+    count = checked_integer(cases, owner=_OWNER, name="cases", lowest=10, highest=_MOST_CASES)
     part = to_ratio(share, owner=_OWNER, name="share", condition=_SHARE, example="0.1")
     if round(part * count) < _FEWEST:
         msg = (
@@ -176,8 +176,8 @@ def subset_simulation(
             f"{_FEWEST} at least: draw more cases"
         )
         raise ComponentError(msg)
-    most = whole_number(levels, owner=_OWNER, name="levels", lowest=1, highest=_MOST_LEVELS)
-    first = whole_number(seed, owner=_OWNER, name="seed", lowest=0)
+    most = checked_integer(levels, owner=_OWNER, name="levels", lowest=1, highest=_MOST_LEVELS)
+    first = checked_integer(seed, owner=_OWNER, name="seed", lowest=0)
     trust = read_level(confidence, owner=_OWNER)
     named = motions_of_study(motions, scene)
     wrong = check_memory(

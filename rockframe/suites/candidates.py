@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from rockframe.arguments import one_of_words, several
+from rockframe.arguments import checked_choice, checked_list
 from rockframe.errors import ComponentError, shown
 from rockframe.measures import rotated_spectrum
 from rockframe.measures.common import read_inputs
@@ -78,7 +78,7 @@ def candidates_of(
 ) -> Candidates:
     """Check the arguments of a selection, and compute the spectra that it needs."""
     target = check_target(target, owner=owner)
-    kind = one_of_words(Combination, combination, owner=owner, name="combination")
+    kind = checked_choice(Combination, combination, owner=owner, name="combination")
     seconds = usual_periods(target) if periods is None else checked_periods(periods, owner=owner)
     fixed = seconds if conditioned_on is None else checked_periods(conditioned_on, owner=owner)
     every = np.unique(np.concatenate([seconds, fixed]))
@@ -122,7 +122,7 @@ def usual_periods(target: TargetSpectrum) -> Array:
 def _bounds(items: tuple[RatioLike, RatioLike] | None, owner: str) -> tuple[float, float]:
     if items is None:
         return 0.0, np.inf
-    values = several(items, owner=owner, name="bounds", of="factors")
+    values = checked_list(items, owner=owner, name="bounds", of="factors")
     if len(values) == 2:
         low, high = (
             to_ratio(one, owner=owner, name="bounds", condition=POSITIVE, example="(0.25, 4)")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
-from rockframe.arguments import function_of
+from rockframe.arguments import checked_function
 from rockframe.errors import ComponentError, nearest, shown
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import peak_words
@@ -129,7 +129,7 @@ def is_missing(value: Any) -> bool:
 
 def _test(name: str, argument: Any) -> Test:
     if callable(argument):
-        return function_of(argument, "value", owner=_OWNER, name=name)
+        return checked_function(argument, "value", owner=_OWNER, name=name)
     if isinstance(argument, tuple):
         bounds = cast("tuple[Any, ...]", argument)
         if len(bounds) != 2:

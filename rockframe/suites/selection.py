@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from rockframe.arguments import whole_number
+from rockframe.arguments import checked_integer
 from rockframe.errors import ComponentError
 from rockframe.motion.quantities import ArrayLike
 from rockframe.proposals import hinted
@@ -99,10 +99,10 @@ def selection_for(
         combination=combination,
         owner=owner,
     )
-    wanted = whole_number(count, owner=owner, name="count", lowest=1)
+    wanted = checked_integer(count, owner=owner, name="count", lowest=1)
     most = wanted
     if per_event is not None:
-        most = whole_number(per_event, owner=owner, name="per_event", lowest=1)
+        most = checked_integer(per_event, owner=owner, name="per_event", lowest=1)
     deviates = bool(candidates.deviations.any())
     weight = float(deviates)
     if spread_weight is not None:

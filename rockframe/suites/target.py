@@ -9,7 +9,7 @@ from typing import Any, Final, Self
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, function_of, several, text
+from rockframe.arguments import checked_dataset, checked_function, checked_list, checked_text
 from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.motion.quantities import ArrayLike
 from rockframe.proposals import Proposing, proposing
@@ -71,12 +71,12 @@ class TargetSpectrum(metaclass=Proposing):
 
     def __post_init__(self) -> None:
         owner = type(self).__name__
-        text(self.name, owner=owner, name="name")
-        function_of(self.shape, "periods", owner=owner, name="shape")
+        checked_text(self.name, owner=owner, name="name")
+        checked_function(self.shape, "periods", owner=owner, name="shape")
         if self.deviation is not None:
-            function_of(self.deviation, "periods", owner=owner, name="deviation")
+            checked_function(self.deviation, "periods", owner=owner, name="deviation")
         to_ratio(self.damping_ratio, owner=owner, name="damping_ratio", condition=NOT_NEGATIVE)
-        limits = several(self.limits, owner=owner, name="limits", of="periods")
+        limits = checked_list(self.limits, owner=owner, name="limits", of="periods")
         rising = len(limits) == 2 and all(isinstance(one, Real) for one in limits)
         if not rising or not 0.0 <= limits[0] <= limits[1]:
             msg = f"{owner}: limits must be two periods in seconds that rise, got {shown(limits)}"
@@ -142,7 +142,7 @@ class TargetSpectrum(metaclass=Proposing):
             deviations = np.array(
                 [
                     to_ratio(one, owner=owner, name="standard_deviations", condition=_DEVIATION)
-                    for one in several(
+                    for one in checked_list(
                         standard_deviations, owner=owner, name="standard_deviations", of="numbers"
                     )
                 ]

@@ -6,7 +6,14 @@ from typing import Any, Final, Self, cast
 
 import pandas as pd
 
-from rockframe.arguments import by_names, by_words, function_of, iterates, several, truth
+from rockframe.arguments import (
+    checked_bool,
+    checked_function,
+    checked_list,
+    checked_mapping,
+    is_iterable,
+    with_string_keys,
+)
 from rockframe.errors import ComponentError, LabelError, RecordWarning, nearest, shown, warn
 from rockframe.motion import GroundMotion
 from rockframe.motion.pair import HorizontalPair
@@ -48,8 +55,8 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         self._verticals = {} if verticals is None else _named(verticals, owner)
         files = {} if unread is None else unread
         example = "{'a.AT2': 'an empty file'}"
-        self._unread = {**by_names(files, owner=owner, name="unread", example=example)}
-        self._remarks = tuple(several(remarks, owner=owner, name="remarks", of="texts"))
+        self._unread = {**checked_mapping(files, owner=owner, name="unread", example=example)}
+        self._remarks = tuple(checked_list(remarks, owner=owner, name="remarks", of="texts"))
         self._target = target
         if not self._motions:
             msg = f"{owner}: found no motions; expected one at least"
@@ -192,7 +199,7 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         <MotionSuite of 1 motion: '2 Hz'>
         """
         owner = f"{type(self).__name__}.only"
-        requested = several(labels, owner=owner, name="labels", of="labels")
+        requested = checked_list(labels, owner=owner, name="labels", of="labels")
         unknown = [one for one in requested if not isinstance(one, str) or one not in self._motions]
         if unknown:
             found = f"{shown(unknown[0])}{nearest(unknown[0], self._motions)}"
@@ -228,7 +235,7 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         >>> [*suite.sort("duration")]
         ['2 Hz', '1 Hz']
         """
-        truth(descending, owner=f"{type(self).__name__}.sort", name="descending")
+        checked_bool(descending, owner=f"{type(self).__name__}.sort", name="descending")
         check_column(self, by, owner=f"{type(self).__name__}.sort")
         return self.only(order(self, by, descending=descending))
 
@@ -261,7 +268,7 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         >>> suite.changed(lambda motion: motion.scaled(2))["1 Hz"].peak_acceleration
         <Quantity(4.0, 'meter / second ** 2')>
         """
-        step = function_of(step, "motion", owner=f"{type(self).__name__}.changed", name="step")
+        step = checked_function(step, "motion", owner=f"{type(self).__name__}.changed", name="step")
         motions = {label: step(motion) for label, motion in self._motions.items()}
         upwards = {label: step(motion) for label, motion in self._verticals.items()}
         return type(self)(motions, verticals=upwards, unread=self._unread, remarks=self._remarks)
@@ -327,8 +334,8 @@ def _named(value: object, owner: str) -> dict[str, GroundMotion]:
     """Read motions with their labels."""
     motions: dict[str, Any] = {}
     if isinstance(value, Mapping):
-        motions = by_words(cast("Mapping[Any, Any]", value), owner=owner)
-    elif iterates(value) and not isinstance(value, str):
+        motions = with_string_keys(cast("Mapping[Any, Any]", value), owner=owner)
+    elif is_iterable(value) and not isinstance(value, str):
         for one in value:
             name = str(getattr(one, "name", len(motions)))
             if name in motions:

@@ -9,7 +9,7 @@ from typing import Any, Final, TypeAlias, TypeVar
 import numpy as np
 import pint
 
-from rockframe.arguments import iterates
+from rockframe.arguments import is_iterable
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.errors import (
@@ -85,7 +85,7 @@ def read_points(value: object, *, owner: str, name: str) -> Array:
         whole: Any = value
         factor = to_si(type(whole)(1.0, whole.units), LENGTH, owner=owner, name=name)
         return _array(whole.magnitude, factor, wanted)
-    if isinstance(value, str | Mapping) or not iterates(value):
+    if isinstance(value, str | Mapping) or not is_iterable(value):
         msg = f"{wanted}; got {shown(value)}"
         raise ComponentError(msg)
     each: list[Any] = list(value)
@@ -110,7 +110,7 @@ def _is_bare(points: list[Any]) -> bool:
 def read_place(value: object, *, owner: str, name: str) -> tuple[float, float]:
     """Read a pair of lengths, or a Quantity of shape (2,) [m]."""
     pair: list[Any] = []
-    if iterates(value) and not isinstance(value, str | Mapping):
+    if is_iterable(value) and not isinstance(value, str | Mapping):
         pair = list(value)
     if len(pair) != 2:
         msg = f"{owner}: {name} needs two lengths, such as ('0.2 m', '1.5 m'), got {shown(value)}"

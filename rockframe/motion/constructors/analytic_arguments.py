@@ -7,7 +7,7 @@ from functools import wraps
 from inspect import signature
 from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
-from rockframe.arguments import whole_number
+from rockframe.arguments import checked_integer
 from rockframe.errors import ComponentError, shown
 from rockframe.motion.pulses import impulse_duration
 from rockframe.proposals import hinted
@@ -77,7 +77,7 @@ class ArgumentReader:
             number = to_ratio(value, owner=owner, name=name, condition=self._cycles, example="2")
             self._keep(name, number, number, f"{name}: {number:.6g}", f"{name}: {number!r}")
         elif name == "order":
-            order = whole_number(value, owner=owner, name=name, lowest=1, highest=_HIGHEST_ORDER)
+            order = checked_integer(value, owner=owner, name=name, lowest=1, highest=_HIGHEST_ORDER)
             self._keep(name, order, order, *[f"{name}: {order}"] * 2)
         elif isinstance(value, bool):
             self._keep(name, value, value, *[name if value else f"not {name}"] * 2)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
-from rockframe.arguments import text
+from rockframe.arguments import checked_text
 from rockframe.errors import ComponentError, RecordWarning, UnitsError, nearest, shown, warn
 from rockframe.motion.quantities import ArrayLike, accelerations_to_si, declared_times
 from rockframe.motion.value import UNNAMED, Made
@@ -182,7 +182,7 @@ def from_arrays(
         times = declared_times(array)
         if times is not None:
             _check_times(times, step, owner=owner, label=label)
-    called = UNNAMED if name is None else text(name, owner=owner, name="name") or UNNAMED
+    called = UNNAMED if name is None else checked_text(name, owner=owner, name="name") or UNNAMED
     words = f"built from arrays: {across.size} samples at {step!r} s"
     return kind(Motion.of_samples(step, across, upwards), name=called, history=(words,))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Final
 
-from rockframe.arguments import one_of_words, whole_number
+from rockframe.arguments import checked_choice, checked_integer
 from rockframe.errors import ComponentError, ModelWarning, warn
 from rockframe.motion.stochastic import (
     LARGEST_DISTANCE,
@@ -163,12 +163,12 @@ def stochastic(
         ),
         quality_exponent=number(quality_exponent, name="quality_exponent", condition=_EXPONENTS),
         kappa=amount(kappa, _KAPPA, name="kappa", condition=NOT_NEGATIVE),
-        site=one_of_words(Site, site, owner=owner, name="site"),
+        site=checked_choice(Site, site, owner=owner, name="site"),
         corners=usual
         if source is None
-        else one_of_words(Corners, source, owner=owner, name="source"),
+        else checked_choice(Corners, source, owner=owner, name="source"),
     )
-    first = whole_number(seed, owner=owner, name="seed", lowest=0)
+    first = checked_integer(seed, owner=owner, name="seed", lowest=0)
     ratio = None if vertical is None else number(vertical, name="vertical", condition=POSITIVE)
     step = amount(time_step, _STEP, name="time_step", condition=_STEPS)
     for message in _extrapolations(earthquake, owner):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
-from rockframe.arguments import one_of_words
+from rockframe.arguments import checked_choice
 from rockframe.errors import ComponentError, RecordWarning, nearest, shown, warn
 from rockframe.motion.processing.samples import instants_of
 from rockframe.motion.quantities import (
@@ -112,7 +112,7 @@ def from_times(
     [0.0, 0.1, 0.2, 0.3, 0.2, 0.1, 0.08, 0.06, 0.04, 0.02, 0.0]
     """
     owner = f"{kind.__name__}.from_times"
-    between = one_of_words(Between, interpolation, owner=owner, name="interpolation")
+    between = checked_choice(Between, interpolation, owner=owner, name="interpolation")
     step = to_si(time_step, TIME_STEP, owner=owner, name="time_step", condition=POSITIVE)
     instants = times_to_si(times, owner=owner, name="times")
     length = float(instants[-1] - instants[0])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import StrEnum
 from typing import Final
 
-from rockframe.arguments import one_of_words, truth, whole_number
+from rockframe.arguments import checked_bool, checked_choice, checked_integer
 from rockframe.errors import ComponentError
 from rockframe.motion.operations.following import (
     following,
@@ -115,9 +115,9 @@ def filtered(
                 f"frequency, {nyquist:.6g} Hz"
             )
             raise ComponentError(msg)
-    order = whole_number(order, owner=owner, name="order", lowest=1, highest=_HIGHEST_ORDER)
-    causal = truth(causal, owner=owner, name="causal")
-    keep_padding = truth(keep_padding, owner=owner, name="keep_padding")
+    order = checked_integer(order, owner=owner, name="order", lowest=1, highest=_HIGHEST_ORDER)
+    causal = checked_bool(causal, owner=owner, name="causal")
+    keep_padding = checked_bool(keep_padding, owner=owner, name="keep_padding")
     padding = padding_samples(si.time_step, lower, upper, order)
     band = ", ".join(f"{name} corner {value:.9g} Hz" for name, value in corners.items())
     if padding > MAXIMUM_SAMPLES:
@@ -187,10 +187,10 @@ def baseline_corrected(
     <Quantity([-0.3  0.9 -0.9  0.3], 'meter / second ** 2')>
     """
     owner, si = f"{type(motion).__name__}.baseline_corrected", motion.si
-    fitted = one_of_words(Baseline, fit, owner=owner, name="fit")
+    fitted = checked_choice(Baseline, fit, owner=owner, name="fit")
     lowest = 1 if fitted is Baseline.VELOCITY else 0
     highest = min(_HIGHEST_DEGREE, len(motion) - 1)
-    order = whole_number(order, owner=owner, name="order", lowest=lowest, highest=highest)
+    order = checked_integer(order, owner=owner, name="order", lowest=lowest, highest=highest)
     if fitted is Baseline.VELOCITY:
         result = with_samples(si, lambda signal: without_drift(si.time_step, signal.samples, order))
         step = (

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 
-from rockframe.arguments import iterates, one_of_words, whole_number
+from rockframe.arguments import checked_choice, checked_integer, is_iterable
 from rockframe.errors import ComponentError, RecordWarning, shown, warn
 from rockframe.motion.operations.following import following, lost_pieces, without_vertical
 from rockframe.motion.processing.floors import (
@@ -78,7 +78,9 @@ def _read_building(
     )
     if "modes" in values:
         highest = periods.size
-        kept = whole_number(values["modes"], owner=owner, name="modes", lowest=1, highest=highest)
+        kept = checked_integer(
+            values["modes"], owner=owner, name="modes", lowest=1, highest=highest
+        )
         periods, participations = periods[:kept], participations[:kept]
         words += f", of {highest} modes the first {kept}"
         arguments["modes"] = kept
@@ -113,10 +115,10 @@ def _of_modes(values: Mapping[str, Any], owner: str) -> _Read:
 
 
 def _uniform(values: Mapping[str, Any], owner: str) -> _Read:
-    storeys = whole_number(
+    storeys = checked_integer(
         values["storeys"], owner=owner, name="storeys", lowest=1, highest=_MOST_STOREYS
     )
-    floor = whole_number(values["floor"], owner=owner, name="floor", lowest=1, highest=storeys)
+    floor = checked_integer(values["floor"], owner=owner, name="floor", lowest=1, highest=storeys)
     period = to_si(values["period"], PERIOD, owner=owner, name="period", condition=POSITIVE)
     words = f"floor {floor} of a shear building of equal storeys, {storeys} in number"
     arguments = {"storeys": storeys, "floor": floor, "period": f"{period!r} {PERIOD.unit}"}
@@ -132,7 +134,9 @@ def _of_masses(values: Mapping[str, Any], owner: str) -> _Read:
             f"up, at most {_MOST_STOREYS}; got {masses.size} and {stiffnesses.size}"
         )
         raise ComponentError(msg)
-    floor = whole_number(values["floor"], owner=owner, name="floor", lowest=1, highest=masses.size)
+    floor = checked_integer(
+        values["floor"], owner=owner, name="floor", lowest=1, highest=masses.size
+    )
     with np.errstate(invalid="ignore", divide="ignore"):
         periods, participations = building_modes(masses, stiffnesses, floor)
     if not np.isfinite(periods).all():
@@ -159,7 +163,7 @@ def _values(value: object, measure: Measure, owner: str, name: str, *, zero: boo
 def _ratios(
     value: Any, owner: str, name: str, example: str, condition: Condition | None = None
 ) -> list[float]:
-    if isinstance(value, str) or not iterates(value):
+    if isinstance(value, str) or not is_iterable(value):
         return [to_ratio(value, owner=owner, name=name, condition=condition, example=example)]
     return [
         to_ratio(one, owner=owner, name=f"{name}[{k}]", condition=condition, example=example)
@@ -301,7 +305,7 @@ def through_storeys(
         damping_ratio,
         owner,
     )
-    upwards = one_of_words(VerticalComponent, vertical, owner=owner, name="vertical")
+    upwards = checked_choice(VerticalComponent, vertical, owner=owner, name="vertical")
     still = _still_time(free_vibration, building.moving, owner)
     parts = _parts(time_step, si.time_step, owner)
     _check_size(si, building.moving, still, parts, owner)

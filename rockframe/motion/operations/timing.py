@@ -7,7 +7,7 @@ from dataclasses import replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Final
 
-from rockframe.arguments import one_of_words
+from rockframe.arguments import checked_choice
 from rockframe.errors import ComponentError
 from rockframe.motion.operations.following import (
     SAME_STEP,
@@ -176,7 +176,7 @@ def resampled(
     <Quantity([ 0.   0.7  1.   0.2 -1. ], 'meter / second ** 2')>
     """
     owner, si = f"{type(motion).__name__}.resampled", motion.si
-    between = one_of_words(Interpolation, interpolation, owner=owner, name="interpolation")
+    between = checked_choice(Interpolation, interpolation, owner=owner, name="interpolation")
     step = to_si(time_step, TIME_STEP, owner=owner, name="time_step", condition=POSITIVE)
     if step > si.duration:
         msg = f"{owner}: time_step = {step:.6g} s exceeds the duration, {si.duration:.6g} s"

@@ -7,7 +7,7 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import iterates, one_of_names, one_of_words, several
+from rockframe.arguments import checked_choice, checked_list, checked_name, is_iterable
 from rockframe.errors import ComponentError, SchemaError, UnitsError, shown
 from rockframe.proposals import hinted
 from rockframe.results.schema import with_labels, with_variables
@@ -185,9 +185,9 @@ def fragility(
         return _of_counts(runs, intensity, period, bands, confidence, others)
     runs = check_runs(runs, owner=_OWNER)
     arguments = [named_column(runs, one) for one in _several(intensity)]
-    together = several(pooled, owner=_OWNER, name="pooled", of="names")
+    together = checked_list(pooled, owner=_OWNER, name="pooled", of="names")
     structures = structures_of(runs, together, arguments, owner=_OWNER)
-    of_capacities = one_of_names(trials, _TRIALS, owner=_OWNER, name="trials") == _CAPACITIES
+    of_capacities = checked_name(trials, _TRIALS, owner=_OWNER, name="trials") == _CAPACITIES
     if of_capacities and "capacity_scale" not in runs:
         msg = f"{_OWNER}: capacities are those of rf.incremental_dynamic_analysis, found a sweep"
         raise SchemaError(msg)
@@ -207,7 +207,7 @@ def fragility(
              for one in structures.parts(verdicts[-1])]  # fmt: skip
     repeated = not of_capacities and any(motions < count for motions, count in sizes)
     of_runs = Bands.JACKKNIFE if max(sizes)[0] <= _MOST_LEFT_OUT else Bands.SANDWICH
-    common = one_of_names(dispersion, _DISPERSIONS, owner=_OWNER, name="dispersion") == _COMMON
+    common = checked_name(dispersion, _DISPERSIONS, owner=_OWNER, name="dispersion") == _COMMON
     if common and (of_capacities or len(measures) > 1 or bands == "profile"):
         msg = (
             f"{_OWNER}: a common dispersion is fitted to runs, over one measure, with bands by "
@@ -359,7 +359,7 @@ def _sliding(runs: xr.Dataset, *, of_capacities: bool) -> str:
 def _several(value: object) -> list[object]:
     if isinstance(value, str | xr.DataArray):
         return [value]
-    listed = list(value) if iterates(value) else []
+    listed = list(value) if is_iterable(value) else []
     if not 1 <= len(listed) <= _MOST_MEASURES:
         msg = f"{_OWNER}: intensity needs one measure, or two, got {shown(value)}"
         raise ComponentError(msg)
@@ -369,7 +369,7 @@ def _several(value: object) -> list[object]:
 def _bands(value: str | None, usual: Bands, measures: int) -> Bands:
     if value is None:
         return usual if measures == 1 or usual is not Bands.PROFILE else Bands.SANDWICH
-    found = one_of_words(Bands, value, owner=_OWNER, name="bands")
+    found = checked_choice(Bands, value, owner=_OWNER, name="bands")
     if found is Bands.PROFILE and measures > 1:
         msg = f"{_OWNER}: bands by profile are those of one intensity measure; use 'jackknife'"
         raise ComponentError(msg)

@@ -6,7 +6,7 @@ from typing import Any, Final, TypeAlias, cast
 
 import numpy as np
 
-from rockframe.arguments import by_words, iterates
+from rockframe.arguments import is_iterable, with_string_keys
 from rockframe.errors import ComponentError, StudyError, shown
 from rockframe.motion import GroundMotion, HorizontalPair
 from rockframe.motion.description import shown_name
@@ -77,8 +77,8 @@ def named_motions(value: object) -> dict[str, GroundMotion]:
     if isinstance(value, HorizontalPair):
         value = [value]
     if isinstance(value, Mapping):
-        named = _each_component(by_words(cast("Mapping[Any, Any]", value), owner=OWNER))
-    elif iterates(value) and not isinstance(value, str):
+        named = _each_component(with_string_keys(cast("Mapping[Any, Any]", value), owner=OWNER))
+    elif is_iterable(value) and not isinstance(value, str):
         several = list(value)
         pairs = (one.components if isinstance(one, HorizontalPair) else (one,) for one in several)
         named = _distinct_names([motion for pair in pairs for motion in pair])

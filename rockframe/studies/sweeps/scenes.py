@@ -8,7 +8,7 @@ from typing import Any, Final, TypeAlias
 
 import numpy as np
 
-from rockframe.arguments import one_of_words
+from rockframe.arguments import checked_choice
 from rockframe.components import Component, InitialState, RockingFrame, Stack
 from rockframe.components.parameters import Choice, Count, Declared, Flag, Text
 from rockframe.errors import ModelWarning, StudyError, shown, warn
@@ -348,7 +348,7 @@ def _of_option(name: str, option: str, value: object) -> Axis:
         one = MEASURED[option]
         return _of_numbers(name, value, one.measure, one.words, Changes.OPTION, option)
     kind, words = _CHOICES[option]
-    values = words_of(value, lambda word: one_of_words(kind, word, owner=OWNER, name=name))
+    values = words_of(value, lambda word: checked_choice(kind, word, owner=OWNER, name=name))
     return Axis(name, values, None, words, Changes.OPTION, option)
 
 

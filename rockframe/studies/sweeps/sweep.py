@@ -11,7 +11,7 @@ from typing import Any, Final
 
 import xarray as xr
 
-from rockframe.arguments import several, truth, whole_number
+from rockframe.arguments import checked_bool, checked_integer, checked_list
 from rockframe.compiled import COMPILED
 from rockframe.components import InitialState
 from rockframe.errors import ModelWarning, SolverWarning, StudyError, shown, warn
@@ -183,7 +183,7 @@ def sweep(
     )
     remember(study)
     with bar_of(progress, owner=OWNER) as bar:
-        others = [known] if isinstance(known, PathLike) else several(
+        others = [known] if isinstance(known, PathLike) else checked_list(
             known, owner=OWNER, name="known", of="folders"
         )  # fmt: skip
         dataset, _ = run_study(
@@ -233,7 +233,7 @@ def open_study(path: str | PathLike[str], *, lazy: bool = False) -> xr.Dataset:
             f"others than those of this one, {__version__}",
             ModelWarning,
         )
-    later = truth(lazy, owner="open_study", name="lazy")
+    later = checked_bool(lazy, owner="open_study", name="lazy")
     return stored_dataset(kept, lazy=later)
 
 
@@ -255,7 +255,7 @@ def run_study(
     if chunk is None:
         as_python = _runs_as_python(study)
         chunk = study.chunk_size(workers, as_python=as_python)
-    size = whole_number(chunk, owner=OWNER, name="chunk", lowest=1, highest=_LARGEST_CHUNK)
+    size = checked_integer(chunk, owner=OWNER, name="chunk", lowest=1, highest=_LARGEST_CHUNK)
     _warn_of_long_study(study, workers, as_python=as_python, kept=store is not None)
     if store is None and known:
         msg = "known cases are copied into the store of the sweep; give store='a folder'"
