@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import xarray as xr
 
 from rockframe.errors import RockframeError
-from rockframe.proposals import proposing
+from rockframe.suggestions import proposing
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -191,7 +191,7 @@ class RockframeAccessor:
         return self.summary
 
     def _repr_html_(self) -> str:
-        from rockframe.notebook import card, curve
+        from rockframe.notebook import html_summary, sparkline
         from rockframe.units.shown import in_degrees
 
         value, lines = self._dataset, self.summary.splitlines()
@@ -207,14 +207,14 @@ class RockframeAccessor:
         history = value.get("rotation")
         trace = ""
         if history is not None and history.ndim == 1:  # of a case of a sweep, up to its end
-            trace = curve(history.dropna(history.dims[0]).to_numpy().tolist())
-        return card(first, rows, self._drawing(), trace)
+            trace = sparkline(history.dropna(history.dims[0]).to_numpy().tolist())
+        return html_summary(first, rows, self._drawing(), trace)
 
     def _drawing(self) -> str:
         """Draw the scene of a result that stores its system."""
         if "system_json" not in self._dataset.attrs:
             return ""
-        from rockframe.notebook import drawing
+        from rockframe.notebook import shapes_svg
         from rockframe.plot._checks import system_of_run
         from rockframe.system.geometry import geometry_of, shapes_of
 
@@ -222,4 +222,4 @@ class RockframeAccessor:
             system = system_of_run(self._dataset, "card")
         except RockframeError:  # for example a user's own component that is not registered
             return ""
-        return drawing(shapes_of(geometry_of(system.assembly)))
+        return shapes_svg(shapes_of(geometry_of(system.assembly)))

@@ -13,9 +13,9 @@ from rockframe.components import Load
 from rockframe.errors import ComponentError
 from rockframe.measures import response_spectrum
 from rockframe.motion import GroundMotion
-from rockframe.proposals import hinted
 from rockframe.reports.checks import CheckedLine, CheckedVerdict, CodeCheck
 from rockframe.simulation.system import System
+from rockframe.suggestions import hinted
 from rockframe.suites import TargetSpectrum
 from rockframe.system.rigid_ground import RigidGroundSetting
 from rockframe.system.sliding_stack import TiedSetting

@@ -248,7 +248,7 @@ class Outputs:
         if path is None:
             return
         if str(path) == STREAM:
-            self._answer.hands_on(_bytes_of(content, kind.endings[0]))
+            self._answer.hands_on(_bytes_of(content, kind.suffixes[0]))
             return
         write_file(path, kind, content, **self._given)
         self._answer.wrote(title, path)

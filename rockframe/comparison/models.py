@@ -17,8 +17,8 @@ from rockframe.components import (
 )
 from rockframe.components.block_numbers import squat
 from rockframe.errors import ModelWarning
-from rockframe.proposals import hinted
 from rockframe.simulation.system import System, check_system
+from rockframe.suggestions import hinted
 from rockframe.system.options import Coupling, Rotation, Sliding
 from rockframe.system.own_base import OwnBase
 

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import ComponentError, SchemaError, nearest, shown
-from rockframe.proposals import hinted, proposing
+from rockframe.suggestions import hinted, proposing
 from rockframe.units import POSITIVE, to_ratio
 
 _OWNER: Final = "recommend"

@@ -17,7 +17,7 @@ from rockframe.errors import ComponentError, ModelWarning, SolverWarning, neares
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import LEAST_SLIP, PEAK_SLIPS, Generic, verdict_of
 from rockframe.results.schema import build_dataset
-from rockframe.shared_arguments import takes
+from rockframe.shared_arguments import with_shared_arguments
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.provenance import motion_attributes
 from rockframe.simulation.run import respond, run
@@ -104,7 +104,7 @@ _PATIENCE: Final = 60.0
 """Longest wait for machine code before a model is timed [s]."""
 
 
-@takes(ComparedArguments)
+@with_shared_arguments(ComparedArguments)
 def tradeoff(
     system: System,
     motion: GroundMotion | None = None,

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from rockframe.errors import ComponentError
-from rockframe.proposals import hinted
+from rockframe.suggestions import hinted
 
 
 @lru_cache

@@ -8,6 +8,7 @@ from textwrap import fill
 from typing import Any, ClassVar, Final, Self
 
 from rockframe.arguments import checked_list, checked_mapping
+from rockframe.case_arrays import CaseArray, isfinite
 from rockframe.components.alternatives import OneOf
 from rockframe.components.parameters import DERIVED, REQUIRED, Declared, SIValues
 from rockframe.components.registry import register_class
@@ -20,9 +21,8 @@ from rockframe.errors import (
     unexpected_argument,
     warn,
 )
-from rockframe.many import Many, isfinite
-from rockframe.notebook import Polygon, arguments_in_words, card, drawing
-from rockframe.proposals import Immutable, proposing
+from rockframe.notebook import Polygon, html_summary, readable_arguments, shapes_svg
+from rockframe.suggestions import Immutable, proposing
 from rockframe.units import to_ratio
 
 _SECTION: Final = re.compile(r"^\w[\w ]*\n-{3,}$", re.MULTILINE)
@@ -191,8 +191,8 @@ class Component(Immutable):
 
     def _repr_html_(self) -> str:
         shapes = self._shapes()
-        drawn = drawing(shapes) if shapes else ""
-        return card(type(self).__name__, arguments_in_words(self._arguments()), drawn)
+        drawn = shapes_svg(shapes) if shapes else ""
+        return html_summary(type(self).__name__, readable_arguments(self._arguments()), drawn)
 
     def __reduce__(self) -> tuple[object, ...]:
         return (type(self).from_dict, (self._arguments(),))
@@ -353,7 +353,7 @@ class Component(Immutable):
         for name, value in values.items():
             one = self._declared[name]
             holds: Any = isfinite if one.condition is None else one.condition.holds
-            if not isinstance(value, float | Many) or not holds(value):
+            if not isinstance(value, float | CaseArray) or not holds(value):
                 # raises the error for a wrong value
                 plain = isinstance(value, str) or one.measure is None
                 written = value if plain else one.write(value)

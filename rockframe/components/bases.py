@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import ClassVar, Final, Literal, Self, TypeAlias
 
+from rockframe.case_arrays import hypot
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.components.parameters import (
@@ -16,9 +17,8 @@ from rockframe.components.parameters import (
     friction_at_rest,
     friction_of_slip,
 )
-from rockframe.many import hypot
 from rockframe.notebook import Polygon
-from rockframe.proposals import hinted
+from rockframe.suggestions import hinted
 from rockframe.units import (
     BED_DAMPING,
     BED_STIFFNESS,

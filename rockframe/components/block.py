@@ -4,6 +4,7 @@ from collections.abc import Collection, Mapping
 from typing import Any, ClassVar, Final, Self, cast
 
 from rockframe.arguments import checked_mapping
+from rockframe.case_arrays import hypot
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.components.block_numbers import (
@@ -16,7 +17,6 @@ from rockframe.components.block_numbers import (
 from rockframe.components.parameters import DERIVED, Declared, Parameter, Ratio, SIValues
 from rockframe.components.shapes import outline, parts
 from rockframe.errors import ComponentError, ModelWarning, shown, warn
-from rockframe.many import hypot
 from rockframe.notebook import Polygon
 from rockframe.units import (
     ANGLE,

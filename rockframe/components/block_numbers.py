@@ -4,9 +4,9 @@ import math
 from dataclasses import dataclass, field
 from typing import Any, Final
 
+from rockframe.case_arrays import atan2, cos, hypot, sqrt
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError
-from rockframe.many import atan2, cos, hypot, sqrt
 
 _ROUNDING: Final = 1e-9
 _PERCENT: Final = 0.01

@@ -9,7 +9,7 @@ import numpy as np
 
 from rockframe.arguments import checked_choice
 from rockframe.errors import AccessError, ComponentError, shown
-from rockframe.proposals import hinted
+from rockframe.suggestions import hinted
 from rockframe.units import (
     LENGTH,
     NOT_NEGATIVE,

@@ -7,6 +7,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from rockframe.case_arrays import atan2, hypot, sqrt
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.base import Guards
 from rockframe.dynamics.base_numbers import BaseNumbers
@@ -26,7 +27,6 @@ from rockframe.dynamics.protocol import (
 )
 from rockframe.dynamics.standing import settled, standing_body
 from rockframe.dynamics.switching import lift_by_slip, switch_part
-from rockframe.many import atan2, hypot, sqrt
 
 HORIZONTAL: Final = 2
 OWN: Final = 2 * DEGREES

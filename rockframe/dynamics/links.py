@@ -20,7 +20,7 @@ from rockframe.dynamics.events import (
     SILENT,
 )
 from rockframe.dynamics.point_law import complete_law, methods_of_law
-from rockframe.proposals import hinted
+from rockframe.suggestions import hinted
 
 Law = TypeVar("Law")
 NEEDED: Final = ("force", "energy")

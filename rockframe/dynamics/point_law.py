@@ -19,7 +19,7 @@ from rockframe.dynamics.base import Variables
 from rockframe.dynamics.body import BaseLine
 from rockframe.dynamics.protocol import Guards
 from rockframe.errors import ArgumentError, shown
-from rockframe.proposals import hinted
+from rockframe.suggestions import hinted
 
 Law = TypeVar("Law")
 FREE: Final = -1

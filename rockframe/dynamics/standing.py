@@ -10,6 +10,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from rockframe.case_arrays import asin, sqrt
 from rockframe.dynamics.base import BaseForce
 from rockframe.dynamics.bed import both_contacts
 from rockframe.dynamics.body import (
@@ -21,7 +22,6 @@ from rockframe.dynamics.body import (
     Reach,
 )
 from rockframe.dynamics.on_base import Mode, OnBase
-from rockframe.many import asin, sqrt
 
 ROUNDING: Final = 4.0 * sys.float_info.epsilon
 """Rounding noise of heights over their sizes [1]."""

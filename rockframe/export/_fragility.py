@@ -21,10 +21,10 @@ from rockframe.arguments import (
 )
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, SchemaError, shown
-from rockframe.proposals import hinted
 from rockframe.results.variables.analyses import LIMIT_STATE, FragilityStatus
 from rockframe.studies.fragility.words import in_own_units
 from rockframe.studies.intensities import PERIOD_OF, SHORT
+from rockframe.suggestions import hinted
 from rockframe.units import POSITIVE, to_ratio
 from rockframe.version import __version__
 from rockframe.writing import FileKind, write_file

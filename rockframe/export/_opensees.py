@@ -20,8 +20,8 @@ from rockframe.components import (
 )
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
-from rockframe.proposals import hinted
 from rockframe.simulation.system import System
+from rockframe.suggestions import hinted
 from rockframe.system.options import Restraint, Rotation
 from rockframe.units import QuantityLike
 from rockframe.version import __version__

@@ -20,9 +20,9 @@ from rockframe.identification.prediction import Prediction, starts_of
 from rockframe.identification.report import fit_dataset
 from rockframe.identification.swings import swings_of
 from rockframe.identification.unknowns import Circumstance, TrialSystems
-from rockframe.proposals import hinted
 from rockframe.simulation.system import System, check_system
 from rockframe.solve.accuracy import AccuracyLevel, accuracy_of
+from rockframe.suggestions import hinted
 from rockframe.system.options import AccuracyLike
 from rockframe.system.words import angle_words
 from rockframe.units import Condition, QuantityLike, RatioLike, to_ratio

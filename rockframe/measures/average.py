@@ -12,8 +12,8 @@ from rockframe.measures.response import checked_periods, response_spectrum
 from rockframe.motion import GroundMotion
 from rockframe.motion.pair import HorizontalPair
 from rockframe.motion.quantities import ArrayLike
-from rockframe.proposals import hinted
 from rockframe.results.schema import build_dataset
+from rockframe.suggestions import hinted
 from rockframe.units import PERIOD, QuantityLike, RatioLike
 
 _OWNER: Final = "average_spectral_acceleration"

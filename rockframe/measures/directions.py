@@ -18,7 +18,6 @@ from rockframe.measures.response import (
 from rockframe.motion.pair import HorizontalPair, axis_and_intensities
 from rockframe.motion.processing.samples import warn_of_coarse_samples
 from rockframe.motion.quantities import ArrayLike
-from rockframe.proposals import hinted
 from rockframe.results.schema import build_dataset
 from rockframe.signals import Signal
 from rockframe.signals.arrays import Array
@@ -30,6 +29,7 @@ from rockframe.signals.spectra import (
     spectral_peaks,
     unit_vectors,
 )
+from rockframe.suggestions import hinted
 from rockframe.units import QuantityLike, RatioLike
 
 _SPECTRUM: Final = "rotated_spectrum"

@@ -12,10 +12,10 @@ from rockframe.measures.common import (
     signal_of,
 )
 from rockframe.motion import GroundMotion
-from rockframe.proposals import hinted
 from rockframe.results.schema import build_dataset
 from rockframe.signals.integrals import ground_path, transform_of
 from rockframe.signals.motion import knots_of
+from rockframe.suggestions import hinted
 from rockframe.units import FREQUENCY, POSITIVE, QuantityLike, to_si
 
 

@@ -12,7 +12,6 @@ from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, shown
 from rockframe.measures.common import GroundComponent, read_inputs
 from rockframe.motion import GroundMotion
-from rockframe.proposals import hinted
 from rockframe.results.schema import build_dataset
 from rockframe.signals import Signal
 from rockframe.signals.integrals import (
@@ -30,6 +29,7 @@ from rockframe.signals.integrals import (
 )
 from rockframe.signals.motion import greatest
 from rockframe.signals.spectra import DAMPING_RATIO, check_cost
+from rockframe.suggestions import hinted
 from rockframe.units import ACCELERATION, POSITIVE, QuantityLike, RatioLike, to_ratio, to_si
 
 _OWNER: Final = "intensity_measures"

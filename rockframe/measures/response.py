@@ -15,10 +15,10 @@ from rockframe.motion import GroundMotion
 from rockframe.motion.operations.timing import Interpolation
 from rockframe.motion.processing.samples import band_limited, warn_of_coarse_samples
 from rockframe.motion.quantities import ArrayLike
-from rockframe.proposals import hinted
 from rockframe.signals import Signal
 from rockframe.signals.arrays import Array
 from rockframe.signals.spectra import DAMPING_RATIO, check_cost, pseudo_spectra, spectral_peaks
+from rockframe.suggestions import hinted
 from rockframe.units import PERIOD, QuantityLike, RatioLike, to_ratio, to_si_values
 
 SAMPLES_PER_PERIOD: Final = 25

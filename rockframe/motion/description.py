@@ -13,7 +13,7 @@ from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import SchemaError, nearest, shown
 from rockframe.motion.constructors.analytic import PULSES
 from rockframe.motion.value import Made, MotionValue
-from rockframe.notebook import card, curve
+from rockframe.notebook import html_summary, sparkline
 from rockframe.signals import Motion, Signal
 from rockframe.signals.motion import VERTICAL
 
@@ -64,9 +64,9 @@ def motion_html(motion: MotionValue) -> str:
         upwards = float(np.abs(np.asarray(si.vertical.samples)).max(initial=0.0))
         rows["vertical peak"] = _in_gravity(upwards)
     rows |= {name: str(motion.metadata[name]) for name in _TOLD if name in motion.metadata}
-    drawn = curve(samples.tolist())
+    drawn = sparkline(samples.tolist())
     title = f"{type(motion).__name__}: {shown_name(motion.name, motion.history)}"
-    return f"<div>{card(title, rows)}{drawn}</div>"
+    return f"<div>{html_summary(title, rows)}{drawn}</div>"
 
 
 def peak_words(motion: MotionValue) -> str:

@@ -20,8 +20,8 @@ from rockframe.motion.operations import (
     writing,
 )
 from rockframe.motion.value import MotionValue
-from rockframe.proposals import proposing
 from rockframe.signals import Motion
+from rockframe.suggestions import proposing
 
 
 @proposing

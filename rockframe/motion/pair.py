@@ -17,10 +17,10 @@ from rockframe.motion.processing.samples import padded
 from rockframe.motion.processing.velocity_pulses import strongest
 from rockframe.motion.quantities import with_quantity
 from rockframe.motion.velocity_pulse import VelocityPulse
-from rockframe.proposals import Proposing, proposing
 from rockframe.records import Reading, RecordLike, read_components, read_source, same_start
 from rockframe.signals import Signal
 from rockframe.signals.integrals import arias_history
+from rockframe.suggestions import SuggestingMeta, proposing
 from rockframe.units import ANGLE, Quantity, QuantityLike
 
 _RIGHT_ANGLE: Final = 90.0
@@ -30,7 +30,7 @@ _EXAMPLE: Final = "HorizontalPair(north, east)"
 
 @proposing
 @dataclass(frozen=True)
-class HorizontalPair(metaclass=Proposing):
+class HorizontalPair(metaclass=SuggestingMeta):
     """Two horizontal components at a right angle, and optionally the vertical one.
 
     Parameters

@@ -9,10 +9,10 @@ from typing import Any, Final, TypeVar
 from rockframe.arguments import checked_bool, checked_text
 from rockframe.errors import ComponentError, shown
 from rockframe.motion.quantities import with_quantity
-from rockframe.proposals import Immutable, proposing
 from rockframe.signals import Motion, Signal
 from rockframe.signals.integrals import ground_path
 from rockframe.signals.motion import greatest, knots_of
+from rockframe.suggestions import Immutable, proposing
 from rockframe.units import ACCELERATION, LENGTH, TIME, VELOCITY, Quantity
 
 UNNAMED: Final = "unnamed motion"

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Generic
 
 from rockframe.motion.value import Made
-from rockframe.proposals import proposing
+from rockframe.suggestions import proposing
 from rockframe.units import VELOCITY
 
 if TYPE_CHECKING:

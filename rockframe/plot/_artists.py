@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from rockframe.components import Component, Load
-from rockframe.notebook import arguments_in_words
+from rockframe.notebook import readable_arguments
 from rockframe.plot._axes import (
     BLUE,
     GREEN,
@@ -434,7 +434,7 @@ def _numbers(part: Component | None, units: ReaderUnits, without: Sequence[str] 
     if part is None:
         return []
     arguments = {name: one for name, one in part.to_dict().items() if name not in without}
-    found = arguments_in_words({name: one for name, one in arguments.items() if one != "0.0 N"})
+    found = readable_arguments({name: one for name, one in arguments.items() if one != "0.0 N"})
     for name, one in arguments.items():
         sentence = units.of_sentence(str(one))
         if sentence != str(one):

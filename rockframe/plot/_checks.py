@@ -13,11 +13,16 @@ import xarray as xr
 
 from rockframe.errors import RockframeWarning, SchemaError
 from rockframe.motion import GroundMotion
-from rockframe.proposals import hinted
-from rockframe.shared_arguments import Argument, completed, with_raises, with_section
+from rockframe.shared_arguments import (
+    Argument,
+    completed_docstring,
+    with_raises_section,
+    with_section,
+)
 from rockframe.simulation.system import System
 from rockframe.studies.sweeps.axes import in_unit, in_units_of_schema
 from rockframe.studies.sweeps.case import SweepCase, system_of_case
+from rockframe.suggestions import hinted
 from rockframe.units import POSITIVE, Unit, to_ratio
 from rockframe.units.shown import KINDS as SHOWN_KINDS
 from rockframe.units.shown import UnitsLike, reader_units
@@ -128,13 +133,13 @@ def draws(
 
     def decorate(drawing: Drawing) -> Drawing:
         name, text = drawing.__name__, drawing.__doc__ or ""
-        text = completed(text, signature(drawing).parameters, shared)
+        text = completed_docstring(text, signature(drawing).parameters, shared)
         drawn = "matplotlib.axes.Axes" if ax == "Axes" else "Panels"
         text = with_section(text, "Returns", drawn, ("Raises", "Notes", "Examples"))
         _NEEDED[name] = kind.words
         if known:
             KINDS[name] = kind
-            text = with_raises(text, refused)
+            text = with_raises_section(text, refused)
         drawing.__doc__ = text
         return hinted()(drawing)
 

@@ -12,7 +12,7 @@ from rockframe.arguments import checked_text
 from rockframe.errors import ComponentError, nearest, shown
 from rockframe.plot._axes import escaped, key
 from rockframe.plot._fonts import make_legible
-from rockframe.proposals import proposing
+from rockframe.suggestions import proposing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -26,14 +26,14 @@ from rockframe.plot._response import (
 )
 from rockframe.plot._runs import Window, runs_of, verdict_of_case
 from rockframe.plot._scene import Moving
-from rockframe.proposals import proposing
 from rockframe.results.outcome import LEAST_SLIP
 from rockframe.results.variables.variable import words_of_flags
 from rockframe.signals.arrays import Array
+from rockframe.suggestions import proposing
 from rockframe.units import ACCELERATION, ANGLE, LENGTH
 from rockframe.units.shown import UnitsLike, raised
 from rockframe.version import __version__
-from rockframe.writing import FileKind, generator, write_file
+from rockframe.writing import FileKind, generator_tag, write_file
 
 _FRAMES_PER_SECOND: Final = 25.0
 _MOST_FRAMES: Final = 900
@@ -50,7 +50,7 @@ _NOWHERE: Final = -32768
 _TEMPLATE: Final = Path(__file__).with_name("player.html")
 _TITLE: Final = "player"
 KIND: Final = FileKind.marked(
-    "a player", (".html", ".htm"), generator(_TITLE), generator("animation")
+    "a player", (".html", ".htm"), generator_tag(_TITLE), generator_tag("animation")
 )
 _HEIGHT: Final = 640
 """Height of the player in a notebook [pixels]."""
@@ -365,6 +365,6 @@ def _page(sentence: str, motion: str, data: dict[str, Any]) -> str:
     # otherwise "</script>" in a text would end the script
     written = json.dumps(data, separators=(",", ":")).replace("</", "<\\/")
     page = _TEMPLATE.read_text(encoding="utf-8")
-    filled = {"GENERATOR": generator(_TITLE, __version__), "TITLE": escape(sentence or "A run"),
+    filled = {"GENERATOR": generator_tag(_TITLE, __version__), "TITLE": escape(sentence or "A run"),
               "MOTION": escape(motion), "DATA": written}  # fmt: skip
     return re.sub(r"@(\w+)@", lambda found: filled[found[1]], page)

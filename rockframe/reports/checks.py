@@ -9,10 +9,10 @@ from typing import Final, cast
 
 from rockframe.arguments import checked_name, is_iterable
 from rockframe.errors import ComponentError, shown
-from rockframe.notebook import card, number_with_unit
-from rockframe.proposals import proposing
+from rockframe.notebook import html_summary, number_with_unit
 from rockframe.reports import page
 from rockframe.reports.page import KIND
+from rockframe.suggestions import proposing
 from rockframe.units import Unit
 from rockframe.units.shown import ReaderUnits, UnitsLike, behind, raised, reader_units
 from rockframe.writing import write_file
@@ -183,7 +183,7 @@ class CodeCheck:
 
     def _repr_html_(self) -> str:
         rows = {one.title: f"{_SAID[one.passed][0]}; {one.words}" for one in self.verdicts}
-        return card(escape(self.title), rows)
+        return html_summary(escape(self.title), rows)
 
     def banners(self, units: ReaderUnits) -> Iterator[str]:
         """Return each verdict with demand, capacity and clause, as pages show it.

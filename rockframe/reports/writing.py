@@ -20,13 +20,13 @@ from rockframe.errors import (
 )
 from rockframe.motion import GroundMotion
 from rockframe.plot._fonts import warning_once
-from rockframe.proposals import hinted
 from rockframe.reports import page, sections, studies
 from rockframe.reports.certifying import certified
 from rockframe.reports.checks import CodeCheck, checks_of
 from rockframe.reports.motions import Aim, aim_of, motions_of, spectra_section
 from rockframe.reports.project import Project, project_of
 from rockframe.simulation.system import System
+from rockframe.suggestions import hinted
 from rockframe.suites import TargetSpectrum
 from rockframe.units.shown import ReaderUnits, reader_units
 from rockframe.writing import checked_path, write_file

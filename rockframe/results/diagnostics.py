@@ -7,11 +7,11 @@ from typing import Any, Final
 import numpy as np
 
 from rockframe.errors import SchemaError
-from rockframe.proposals import proposing
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.variable import TIME, Variable
 from rockframe.signals.arrays import Array
+from rockframe.suggestions import proposing
 from rockframe.units import Unit
 
 State = Mapping[str, Generic]

@@ -10,11 +10,11 @@ import xarray as xr
 
 from rockframe.arguments import checked_bool, checked_dataset, is_iterable
 from rockframe.errors import SchemaError, shown
-from rockframe.proposals import hinted
 from rockframe.results.schema import SCHEMA, dated, without_fill_values
 from rockframe.results.variables.bodies import BODY, RESTRAINER
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import AFTER_END, EVENT, TIME
+from rockframe.suggestions import hinted
 from rockframe.units import own_unit
 
 OF_ONE_RUN: Final = frozenset(

@@ -10,12 +10,12 @@ import xarray as xr
 
 from rockframe.arguments import checked_choice, checked_dataset, is_iterable
 from rockframe.errors import SchemaError
-from rockframe.proposals import hinted
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.bodies import BODY, RESTRAINER
 from rockframe.results.variables.requests import POINT
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import EVENT, TIME, TRUTH, words_of_flags
+from rockframe.suggestions import hinted
 from rockframe.units import Unit
 from rockframe.units.shown import UnitsLike, reader_units
 

@@ -14,9 +14,9 @@ from rockframe.dynamics.rigid_ground import BlockOnRigidGround
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
 from rockframe.proof.verdict import EXACT, Proof, Tolerances
-from rockframe.proposals import hinted
 from rockframe.simulation.plan import Beginning, Plan, plan_run, start_of
 from rockframe.simulation.system import System
+from rockframe.suggestions import hinted
 from rockframe.system.assembly import Assembly
 from rockframe.units import ANGLE, POSITIVE, Condition, QuantityLike, RatioLike, to_ratio, to_si
 

@@ -8,10 +8,10 @@ import pint
 from rockframe.arguments import checked_list
 from rockframe.components import Block, Component
 from rockframe.errors import ComponentError, shown
-from rockframe.proposals import hinted
 from rockframe.results.diagnostics import DIAGNOSTICS, Diagnostic, add_diagnostic
 from rockframe.results.schema import GROUPS, SCHEMA
 from rockframe.results.variables.variable import EVENT, TIME, Variable
+from rockframe.suggestions import hinted
 from rockframe.system.assembly import add_scene, twin_of
 from rockframe.system.links import OwnLink
 from rockframe.system.own_base import OwnAnswers, OwnBase

@@ -8,9 +8,9 @@ import xarray as xr
 
 from rockframe.arguments import checked_integer
 from rockframe.components import InitialState
-from rockframe.proposals import proposing
 from rockframe.shared_arguments import Argument
 from rockframe.solve.accuracy import AccuracyLevel
+from rockframe.suggestions import proposing
 from rockframe.system.options import AccuracyLike, Overturning, OverturningLike, PointsLike
 from rockframe.units import Condition, QuantityLike, to_ratio
 

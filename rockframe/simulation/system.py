@@ -13,7 +13,6 @@ from rockframe.arguments import checked_bool, checked_dataset
 from rockframe.components import InitialState
 from rockframe.errors import ComponentError, ModelWarning, SchemaError, warn
 from rockframe.motion import GroundMotion
-from rockframe.proposals import hinted, proposing
 from rockframe.simulation.provenance import (
     check_own_system,
     description_by_names,
@@ -23,6 +22,7 @@ from rockframe.simulation.provenance import (
 from rockframe.simulation.run_arguments import NO_ARGUMENTS, Certification
 from rockframe.simulation.value import SystemValue
 from rockframe.solve.accuracy import AccuracyLevel
+from rockframe.suggestions import hinted, proposing
 from rockframe.system.assembly import assemble
 from rockframe.system.options import (
     AccuracyLike,

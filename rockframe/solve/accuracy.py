@@ -9,10 +9,10 @@ from enum import StrEnum
 from numbers import Integral, Real
 from typing import Any, Final, Literal
 
+from rockframe.case_arrays import ceil, hypot
 from rockframe.dynamics.protocol import ContactModel
 from rockframe.errors import SolverError, nearest, shown
-from rockframe.many import ceil, hypot
-from rockframe.proposals import proposing
+from rockframe.suggestions import proposing
 
 FEWEST: Final = "fewest"
 """Stands for the least number of sub-steps that `steps_per_period` allows."""

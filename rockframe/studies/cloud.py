@@ -10,7 +10,6 @@ import xarray as xr
 
 from rockframe.arguments import checked_integer, checked_list
 from rockframe.errors import StudyError
-from rockframe.proposals import hinted
 from rockframe.results.outcome import Generic, overturns
 from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
@@ -43,6 +42,7 @@ from rockframe.studies.limit_states import (
 )
 from rockframe.studies.logistic import Logistic, fit_logistic
 from rockframe.studies.sweeps.motions import MotionsLike
+from rockframe.suggestions import hinted
 from rockframe.units import POSITIVE, RatioLike
 
 _OWNER: Final = "cloud_analysis"

@@ -15,7 +15,7 @@ from rockframe.errors import ComponentError, SolverWarning, warn
 from rockframe.motion import GroundMotion
 from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.studies import Outcome
-from rockframe.shared_arguments import takes
+from rockframe.shared_arguments import with_shared_arguments
 from rockframe.signals.motion import turning_points
 from rockframe.simulation.certify.run_summary import RunSummary
 from rockframe.simulation.plan import Plan, plan_run
@@ -38,7 +38,7 @@ _OUTCOMES: Final = {
 }  # fmt: skip
 
 
-@takes(ScaleArguments)
+@with_shared_arguments(ScaleArguments)
 def critical_scale(
     system: System,
     motion: GroundMotion | None = None,

@@ -8,12 +8,12 @@ import xarray as xr
 
 from rockframe.arguments import checked_dataset, checked_list
 from rockframe.errors import ComponentError, SchemaError, nearest, shown
-from rockframe.proposals import hinted
 from rockframe.results.schema import build_dataset
 from rockframe.results.variables.studies import MOTION
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import clopper_pearson, read_level, read_shares
 from rockframe.studies.probability import SAMPLED
+from rockframe.suggestions import hinted
 from rockframe.units import RatioLike
 
 _OWNER: Final = "ensemble_statistics"

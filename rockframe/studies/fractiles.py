@@ -10,7 +10,6 @@ import xarray as xr
 from rockframe.arguments import checked_list
 from rockframe.errors import ComponentError, StudyError, shown
 from rockframe.motion.quantities import ArrayLike
-from rockframe.proposals import hinted
 from rockframe.results.outcome import Generic, overturns
 from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.studies import MOTION
@@ -22,6 +21,7 @@ from rockframe.studies.intensities import PeriodLike, measure_in, period_attribu
 from rockframe.studies.limit_states import check_runs, scalar_of
 from rockframe.studies.lines import SCALE
 from rockframe.studies.sweeps.motions import MotionsLike
+from rockframe.suggestions import hinted
 from rockframe.units import Measure, RatioLike, Unit, to_ratio, to_si_values
 
 _OWNER: Final = "fractile_curves"

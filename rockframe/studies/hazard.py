@@ -11,7 +11,6 @@ from numpy.polynomial.legendre import leggauss
 
 from rockframe.arguments import checked_dataset, checked_function
 from rockframe.errors import ComponentError, ModelWarning, SchemaError, UnitsError, shown, warn
-from rockframe.proposals import hinted
 from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.variable import unit_behind
@@ -20,6 +19,7 @@ from rockframe.studies.fragility.likelihood import log_shares
 from rockframe.studies.fragility.words import in_own_units, measures_of
 from rockframe.studies.intensities import PERIOD_OF, measure_words
 from rockframe.studies.sweeps.axes import free_values
+from rockframe.suggestions import hinted
 from rockframe.units import POSITIVE, Unit, check_own_unit, to_ratio
 
 _OWNER: Final = "annual_rate"

@@ -10,7 +10,6 @@ import xarray as xr
 
 from rockframe.arguments import checked_list
 from rockframe.errors import ComponentError, StudyError, shown
-from rockframe.proposals import hinted
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.studies import MOTION
@@ -27,6 +26,7 @@ from rockframe.studies.intensities import (
 )
 from rockframe.studies.limit_states import check_runs, scalar_of
 from rockframe.studies.sweeps.motions import MotionsLike
+from rockframe.suggestions import hinted
 
 _OWNER: Final = "compare_intensities"
 _AGAINST: Final = 0.05

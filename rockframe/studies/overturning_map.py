@@ -12,7 +12,7 @@ from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
 from rockframe.results.schema import SCHEMA, with_labels, with_variables
 from rockframe.results.variables.studies import MOTION
-from rockframe.shared_arguments import takes
+from rockframe.shared_arguments import with_shared_arguments
 from rockframe.signals.arrays import Array
 from rockframe.signals.motion import greatest
 from rockframe.simulation.system import System, check_system
@@ -30,7 +30,7 @@ _SAME_PEAK: Final = 1e-6
 """Relative difference up to which peaks of pulses of one amplitude count as equal [1]."""
 
 
-@takes(SweepArguments, overturning=Overturning.CONTINUE)
+@with_shared_arguments(SweepArguments, overturning=Overturning.CONTINUE)
 def overturning_map(
     system: System,
     pulse: GroundMotion | Callable[..., GroundMotion],

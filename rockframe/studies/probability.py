@@ -14,7 +14,7 @@ from rockframe.results.outcome import Generic
 from rockframe.results.schema import with_variables
 from rockframe.results.table import head
 from rockframe.results.variables.studies import MOTION
-from rockframe.shared_arguments import takes
+from rockframe.shared_arguments import with_shared_arguments
 from rockframe.signals.arrays import Array
 from rockframe.simulation.system import System
 from rockframe.studies.confidence import clopper_pearson, read_level
@@ -253,7 +253,7 @@ SAMPLED: Final = "sampling"
 _MOST_CASES: Final = 1_000_000_000
 
 
-@takes(SweepArguments)
+@with_shared_arguments(SweepArguments)
 def probability_of_overturning(
     system: System | Callable[..., System],
     motions: MotionsLike | None = None,

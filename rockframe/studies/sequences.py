@@ -17,7 +17,7 @@ from rockframe.results.joining import CASE_COUNT
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import with_variables
 from rockframe.results.variables.studies import MESSAGE, MOTION
-from rockframe.shared_arguments import takes
+from rockframe.shared_arguments import with_shared_arguments
 from rockframe.signals import Motion, Signal
 from rockframe.signals.arrays import Array
 from rockframe.signals.motion import COEFFICIENTS
@@ -37,7 +37,7 @@ _MOST_PARTS: Final = 64
 NUMBER: Final = "earthquake"
 
 
-@takes(SequenceArguments)
+@with_shared_arguments(SequenceArguments)
 def earthquake_sequences(
     system: System,
     sequences: Mapping[str, Sequence[GroundMotion]] | Sequence[Sequence[GroundMotion]],

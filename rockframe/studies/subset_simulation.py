@@ -22,7 +22,7 @@ from rockframe.results.joining import concat
 from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.table import head
 from rockframe.results.variables.studies import CASE, MOTION
-from rockframe.shared_arguments import takes
+from rockframe.shared_arguments import with_shared_arguments
 from rockframe.signals.arrays import Array
 from rockframe.simulation.system import System
 from rockframe.studies.conditional_sampling import (
@@ -63,7 +63,7 @@ _TOLD: Final = ("axes_json", "study_sha256")
 """Attributes with the columns of a table, and the name by which this process knows it."""
 
 
-@takes(SweepArguments)
+@with_shared_arguments(SweepArguments)
 def subset_simulation(
     system: System | Callable[..., System],
     motions: GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None = None,

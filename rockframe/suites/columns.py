@@ -11,7 +11,7 @@ from rockframe.arguments import checked_function
 from rockframe.errors import ComponentError, nearest, shown
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import peak_words
-from rockframe.notebook import CELL, TABLE, card, curve
+from rockframe.notebook import CELL_STYLE, TABLE_STYLE, html_summary, sparkline
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.motions import RECORDS
 from rockframe.units import Measure, Unit, to_ratio, to_si
@@ -174,12 +174,12 @@ def suite_html(suite: "LabelledMotions") -> str:
     if suite.unread:
         rows["files that could not be read"] = str(len(suite.unread))
     lines = "".join(
-        f'<tr style="background:transparent"><td style="{CELL}">{escape(label)}</td>'
-        f'<td style="{CELL}">{escape(peak_words(motion))}</td><td style="{CELL}">'
-        f"{curve(motion.si.horizontal.samples.tolist(), width=160.0, height=24.0)}</td></tr>"
+        f'<tr style="background:transparent"><td style="{CELL_STYLE}">{escape(label)}</td>'
+        f'<td style="{CELL_STYLE}">{escape(peak_words(motion))}</td><td style="{CELL_STYLE}">'
+        f"{sparkline(motion.si.horizontal.samples.tolist(), width=160.0, height=24.0)}</td></tr>"
         for label, motion in list(suite.items())[:_SHOWN]
     )
     left = len(suite) - _SHOWN
     more = f"<div>and {left} more; <code>suite.table</code> has all</div>" if left > 0 else ""
-    table = f'<table style="{TABLE}">{lines}</table>{more}'
-    return card(type(suite).__name__, rows, more=table)
+    table = f'<table style="{TABLE_STYLE}">{lines}</table>{more}'
+    return html_summary(type(suite).__name__, rows, more=table)

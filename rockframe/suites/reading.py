@@ -6,7 +6,6 @@ from typing import Final
 
 from rockframe.errors import PLEASE_REPORT, ComponentError, RecordError, RecordWarning, warn
 from rockframe.motion import GroundMotion
-from rockframe.proposals import hinted
 from rockframe.records import (
     Known,
     Reading,
@@ -19,6 +18,7 @@ from rockframe.records import (
     read_components,
     request_of,
 )
+from rockframe.suggestions import hinted
 from rockframe.suites.records import RecordedComponent, assign_records, number_in_name
 from rockframe.suites.stored import is_stored_suite, stored_suite
 from rockframe.suites.suite import MotionSuite

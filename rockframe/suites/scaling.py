@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from rockframe.errors import ComponentError, SchemaError
 from rockframe.motion import GroundMotion
 from rockframe.motion.quantities import ArrayLike
-from rockframe.proposals import hinted
 from rockframe.results.joining import MOTION
 from rockframe.results.schema import SCHEMA, build_dataset, with_variables, without_fill_values
 from rockframe.signals.arrays import Array
+from rockframe.suggestions import hinted
 from rockframe.suites.candidates import Candidates, Combination, candidates_of
 from rockframe.suites.target import TargetSpectrum
 from rockframe.suites.value import LabelledMotions

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from rockframe.arguments import checked_integer
 from rockframe.errors import ComponentError
 from rockframe.motion.quantities import ArrayLike
-from rockframe.proposals import hinted
 from rockframe.results.schema import with_variables
 from rockframe.signals.arrays import Array
+from rockframe.suggestions import hinted
 from rockframe.suites.candidates import Combination, candidates_of
 from rockframe.suites.scaling import USUAL_BOUNDS, scaled_set
 from rockframe.suites.target import TargetSpectrum

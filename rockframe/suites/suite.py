@@ -13,7 +13,7 @@ from rockframe.measures import (
     rotated_spectrum,
 )
 from rockframe.motion.quantities import ArrayLike
-from rockframe.proposals import proposing
+from rockframe.suggestions import proposing
 from rockframe.suites.matching import matched
 from rockframe.suites.scaling import compared_target, scaled_motions, scaling_to
 from rockframe.suites.selection import selection_for

@@ -12,9 +12,9 @@ import xarray as xr
 from rockframe.arguments import checked_dataset, checked_function, checked_list, checked_text
 from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.motion.quantities import ArrayLike
-from rockframe.proposals import Proposing, proposing
 from rockframe.signals.arrays import Array
 from rockframe.signals.spectra import DAMPING_RATIO
+from rockframe.suggestions import SuggestingMeta, proposing
 from rockframe.suites.codes import GroundType, Shape, asce_7, eurocode_8
 from rockframe.units import (
     ACCELERATION,
@@ -35,7 +35,7 @@ _ROUNDING: Final = 1e-9
 
 @proposing
 @dataclass(frozen=True)
-class TargetSpectrum(metaclass=Proposing):
+class TargetSpectrum(metaclass=SuggestingMeta):
     """A target pseudo-spectral acceleration for motions, optionally with its spread.
 
     Created by :meth:`from_table`, :meth:`from_spectrum`, :meth:`eurocode_8` or :meth:`asce_7`.

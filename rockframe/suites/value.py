@@ -17,10 +17,10 @@ from rockframe.arguments import (
 from rockframe.errors import ComponentError, LabelError, RecordWarning, nearest, shown, warn
 from rockframe.motion import GroundMotion
 from rockframe.motion.pair import HorizontalPair
-from rockframe.proposals import Proposing, proposing
 from rockframe.results.joining import MOTION
 from rockframe.results.schema import build_dataset
 from rockframe.results.table import table as table_of
+from rockframe.suggestions import SuggestingMeta, proposing
 from rockframe.suites.columns import (
     check_column,
     chosen,
@@ -36,7 +36,7 @@ _EXAMPLE: Final = "rf.read_suite(path) reads files"
 
 
 @proposing
-class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
+class LabelledMotions(Mapping[str, GroundMotion], metaclass=SuggestingMeta):
     """Labelled motions in an order; immutable. A suite without its measures and targets."""
 
     __slots__ = ("_motions", "_remarks", "_target", "_unread", "_verticals")

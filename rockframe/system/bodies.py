@@ -7,13 +7,13 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from rockframe.case_arrays import CaseArray, atan2, tan
 from rockframe.components import Component
 from rockframe.components.bases import CushionCapSI
 from rockframe.components.block_numbers import BlockSI, BodyGeometry, greatest_restitutions
 from rockframe.dynamics.alone import rigid_body
 from rockframe.dynamics.body import Body
 from rockframe.dynamics.chain.link_rows import LINK_MOMENT
-from rockframe.many import Many, atan2, tan
 from rockframe.signals.arrays import Array
 from rockframe.system.options import RESTRAINT_CODES, Options
 
@@ -279,7 +279,7 @@ class BaseLoad:
 def load_of(block: BlockSI, options: Options) -> BaseLoad:
     """Return a block as a load; one object for all scenes that differ only in their bases."""
     numbers = (*vars(block).values(), options.gravity, options.inclination)
-    if any(isinstance(number, Many) for number in numbers):
+    if any(isinstance(number, CaseArray) for number in numbers):
         return BaseLoad(body_of_block(block), options)
     return _kept_load(block, options)
 

@@ -4,6 +4,7 @@ import math
 from inspect import getattr_static
 from typing import Final, NamedTuple
 
+from rockframe.case_arrays import isfinite
 from rockframe.components import (
     Component,
     Load,
@@ -16,7 +17,6 @@ from rockframe.components import (
 )
 from rockframe.components.bases import Impact
 from rockframe.components.block_numbers import BlockSI, squat
-from rockframe.many import isfinite
 from rockframe.system.links import link_labels
 from rockframe.system.options import Coupling, Options, Restraint, Sliding
 from rockframe.system.own_base import OwnBase

@@ -8,7 +8,7 @@ import numpy as np
 from rockframe.components import Component, FrameEquivalent, RearWall, RockingFrame, Stack, Tendon
 from rockframe.components.block_numbers import BlockSI
 from rockframe.components.rocking_frame import column_places, frame_outlines
-from rockframe.notebook import Polygon, arguments_in_words, card, drawing
+from rockframe.notebook import Polygon, html_summary, readable_arguments, shapes_svg
 from rockframe.signals.arrays import Array
 from rockframe.system.assembly import Assembly
 from rockframe.system.rocking_frame import TiedFrameSetting
@@ -214,7 +214,7 @@ def system_html(scene: Assembly, name: str) -> str:
     pieces = [one for part in scene.parts.structural() for one in _pieces(part)]
     for number, (words, part) in enumerate(pieces):
         alike = [other for other, _ in pieces[: number + 1]].count(words)
-        numbers = arguments_in_words(part.to_dict())
+        numbers = readable_arguments(part.to_dict())
         text = ", ".join(f"{one} {value}" for one, value in numbers.items())
         rows[words if alike == 1 else f"{words} {alike}"] = text
     left, right = setting.overturning_angles
@@ -227,7 +227,7 @@ def system_html(scene: Assembly, name: str) -> str:
         rows["inclination"] = in_degrees(options.inclination)
     if scene.parts.motion is not None:
         rows["motion"] = scene.parts.motion.name
-    return card(name, rows, drawing(shapes_of(geometry_of(scene))))
+    return html_summary(name, rows, shapes_svg(shapes_of(geometry_of(scene))))
 
 
 def _pieces(part: Component) -> list[tuple[str, Component]]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from rockframe.case_arrays import atan2, isnan
 from rockframe.dynamics.alone import eccentricity_of
 from rockframe.dynamics.on_base import OnBase
 from rockframe.dynamics.protocol import ContactModel, Ending
@@ -15,7 +16,6 @@ from rockframe.dynamics.standing import Stand, standing_body
 from rockframe.dynamics.statics import StandingChain
 from rockframe.dynamics.vibrations import ChainBody
 from rockframe.errors import AssemblyError
-from rockframe.many import atan2, isnan
 from rockframe.system.alone import AloneSetting
 from rockframe.system.bodies import Cap
 from rockframe.system.fitting import HELD, BaseFriction

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar, Final
 
+from rockframe.case_arrays import sqrt
 from rockframe.components import TwoSpringSupport, WinklerSoil
 from rockframe.components.bases import Separation
 from rockframe.dynamics.alone import eccentricity_of
@@ -18,7 +19,6 @@ from rockframe.dynamics.body import Body
 from rockframe.dynamics.on_base import OnBase
 from rockframe.dynamics.standing import Stand, of_base, standing_body, uplift_rotation
 from rockframe.dynamics.statics import StandingChain
-from rockframe.many import sqrt
 from rockframe.signals.arrays import Array
 from rockframe.system.bodies import (
     BaseLoad,

@@ -13,7 +13,7 @@ import xarray as xr
 import rockframe as rf
 from rockframe import errors
 from rockframe.errors import (
-    LONGEST_SHOWN,
+    MAX_SHOWN_LENGTH,
     AssemblyError,
     FileError,
     RecordError,
@@ -32,7 +32,7 @@ def test_short_values_are_shown_as_written(value):
 
 @pytest.mark.parametrize("value", [list(range(5000)), "m" * 5000, dict.fromkeys(range(5000))])
 def test_long_values_are_cut(value):
-    assert len(shown(value)) == LONGEST_SHOWN
+    assert len(shown(value)) == MAX_SHOWN_LENGTH
     assert shown(value).endswith("...")
     assert shown(value)[:20] == repr(value)[:20]
 
@@ -60,7 +60,7 @@ def test_arrays_and_datasets_are_shown_by_their_type():
 def test_messages_do_not_print_all_of_a_long_value(call):
     with pytest.raises(RockframeError) as caught:
         call([0.05] * 5000)
-    assert max(len(line) for line in str(caught.value).splitlines()) < 4 * LONGEST_SHOWN
+    assert max(len(line) for line in str(caught.value).splitlines()) < 4 * MAX_SHOWN_LENGTH
 
 
 OF_MANY_FAULTS = {

@@ -9,7 +9,7 @@ from rockframe.command.files.tables import Place, TomlFile, arguments_of, checke
 from rockframe.components import Component, RockingFrame, Stack
 from rockframe.components.registry import kinds
 from rockframe.errors import nearest, shown
-from rockframe.proposals import hints_of
+from rockframe.suggestions import hints_of
 from rockframe.system.parts import RESTRAINER, slot_of_kind, slots, usual_kind
 
 TYPE: Final = "type"

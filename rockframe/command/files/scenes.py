@@ -16,12 +16,12 @@ from rockframe.components.registry import kinds
 from rockframe.errors import AssemblyError, RockframeError, nearest, shown
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import CONSTRUCTORS, OPERATIONS
-from rockframe.proposals import hints_of
 from rockframe.reports.project import CHECKS, project_json
 from rockframe.simulation.plan import certification_of, read_arguments
 from rockframe.simulation.run_arguments import Certification
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import Accuracy
+from rockframe.suggestions import hints_of
 from rockframe.system.parts import slot_of_kind
 
 _FILE: Final = "file"

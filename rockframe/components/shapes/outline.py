@@ -20,8 +20,8 @@ from rockframe.components.shapes.standing import (
     shaped_body,
 )
 from rockframe.errors import ComponentError
-from rockframe.proposals import hinted
 from rockframe.signals.arrays import Array
+from rockframe.suggestions import hinted
 from rockframe.units import DENSITY, LENGTH, MASS, POSITIVE, THICKNESS, Measure, QuantityLike, to_si
 from rockframe.units.shown import in_degrees
 

@@ -19,7 +19,7 @@ from rockframe.components.shapes.standing import (
     shaped_body,
 )
 from rockframe.errors import ComponentError, shown
-from rockframe.proposals import hinted
+from rockframe.suggestions import hinted
 from rockframe.units import (
     INERTIA,
     LENGTH,

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 from rockframe.arguments import checked_integer
 from rockframe.errors import ComponentError, shown
 from rockframe.motion.pulses import impulse_duration
-from rockframe.proposals import hinted
-from rockframe.shared_arguments import with_raises
+from rockframe.shared_arguments import with_raises_section
+from rockframe.suggestions import hinted
 from rockframe.units import (
     ACCELERATION,
     ANGLE,
@@ -135,7 +135,7 @@ def pulse(
                 recipe={"constructor": declared.__name__, **reader.recipe},
             )
 
-        construct.__doc__ = with_raises(declared.__doc__ or "", _RAISES)
+        construct.__doc__ = with_raises_section(declared.__doc__ or "", _RAISES)
         return cast("Constructor", construct)
 
     return decorate

@@ -14,9 +14,9 @@ from rockframe.arguments import checked_text
 from rockframe.errors import ComponentError, RecordWarning, UnitsError, nearest, shown, warn
 from rockframe.motion.quantities import ArrayLike, accelerations_to_si, declared_times
 from rockframe.motion.value import UNNAMED, Made
-from rockframe.proposals import hinted
 from rockframe.records import PathLike, RecordLike, read_record, request_of
 from rockframe.signals import Motion
+from rockframe.suggestions import hinted
 from rockframe.units import POSITIVE, TIME_STEP, QuantityLike, to_si
 
 if TYPE_CHECKING:

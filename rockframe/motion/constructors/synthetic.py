@@ -15,8 +15,8 @@ from rockframe.motion.stochastic import (
     accelerogram,
 )
 from rockframe.motion.value import Made
-from rockframe.proposals import hinted
 from rockframe.signals import Motion
+from rockframe.suggestions import hinted
 from rockframe.units import (
     DENSITY,
     NOT_NEGATIVE,

@@ -18,7 +18,6 @@ from rockframe.motion.quantities import (
     times_to_si,
 )
 from rockframe.motion.value import UNNAMED, Made
-from rockframe.proposals import hinted
 from rockframe.records import (
     DOWNWARDS,
     MAXIMUM_SAMPLES,
@@ -32,6 +31,7 @@ from rockframe.records import (
     uniform_step,
 )
 from rockframe.signals import Motion
+from rockframe.suggestions import hinted
 from rockframe.units import POSITIVE, TIME_STEP, QuantityLike, to_si
 
 if TYPE_CHECKING:

@@ -19,11 +19,11 @@ from rockframe.motion.operations.following import (
 from rockframe.motion.operations.scaling import times
 from rockframe.motion.processing.samples import padded
 from rockframe.motion.value import Made, MotionValue
-from rockframe.proposals import hinted
 from rockframe.records import DOWNWARDS, SENSE, UPWARDS
 from rockframe.records import VERTICAL as EITHER
 from rockframe.signals import Motion, Signal
 from rockframe.signals.motion import COEFFICIENTS, VERTICAL
+from rockframe.suggestions import hinted
 from rockframe.units import ANGLE, QuantityLike, to_si
 from rockframe.units.shown import in_degrees
 

@@ -20,8 +20,8 @@ from rockframe.motion.processing.samples import (
     without_drift,
 )
 from rockframe.motion.value import Made
-from rockframe.proposals import hinted
 from rockframe.signals.motion import MAXIMUM_SAMPLES
+from rockframe.suggestions import hinted
 from rockframe.units import FREQUENCY, POSITIVE, QuantityLike, to_si
 
 _HIGHEST_ORDER: Final = 12

@@ -14,8 +14,8 @@ from rockframe.motion.matching.iteration import Goal, Matched, changes, match, u
 from rockframe.motion.operations.following import following, lost_pieces
 from rockframe.motion.processing.samples import finer, warn_of_coarse_samples
 from rockframe.motion.value import Made
-from rockframe.proposals import hinted
 from rockframe.signals.spectra import check_cost
+from rockframe.suggestions import hinted
 from rockframe.units import PERIOD, Condition, QuantityLike, RatioLike, to_ratio, to_si_values
 
 if TYPE_CHECKING:

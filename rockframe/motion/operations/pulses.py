@@ -17,10 +17,10 @@ from rockframe.motion.processing import velocity_pulses
 from rockframe.motion.quantities import with_quantity
 from rockframe.motion.value import Made
 from rockframe.motion.velocity_pulse import VelocityPulse
-from rockframe.proposals import hinted
 from rockframe.signals import Motion
 from rockframe.signals.integrals import ground_path
 from rockframe.signals.motion import MAXIMUM_SAMPLES, knots_of
+from rockframe.suggestions import hinted
 from rockframe.units import PERIOD, POSITIVE, TIME, VELOCITY, QuantityLike, to_si
 
 if TYPE_CHECKING:

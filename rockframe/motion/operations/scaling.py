@@ -11,7 +11,6 @@ from rockframe.errors import ComponentError
 from rockframe.motion.operations.following import OF_VERTICAL, following
 from rockframe.motion.processing.samples import warn_of_coarse_samples
 from rockframe.motion.value import Made
-from rockframe.proposals import hinted
 from rockframe.records import DOWNWARDS, SENSE, UPWARDS
 from rockframe.signals.integrals import ground_path
 from rockframe.signals.motion import greatest
@@ -21,6 +20,7 @@ from rockframe.signals.spectra import (
     pseudo_spectra,
     spectral_peaks,
 )
+from rockframe.suggestions import hinted
 from rockframe.units import (
     ACCELERATION,
     PERIOD,

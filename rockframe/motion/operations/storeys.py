@@ -23,10 +23,10 @@ from rockframe.motion.processing.floors import (
 from rockframe.motion.processing.samples import divided_signal, padded
 from rockframe.motion.quantities import ArrayLike
 from rockframe.motion.value import Made
-from rockframe.proposals import hinted
 from rockframe.signals import Motion
 from rockframe.signals.motion import MAXIMUM_SAMPLES
 from rockframe.signals.spectra import DAMPING_RATIO, MAXIMUM_PARTS
+from rockframe.suggestions import hinted
 from rockframe.units import (
     MASS,
     NOT_NEGATIVE,

@@ -25,8 +25,8 @@ from rockframe.motion.processing.samples import (
     tapered,
 )
 from rockframe.motion.value import Made
-from rockframe.proposals import hinted
 from rockframe.signals.motion import MAXIMUM_SAMPLES
+from rockframe.suggestions import hinted
 from rockframe.units import POSITIVE, TIME, TIME_STEP, QuantityLike, to_si
 
 if TYPE_CHECKING:

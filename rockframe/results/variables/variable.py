@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from rockframe.proposals import proposing
+from rockframe.suggestions import proposing
 from rockframe.units import Unit
 from rockframe.units.shown import behind
 

@@ -10,10 +10,10 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from rockframe.case_arrays import CaseArray
 from rockframe.compiled import LANES, Matrix, bound_in_lanes, compiled_within
 from rockframe.compiled.bound import elements_of, structure_of
 from rockframe.dynamics.protocol import ContactModel, Ending
-from rockframe.many import Many
 from rockframe.signals import Motion
 from rockframe.solve import workspace as at
 from rockframe.solve.equations import BoundEquations, equations_of
@@ -70,10 +70,12 @@ class Outcomes:
         )
 
     def summary_of_many(self, some: Whole, substeps: int) -> Summary:
-        """Return one summary of runs that ended in the same way, whose numbers are `Many`."""
+        """Return one summary of runs that ended in the same way, whose numbers are `CaseArray`."""
 
         def each(rows: Any) -> Any:
-            return np.array([Many(row[some].astype(np.float64)) for row in rows.T], dtype=object)
+            return np.array(
+                [CaseArray(row[some].astype(np.float64)) for row in rows.T], dtype=object
+            )
 
         mode = int(self.modes[some[0]])
         return Summary(
@@ -150,7 +152,7 @@ def _batches(motions: Sequence[Motion | None], motion_of: Whole) -> list[slice]:
 
 
 def rows_of(model: ContactModel, begun: Begun, count: int = 1) -> Matrix:
-    """Return the row of a run, or the rows of many runs, whose numbers are :class:`Many`."""
+    """Return the row of a run, or the rows of many runs, whose numbers are :class:`CaseArray`."""
     there, numbers = places_of(model.system), list(elements_of(model.system))
     memory = there.numbers + len(numbers)
     tolerance = memory + len(begun.memory)
@@ -167,7 +169,7 @@ def rows_of(model: ContactModel, begun: Begun, count: int = 1) -> Matrix:
         (tolerance, begun.tolerance),
     ):
         for place, number in enumerate(row, start=first):
-            rows[:, place] = number.values if isinstance(number, Many) else number
+            rows[:, place] = number.values if isinstance(number, CaseArray) else number
     wholes[:, fields.COUNTERS : fields.COUNTERS + at.COUNTERS] = begun.counters
     wholes[:, fields.OWN_WHOLE + fields.BUSY] = 1
     return rows

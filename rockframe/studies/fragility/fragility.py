@@ -9,7 +9,6 @@ import xarray as xr
 
 from rockframe.arguments import checked_choice, checked_list, checked_name, is_iterable
 from rockframe.errors import ComponentError, SchemaError, UnitsError, shown
-from rockframe.proposals import hinted
 from rockframe.results.schema import with_labels, with_variables
 from rockframe.results.variables.analyses import LIMIT_STATE
 from rockframe.simulation.soundness import share_words
@@ -45,6 +44,7 @@ from rockframe.studies.limit_states import (
 from rockframe.studies.lines import SCALE
 from rockframe.studies.sweeps.axes import free_values
 from rockframe.studies.sweeps.motions import MotionsLike
+from rockframe.suggestions import hinted
 from rockframe.units import RatioLike
 
 _OWNER: Final = "fragility"

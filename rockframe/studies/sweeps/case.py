@@ -17,7 +17,6 @@ from rockframe.arguments import checked_dataset
 from rockframe.components import InitialState
 from rockframe.errors import SchemaError, StudyError, nearest, shown
 from rockframe.motion import GroundMotion
-from rockframe.proposals import hinted, proposing
 from rockframe.results.variables.studies import MOTION, REPEATED
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import LEVELS, Accuracy
@@ -27,6 +26,7 @@ from rockframe.studies.sweeps.motions import full_name, motion_number, motion_of
 from rockframe.studies.sweeps.scenes import SweptScene, scene_of
 from rockframe.studies.sweeps.store import Store
 from rockframe.studies.sweeps.study import Study
+from rockframe.suggestions import hinted, proposing
 from rockframe.units import Measure, Unit
 
 NOT_GIVEN: Final = "must be given, as motions="

@@ -4,9 +4,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any, TypeAlias
 
+from rockframe.case_arrays import CaseArray, CaseIndices
 from rockframe.components import InitialState
 from rockframe.errors import AssemblyError, collected_warnings
-from rockframe.many import Many, Places
 from rockframe.motion import GroundMotion
 from rockframe.motion.operations.scaling import multiplied
 from rockframe.signals import Motion
@@ -78,12 +78,12 @@ class CasesOfJob:
         """Return the differences between cases that are words or counts."""
         return tuple(each[case] for axis, each in self._of_scene if axis.name not in self._numbers)
 
-    def _of(self, axis: Axis, values: list[Any], which: Places) -> Any:
+    def _of(self, axis: Axis, values: list[Any], which: CaseIndices) -> Any:
         """Return the value of an axis in many cases, which agree where it is no number."""
         numbers = self._numbers.get(axis.name)
-        return values[which[0]] if numbers is None else Many(numbers[which])
+        return values[which[0]] if numbers is None else CaseArray(numbers[which])
 
-    def scene_of_many(self, which: Places) -> tuple[Assembly, list[str]]:
+    def scene_of_many(self, which: CaseIndices) -> tuple[Assembly, list[str]]:
         """Return the scene of many cases; the warnings are the same for all."""
         values = {axis: self._of(axis, each, which) for axis, each in self._of_scene}
         with collected_warnings() as warned:
@@ -131,7 +131,7 @@ class CasesOfJob:
         start = {axis.parameter: each[case] for axis, each in self._start}
         return system, messages, self._plan(system, start, self.motion(case))
 
-    def plan_of_many(self, which: Places) -> tuple[Assembly, list[str], Plan]:
+    def plan_of_many(self, which: CaseIndices) -> tuple[Assembly, list[str], Plan]:
         """Return the same of many cases, with the motion of the first before it is scaled."""
         system, messages = self.scene_of_many(which)
         start = {axis.parameter: self._of(axis, each, which) for axis, each in self._start}

@@ -1,7 +1,7 @@
 """Cases whose runs go side by side in lanes, of scenes assembled one by one, or many at once.
 
 Values of many cases are in arrays over the cases, computed by the code of a single case,
-:mod:`rockframe.many`.
+:mod:`rockframe.case_arrays`.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -10,9 +10,15 @@ from typing import Any, Final
 
 import numpy as np
 
+from rockframe.case_arrays import (
+    CaseArray,
+    CaseIndices,
+    SingleCaseOnly,
+    run_by_branches,
+    values_by_case,
+)
 from rockframe.compiled import compiling_for
 from rockframe.errors import RockframeError
-from rockframe.many import Many, OnlyAlone, Places, each_way, in_each
 from rockframe.results.outcome import Generic
 from rockframe.signals import Motion
 from rockframe.simulation.certify.second_look import Look, look_at
@@ -174,7 +180,7 @@ def prepared(system: Assembly, said: list[str], plan: Plan) -> LaneScene | None:
 class FinishedTogether:
     """Cases that have run and ended in the same way."""
 
-    cases: Places  # their numbers in the job
+    cases: CaseIndices  # their numbers in the job
     status: Status
     said: list[str]  # what was warned of when their scenes were assembled, and of their runs
     scalars: dict[str, Generic | float]  # of each, or of all
@@ -184,7 +190,7 @@ class FinishedTogether:
         """Return the indications of each verdict."""
         count = len(self.cases)
         columns = (
-            [each] * count if isinstance(each, bool) else in_each(each, count).tolist()
+            [each] * count if isinstance(each, bool) else values_by_case(each, count).tolist()
             for each in vars(self.look).values()
         )
         rows = zip(*columns, strict=True)
@@ -196,7 +202,7 @@ class _Batch:
     """Cases whose scenes were assembled in the same way."""
 
     one: LaneScene  # that of the first
-    cases: Places
+    cases: CaseIndices
     rows: Any
 
 
@@ -216,7 +222,7 @@ def run_in_lanes(
         alike.setdefault((cases.word_key(case), cases.length_key(case)), []).append(case)
     for members in alike.values():
         places = np.array(members, dtype=np.intp)
-        for _, group in each_way(lambda some: _assembled(cases, some), places):
+        for _, group in run_by_branches(lambda some: _assembled(cases, some), places):
             if ready(group.one):
                 kinds.setdefault(group.one.kind, []).append(group)
     for groups in kinds.values():
@@ -224,7 +230,7 @@ def run_in_lanes(
         group_of = np.repeat(np.arange(len(groups)), [len(group.cases) for group in groups])
         rows = np.concatenate([group.rows for group in groups])
         order = np.argsort(every, kind="stable")  # neighbours share their motion
-        ran: list[Places] = []
+        ran: list[CaseIndices] = []
         found: list[Outcomes] = []
         for begin in range(0, len(order), TOGETHER):
             if stopped():
@@ -237,21 +243,21 @@ def run_in_lanes(
         yield from _told(cases, groups, group_of[here], every[here], joined(found))
 
 
-def _assembled(cases: CasesOfJob, some: Places) -> _Batch:
+def _assembled(cases: CasesOfJob, some: CaseIndices) -> _Batch:
     """Assemble the scenes of cases; give the row of each for lanes."""
     first = int(some[0])
     several, one = prepared(*cases.plan_of_many(some)), prepared(*cases.planned(first))
     if several is None or one is None:
-        raise OnlyAlone
+        raise SingleCaseOnly
     rows = rows_of(several.run.model, several.run.begun, len(some))
     if rows[0].tobytes() != rows_of(one.run.model, one.run.begun).tobytes():
-        raise OnlyAlone
+        raise SingleCaseOnly
     return _Batch(one, some, rows)
 
 
 def _integrated(
-    cases: CasesOfJob, one: LaneScene, some: Places, rows: Any
-) -> tuple[Places, Outcomes]:
+    cases: CasesOfJob, one: LaneScene, some: CaseIndices, rows: Any
+) -> tuple[CaseIndices, Outcomes]:
     """Run cases whose motions are available; give which these are."""
     motions: list[Motion | None] = []
     places: dict[Any, int] = {}
@@ -273,7 +279,11 @@ def _integrated(
 
 
 def _told(
-    cases: CasesOfJob, groups: Sequence[_Batch], group_of: Places, ran: Places, outcomes: Outcomes
+    cases: CasesOfJob,
+    groups: Sequence[_Batch],
+    group_of: CaseIndices,
+    ran: CaseIndices,
+    outcomes: Outcomes,
 ) -> Iterator[Finished | FinishedTogether]:
     """Return the outcomes of runs, together for those that ended in the same way."""
     status, modes = outcomes.status, outcomes.modes
@@ -285,10 +295,10 @@ def _told(
     for k, (number, *_) in enumerate(ways.tolist()):
         substeps = groups[number].one.run.begun.substeps
 
-        def work(some: Places, substeps: int = substeps) -> FinishedTogether:
+        def work(some: CaseIndices, substeps: int = substeps) -> FinishedTogether:
             return _summed_up(cases, ran[some], outcomes.summary_of_many(some, substeps))
 
-        for some, found in each_way(work, np.flatnonzero(way_of == k)):
+        for some, found in run_by_branches(work, np.flatnonzero(way_of == k)):
             alone[some] = False
             yield found
     for k in np.flatnonzero(alone).tolist():
@@ -301,19 +311,20 @@ def _told(
             yield Finished(int(ran[k]), system, summary, messages)
 
 
-def _summed_up(cases: CasesOfJob, some: Places, summary: Summary) -> FinishedTogether:
+def _summed_up(cases: CasesOfJob, some: CaseIndices, summary: Summary) -> FinishedTogether:
     system, messages = cases.scene_of_many(some)
     missing: list[str] = []
     if not has_no_cautions(system, summary):
-        raise OnlyAlone
+        raise SingleCaseOnly
     scalars = scalars_of(system, summary, missing)
     moving = in_motion(system, summary, missing)
     duration = run_length(cases.job.arguments, cases.unscaled(int(some[0])))
     look = look_at(system.setting, summary, duration)
     if missing:
-        raise OnlyAlone
+        raise SingleCaseOnly
     return FinishedTogether(
         some, summary.status, [*messages, *([STILL_MOVING] if moving else [])],
-        {name: each.values if isinstance(each, Many) else each for name, each in scalars.items()},
+        {name: each.values if isinstance(each, CaseArray) else each
+         for name, each in scalars.items()},
         look,
     )  # fmt: skip

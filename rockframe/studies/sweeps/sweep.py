@@ -15,8 +15,7 @@ from rockframe.arguments import checked_bool, checked_integer, checked_list
 from rockframe.compiled import COMPILED
 from rockframe.components import InitialState
 from rockframe.errors import ModelWarning, SolverWarning, StudyError, shown, warn
-from rockframe.proposals import hinted
-from rockframe.shared_arguments import documented_by
+from rockframe.shared_arguments import with_documented_arguments
 from rockframe.simulation.run import respond
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import AccuracyLevel
@@ -35,6 +34,7 @@ from rockframe.studies.sweeps.planning import plan_study
 from rockframe.studies.sweeps.store import Store, begin_with
 from rockframe.studies.sweeps.study import Study
 from rockframe.studies.sweeps.words import cases_verdict, not_screened, warn_of_missing_results
+from rockframe.suggestions import hinted
 from rockframe.system.options import Overturning, OverturningLike, PointsLike, SweepAccuracyLike
 from rockframe.system.own_base import OwnBase
 from rockframe.system.own_scene import OwnScene
@@ -51,7 +51,7 @@ _LOOK: Final = 1.0
 
 
 @hinted()
-@documented_by(SweepArguments)
+@with_documented_arguments(SweepArguments)
 def sweep(
     scene: System | Callable[..., System],
     motions: MotionsLike | None = None,
