@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from rockframe.plot import Player
     from rockframe.simulation.system import System
-    from rockframe.units.shown import UnitsLike
+    from rockframe.units.display import UnitsLike
 
 _SHOWN = (
     "peak_rotation",
@@ -192,7 +192,7 @@ class RockframeAccessor:
 
     def _repr_html_(self) -> str:
         from rockframe.notebook import html_summary, sparkline
-        from rockframe.units.shown import in_degrees
+        from rockframe.units.display import degrees_text
 
         value, lines = self._dataset, self.summary.splitlines()
         kind = str(value.attrs.get("title", ""))
@@ -203,7 +203,7 @@ class RockframeAccessor:
             rows[name.replace("_", " ")] = words
         for name in ("peak_rotation", "uplift_angle", "overturning_angle"):
             if name in value and value[name].ndim == 0:
-                rows[name.replace("_", " ")] = in_degrees(value[name].item())
+                rows[name.replace("_", " ")] = degrees_text(value[name].item())
         history = value.get("rotation")
         trace = ""
         if history is not None and history.ndim == 1:  # of a case of a sweep, up to its end

@@ -44,7 +44,8 @@ def html_summary(title: str, rows: Mapping[str, str], drawing: str = "", extra: 
     """Return a title, a drawing and a table of names and values as HTML."""
     cells = "".join(
         '<tr style="background:transparent">'
-        f'<th style="{CELL_STYLE};font-weight:normal;opacity:0.7">{escape(name)}</th><td style="{CELL_STYLE}">{escape(value)}</td></tr>'
+        f'<th style="{CELL_STYLE};font-weight:normal;opacity:0.7">{escape(name)}</th>'
+        f'<td style="{CELL_STYLE}">{escape(value)}</td></tr>'
         for name, value in rows.items()
     )
     table = f'<table style="{TABLE_STYLE}"><tbody>{cells}</tbody></table>' if cells else ""

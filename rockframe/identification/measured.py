@@ -11,8 +11,8 @@ import xarray as xr
 from rockframe.errors import ComponentError, UnitsError, shown
 from rockframe.signals.arrays import Array
 from rockframe.system.bodies import OverturningAngles
-from rockframe.units import ANGLE, TIME, Measure, check_own_unit, to_si
-from rockframe.units.shown import in_degrees
+from rockframe.units import ANGLE, TIME, Measure, check_attached_unit, to_si
+from rockframe.units.display import degrees_text
 
 OWNER: Final = "fit_free_decay"
 _UNITS: Final = {"rotation": "deg", "time": "s"}
@@ -148,7 +148,7 @@ def _values(value: object, measure: Measure, name: str) -> Array:
         if len(pair) == 2:
             values, unit = pair
             if isinstance(unit, str):
-                check_own_unit(values, unit, owner=OWNER, name=name)
+                check_attached_unit(values, unit, owner=OWNER, name=name)
     if not isinstance(unit, str):
         example = _UNITS["time" if measure is TIME else "rotation"]
         msg = (
@@ -200,4 +200,4 @@ def _place(measured: History | MeasuredPeaks, index: int) -> str:
 
 
 def _angle(value: float) -> str:
-    return f"{value:.6g} rad ({in_degrees(value)})"
+    return f"{value:.6g} rad ({degrees_text(value)})"

@@ -17,8 +17,8 @@ from rockframe.units import (
     TIME,
     Measure,
     Quantity,
-    check_own_unit,
-    foreign_quantity,
+    check_attached_unit,
+    foreign_quantity_hint,
     to_si,
 )
 
@@ -55,12 +55,12 @@ def accelerations_to_si(value: object, *, owner: str, name: str) -> Array:
         factor = to_si(type(argument)(1.0, argument.units), ACCELERATION, owner=owner, name=name)
         return _scaled(argument.magnitude, factor, owner, name)
     if _has_unit(value):
-        check_own_unit(value[0], value[1], owner=owner, name=name)
+        check_attached_unit(value[0], value[1], owner=owner, name=name)
         return _scaled(value[0], _unit_factor(value[1], owner, name), owner, name)
     if isinstance(value, str):
         found = f"{shown(value)}, which is one value"
     else:
-        found = foreign_quantity(value) or f"a {type(value).__name__} without a unit"
+        found = foreign_quantity_hint(value) or f"a {type(value).__name__} without a unit"
     msg = (
         f"{owner}: {name} needs an array of accelerations with a unit such as "
         f"{ACCELERATION.unit}, got {found}; write for example {name}={_EXAMPLE}"
@@ -85,7 +85,7 @@ def times_to_si(value: object, *, owner: str, name: str) -> Array:
         factor = to_si(type(argument)(1.0, argument.units), TIME, owner=owner, name=name)
         values = argument.magnitude
     elif _has_unit(value):
-        check_own_unit(value[0], value[1], owner=owner, name=name)
+        check_attached_unit(value[0], value[1], owner=owner, name=name)
         factor = to_si(f"1 {value[1]}", TIME, owner=owner, name=name)
         values = value[0]
     else:

@@ -19,7 +19,7 @@ from rockframe.plot._runs import Window, runs_of, verdict_of_case
 from rockframe.plot._scene import Moving, figure_size
 from rockframe.suggestions import proposing
 from rockframe.units import LENGTH
-from rockframe.units.shown import UnitsLike
+from rockframe.units.display import UnitsLike
 from rockframe.version import __version__
 from rockframe.writing import FileKind, checked_path, write_file
 

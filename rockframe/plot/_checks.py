@@ -24,8 +24,8 @@ from rockframe.studies.sweeps.axes import in_unit, in_units_of_schema
 from rockframe.studies.sweeps.case import SweepCase, system_of_case
 from rockframe.suggestions import hinted
 from rockframe.units import POSITIVE, Unit, to_ratio
-from rockframe.units.shown import KINDS as SHOWN_KINDS
-from rockframe.units.shown import UnitsLike, reader_units
+from rockframe.units.display import KINDS as SHOWN_KINDS
+from rockframe.units.display import UnitsLike, display_units
 
 Drawing = TypeVar("Drawing", bound=Callable[..., Any])
 
@@ -195,7 +195,7 @@ def checked_run(value: object, function: str) -> xr.Dataset:
 def drawable(value: object, function: str, units: UnitsLike = None) -> xr.Dataset:
     """Return the dataset that a function draws, in the chosen units; raise on anything else."""
     dataset = _checked(value, function, KINDS[function])
-    return reader_units(units, owner=f"rf.plot.{function}").of_all(dataset)
+    return display_units(units, owner=f"rf.plot.{function}").convert_dataset(dataset)
 
 
 def _checked(value: object, function: str, kind: DatasetKind) -> xr.Dataset:

@@ -32,8 +32,8 @@ from rockframe.plot._runs import Run, RunsLike, Window, runs_of, runs_title
 from rockframe.results.schema import ENERGIES, SCHEMA
 from rockframe.simulation.system import System
 from rockframe.units import ANGLE
+from rockframe.units.display import UnitsLike
 from rockframe.units.kinds import ENERGY, MOMENT
-from rockframe.units.shown import UnitsLike
 
 _STATES: Final = ("kinetic_energy", "potential_energy", "elastic_energy")
 _FAR: Final = 0.2

@@ -31,7 +31,7 @@ from rockframe.plot._checks import draws, refuse
 from rockframe.plot._panels import Axes, AxesLike, Panels, sheet
 from rockframe.plot._runs import Window, window_of
 from rockframe.units import ACCELERATION, LENGTH, VELOCITY
-from rockframe.units.shown import UnitsLike
+from rockframe.units.display import UnitsLike
 
 MotionsLike: TypeAlias = GroundMotion | Sequence[GroundMotion] | Mapping[Any, GroundMotion]
 

@@ -31,7 +31,7 @@ from rockframe.results.variables.variable import words_of_flags
 from rockframe.signals.arrays import Array
 from rockframe.suggestions import proposing
 from rockframe.units import ACCELERATION, ANGLE, LENGTH
-from rockframe.units.shown import UnitsLike, raised
+from rockframe.units.display import UnitsLike, with_superscripts
 from rockframe.version import __version__
 from rockframe.writing import FileKind, generator_tag, write_file
 
@@ -212,7 +212,7 @@ def player(
         "colours": CONTACT_COLOURS,
         "pressed": CONTACT,
         "magnify": float(magnify),
-        "length": {"words": raised(length.words), "size": length.size},
+        "length": {"words": with_superscripts(length.words), "size": length.size},
         "levels": _LEVELS,
         "nowhere": _NOWHERE,
         "numbers": store.packed(),
@@ -336,7 +336,7 @@ def _surface(found: Layout) -> Array:
 
 
 def _label(words: str, unit: str) -> str:
-    return f"{words} [{raised(unit)}]"
+    return f"{words} [{with_superscripts(unit)}]"
 
 
 def _trace(values: np.ndarray, label: str, colour: str, store: _Numbers) -> dict[str, Any]:

@@ -37,7 +37,7 @@ from rockframe.plot._runs import Run, RunsLike, Window, runs_of, runs_title
 from rockframe.results.outcome import LEAST_SLIP
 from rockframe.results.variables.variable import words_of_flags
 from rockframe.units import ACCELERATION, ANGLE, LENGTH
-from rockframe.units.shown import ReaderUnits, UnitsLike
+from rockframe.units.display import DisplayUnits, UnitsLike
 
 CONTACT_COLOURS: Final = {
     "full": "#ececec",
@@ -369,7 +369,7 @@ def _ground(axes: Axes, runs: list[Run], unit: Shown) -> None:
     axes.set_ylabel(axis_label("ground\n", unit.words))
 
 
-def _history(axes: Axes, runs: list[Run], name: str, units: ReaderUnits) -> None:
+def _history(axes: Axes, runs: list[Run], name: str, units: DisplayUnits) -> None:
     """Draw any other history, of the runs that have it, with one line for each point."""
     runs = [run for run in runs if name in run.dataset]
     unit = units.of(str(runs[0].dataset[name].attrs.get("units", "1")))

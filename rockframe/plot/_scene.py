@@ -19,7 +19,7 @@ from rockframe.simulation.plan import points_of
 from rockframe.simulation.system import System
 from rockframe.system.geometry import Geometry, geometry_of
 from rockframe.units import ANGLE, LENGTH, TIME, QuantityLike, to_si
-from rockframe.units.shown import UnitsLike, behind
+from rockframe.units.display import UnitsLike, unit_suffix
 
 _FOLLOWED: Final = (
     "rotation",
@@ -254,7 +254,7 @@ class Moving:
         """Write the time and rotation of a sample."""
         angle = float(self.angle.of(self._columns["rotation"][place])) + 0.0  # no negative zero
         share = abs(float(self.run["relative_rotation"][place]))
-        turned = f"{angle:.3g}{behind(self.angle.words)}"
+        turned = f"{angle:.3g}{unit_suffix(self.angle.words)}"
         whose = " of body 1" if "body" in self.run.dims else ""
         text = f"{self.time[place]:.3f} s: {turned}, {100.0 * share:.3g} % of overturning{whose}"
         factor = self.drawer.magnify

@@ -33,7 +33,7 @@ from rockframe.plot._runs import Window, window_of
 from rockframe.suites import TargetSpectrum
 from rockframe.suites.target import check_target
 from rockframe.units import ACCELERATION, VELOCITY, QuantityLike, RatioLike
-from rockframe.units.shown import UnitsLike
+from rockframe.units.display import UnitsLike
 
 _RESOLUTION: Final = "0.05 Hz"  # for short pulses; long records have a finer resolution
 _PREFIX: Final = {"horizontal": "", "vertical": "vertical_"}

@@ -14,7 +14,13 @@ from rockframe.reports import page
 from rockframe.reports.page import KIND
 from rockframe.suggestions import proposing
 from rockframe.units import Unit
-from rockframe.units.shown import ReaderUnits, UnitsLike, behind, raised, reader_units
+from rockframe.units.display import (
+    DisplayUnits,
+    UnitsLike,
+    display_units,
+    unit_suffix,
+    with_superscripts,
+)
 from rockframe.writing import write_file
 
 _SAID: Final = {True: ("satisfied", "good"), False: ("not satisfied", "bad")}
@@ -51,7 +57,7 @@ class CheckedLine:
     words: str
     source: str
 
-    def written(self, units: ReaderUnits | None = None) -> str:
+    def written(self, units: DisplayUnits | None = None) -> str:
         """Return the number with its unit.
 
         Parameters
@@ -65,7 +71,7 @@ class CheckedLine:
         """
         chosen = None if units is None else units.chosen.get(str(self.unit))
         if chosen is not None:  # no other prefix of the unit
-            return f"{self.value / chosen.size:.6g}{behind(chosen.words)}"
+            return f"{self.value / chosen.size:.6g}{unit_suffix(chosen.words)}"
         return number_with_unit(self.value, "" if self.unit is Unit.ONE else str(self.unit))
 
 
@@ -185,7 +191,7 @@ class CodeCheck:
         rows = {one.title: f"{_SAID[one.passed][0]}; {one.words}" for one in self.verdicts}
         return html_summary(escape(self.title), rows)
 
-    def banners(self, units: ReaderUnits) -> Iterator[str]:
+    def banners(self, units: DisplayUnits) -> Iterator[str]:
         """Return each verdict with demand, capacity and clause, as pages show it.
 
         Parameters
@@ -200,10 +206,10 @@ class CodeCheck:
         """
         for one in self.verdicts:
             text, kind = _SAID[one.passed]
-            words = f"{units.of_sentence(one.words)} [{one.source}]. {self.code}."
+            words = f"{units.convert_text(one.words)} [{one.source}]. {self.code}."
             yield page.banner(f"{one.title}: {text}", words, kind)
 
-    def tables(self, units: ReaderUnits) -> Iterator[tuple[str, list[str]]]:
+    def tables(self, units: DisplayUnits) -> Iterator[tuple[str, list[str]]]:
         """Return titles and tables of the numbers, and of what is neglected, as pages show them.
 
         Parameters
@@ -221,15 +227,15 @@ class CodeCheck:
             cells = [
                 (
                     one.symbol,
-                    raised(one.written(units)),
-                    units.of_sentence(one.words),
+                    with_superscripts(one.written(units)),
+                    units.convert_text(one.words),
                     one.source,
                 )
                 for one in several
             ]
             yield title, [page.rows(cells, head=head)]
         if self.notes:
-            yield "Left out", [page.items(map(units.of_sentence, self.notes))]
+            yield "Left out", [page.items(map(units.convert_text, self.notes))]
 
     def report(
         self,
@@ -262,7 +268,7 @@ class CodeCheck:
         ComponentError, UnitsError
             Units that cannot be read, or are of another kind.
         """
-        chosen = reader_units(units, owner="CodeCheck.report")
+        chosen = display_units(units, owner="CodeCheck.report")
         body = [f"<h1>{escape(self.title)}</h1>", page.paragraph(self.code, kind="soft")]
         body += self._checked(chosen)
         body += self.banners(chosen)
@@ -270,11 +276,11 @@ class CodeCheck:
         content = page.page(self.title, body).encode()
         return write_file(path, KIND, content, overwrite=overwrite)
 
-    def _checked(self, units: ReaderUnits) -> list[str]:
-        words = units.of_sentence(self.scene)
+    def _checked(self, units: DisplayUnits) -> list[str]:
+        words = units.convert_text(self.scene)
         return [page.paragraph(f"Checked: {words}.")] if words else []
 
-    def section(self, units: ReaderUnits) -> str:
+    def section(self, units: DisplayUnits) -> str:
         """Return its section of a larger page.
 
         Parameters

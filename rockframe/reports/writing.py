@@ -28,7 +28,7 @@ from rockframe.reports.project import Project, project_of
 from rockframe.simulation.system import System
 from rockframe.suggestions import hinted
 from rockframe.suites import TargetSpectrum
-from rockframe.units.shown import ReaderUnits, reader_units
+from rockframe.units.display import DisplayUnits, display_units
 from rockframe.writing import checked_path, write_file
 
 _OWNER: Final = "report"
@@ -143,7 +143,7 @@ def report(
         msg = f"{_OWNER}: motion must be a GroundMotion, got {shown(motion)}"
         raise ComponentError(msg)
     about = project_of(project, dataset, _OWNER)
-    chosen = reader_units(units, owner=_OWNER)
+    chosen = display_units(units, owner=_OWNER)
     aim = aim_of(target, motions, _OWNER)
     checked = checks_of(checks, _OWNER)
     by_codes = [banner for one in checked for banner in one.banners(chosen)]
@@ -205,7 +205,7 @@ def _of_run(
     dataset: xr.Dataset,
     system: System | None,
     about: Project,
-    units: ReaderUnits,
+    units: DisplayUnits,
     aim: Aim | None = None,
     *,
     study: bool = False,
@@ -222,7 +222,7 @@ def _of_run(
 
 
 def _of_study(
-    dataset: xr.Dataset, motions: Mapping[str, GroundMotion], about: Project, units: ReaderUnits
+    dataset: xr.Dataset, motions: Mapping[str, GroundMotion], about: Project, units: DisplayUnits
 ) -> list[str]:
     """Return the sections on a study that follow its motions: its worst case, or its scene."""
     words, worst = studies.worst_case(dataset, motions, units)

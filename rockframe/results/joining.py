@@ -15,7 +15,7 @@ from rockframe.results.variables.bodies import BODY, RESTRAINER
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import AFTER_END, EVENT, TIME
 from rockframe.suggestions import hinted
-from rockframe.units import own_unit
+from rockframe.units import attached_unit
 
 OF_ONE_RUN: Final = frozenset(
     {
@@ -278,7 +278,7 @@ def _labelled(
         msg = f"{_OWNER}: labels must be a list of values, one for each run, got {shown(labels)}"
         raise SchemaError(msg)
     each = labels.to_numpy() if isinstance(labels, xr.DataArray) else list(labels)
-    if any(own_unit(one) for one in each):
+    if any(attached_unit(one) for one in each):
         example = "xr.DataArray([1, 2], attrs={'units': 'm s^-2'})"
         msg = f"{_OWNER}: labels with a unit come as {example}, got {shown(labels)}"
         raise SchemaError(msg)

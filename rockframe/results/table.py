@@ -17,7 +17,7 @@ from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import EVENT, TIME, TRUTH, words_of_flags
 from rockframe.suggestions import hinted
 from rockframe.units import Unit
-from rockframe.units.shown import UnitsLike, reader_units
+from rockframe.units.display import UnitsLike, display_units
 
 _OWNER: Final = "table"
 _RUN: Final = "run"
@@ -99,9 +99,9 @@ def table(
     3.21
     """
     kind = checked_choice(Contents, contents, owner=_OWNER, name="contents")
-    chosen = reader_units(units, owner=_OWNER)
+    chosen = display_units(units, owner=_OWNER)
     if isinstance(runs, xr.Dataset):
-        run = _each_alone(chosen.of_all(runs), kind)
+        run = _each_alone(chosen.convert_dataset(runs), kind)
         if kind is Contents.SCALARS and not _dimensions(run, _names(run, kind)):
             return _below_one_another([run], kind, _labels([run]))
         return _rows(run, kind)
@@ -112,7 +112,8 @@ def table(
     elif not is_iterable(several) or isinstance(several, str | xr.DataArray):
         several = [several]
     items = [
-        _each_alone(chosen.of_all(checked_dataset(run, owner=_OWNER)), kind) for run in several
+        _each_alone(chosen.convert_dataset(checked_dataset(run, owner=_OWNER)), kind)
+        for run in several
     ]
     if not items:
         msg = f"{_OWNER}: found no runs; expected one at least"

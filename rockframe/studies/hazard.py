@@ -20,7 +20,7 @@ from rockframe.studies.fragility.words import in_own_units, measures_of
 from rockframe.studies.intensities import PERIOD_OF, measure_words
 from rockframe.studies.sweeps.axes import free_values
 from rockframe.suggestions import hinted
-from rockframe.units import POSITIVE, Unit, check_own_unit, to_ratio
+from rockframe.units import POSITIVE, Unit, check_attached_unit, to_ratio
 
 _OWNER: Final = "annual_rate"
 _BY_RATE, _BY_PROBABILITY = ("intensity", "rate"), ("intensity", "probability", "years")
@@ -209,7 +209,7 @@ def _intensities(value: object, name: str, unit: str) -> Array:
     pair = cast("tuple[Any, ...]", value) if isinstance(value, tuple) else ()
     own_measure = unit == Unit.ONE or unit not in map(str, Unit)
     if len(pair) == 2 and pair[1] == unit and own_measure:
-        check_own_unit(pair[0], unit, owner=_OWNER, name="intensity")
+        check_attached_unit(pair[0], unit, owner=_OWNER, name="intensity")
         return np.asarray(free_values(list(pair[0]), "intensity", owner=_OWNER)[0], float)
     values, own = free_values(value, "intensity", owner=_OWNER, expected=unit)
     if own != unit:

@@ -14,7 +14,7 @@ from rockframe.system.assembly import Assembly
 from rockframe.system.rocking_frame import TiedFrameSetting
 from rockframe.system.setting import Setting
 from rockframe.system.stack import StackSetting
-from rockframe.units.shown import in_degrees
+from rockframe.units.display import degrees_text
 
 
 class LowerBody(NamedTuple):
@@ -218,13 +218,13 @@ def system_html(scene: Assembly, name: str) -> str:
         text = ", ".join(f"{one} {value}" for one, value in numbers.items())
         rows[words if alike == 1 else f"{words} {alike}"] = text
     left, right = setting.overturning_angles
-    to_left, to_right = (in_degrees(side) for side in (left, right))
+    to_left, to_right = (degrees_text(side) for side in (left, right))
     both = f"{to_left} to the left, {to_right} to the right"
     rows["overturning angle"] = to_left if left == right else both
     if np.isfinite(setting.uplift_angle):
-        rows["uplift angle"] = in_degrees(setting.uplift_angle)
+        rows["uplift angle"] = degrees_text(setting.uplift_angle)
     if options.inclination:
-        rows["inclination"] = in_degrees(options.inclination)
+        rows["inclination"] = degrees_text(options.inclination)
     if scene.parts.motion is not None:
         rows["motion"] = scene.parts.motion.name
     return html_summary(name, rows, shapes_svg(shapes_of(geometry_of(scene))))

@@ -23,7 +23,7 @@ from rockframe.errors import ComponentError
 from rockframe.signals.arrays import Array
 from rockframe.suggestions import hinted
 from rockframe.units import DENSITY, LENGTH, MASS, POSITIVE, THICKNESS, Measure, QuantityLike, to_si
-from rockframe.units.shown import in_degrees
+from rockframe.units.display import degrees_text
 
 _THIN: Final = 1e-12  # thickness over size below which an outline has no area
 
@@ -164,7 +164,7 @@ def _refuse_single(corners: Sequence[OutlineCorner], owner: str) -> None:
     if (second - first) % len(corners) in (1, len(corners) - 1):
         slope = math.copysign(math.atan2(rise, abs(run)), run)
         msg += (
-            f": the edge between these is inclined by {in_degrees(slope)}; rotate the outline "
+            f": the edge between these is inclined by {degrees_text(slope)}; rotate the outline "
             f"until it is level, and for ground with this slope give System(..., "
             f"inclination='{math.degrees(slope):.4g} deg')"
         )

@@ -29,7 +29,7 @@ from rockframe.units import (
     POSITIVE,
     Quantity,
     QuantityLike,
-    check_own_unit,
+    check_attached_unit,
     to_si,
 )
 
@@ -90,7 +90,7 @@ def read_points(value: object, *, owner: str, name: str) -> Array:
         raise ComponentError(msg)
     each: list[Any] = list(value)
     if len(each) == 2 and isinstance(each[1], str) and not isinstance(each[0], str):
-        check_own_unit(each[0], each[1], owner=owner, name=name)
+        check_attached_unit(each[0], each[1], owner=owner, name=name)
         return _array(each[0], to_si(f"1 {each[1]}", LENGTH, owner=owner, name=name), wanted)
     if isinstance(value, np.ndarray) or _is_bare(each):
         msg = f"{wanted}; got {shown(value)}, bare numbers"

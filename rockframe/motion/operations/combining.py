@@ -25,7 +25,7 @@ from rockframe.signals import Motion, Signal
 from rockframe.signals.motion import COEFFICIENTS, VERTICAL
 from rockframe.suggestions import hinted
 from rockframe.units import ANGLE, QuantityLike, to_si
-from rockframe.units.shown import in_degrees
+from rockframe.units.display import degrees_text
 
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array
@@ -193,7 +193,9 @@ def rotated(
         pieces += across * _polynomials(partner)
     turned = Signal(si.time_step, along * mine.samples + across * partner.samples, pieces)
     result = Motion(turned, None if si.vertical is None else padded(si.vertical, count))
-    steps = [f"rotated by {in_degrees(turn, 9)} towards {other.name} (sha256 {other.sha256[:12]})"]
+    steps = [
+        f"rotated by {degrees_text(turn, 9)} towards {other.name} (sha256 {other.sha256[:12]})"
+    ]
     for label, one in (("this", motion), ("the other", other)):
         if len(one) < count:
             steps.append(f"{label} component padded with {count - len(one)} zeros")
@@ -206,7 +208,7 @@ def rotated(
     metadata["component"] = " and ".join(
         str(one.metadata.get("component", one.name)) for one in (motion, other)
     )
-    metadata["component"] += f" rotated by {in_degrees(turn, 6)}"
+    metadata["component"] += f" rotated by {degrees_text(turn, 6)}"
     return following(motion, result, *steps, operation=operation, metadata=metadata)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from rockframe.suggestions import proposing
 from rockframe.units import Unit
-from rockframe.units.shown import behind
+from rockframe.units.display import unit_suffix
 
 TIME: Final = ("time",)
 EVENT: Final = ("event",)
@@ -85,7 +85,7 @@ class Variable:
 
 def unit_behind(attributes: Mapping[Any, Any]) -> str:
     """Return the unit of values as it follows a number; empty where it is 1."""
-    return behind(str(attributes.get("units", Unit.ONE)))
+    return unit_suffix(str(attributes.get("units", Unit.ONE)))
 
 
 def words_of_flags(attributes: Mapping[Any, Any]) -> dict[Any, str]:

@@ -22,9 +22,9 @@ from rockframe.simulation.provenance import Changes as Changes
 from rockframe.units import (
     Measure,
     Unit,
-    check_own_unit,
-    own_unit,
-    products,
+    attached_unit,
+    check_attached_unit,
+    decimal_products,
     to_ratio,
     to_si,
     to_si_values,
@@ -66,12 +66,12 @@ def numbers_of(value: object, measure: Measure, name: str, *, owner: str = OWNER
     value = _with_own_unit(value)
     if measure.unit == Unit.ONE:
         if (pair := _with_unit(value)) is not None:
-            check_own_unit(*pair, owner=owner, name=name)
+            check_attached_unit(*pair, owner=owner, name=name)
             factor = to_ratio(f"1 {pair[1]}", owner=owner, name="unit")
             if np.ma.isMaskedArray(pair[0]) and np.ma.getmaskarray(pair[0]).any():
                 msg = f"{owner}: {name} has masked values; fill them in first"
                 raise ComponentError(msg)
-            value = products([float(one) for one in items_of(pair[0])], factor)
+            value = decimal_products([float(one) for one in items_of(pair[0])], factor)
         found = items_of(_as_python(value))
         if not all(type(one) is float and math.isfinite(one) for one in found):
             example = measure.example
@@ -96,7 +96,7 @@ def _with_own_unit(value: object) -> object:
     """
     if isinstance(value, Iterator):
         return list(cast("Iterator[object]", value))
-    own = None if isinstance(value, pint.Quantity | tuple) else own_unit(value)
+    own = None if isinstance(value, pint.Quantity | tuple) else attached_unit(value)
     return value if own in (None, "", str(Unit.ONE)) else (value, own)
 
 
@@ -212,7 +212,9 @@ def in_unit(labels: xr.DataArray, unit: str | None, *, owner: str) -> xr.DataArr
         return labels
     measure = Measure("a value", Unit(unit), f"1 {unit}")
     factor = number_of(f"1 {own}", measure, owner=owner, name=str(labels.name))
-    found = np.reshape(products(np.ravel(labels).astype(float).tolist(), factor), labels.shape)
+    found = np.reshape(
+        decimal_products(np.ravel(labels).astype(float).tolist(), factor), labels.shape
+    )
     attributes = {**labels.attrs, "units": unit}
     return xr.DataArray(found, labels.coords, labels.dims, labels.name, attributes)
 

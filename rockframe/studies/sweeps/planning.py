@@ -39,7 +39,7 @@ from rockframe.studies.sweeps.scenes import (
 from rockframe.studies.sweeps.study import Histories, Study
 from rockframe.system.alone import AloneSetting
 from rockframe.system.assembly import Assembly
-from rockframe.units import PERIOD, POSITIVE, QuantityLike, own_unit, to_si
+from rockframe.units import PERIOD, POSITIVE, QuantityLike, attached_unit, to_si
 
 
 def kept_histories(
@@ -238,7 +238,7 @@ def _table(cases: object) -> dict[str, object]:
             msg = f"column {name!r} is given twice in cases"
             raise StudyError(msg)
         plain = values
-        if not (own_unit(values) or isinstance(values, list | tuple)):
+        if not (attached_unit(values) or isinstance(values, list | tuple)):
             plain = np.asanyarray(values)  # masks stay
         table[name] = (plain, unit.removesuffix("]")) if bracket else values
     return table
