@@ -15,7 +15,7 @@ from rockframe.measures.response import (
     oscillator_axes,
     shortest_of,
 )
-from rockframe.motion.pair import HorizontalPair, axis_and_intensities
+from rockframe.motion.pair import HorizontalPair, principal_axis_and_intensities
 from rockframe.motion.processing.samples import warn_of_coarse_samples
 from rockframe.motion.quantities import ArrayLike
 from rockframe.results.schema import build_dataset
@@ -216,7 +216,7 @@ def _vertical(signal: Signal, seconds: Array, ratios: Array) -> Array:
 
 
 def _axes(pair: HorizontalPair) -> dict[str, float]:
-    angle, major, minor = axis_and_intensities(pair)
+    angle, major, minor = principal_axis_and_intensities(pair)
     return {
         "major_axis_angle": angle, "major_arias_intensity": major, "minor_arias_intensity": minor
     }  # fmt: skip

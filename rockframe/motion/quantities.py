@@ -30,7 +30,7 @@ ArrayLike: TypeAlias = Quantity | xr.DataArray | tuple[Sequence[float] | npt.NDA
 _EXAMPLE: Final = "(values, 'm/s^2')"
 
 
-def with_quantity(value: float | Array, measure: Measure) -> Quantity:
+def as_quantity(value: float | Array, measure: Measure) -> Quantity:
     """Make a quantity from a number or array in SI units."""
     registry: Any = pint.get_application_registry()
     own = value.copy() if isinstance(value, np.ndarray) else value
@@ -145,7 +145,7 @@ def _has_unit(value: object) -> TypeGuard[tuple[object, str]]:
     return isinstance(value, tuple) and len(value) == 2 and isinstance(value[1], str)  # pyright: ignore[reportUnknownArgumentType]
 
 
-def declared_times(value: object) -> Array | None:
+def attached_times(value: object) -> Array | None:
     """Return the times that an array has itself: a time axis, or the index of a Series."""
     held = cast("tuple[object, ...]", value)[0] if isinstance(value, tuple) and value else value
     if isinstance(held, xr.DataArray):

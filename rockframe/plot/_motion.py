@@ -10,7 +10,7 @@ import xarray as xr
 from rockframe.errors import ComponentError
 from rockframe.measures import velocity_and_displacement
 from rockframe.motion import GroundMotion, VelocityPulse
-from rockframe.motion.description import shown_name
+from rockframe.motion.description import display_name
 from rockframe.plot._axes import (
     BLUE,
     GREEN,
@@ -51,7 +51,7 @@ def motions_title(values: list[Drawn]) -> str:
     if len(values) != 1:
         return ""
     (one,) = values
-    return shown_name(one.motion.name, one.motion.history)
+    return display_name(one.motion.name, one.motion.history)
 
 
 def drawn_motions(value: object, function: str) -> list[Drawn]:
@@ -61,7 +61,8 @@ def drawn_motions(value: object, function: str) -> list[Drawn]:
         labelled = {str(key): one for key, one in value.items()}
     elif isinstance(value, list | tuple):
         names = [
-            shown_name(str(getattr(one, "name", "")), getattr(one, "history", ())) for one in value
+            display_name(str(getattr(one, "name", "")), getattr(one, "history", ()))
+            for one in value
         ]
         alike = len(set(names)) < len(names)
         labelled = {

@@ -13,7 +13,7 @@ from rockframe.arguments import checked_mapping
 from rockframe.components import Component, InitialState, component_from_dict
 from rockframe.errors import RecordWarning, SchemaError, nearest, shown, warn
 from rockframe.motion import GroundMotion
-from rockframe.motion.description import shown_name
+from rockframe.motion.description import display_name
 from rockframe.solve.accuracy import Accuracy
 from rockframe.units import TIME, Unit
 
@@ -54,7 +54,7 @@ def motion_attributes(motion: GroundMotion | None) -> dict[str, str | float | in
 def motion_words(attributes: Mapping[str, Any]) -> str:
     """Return the name of a result's motion, and the factor by which it was scaled."""
     history = str(attributes.get("motion_history", "")).split(_NEXT_STEP)
-    return shown_name(str(attributes["motion"]), history)
+    return display_name(str(attributes["motion"]), history)
 
 
 def check_own_system(dataset: xr.Dataset) -> None:

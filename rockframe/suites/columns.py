@@ -10,7 +10,7 @@ import numpy as np
 from rockframe.arguments import checked_function
 from rockframe.errors import ComponentError, nearest, shown
 from rockframe.motion import GroundMotion
-from rockframe.motion.description import peak_words
+from rockframe.motion.description import peak_text
 from rockframe.notebook import CELL_STYLE, TABLE_STYLE, html_summary, sparkline
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.motions import RECORDS
@@ -175,7 +175,7 @@ def suite_html(suite: "LabelledMotions") -> str:
         rows["files that could not be read"] = str(len(suite.unread))
     lines = "".join(
         f'<tr style="background:transparent"><td style="{CELL_STYLE}">{escape(label)}</td>'
-        f'<td style="{CELL_STYLE}">{escape(peak_words(motion))}</td><td style="{CELL_STYLE}">'
+        f'<td style="{CELL_STYLE}">{escape(peak_text(motion))}</td><td style="{CELL_STYLE}">'
         f"{sparkline(motion.si.horizontal.samples.tolist(), width=160.0, height=24.0)}</td></tr>"
         for label, motion in list(suite.items())[:_SHOWN]
     )

@@ -125,7 +125,7 @@ def test_each_analysis_has_the_names_and_defaults_that_it_had(function):
         assert own[name].kind is inspect.Parameter.KEYWORD_ONLY
         assert own[name].default == usual
         assert f"\n{name} : " in inspect.getdoc(function)
-        assert declared[name].words[-1] in ".]"
+        assert declared[name].description[-1] in ".]"
     refused = (
         (StudyError, "'acuracies' names no parameter; was 'accuracy' meant")
         if further  # any other name may be that of an axis

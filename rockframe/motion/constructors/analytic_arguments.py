@@ -75,12 +75,12 @@ class ArgumentReader:
             self._read_quantity(name, value, *_MEASURES[name])
         elif name == "cycles":
             number = to_ratio(value, owner=owner, name=name, condition=self._cycles, example="2")
-            self._keep(name, number, number, f"{name}: {number:.6g}", f"{name}: {number!r}")
+            self._store(name, number, number, f"{name}: {number:.6g}", f"{name}: {number!r}")
         elif name == "order":
             order = checked_integer(value, owner=owner, name=name, lowest=1, highest=_HIGHEST_ORDER)
-            self._keep(name, order, order, *[f"{name}: {order}"] * 2)
+            self._store(name, order, order, *[f"{name}: {order}"] * 2)
         elif isinstance(value, bool):
-            self._keep(name, value, value, *[name if value else f"not {name}"] * 2)
+            self._store(name, value, value, *[name if value else f"not {name}"] * 2)
         else:
             msg = f"{owner}: {name} must be True or False, got {shown(value)}"
             raise ComponentError(msg)
@@ -97,16 +97,16 @@ class ArgumentReader:
             return
         unit = _SPELLED.get(measure.unit, str(measure.unit))
         kept = f"{number!r} {measure.unit}"
-        self._keep(name, number, kept, f"{words}{number:.6g} {unit}", f"{words}{number!r} {unit}")
+        self._store(name, number, kept, f"{words}{number:.6g} {unit}", f"{words}{number!r} {unit}")
 
-    def _keep(self, name: str, number: Any, kept: Any, short: str, exact: str) -> None:
+    def _store(self, name: str, number: Any, kept: Any, short: str, exact: str) -> None:
         self.numbers[name] = number
         self.recipe[name] = kept
         self.short.append(short)
         self.exact.append(exact)
 
 
-def pulse(
+def pulse_constructor(
     title: str, formula: Callable[..., Motion], cycles: Condition = POSITIVE
 ) -> Callable[[Constructor], Constructor]:
     """Make a constructor from a formula, whose arguments are converted to SI units.

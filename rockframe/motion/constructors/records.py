@@ -12,8 +12,8 @@ import numpy as np
 
 from rockframe.arguments import checked_text
 from rockframe.errors import ComponentError, RecordWarning, UnitsError, nearest, shown, warn
-from rockframe.motion.quantities import ArrayLike, accelerations_to_si, declared_times
-from rockframe.motion.value import UNNAMED, Made
+from rockframe.motion.quantities import ArrayLike, accelerations_to_si, attached_times
+from rockframe.motion.value import UNNAMED, MotionType
 from rockframe.records import PathLike, RecordLike, read_record, request_of
 from rockframe.signals import Motion
 from rockframe.suggestions import hinted
@@ -31,7 +31,7 @@ _UNEVEN: Final = 0.01
 
 @hinted()
 def read(
-    kind: type[Made],
+    kind: type[MotionType],
     path: RecordLike,
     format: str | None = None,  # noqa: A002
     component: str | tuple[str, str] | None = None,
@@ -39,7 +39,7 @@ def read(
     *,
     time_step: QuantityLike | None = None,
     response: PathLike | None = None,
-) -> Made:
+) -> MotionType:
     """Read a record file.
 
     Parameters
@@ -118,13 +118,13 @@ def read(
 
 @hinted()
 def from_arrays(
-    kind: type[Made],
+    kind: type[MotionType],
     acceleration: ArrayLike,
     time_step: QuantityLike | None = None,
     vertical: ArrayLike | None = None,
     *,
     name: str | None = None,
-) -> Made:
+) -> MotionType:
     """Build a motion from arrays with a unit.
 
     Parameters
@@ -179,7 +179,7 @@ def from_arrays(
             )
             raise ComponentError(msg)
     for label, array in (("acceleration", acceleration), ("vertical", vertical)):
-        times = declared_times(array)
+        times = attached_times(array)
         if times is not None:
             _check_times(times, step, owner=owner, label=label)
     called = UNNAMED if name is None else checked_text(name, owner=owner, name="name") or UNNAMED
@@ -210,10 +210,10 @@ _PROVENANCE: Final = "provenance.toml"
 
 @hinted()
 def example(
-    kind: type[Made],
+    kind: type[MotionType],
     name: str = "loma-prieta",
     component: str | tuple[str, str] | None = None,
-) -> Made:
+) -> MotionType:
     """Read a recorded motion that comes with rockframe.
 
     Parameters

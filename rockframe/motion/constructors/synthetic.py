@@ -14,7 +14,7 @@ from rockframe.motion.stochastic import (
     Site,
     accelerogram,
 )
-from rockframe.motion.value import Made
+from rockframe.motion.value import MotionType
 from rockframe.signals import Motion
 from rockframe.suggestions import hinted
 from rockframe.units import (
@@ -64,7 +64,7 @@ _EXPONENTS: Final = Condition("from 0 to 1", lambda value: 0.0 <= value <= 1.0)
 
 @hinted()
 def stochastic(
-    kind: type[Made],
+    kind: type[MotionType],
     magnitude: RatioLike,
     distance: QuantityLike,
     seed: int,
@@ -79,7 +79,7 @@ def stochastic(
     source: Corners | str | None = None,
     vertical: RatioLike | None = None,
     time_step: QuantityLike = "0.005 s",
-) -> Made:
+) -> MotionType:
     """Generate a random motion of an earthquake from a published model.
 
     Windowed noise is given the mean spectrum of an earthquake of this magnitude at this

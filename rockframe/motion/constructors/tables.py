@@ -10,14 +10,14 @@ import numpy as np
 
 from rockframe.arguments import checked_choice
 from rockframe.errors import ComponentError, RecordWarning, nearest, shown, warn
-from rockframe.motion.processing.samples import instants_of
+from rockframe.motion.processing.samples import sample_times
 from rockframe.motion.quantities import (
     ArrayLike,
     accelerations_to_si,
     relative_seconds,
     times_to_si,
 )
-from rockframe.motion.value import UNNAMED, Made
+from rockframe.motion.value import UNNAMED, MotionType
 from rockframe.records import (
     DOWNWARDS,
     MAXIMUM_SAMPLES,
@@ -42,30 +42,30 @@ _SAME_STEP: Final = 1e-6
 _COARSER: Final = 1.5
 
 
-class Between(StrEnum):
+class UnevenInterpolation(StrEnum):
     """Interpolation of an acceleration between uneven times."""
 
     LINEAR = "linear"
     CUBIC = "cubic"
 
 
-_HOW: Final = {
-    Between.LINEAR: "straight lines between them",
-    Between.CUBIC: "a cubic spline through them",
+_METHOD_NOTES: Final = {
+    UnevenInterpolation.LINEAR: "straight lines between them",
+    UnevenInterpolation.CUBIC: "a cubic spline through them",
 }
 
 
 @hinted()
 def from_times(
-    kind: type[Made],
+    kind: type[MotionType],
     times: ArrayLike,
     acceleration: ArrayLike,
     time_step: QuantityLike,
     vertical: ArrayLike | None = None,
     *,
-    interpolation: Between | str = Between.LINEAR,
+    interpolation: UnevenInterpolation | str = UnevenInterpolation.LINEAR,
     name: str | None = None,
-) -> Made:
+) -> MotionType:
     """Build a motion from accelerations at uneven times, interpolated at an even time step.
 
     Parameters
@@ -112,7 +112,7 @@ def from_times(
     [0.0, 0.1, 0.2, 0.3, 0.2, 0.1, 0.08, 0.06, 0.04, 0.02, 0.0]
     """
     owner = f"{kind.__name__}.from_times"
-    between = checked_choice(Between, interpolation, owner=owner, name="interpolation")
+    between = checked_choice(UnevenInterpolation, interpolation, owner=owner, name="interpolation")
     step = to_si(time_step, TIME_STEP, owner=owner, name="time_step", condition=POSITIVE)
     instants = times_to_si(times, owner=owner, name="times")
     length = float(instants[-1] - instants[0])
@@ -122,7 +122,7 @@ def from_times(
             f"{length:.6g} s"
         )
         raise ComponentError(msg)
-    grid = instants_of(length, step)
+    grid = sample_times(length, step)
     read: list[Array] = []
     for label, array in (("acceleration", acceleration), ("vertical", vertical)):
         if array is None:
@@ -134,7 +134,7 @@ def from_times(
                 "one finite sample for each time"
             )
             raise ComponentError(msg)
-        read.append(_read_off(instants - instants[0], values, grid, between))
+        read.append(_interpolated(instants - instants[0], values, grid, between))
     gaps = np.diff(instants)
     if step > _COARSER * float(np.median(gaps)):
         words = (
@@ -144,15 +144,15 @@ def from_times(
         warn(words, RecordWarning)
     words = (
         f"built from {instants.size} samples {gaps.min():.6g} s to {gaps.max():.6g} s apart, "
-        f"{_HOW[between]}, read off every {step!r} s"
+        f"{_METHOD_NOTES[between]}, read off every {step!r} s"
     )
     return kind(
         Motion.of_samples(step, *read), name=UNNAMED if name is None else name, history=(words,)
     )
 
 
-def _read_off(times: Array, values: Array, grid: Array, between: Between) -> Array:
-    if between is Between.LINEAR:
+def _interpolated(times: Array, values: Array, grid: Array, between: UnevenInterpolation) -> Array:
+    if between is UnevenInterpolation.LINEAR:
         return np.interp(grid, times, values)
     from scipy.interpolate import CubicSpline  # slow to import, and needed only here
 
@@ -162,7 +162,7 @@ def _read_off(times: Array, values: Array, grid: Array, between: Between) -> Arr
 
 @hinted()
 def from_frame(
-    kind: type[Made],
+    kind: type[MotionType],
     frame: Any,
     unit: str,
     component: str | None = None,
@@ -171,7 +171,7 @@ def from_frame(
     time: str | None = None,
     time_step: QuantityLike | None = None,
     name: str | None = None,
-) -> Made:
+) -> MotionType:
     """Build a motion from columns of a pandas DataFrame.
 
     Parameters
@@ -316,13 +316,13 @@ _NEEDED: Final = ("id", "data", "stats")
 
 @hinted()
 def from_trace(
-    kind: type[Made],
+    kind: type[MotionType],
     trace: Any,
     unit: str | None = None,
     component: str | tuple[str, str] | None = None,
     *,
     name: str | None = None,
-) -> Made:
+) -> MotionType:
     """Build a motion from an ObsPy Trace or Stream.
 
     Parameters

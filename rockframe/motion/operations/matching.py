@@ -10,10 +10,16 @@ from typing import TYPE_CHECKING, Any, Final, Protocol, runtime_checkable
 import numpy as np
 
 from rockframe.errors import ComponentError, RecordWarning, shown, warn
-from rockframe.motion.matching.iteration import Goal, Matched, changes, match, unusual
-from rockframe.motion.operations.following import following, lost_pieces
-from rockframe.motion.processing.samples import finer, warn_of_coarse_samples
-from rockframe.motion.value import Made
+from rockframe.motion.matching.iteration import (
+    MatchingGoal,
+    MatchResult,
+    match,
+    matching_changes,
+    unusual_changes,
+)
+from rockframe.motion.operations.derived import derived_motion, dropped_pieces_note
+from rockframe.motion.processing.samples import time_step_for_period, warn_of_coarse_samples
+from rockframe.motion.value import MotionType
 from rockframe.signals.spectra import check_cost
 from rockframe.suggestions import hinted
 from rockframe.units import PERIOD, Condition, QuantityLike, RatioLike, to_ratio, to_si_values
@@ -64,12 +70,12 @@ class Target(Protocol):
 
 @hinted(damping_ratio="the target has one")
 def matched(
-    motion: Made,
+    motion: MotionType,
     target: Target,
     *,
     periods: Sequence[QuantityLike] = USUAL_PERIODS,
     tolerance: RatioLike = USUAL_TOLERANCE,
-) -> Made:
+) -> MotionType:
     """Match the response spectrum to a target by wavelets that are added in the time domain.
 
     Parameters
@@ -138,7 +144,7 @@ def matched(
     if found.signal is not scaled:
         samples = found.scale_factor * scaled.samples
         scaled = replace(scaled, samples=samples, polynomials=None)
-    changed = changes(scaled, found.signal, goal)
+    changed = matching_changes(scaled, found.signal, goal)
     added = {**_attributes_of(motion, target, found), "target_reached": int(reached), **changed}
     if not reached:
         worst = float(goal.checked[np.abs(found.ratios - 1.0).argmax()])
@@ -149,7 +155,7 @@ def matched(
             "Another record, a narrower range of periods or a wider tolerance may help"
         )
         warn(msg, RecordWarning)
-    grown = unusual(changed)
+    grown = unusual_changes(changed)
     if grown:
         msg = (
             f"{owner}: the wavelets have changed {motion.name!r} beyond its spectrum: "
@@ -166,10 +172,10 @@ def matched(
             recipe=motion.recipe,
         )
     across = replace(si, horizontal=found.signal)
-    return following(motion, across, words, *lost_pieces(si), metadata=added)
+    return derived_motion(motion, across, words, *dropped_pieces_note(si), metadata=added)
 
 
-def _goal(target: object, periods: object, tolerance: RatioLike, owner: str) -> Goal:
+def _goal(target: object, periods: object, tolerance: RatioLike, owner: str) -> MatchingGoal:
     if not isinstance(target, Target):
         msg = f"{owner}: target needs a TargetSpectrum, got {shown(target)}; write {_EXAMPLE}"
         raise ComponentError(msg)
@@ -185,7 +191,9 @@ def _goal(target: object, periods: object, tolerance: RatioLike, owner: str) -> 
     )
     within = to_ratio(tolerance, owner=owner, name="tolerance", condition=_TOLERANCE)
     shortest, longest = seconds
-    goal = Goal(lambda at: target.at_seconds(at, owner=owner), shortest, longest, damping, within)
+    goal = MatchingGoal(
+        lambda at: target.at_seconds(at, owner=owner), shortest, longest, damping, within
+    )
     wanted = goal.spectrum(goal.checked)
     if not (np.isfinite(wanted).all() and (wanted > 0.0).all()):
         worst = float(goal.checked[int(np.argmin(np.where(wanted > 0.0, wanted, -math.inf)))])
@@ -194,7 +202,7 @@ def _goal(target: object, periods: object, tolerance: RatioLike, owner: str) -> 
     return goal
 
 
-def _check_motion(motion: Any, signal: Signal, goal: Goal, owner: str) -> None:
+def _check_motion(motion: Any, signal: Signal, goal: MatchingGoal, owner: str) -> None:
     if not np.any(signal.pieces):
         msg = f"{owner}: {motion.name!r} has no acceleration; it cannot be matched"
         raise ComponentError(msg)
@@ -203,7 +211,7 @@ def _check_motion(motion: Any, signal: Signal, goal: Goal, owner: str) -> None:
         msg = (
             f"{owner}: the shortest period, {shortest:.4g} s, must be {_LEAST_STEPS} time steps or "
             f"more, {_LEAST_STEPS * step:.4g} s; resample the motion, for example "
-            f"resampled('{finer(step, shortest):.4g} s')"
+            f"resampled('{time_step_for_period(step, shortest):.4g} s')"
         )
         raise ComponentError(msg)
     if signal.duration < _LEAST_PERIODS * longest:
@@ -224,7 +232,7 @@ def _check_motion(motion: Any, signal: Signal, goal: Goal, owner: str) -> None:
     warn_of_coarse_samples([replace(signal, polynomials=None)], shortest, owner=owner)
 
 
-def _attributes_of(motion: Any, target: Target, found: Matched) -> dict[str, str | float | int]:
+def _attributes_of(motion: Any, target: Target, found: MatchResult) -> dict[str, str | float | int]:
     before = motion.metadata.get("scale_factor")
     factor = found.scale_factor * (before if isinstance(before, int | float) else 1.0)
     return {
@@ -237,7 +245,7 @@ def _attributes_of(motion: Any, target: Target, found: Matched) -> dict[str, str
     }
 
 
-def _words(target: Target, goal: Goal, found: Matched) -> str:
+def _words(target: Target, goal: MatchingGoal, found: MatchResult) -> str:
     where = (
         f"{target.name}, damping ratio {goal.damping_ratio:.6g}, from {goal.shortest:.6g} s to "
         f"{goal.longest:.6g} s"

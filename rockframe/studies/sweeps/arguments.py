@@ -20,8 +20,8 @@ class CourseArguments(TypedDict, total=False):
         Argument(
             AccuracyLevel.STANDARD,
             HOW_ACCURATE.kind.replace('"reference"', '"reference", "screen"'),
-            f'{HOW_ACCURATE.words} ``"screen"`` runs all cases at ``"fast"``, and those near a '
-            'flip of their verdict again at ``"standard"``, :eq:`eq-screened`; all at '
+            f'{HOW_ACCURATE.description} ``"screen"`` runs all cases at ``"fast"``, and those near '
+            'a flip of their verdict again at ``"standard"``, :eq:`eq-screened`; all at '
             '``"standard"`` where that costs less, as on rigid ground and under pulses.',
         ),
     ]

@@ -8,7 +8,7 @@ from rockframe.case_arrays import CaseArray, CaseIndices
 from rockframe.components import InitialState
 from rockframe.errors import AssemblyError, collected_warnings
 from rockframe.motion import GroundMotion
-from rockframe.motion.operations.scaling import multiplied
+from rockframe.motion.operations.scaling import scaled_components
 from rockframe.signals import Motion
 from rockframe.simulation.plan import Plan, fit_plan
 from rockframe.studies.sweeps.axes import OF_SCENES, Axis, Changes
@@ -109,7 +109,7 @@ class CasesOfJob:
         if motion is None or [axis.name for axis, _ in self._scale] != [FACTOR]:
             found = self.motion(case)
             return None if found is None else found.si
-        return multiplied(motion.si, self._scale[0][1][case])
+        return scaled_components(motion.si, self._scale[0][1][case])
 
     def motion(self, case: int) -> GroundMotion | None:
         """Return the motion of a case; None where the ground stands still."""

@@ -9,7 +9,7 @@ import numpy as np
 from rockframe.arguments import is_iterable, with_string_keys
 from rockframe.errors import ComponentError, StudyError, shown
 from rockframe.motion import GroundMotion, HorizontalPair
-from rockframe.motion.description import shown_name
+from rockframe.motion.description import display_name
 from rockframe.studies.sweeps.axes import OWNER
 from rockframe.units import ACCELERATION, TIME, VELOCITY, Measure, Unit
 
@@ -139,7 +139,7 @@ def _distinct_names(motions: list[Any]) -> dict[str, Any]:
     named: dict[str, Any] = {}
     for own, motion in zip(names, motions, strict=True):
         alone = names.count(own) == 1
-        plain = name = own if alone else shown_name(own, getattr(motion, "history", ()))
+        plain = name = own if alone else display_name(own, getattr(motion, "history", ()))
         count = 1
         while name in named:
             count += 1
