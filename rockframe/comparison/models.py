@@ -15,7 +15,7 @@ from rockframe.components import (
     TwoSpringSupport,
     WinklerSoil,
 )
-from rockframe.components.block_numbers import squat
+from rockframe.components.block_numbers import squat_body_warnings
 from rockframe.errors import ModelWarning
 from rockframe.simulation.system import System, check_system
 from rockframe.suggestions import hinted
@@ -92,7 +92,7 @@ def model_ladder(system: System) -> dict[str, System]:
     present = system.parts.signature
     rows = _MODELS[:1] if system.parts.own else _MODELS
     slides = system.setting.slides and not system.parts.own
-    if slides and "stack" not in present and squat(system.parts.the_block, ""):
+    if slides and "stack" not in present and squat_body_warnings(system.parts.the_block, ""):
         rows = ()  # held against sliding, it would not rock
     # a wall prevents the sliding of the model without it
     holds = slides or "wall" in present

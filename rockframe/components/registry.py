@@ -25,7 +25,7 @@ def register_class(kind: "type[Component]") -> None:
     _KINDS[kind.__name__] = kind
 
 
-def kinds() -> Mapping[str, "type[Component]"]:
+def registered_classes() -> Mapping[str, "type[Component]"]:
     """Return all registered classes by name."""
     return _KINDS
 
@@ -47,14 +47,14 @@ def component_from_dict(description: Mapping[str, float | str]) -> "Component":
         return _KINDS[kind].from_dict(description)
     except TypeError as problem:
         known = [name for name in signature(_KINDS[kind]).parameters if name != _TYPE]
-        strange = [
+        unknown = [
             f"{shown(name)} in {kind}{nearest(name, known)}"
             for name in description
             if name not in (_TYPE, *known)
         ]
-        if not strange:
+        if not unknown:
             raise
-        msg = f"found {', '.join(strange)}; expected some of {', '.join(known)}"
+        msg = f"found {', '.join(unknown)}; expected some of {', '.join(known)}"
         raise SchemaError(msg) from problem
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from rockframe.case_arrays import CaseArray, atan2, tan
 from rockframe.components import Component
 from rockframe.components.bases import CushionCapSI
-from rockframe.components.block_numbers import BlockSI, BodyGeometry, greatest_restitutions
+from rockframe.components.block_numbers import BlockSI, BodyGeometry, maximum_restitutions
 from rockframe.dynamics.alone import rigid_body
 from rockframe.dynamics.body import Body
 from rockframe.dynamics.chain.link_rows import LINK_MOMENT
@@ -74,7 +74,7 @@ class SupportedBody(BodyGeometry):
     @cached_property
     def maximum_restitution(self) -> Restitutions:
         """eps_max of impacts on either end, Eq. (4) or :eq:`eq-eccentric-impact`."""
-        return Restitutions(*greatest_restitutions(self))
+        return Restitutions(*maximum_restitutions(self))
 
     @property
     def base_ratio(self) -> float:

@@ -16,7 +16,7 @@ from rockframe.components import (
     Tendon,
 )
 from rockframe.components.bases import Impact
-from rockframe.components.block_numbers import BlockSI, squat
+from rockframe.components.block_numbers import BlockSI, squat_body_warnings
 from rockframe.system.links import link_labels
 from rockframe.system.options import Coupling, Options, Restraint, Sliding
 from rockframe.system.own_base import OwnBase
@@ -342,7 +342,7 @@ def missizes(parts: Parts, options: Options) -> list[str]:
     faults: list[str] = []
     # a squat body may land flat if it slides, or stands in a stack
     if block is not None and not parts.own and not _slides(parts, options):
-        faults += squat(block.si, type(block).__name__)
+        faults += squat_body_warnings(block.si, type(block).__name__)
     if parts.links:
         faults += _beyond_bodies(parts)
     if block is not None and cap is not None:

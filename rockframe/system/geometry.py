@@ -7,7 +7,7 @@ import numpy as np
 
 from rockframe.components import Component, FrameEquivalent, RearWall, RockingFrame, Stack, Tendon
 from rockframe.components.block_numbers import BlockSI
-from rockframe.components.rocking_frame import column_places, frame_outlines
+from rockframe.components.rocking_frame import column_positions, frame_outlines
 from rockframe.notebook import Polygon, html_summary, readable_arguments, shapes_svg
 from rockframe.signals.arrays import Array
 from rockframe.system.assembly import Assembly
@@ -128,7 +128,7 @@ def geometry_of(scene: Assembly) -> Geometry:
         inclination=scene.options.inclination,
         small_rotation=scene.options.small,
         ties=_ties_of(setting),
-        columns=() if frame is None else tuple(column_places(frame)),
+        columns=() if frame is None else tuple(column_positions(frame)),
         beam=None if frame is None else np.array(frame_outlines(frame)[-1]),
         wall=_of_wall(parts.wall, block),
     )
@@ -151,7 +151,7 @@ def _ties_of(setting: Setting) -> tuple[LinkedPoints, ...]:
     """Return the points that restrainers link."""
     if isinstance(setting, TiedFrameSetting):  # along the axis of each column
         top = setting.frame.column.height + setting.frame.beam_height
-        axes = column_places(setting.frame)
+        axes = column_positions(setting.frame)
         return tuple(LinkedPoints(np.array([(x, top), (x, 0.0)]), (0, -1)) for x in axes)
     if not isinstance(setting, StackSetting):
         return ()

@@ -7,7 +7,7 @@ from typing import Any, Final
 
 from rockframe.command.files.tables import Place, TomlFile, arguments_of, checked, made, table_title
 from rockframe.components import Component, RockingFrame, Stack
-from rockframe.components.registry import kinds
+from rockframe.components.registry import registered_classes
 from rockframe.errors import nearest, shown
 from rockframe.suggestions import hints_of
 from rockframe.system.parts import RESTRAINER, slot_of_kind, slots, usual_kind
@@ -124,7 +124,9 @@ def _inner(file: TomlFile, where: Place, wanted: InnerParts, table: dict[str, An
 def classes_in(slot: str) -> dict[str, type[Component]]:
     """Return the classes of parts that a table may describe, the usual one first."""
     usual = usual_kind(slot)
-    fitting = {name: kind for name, kind in kinds().items() if slot_of_kind(kind) == slot}
+    fitting = {
+        name: kind for name, kind in registered_classes().items() if slot_of_kind(kind) == slot
+    }
     return {usual.__name__: fitting[usual.__name__], **fitting}
 
 

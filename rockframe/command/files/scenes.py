@@ -12,7 +12,7 @@ from rockframe.command.files.parts import CONSTRUCTOR, MODULES, described_parts,
 from rockframe.command.files.tables import Place, TomlFile, arguments_of, checked, made, table_title
 from rockframe.command.typed_calls import check_of
 from rockframe.components import Component, InitialState
-from rockframe.components.registry import kinds
+from rockframe.components.registry import registered_classes
 from rockframe.errors import AssemblyError, RockframeError, nearest, shown
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import CONSTRUCTORS, OPERATIONS
@@ -252,7 +252,9 @@ def _read_arguments(**values: Any) -> None:
 
 def _unknown_table(file: TomlFile, name: str) -> None:
     letters = name.replace("_", "").casefold()
-    kind = next((kind for one, kind in kinds().items() if one.casefold() == letters), None)
+    kind = next(
+        (kind for one, kind in registered_classes().items() if one.casefold() == letters), None
+    )
     slot = None if kind is None else slot_of_kind(kind)
     if kind is None or slot is None:
         file.unknown((), name, keys())
