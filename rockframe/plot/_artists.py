@@ -17,7 +17,7 @@ from rockframe.plot._axes import (
     METRES,
     ORANGE,
     VERMILLION,
-    Shown,
+    DisplayUnit,
     as_label,
     ink,
     measured_in,
@@ -253,7 +253,7 @@ class SceneArtist:
         axes: Axes,
         drawer: Drawer,
         names: Mapping[str, str] | None = None,
-        length: Shown = METRES,
+        length: DisplayUnit = METRES,
     ) -> None:
         self.axes, self.drawer, self._names = axes, drawer, names or {}
         self._artists: dict[str, Any] = {}

@@ -16,7 +16,7 @@ from rockframe.plot._axes import (
     GREEN,
     GREY,
     VERMILLION,
-    Shown,
+    DisplayUnit,
     axis_label,
     colour_of,
     grid,
@@ -177,7 +177,7 @@ def _part(history: xr.Dataset, cut: tuple[float, float]) -> xr.Dataset:
     return history.sel(time=slice(*cut)) if np.isfinite(cut).any() else history
 
 
-def _mark_peak(axes: Axes, dataset: xr.Dataset, name: str, unit: Shown, colour: Any) -> None:
+def _mark_peak(axes: Axes, dataset: xr.Dataset, name: str, unit: DisplayUnit, colour: Any) -> None:
     values = unit.of(dataset[name])
     place = int(np.argmax(np.abs(values)))
     time, peak = float(dataset["time"][place]), float(values[place])

@@ -22,7 +22,7 @@ from rockframe.plot._axes import (
     ORANGE,
     PURPLE,
     VERMILLION,
-    Shown,
+    DisplayUnit,
     as_label,
     axis_label,
     colour_of,
@@ -114,7 +114,7 @@ MARKS: Final = {
 horizontal restraint are not drawn: they coincide with a separation or a contact."""
 
 
-def draw_events(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
+def draw_events(axes: Axes, runs: list[Run], unit: DisplayUnit | None) -> None:
     """Mark events on the history of the rotation, and name them in the legend."""
     named: set[str] = set()
     for run in runs:
@@ -272,7 +272,7 @@ def response(
     return on.panels
 
 
-def of_rotation(run: Run, unit: Shown | None, name: str = "rotation") -> Any:
+def of_rotation(run: Run, unit: DisplayUnit | None, name: str = "rotation") -> Any:
     """Return a rotation in a unit; without a unit over the overturning angle of its side."""
     values = run.dataset[name].to_numpy()
     if unit is not None:
@@ -351,7 +351,7 @@ def _contacts_of(run: xr.Dataset, *, alone: bool) -> dict[str, xr.DataArray]:
     return {CONTACTS[name]: run[name] for name in names}
 
 
-def _ground(axes: Axes, runs: list[Run], unit: Shown) -> None:
+def _ground(axes: Axes, runs: list[Run], unit: DisplayUnit) -> None:
     across, upwards = "ground_acceleration", "vertical_ground_acceleration"
     moved = [
         run.dataset[[name for name in (across, upwards) if name in run.dataset]] for run in runs
@@ -393,7 +393,7 @@ def _history(axes: Axes, runs: list[Run], name: str, units: DisplayUnits) -> Non
     axes.set_ylabel(axis_label(f"{words}\n", unit.words))
 
 
-def _rotation(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
+def _rotation(axes: Axes, runs: list[Run], unit: DisplayUnit | None) -> None:
     several = len(runs) > 1
     for run in runs:
         dataset = run.dataset
@@ -423,7 +423,7 @@ def _rotation(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
         _degrees_on_the_right(axes, *angles.pop())
 
 
-def _uplift(axes: Axes, dataset: xr.Dataset, unit: Shown | None) -> None:
+def _uplift(axes: Axes, dataset: xr.Dataset, unit: DisplayUnit | None) -> None:
     """Draw the rotations at which contact is first lost, if the run comes near them."""
     uplift, peak = float(dataset["uplift_angle"]), float(np.abs(dataset["rotation"]).max())
     if not (np.isfinite(uplift) and 0.0 < uplift < _NEAR * peak):
@@ -447,7 +447,7 @@ def _degrees_on_the_right(axes: Axes, left: float, right: float) -> None:
     axes.secondary_yaxis("right", functions=(degrees, share)).set_ylabel("[°]")
 
 
-def _vertical(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
+def _vertical(axes: Axes, runs: list[Run], unit: DisplayUnit | None) -> None:
     name = "relative_vertical_displacement"
     over_settlement = unit is None and all(name in run.dataset for run in runs)
     metres = unit or METRES

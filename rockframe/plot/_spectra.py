@@ -15,7 +15,7 @@ from rockframe.plot._axes import (
     GREY,
     STANDS,
     VERMILLION,
-    Shown,
+    DisplayUnit,
     axis_label,
     colour_of,
     grid,
@@ -123,7 +123,7 @@ def spectra(
     return on.panels
 
 
-def _response(axes: Axes, dataset: xr.Dataset, unit: Shown, one: Drawn) -> None:
+def _response(axes: Axes, dataset: xr.Dataset, unit: DisplayUnit, one: Drawn) -> None:
     drawn = dataset.isel(period=np.flatnonzero(dataset["period"].to_numpy() > 0.0))
     ratios = dataset["damping_ratio"].to_numpy().tolist()
     for place, ratio in enumerate(ratios):
@@ -138,7 +138,7 @@ def _response(axes: Axes, dataset: xr.Dataset, unit: Shown, one: Drawn) -> None:
         )
 
 
-def _label(panels: Panels, found: list[Any], unit: Shown, amplitude: Shown) -> None:
+def _label(panels: Panels, found: list[Any], unit: DisplayUnit, amplitude: DisplayUnit) -> None:
     history, response, fourier = panels
     several = len(found) > 1
     times = [each[1]["time"].to_numpy() for each in found]

@@ -160,7 +160,8 @@ def _raise_single_point_base(corners: Sequence[OutlineCorner], owner: str) -> No
     rise, run = next_low.y - low.y, next_low.x - low.x
     msg = (
         f"{owner}: the outline stands on one point, {_corner_text(low)}; the next lowest, "
-        f"{_corner_text(next_low)}, is {rise:.4g} m higher. A base needs two lowest points at one height"
+        f"{_corner_text(next_low)}, is {rise:.4g} m higher. A base needs two lowest points at one "
+        "height"
     )
     if (second - first) % len(corners) in (1, len(corners) - 1):
         slope = math.copysign(math.atan2(rise, abs(run)), run)
