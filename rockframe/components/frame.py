@@ -16,7 +16,7 @@ from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.notebook import Polygon
 from rockframe.units import LENGTH, POSITIVE, Quantity, QuantityLike, RatioLike, quantity
 
-_LEAST_SHAPE_FACTOR = 1.0 - 1e-9  # a shape factor derived from an inertia is rounded
+_MIN_SHAPE_FACTOR = 1.0 - 1e-9  # a shape factor derived from an inertia is rounded
 
 
 _CORNERS: Final = ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))
@@ -391,7 +391,7 @@ class FrameEquivalent(Block):
         in_the_middle = si.centre_height == 0.5 * si.height and si.eccentricity == 0.0
         if not in_the_middle:
             return super()._inertia_cautions()
-        if si.shape_factor >= _LEAST_SHAPE_FACTOR:
+        if si.shape_factor >= _MIN_SHAPE_FACTOR:
             return []
         return [
             f"a shape factor of {si.shape_factor:.4g} is not physical: in the plane of "

@@ -80,7 +80,7 @@ OTHER_QUANTITIES: Final[dict[str, str]] = {
 
 STATED_UNIT: Final = r"\bunits?\s*(?:\bof\b|\bare\b|\bis\b|[:=])\s*"
 SLASHED: Final = r"(?:\s{0,3}[/*^]\s{0,3}[^\s()\[\],;]{1,12}){0,4}"
-"""Patterns of what stands before a unit in a header, and of its parts behind slashes and signs
+"""Patterns of the words before a unit in a header, and of its parts after slashes and signs
 of multiplication, with blanks between them."""
 
 

@@ -221,7 +221,7 @@ _PERIOD_RANGE_BEYOND: Final = 5.0
 _PERIODS: Final = 24
 """Last period beyond the range, over the longest in it [1], and number of periods up to it."""
 
-_LEAST_STEPS: Final = 4.0
+_MIN_STEPS: Final = 4.0
 _PULSES: Final = (0.25, 15.0)
 """Fewest time steps in the shortest period of a pulse; range of these periods [s]."""
 
@@ -265,7 +265,7 @@ def unusual_changes(found: dict[str, float]) -> list[str]:
 
 def _indicator(velocity: Array, time_step: float) -> float:
     shortest, longest = _PULSES
-    periods = velocity_pulses.period_range(max(shortest, _LEAST_STEPS * time_step), longest)
+    periods = velocity_pulses.period_range(max(shortest, _MIN_STEPS * time_step), longest)
     peak = velocity_pulses.strongest_wavelet(velocity[None, :], time_step, periods)
     wavelets = velocity_pulses.extract_wavelets(velocity, time_step, peak)
     wavelet = velocity_pulses.sampled_wavelet(peak.period, time_step)

@@ -36,13 +36,13 @@ _TOLERANCE: Final = Condition("from 0.01 to 0.5", lambda value: 0.01 <= value <=
 _DAMPING: Final = Condition("from 0.01 to 0.5", lambda value: 0.01 <= value <= 0.5)
 """Spectra of less damping need too many wavelets; with more damping there is no resonance."""
 
-_LEAST_STEPS: Final = 4
+_MIN_STEPS: Final = 4
 """Fewest time steps in the shortest period: fewer samples do not represent a wavelet."""
 
-_LEAST_PERIODS: Final = 3
+_MIN_PERIODS: Final = 3
 """Least duration of the motion over the longest period, so that a wavelet fits in [1]."""
 
-_MOST_NUMBERS: Final = 5_000_000
+_MAX_NUMBERS: Final = 5_000_000
 """Largest product of samples and periods; beyond it matching takes minutes and gigabytes."""
 
 _ROUNDING: Final = 1e-9
@@ -207,25 +207,25 @@ def _check_motion(motion: Any, signal: Signal, goal: MatchingGoal, owner: str) -
         msg = f"{owner}: {motion.name!r} has no acceleration; it cannot be matched"
         raise ComponentError(msg)
     step, shortest, longest = signal.time_step, goal.shortest, goal.longest
-    if shortest < _LEAST_STEPS * step * (1.0 - _ROUNDING):
+    if shortest < _MIN_STEPS * step * (1.0 - _ROUNDING):
         msg = (
-            f"{owner}: the shortest period, {shortest:.4g} s, must be {_LEAST_STEPS} time steps or "
-            f"more, {_LEAST_STEPS * step:.4g} s; resample the motion, for example "
+            f"{owner}: the shortest period, {shortest:.4g} s, must be {_MIN_STEPS} time steps or "
+            f"more, {_MIN_STEPS * step:.4g} s; resample the motion, for example "
             f"resampled('{time_step_for_period(step, shortest):.4g} s')"
         )
         raise ComponentError(msg)
-    if signal.duration < _LEAST_PERIODS * longest:
+    if signal.duration < _MIN_PERIODS * longest:
         msg = (
-            f"{owner}: the motion must be {_LEAST_PERIODS} times as long as the longest period, "
+            f"{owner}: the motion must be {_MIN_PERIODS} times as long as the longest period, "
             f"{longest:.4g} s; it is {signal.duration:.4g} s long"
         )
         raise ComponentError(msg)
     check_cost(signal, goal.checked, owner=owner)
     numbers = goal.matched.size * signal.samples.size
-    if numbers > _MOST_NUMBERS:
+    if numbers > _MAX_NUMBERS:
         msg = (
             f"{owner}: {signal.samples.size} samples at {goal.matched.size} periods are too many; "
-            f"expected at most {_MOST_NUMBERS // goal.matched.size} samples: cut the strong part "
+            f"expected at most {_MAX_NUMBERS // goal.matched.size} samples: cut the strong part "
             "out with window(), or resample it"
         )
         raise ComponentError(msg)
