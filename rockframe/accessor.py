@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import xarray as xr
 
 from rockframe.errors import RockframeError
-from rockframe.suggestions import proposing
+from rockframe.suggestions import suggests_names
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -28,7 +28,7 @@ _SHOWN = (
 
 
 @xr.register_dataset_accessor("rockframe")
-@proposing
+@suggests_names
 class RockframeAccessor:
     """Figures, tables and a summary of a result of rockframe, also of one read from a file.
 

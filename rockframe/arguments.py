@@ -8,7 +8,7 @@ from typing import Any, SupportsIndex, TypeGuard, TypeVar, cast
 
 import xarray as xr
 
-from rockframe.errors import ComponentError, SchemaError, nearest, shown
+from rockframe.errors import ComponentError, SchemaError, did_you_mean, short_repr
 
 Option = TypeVar("Option", bound=StrEnum)
 
@@ -30,8 +30,8 @@ def checked_choice(kind: type[Option], value: object, *, owner: str, name: str) 
         return kind(str(value))
     except ValueError:
         known = " or ".join(repr(str(one)) for one in kind)
-        near = nearest(value, map(str, kind))
-        msg = f"{owner}: {name} must be {known}, got {shown(value)}{near}"
+        near = did_you_mean(value, map(str, kind))
+        msg = f"{owner}: {name} must be {known}, got {short_repr(value)}{near}"
         raise ComponentError(msg) from None
 
 
@@ -39,7 +39,7 @@ def checked_text(value: object, *, owner: str, name: str) -> str:
     """Read an argument that is a text."""
     if isinstance(value, str):
         return value
-    msg = f"{owner}: {name} must be a text, got {shown(value)}"
+    msg = f"{owner}: {name} must be a text, got {short_repr(value)}"
     raise ComponentError(msg)
 
 
@@ -48,8 +48,11 @@ def checked_name(value: object, known: Iterable[str], *, owner: str, name: str) 
     listed = list(known)
     if isinstance(value, str) and value in listed:
         return value
-    near = nearest(value, listed)
-    msg = f"{owner}: {name} must be one of {', '.join(map(repr, listed))}, got {shown(value)}{near}"
+    near = did_you_mean(value, listed)
+    msg = (
+        f"{owner}: {name} must be one of {', '.join(map(repr, listed))}, got "
+        f"{short_repr(value)}{near}"
+    )
     raise ComponentError(msg)
 
 
@@ -64,7 +67,7 @@ def checked_list(value: object, *, owner: str, name: str, of: str) -> list[Any]:
         return [value]
     if is_iterable(value) and not isinstance(value, Mapping | bytes):
         return list(value)
-    msg = f"{owner}: {name} must be a list of {of}, got {shown(value)}"
+    msg = f"{owner}: {name} must be a list of {of}, got {short_repr(value)}"
     raise ComponentError(msg)
 
 
@@ -73,7 +76,7 @@ def checked_mapping(value: object, *, owner: str, name: str, example: str) -> Ma
     plain = isinstance(value, Mapping) and not isinstance(value, xr.Dataset)
     if plain and all(isinstance(key, str) for key in cast("Mapping[Any, Any]", value)):
         return cast("Mapping[str, Any]", value)
-    msg = f"{owner}: {name} must be a mapping, such as {example}, got {shown(value)}"
+    msg = f"{owner}: {name} must be a mapping, such as {example}, got {short_repr(value)}"
     raise ComponentError(msg)
 
 
@@ -81,7 +84,7 @@ def checked_function(value: object, *arguments: str, owner: str, name: str) -> C
     """Read an argument that is a function of some positional arguments."""
     expected = f"a function of {' and '.join(arguments)}"
     if not callable(value):
-        msg = f"{owner}: {name} must be {expected}, got {shown(value)}"
+        msg = f"{owner}: {name} must be {expected}, got {short_repr(value)}"
         raise ComponentError(msg)
     try:
         parameters = signature(value)
@@ -90,7 +93,7 @@ def checked_function(value: object, *arguments: str, owner: str, name: str) -> C
     try:
         parameters.bind(*arguments)
     except TypeError as problem:
-        msg = f"{owner}: {name} must be {expected}, got {shown(value)}: {problem}"
+        msg = f"{owner}: {name} must be {expected}, got {short_repr(value)}: {problem}"
         raise ComponentError(msg) from None
     return value
 
@@ -99,7 +102,7 @@ def checked_bool(value: object, *, owner: str, name: str) -> bool:
     """Read an argument that is True or False."""
     if isinstance(value, bool):
         return value
-    msg = f"{owner}: {name} must be True or False, got {shown(value)}"
+    msg = f"{owner}: {name} must be True or False, got {short_repr(value)}"
     raise ComponentError(msg)
 
 
@@ -114,7 +117,7 @@ def checked_integer(
     if number is not None and lowest <= number and (highest is None or number <= highest):
         return number
     limits = f", {lowest} or more" if highest is None else f" from {lowest} to {highest}"
-    msg = f"{owner}: {name} must be a whole number{limits}, got {shown(value)}"
+    msg = f"{owner}: {name} must be a whole number{limits}, got {short_repr(value)}"
     raise ComponentError(msg)
 
 
@@ -123,6 +126,7 @@ def checked_dataset(value: object, *, owner: str) -> xr.Dataset:
     if isinstance(value, xr.Dataset):
         return value
     msg = (
-        f"{owner}: found {shown(value)}; expected a dataset: open a file with xr.open_dataset first"
+        f"{owner}: found {short_repr(value)}; expected a dataset: open a file with xr.open_dataset "
+        "first"
     )
     raise SchemaError(msg)

@@ -188,7 +188,7 @@ class RecordWarning(RockframeWarning):
     """A ground-motion file contradicts itself, or a motion is sampled too coarsely."""
 
 
-def shown(value: object) -> str:
+def short_repr(value: object) -> str:
     """Return a value for a message: its repr if that is short, else a shorter text."""
     text = repr(value)
     if len(text) <= MAX_SHOWN_LENGTH and "\n" not in text:
@@ -223,7 +223,7 @@ _SYMBOLS: Final = {
 out: in papers they are half the width and half the height."""
 
 
-def nearest(value: object, known: Iterable[str]) -> str:
+def did_you_mean(value: object, known: Iterable[str]) -> str:
     """Return question whether a similar word was meant, for the end of a message; or nothing."""
     words = {one.casefold(): one for one in known}
     wanted = str(value).casefold()
@@ -235,7 +235,7 @@ def nearest(value: object, known: Iterable[str]) -> str:
 def unexpected_argument(call: str, name: str, known: Iterable[str]) -> ArgumentError:
     """Return Python's error of an unexpected argument, and propose a similar one."""
     names = list(known)
-    words = f"{call} got an unexpected keyword argument {name!r}{nearest(name, names) or '.'}"
+    words = f"{call} got an unexpected keyword argument {name!r}{did_you_mean(name, names) or '.'}"
     return ArgumentError(f"{words} It takes {', '.join(names) or 'none'}")
 
 
@@ -243,7 +243,7 @@ def unknown_attribute(owner: str, name: str, known: Iterable[str]) -> AccessErro
     """Return Python's error of a missing attribute, and propose a similar one."""
     words = f"{owner} has no attribute {name!r}"
     if not name.startswith("_"):  # programs look up those with an underscore
-        words += nearest(name, (one for one in known if not one.startswith("_")))
+        words += did_you_mean(name, (one for one in known if not one.startswith("_")))
     return AccessError(words, name=name)
 
 

@@ -8,7 +8,7 @@ from functools import wraps
 from textwrap import fill
 from typing import Any, Final, TypeVar, cast, get_type_hints
 
-from rockframe.errors import ArgumentError, nearest
+from rockframe.errors import ArgumentError, did_you_mean
 from rockframe.suggestions import raise_call_error
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -94,7 +94,7 @@ def with_shared_arguments(
                 raise
 
         cast("Any", call).__signature__ = shown
-        cast("Any", call).hints = {}  # so that `hinted` does not wrap it again
+        cast("Any", call).hints = {}  # so that `with_hints` does not wrap it again
         call.__doc__ = completed_docstring(function.__doc__ or "", shown.parameters, declared)
         return cast("Function", call)
 
@@ -130,7 +130,7 @@ def _unknown_argument(function: str, name: str, known: Iterable[str]) -> str:
 
 def suggestion(name: str, known: Iterable[str]) -> str:
     """Ask whether a similar name was meant; a full stop if there is none."""
-    return nearest(name, known) or "."
+    return did_you_mean(name, known) or "."
 
 
 def completed_docstring(text: str, names: Iterable[str], declared: Mapping[str, Argument]) -> str:

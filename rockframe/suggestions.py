@@ -22,7 +22,7 @@ _MODULES_BY_FIRST_PARAMETER: Final = {
 """First parameters of methods, which a call never names, and the modules of such functions."""
 
 
-def hinted(**hints: str) -> Callable[[Function], Function]:
+def with_hints(**hints: str) -> Callable[[Function], Function]:
     """Make a function explain unknown arguments: by the hint for a name, or by a similar name."""
 
     def decorate(function: Function) -> Function:
@@ -58,7 +58,7 @@ def hinted(**hints: str) -> Callable[[Function], Function]:
 
 
 def hints_of(function: Callable[..., Any]) -> Mapping[str, str] | None:
-    """Return the hints of a function that is :func:`hinted`; None for any other."""
+    """Return the hints of a function decorated by :func:`with_hints`; None for any other."""
     return getattr(function, "hints", None)
 
 
@@ -73,7 +73,7 @@ def raise_call_error(problem: TypeError, listed: Iterable[str]) -> None:
     raise ArgumentError(msg) from None
 
 
-def proposing(kind: Class) -> Class:
+def suggests_names(kind: Class) -> Class:
     """Make the methods of a class propose similar arguments, and the class similar attributes.
 
     A base class of it must be decorated, too: inherited methods are left as they are.
@@ -84,9 +84,9 @@ def proposing(kind: Class) -> Class:
         if isinstance(one, classmethod | staticmethod):
             function: Any = cast("Any", one).__func__
             if _is_unhinted_function(function):
-                setattr(kind, name, type(one)(hinted()(function)))
+                setattr(kind, name, type(one)(with_hints()(function)))
         elif _is_unhinted_function(one):
-            setattr(kind, name, hinted()(one))
+            setattr(kind, name, with_hints()(one))
     if not any("__getattr__" in vars(one) for one in kind.__mro__):
         kind.__getattr__ = _raise_no_attribute
     return kind

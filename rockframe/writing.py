@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Self, TypeAlias
 
-from rockframe.errors import ComponentError, FileError, shown
+from rockframe.errors import ComponentError, FileError, short_repr
 
 _MARK_SEARCH_LENGTH: Final = 65536
 """Length at both ends of a file within which the mark of rockframe is found [bytes]."""
@@ -52,7 +52,7 @@ def checked_path(
 ) -> Path:
     """Raise an error if a file must not be written; called before the computation."""
     if not isinstance(overwrite, bool):  # pyright: ignore[reportUnnecessaryIsInstance]
-        msg = f"overwrite must be True or False, got {shown(overwrite)}"
+        msg = f"overwrite must be True or False, got {short_repr(overwrite)}"
         raise ComponentError(msg)
     try:
         requested = Path(path).expanduser()
@@ -61,8 +61,10 @@ def checked_path(
         if fault is None and os.path.lexists(target):
             fault = _overwrite_fault(target, kind, overwrite, read)
     except (TypeError, ValueError, OSError, RuntimeError) as problem:
-        words = f"found {shown(path)}; expected the path of a file that can be written ({problem})"
-        raise FileError(shown(path), words) from problem
+        words = (
+            f"found {short_repr(path)}; expected the path of a file that can be written ({problem})"
+        )
+        raise FileError(short_repr(path), words) from problem
     if fault is not None:
         raise FileError(os.fspath(path), fault)
     return target

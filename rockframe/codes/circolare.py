@@ -15,7 +15,7 @@ from rockframe.measures import response_spectrum
 from rockframe.motion import GroundMotion
 from rockframe.reports.checks import CheckedLine, CheckedVerdict, CodeCheck
 from rockframe.simulation.system import System
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.suites import TargetSpectrum
 from rockframe.system.rigid_ground import RigidGroundSetting
 from rockframe.system.sliding_stack import TiedSetting
@@ -43,7 +43,7 @@ _SHORTEST: Final = 0.2
 """Shortest period at which the spectra of motions are evaluated [s]."""
 
 
-@hinted()
+@with_hints()
 def circolare_2019(
     system: System,
     demand: TargetSpectrum | GroundMotion | Mapping[str, GroundMotion],

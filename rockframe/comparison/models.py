@@ -18,7 +18,7 @@ from rockframe.components import (
 from rockframe.components.block_numbers import squat_body_warnings
 from rockframe.errors import ModelWarning
 from rockframe.simulation.system import System, check_system
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.system.options import Coupling, Rotation, Sliding
 from rockframe.system.own_base import OwnBase
 
@@ -49,7 +49,7 @@ _LINKS: Final[dict[type, str]] = {
 """Words for links; links of a user's own are named by their classes."""
 
 
-@hinted()
+@with_hints()
 def model_ladder(system: System) -> dict[str, System]:
     """Return the models of a scene, from the simplest to the scene itself.
 

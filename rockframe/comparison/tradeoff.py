@@ -13,7 +13,7 @@ import xarray as xr
 from rockframe.arguments import checked_integer, checked_list
 from rockframe.comparison.models import model_ladder
 from rockframe.comparison.recommend import recommend
-from rockframe.errors import ComponentError, ModelWarning, SolverWarning, nearest, shown
+from rockframe.errors import ComponentError, ModelWarning, SolverWarning, did_you_mean, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import LEAST_SLIP, PEAK_SLIPS, Generic, verdict_of
 from rockframe.results.schema import build_dataset
@@ -182,7 +182,7 @@ def tradeoff(
         accuracies, owner=_OWNER, name="accuracies", of="accuracies"
     )  # fmt: skip
     if not entries:
-        msg = f"{_OWNER}: accuracies must be one or more, got {shown(accuracies)}"
+        msg = f"{_OWNER}: accuracies must be one or more, got {short_repr(accuracies)}"
         raise ComponentError(msg)
     settings = {_label(accuracy): accuracy_of(accuracy, owner=_OWNER) for accuracy in entries}
     record = system.motion if motion is None else motion
@@ -283,8 +283,8 @@ def _chosen(known: dict[str, System], models: object) -> dict[str, System]:
     unknown = [name for name in requested if not isinstance(name, str) or name not in known]
     if unknown or not requested:
         names = ", ".join(repr(name) for name in known)
-        near = nearest(unknown[0], known) if unknown else ""
-        msg = f"{_OWNER}: models must be some of {names}, got {shown(requested)}{near}"
+        near = did_you_mean(unknown[0], known) if unknown else ""
+        msg = f"{_OWNER}: models must be some of {names}, got {short_repr(requested)}{near}"
         raise ComponentError(msg)
     return {name: known[name] for name in requested}
 

@@ -16,13 +16,13 @@ from rockframe.errors import (
     ArgumentError,
     ComponentError,
     ModelWarning,
-    nearest,
-    shown,
+    did_you_mean,
+    short_repr,
     unexpected_argument,
     warn,
 )
 from rockframe.notebook import Polygon, html_summary, readable_arguments, shapes_svg
-from rockframe.suggestions import Immutable, proposing
+from rockframe.suggestions import Immutable, suggests_names
 from rockframe.units import to_ratio
 
 _SECTION: Final = re.compile(r"^\w[\w ]*\n-{3,}$", re.MULTILINE)
@@ -51,7 +51,7 @@ def _parameter_row(parameter: Declared[Any, Any]) -> str:
     return f"{parameter.name} : {parameter.written_as}{optional}\n{words}"
 
 
-@proposing
+@suggests_names
 class Component(Immutable):
     """An immutable value object with the parameters that its class declares.
 
@@ -104,7 +104,7 @@ class Component(Immutable):
         cls._declared = {**cls._declared, **own}
         if own and "__init__" not in vars(cls):
             cls.__init__ = _constructor(cls)
-        proposing(cls)
+        suggests_names(cls)
         if cls.__doc__ is not None:
             cls.__doc__ = with_parameters_section(cls.__doc__, cls._declared.values())
         register_class(cls)
@@ -246,7 +246,7 @@ class Component(Immutable):
         if kind != cls.__name__:
             msg = (
                 f"{cls.__name__}.from_dict: expected a {cls.__name__}, got the description of a "
-                f"component of type {shown(kind)}; component_from_dict builds any"
+                f"component of type {short_repr(kind)}; component_from_dict builds any"
             )
             raise ComponentError(msg)
         return {name: value for name, value in description.items() if name != "type"}
@@ -404,7 +404,7 @@ class Component(Immutable):
         listed = list(known)
         if isinstance(name, str) and name in listed:
             return
-        called, has = f"{shown(name)}{nearest(name, listed)}", ", ".join(listed) or "none"
+        called, has = f"{short_repr(name)}{did_you_mean(name, listed)}", ", ".join(listed) or "none"
         msg = f"{type(self).__name__}: no parameter is called {called} (it has {has})"
         raise ComponentError(msg)
 

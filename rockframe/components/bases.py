@@ -18,7 +18,7 @@ from rockframe.components.parameters import (
     static_friction_parameter,
 )
 from rockframe.notebook import Polygon
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.units import (
     BED_DAMPING,
     BED_STIFFNESS,
@@ -350,7 +350,7 @@ class WinklerSoil(Component):
 
     _depth: float | None = None
 
-    @hinted(subgrade_modulus=_SUBGRADE_HINT, modulus=_SUBGRADE_HINT)
+    @with_hints(subgrade_modulus=_SUBGRADE_HINT, modulus=_SUBGRADE_HINT)
     def __init__(
         self,
         *,

@@ -16,7 +16,7 @@ from rockframe.components.block_numbers import (
 )
 from rockframe.components.parameters import DERIVED, Declared, Parameter, Ratio, SIValues
 from rockframe.components.shapes import outline, parts
-from rockframe.errors import ComponentError, ModelWarning, shown, warn
+from rockframe.errors import ComponentError, ModelWarning, short_repr, warn
 from rockframe.notebook import Polygon
 from rockframe.units import (
     ANGLE,
@@ -499,6 +499,6 @@ def _centre_of_mass_arguments(
         return cast("tuple[QuantityLike, QuantityLike]", value)
     msg = (
         f"{owner}: centre_of_mass needs two lengths, the height above the base and the distance "
-        f"to the right of its middle, such as ('0.7 m', '0.05 m'); got {shown(value)}"
+        f"to the right of its middle, such as ('0.7 m', '0.05 m'); got {short_repr(value)}"
     )
     raise ComponentError(msg)

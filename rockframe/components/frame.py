@@ -12,7 +12,7 @@ from rockframe.components.frame_building import Building, make_building
 from rockframe.components.frame_members import Member, make_members_table
 from rockframe.components.frame_regular import INFILL_THICKNESS, SLAB_THICKNESS, RegularFrame
 from rockframe.components.parameters import DERIVED, Ratio
-from rockframe.errors import ComponentError, SchemaError, shown
+from rockframe.errors import ComponentError, SchemaError, short_repr
 from rockframe.notebook import Polygon
 from rockframe.units import LENGTH, POSITIVE, Quantity, QuantityLike, RatioLike, quantity
 
@@ -239,7 +239,7 @@ class FrameEquivalent(Block):
             try:
                 values["members"] = json.loads(values["members"])
             except (TypeError, ValueError) as problem:
-                msg = f"found members {shown(values['members'])}; expected a list in JSON"
+                msg = f"found members {short_repr(values['members'])}; expected a list in JSON"
                 raise SchemaError(msg) from problem
         return cls._from_arguments(**values)
 

@@ -19,7 +19,7 @@ from rockframe.components.shapes.standing import (
     centre_of_mass,
     mass_weighted_mean,
 )
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, short_repr
 from rockframe.units import INERTIA, LENGTH, MASS, POSITIVE, to_si
 
 _ROUNDING: Final = 1e-9  # relative to the outline
@@ -268,7 +268,7 @@ def _building_of_members(
     depth = None if dimensions.get("depth") is None else length("depth")
     width, height = length("width"), length("height")
     if isinstance(members, str | Member | Mapping) or not is_iterable(members):
-        msg = f"{owner}: members must be a list of Member, got {shown(members)}"
+        msg = f"{owner}: members must be a list of Member, got {short_repr(members)}"
         raise ComponentError(msg)
     built = tuple(_member(entry, k, owner) for k, entry in enumerate(members))
     written = [
@@ -287,7 +287,7 @@ def _member(entry: object, number: int, owner: str) -> Member:
     if isinstance(entry, Member):
         return entry
     if not isinstance(entry, Mapping):
-        msg = f"{owner}: members[{number}] must be a Member or a mapping, got {shown(entry)}"
+        msg = f"{owner}: members[{number}] must be a Member or a mapping, got {short_repr(entry)}"
         raise ComponentError(msg)
     arguments = {str(name): value for name, value in entry.items()}
     if arguments.get("type") == Member.__name__:
@@ -296,6 +296,7 @@ def _member(entry: object, number: int, owner: str) -> Member:
         return Member(**arguments)
     except TypeError as problem:
         msg = (
-            f"{owner}: members[{number}] does not describe a Member: {problem}; got {shown(entry)}"
+            f"{owner}: members[{number}] does not describe a Member: {problem}; got "
+            f"{short_repr(entry)}"
         )
         raise ComponentError(msg) from problem

@@ -8,8 +8,8 @@ from typing import Any, ClassVar, Final, Generic, NoReturn, Self, TypeVar, overl
 import numpy as np
 
 from rockframe.arguments import checked_choice
-from rockframe.errors import AccessError, ComponentError, shown
-from rockframe.suggestions import hinted
+from rockframe.errors import AccessError, ComponentError, short_repr
+from rockframe.suggestions import with_hints
 from rockframe.units import (
     LENGTH,
     NOT_NEGATIVE,
@@ -75,7 +75,7 @@ class Declared(Generic[PublicValue, Default]):
             missing = value is None and name != "doc"
             if not missing and not isinstance(value, kind):
                 expected = "a text" if kind is str else f"a rockframe.units.{kind.__name__}"
-                msg = f"{type(self).__name__}: {name} must be {expected}, got {shown(value)}"
+                msg = f"{type(self).__name__}: {name} must be {expected}, got {short_repr(value)}"
                 raise ComponentError(msg)
         self.measure = measure
         self.condition = condition
@@ -163,7 +163,7 @@ class Parameter(Declared[Quantity, Default]):
     annotation = QuantityLike
     measure: Measure
 
-    @hinted()
+    @with_hints()
     def __init__(
         self,
         measure: Measure,
@@ -218,7 +218,7 @@ class Ratio(Declared[float, Default]):
     annotation = RatioLike
     measure: Measure
 
-    @hinted()
+    @with_hints()
     def __init__(
         self,
         condition: Condition | None = None,
@@ -264,10 +264,12 @@ class Choice(Declared[Option, Option]):
 
     annotation = str
 
-    @hinted()
+    @with_hints()
     def __init__(self, default: Option, *, doc: str) -> None:
         if not isinstance(default, StrEnum):  # pyright: ignore[reportUnnecessaryIsInstance]
-            msg = f"Choice: default must be one of the words of a StrEnum, got {shown(default)}"
+            msg = (
+                f"Choice: default must be one of the words of a StrEnum, got {short_repr(default)}"
+            )
             raise ComponentError(msg)
         super().__init__(doc=doc, default=default)
         self.written_as = "{" + ", ".join(f'"{word}"' for word in type(default)) + "}"
@@ -303,7 +305,7 @@ class Text(Declared[str, Default]):
     written_as = "str"
     annotation = str
 
-    @hinted()
+    @with_hints()
     def __init__(self, *, doc: str, default: Default = REQUIRED) -> None:
         super().__init__(doc=doc, default=default)
 
@@ -318,7 +320,10 @@ class Text(Declared[str, Default]):
         if isinstance(value, str) and value.strip():
             return value
         missing = ", or None" if self.default is None else ""
-        msg = f"{owner}: {self.name} must be a text that is not empty{missing}, got {shown(value)}"
+        msg = (
+            f"{owner}: {self.name} must be a text that is not empty{missing}, got "
+            f"{short_repr(value)}"
+        )
         raise ComponentError(msg)
 
 
@@ -334,7 +339,7 @@ class Flag(Declared[bool, bool]):
             return bool(value)
         if isinstance(value, str) and value in _BOOLEANS:
             return _BOOLEANS[value]
-        msg = f"{owner}: {self.name} must be True or False, got {shown(value)}"
+        msg = f"{owner}: {self.name} must be True or False, got {short_repr(value)}"
         raise ComponentError(msg)
 
     def write(self, value: bool) -> str | None:
@@ -361,7 +366,7 @@ class Count(Declared[int, Default]):
             whole = int(number)
             if whole == number:
                 return whole
-        msg = f"{owner}: {self.name} must be a whole number from 1 on, got {shown(value)}"
+        msg = f"{owner}: {self.name} must be a whole number from 1 on, got {short_repr(value)}"
         raise ComponentError(msg)
 
     def write(self, value: int) -> int | None:
@@ -388,7 +393,7 @@ class Position(Declared[tuple[Quantity, Quantity], Missing]):
         if len(pair) != 2:
             msg = (
                 f'{owner}: {self.name} must be a point such as ("-0.5 m", "3 m"), to the right '
-                f"and above, got {shown(value)}"
+                f"and above, got {short_repr(value)}"
             )
             raise ComponentError(msg)
         x, y = (
@@ -458,7 +463,7 @@ class DampingRatio(Ratio[None]):
         Description in one sentence.
     """
 
-    @hinted()
+    @with_hints()
     def __init__(self, *, doc: str) -> None:
         super().__init__(NOT_NEGATIVE, doc=doc, default=None)
 

@@ -9,7 +9,7 @@ from rockframe.components.block import Block
 from rockframe.components.block_numbers import BlockSI
 from rockframe.components.parameters import Count, Declared, Missing, Parameter, SIValues
 from rockframe.components.registry import component_from_dict
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, short_repr
 from rockframe.notebook import Polygon
 from rockframe.units import LENGTH, MASS, NOT_NEGATIVE, POSITIVE, QuantityLike
 
@@ -34,7 +34,7 @@ class _BlockParameter(Declared[Block, Missing]):
         if isinstance(value, Mapping):
             value = component_from_dict({"type": Block.__name__, **value})
         if not isinstance(value, Block):
-            msg = f"{owner}: {self.name} must be a Block, got {shown(value)}"
+            msg = f"{owner}: {self.name} must be a Block, got {short_repr(value)}"
             raise ComponentError(msg)
         if value.si.eccentricity != 0.0:
             msg = (

@@ -11,7 +11,7 @@ from rockframe.components.block import Block
 from rockframe.components.block_numbers import BlockSI
 from rockframe.components.parameters import SIValues
 from rockframe.components.registry import component_from_dict
-from rockframe.errors import ComponentError, shown, unexpected_argument
+from rockframe.errors import ComponentError, short_repr, unexpected_argument
 from rockframe.units import LENGTH, Quantity, QuantityLike, quantity, to_si
 
 MAX_BODIES: Final = 12
@@ -82,12 +82,12 @@ class Stack(Component):
             enumerate(checked_list(offsets, owner="Stack", name="offsets", of="lengths"))
         ]  # fmt: skip
         faults = [
-            f"a body of a stack is a Block, got {shown(one)}"
+            f"a body of a stack is a Block, got {short_repr(one)}"
             for one in bodies
             if not isinstance(one, Block)
         ]
         faults += [
-            f"an interface is a base such as TwoSpringSupport, got {shown(one)}"
+            f"an interface is a base such as TwoSpringSupport, got {short_repr(one)}"
             for one in interfaces
             if not isinstance(one, Component) or isinstance(one, Block)
         ]

@@ -20,11 +20,11 @@ from rockframe.arguments import (
     checked_text,
 )
 from rockframe.constants import STANDARD_GRAVITY
-from rockframe.errors import ComponentError, SchemaError, shown
+from rockframe.errors import ComponentError, SchemaError, short_repr
 from rockframe.results.variables.analyses import LIMIT_STATE, FragilityStatus
 from rockframe.studies.fragility.words import in_own_units
 from rockframe.studies.intensities import PERIOD_OF, SHORT
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.units import POSITIVE, to_ratio
 from rockframe.version import __version__
 from rockframe.writing import FileKind, write_file
@@ -55,7 +55,7 @@ _OPENQUAKE_MEASURES: Final = {
 }
 
 
-@hinted()
+@with_hints()
 def to_pelicun(
     fragility: xr.Dataset,
     component: str,
@@ -151,7 +151,7 @@ def _check_demand(demand: str, measure: str, kind: str) -> None:
         raise ComponentError(msg)
 
 
-@hinted()
+@with_hints()
 def to_openquake(
     fragilities: Mapping[str, xr.Dataset],
     path: str | PathLike[str],
@@ -320,7 +320,10 @@ def _period(dataset: xr.Dataset, owner: str) -> float:
 
 def _check_word(value: object) -> None:
     if not isinstance(value, str) or not _WORD.fullmatch(value):
-        msg = f"{_OPENQUAKE}: names have up to 100 letters, digits, '-' and '_', got {shown(value)}"
+        msg = (
+            f"{_OPENQUAKE}: names have up to 100 letters, digits, '-' and '_', got "
+            f"{short_repr(value)}"
+        )
         raise ComponentError(msg)
 
 

@@ -18,10 +18,10 @@ from rockframe.components import (
     TwoSpringSupport,
     WinklerSoil,
 )
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.simulation.system import System
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.system.options import Restraint, Rotation
 from rockframe.units import QuantityLike
 from rockframe.version import __version__
@@ -56,7 +56,7 @@ class SpringsOfBase(NamedTuple):
     words: str  # the model, and differences to expect
 
 
-@hinted()
+@with_hints()
 def to_opensees(
     system: System,
     motion: GroundMotion,
@@ -120,7 +120,7 @@ def to_opensees(
     """
     for one, kind in ((system, System), (motion, GroundMotion)):
         if not isinstance(cast("object", one), kind):
-            msg = f"{_OWNER} needs a {kind.__name__}, got {shown(one)}"
+            msg = f"{_OWNER} needs a {kind.__name__}, got {short_repr(one)}"
             raise ComponentError(msg)
     _check(system)
     count = checked_integer(springs, owner=_OWNER, name="springs", lowest=2)

@@ -6,7 +6,7 @@ from typing import Final
 import xarray as xr
 
 from rockframe.arguments import checked_choice, checked_list
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, short_repr
 from rockframe.identification.fitting import fit_history, fit_peaks
 from rockframe.identification.measured import (
     OWNER,
@@ -22,7 +22,7 @@ from rockframe.identification.swings import swings_of
 from rockframe.identification.unknowns import Circumstance, TrialSystems
 from rockframe.simulation.system import System, check_system
 from rockframe.solve.accuracy import AccuracyLevel, accuracy_of
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.system.options import AccuracyLike
 from rockframe.system.words import angle_words
 from rockframe.units import Condition, QuantityLike, RatioLike, to_ratio
@@ -30,7 +30,7 @@ from rockframe.units import Condition, QuantityLike, RatioLike, to_ratio
 _CONFIDENCE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value < 1.0)
 
 
-@hinted()
+@with_hints()
 def fit_free_decay(
     system: System,
     measured: xr.DataArray | tuple[object, object] | None = None,
@@ -178,7 +178,7 @@ def _names(parameters: Sequence[str] | str) -> tuple[str, ...]:
     names = tuple(checked_list(parameters, owner=OWNER, name="parameters", of="names"))
     if names and len(set(names)) == len(names):
         return names
-    msg = f"{OWNER}: parameters must name one or more, each once, got {shown(parameters)}"
+    msg = f"{OWNER}: parameters must name one or more, each once, got {short_repr(parameters)}"
     raise ComponentError(msg)
 
 

@@ -12,7 +12,7 @@ import xarray as xr
 
 from rockframe.arguments import checked_choice
 from rockframe.compiled import COMPILED
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.results.joining import MOTION
 from rockframe.results.schema import SCHEMA, build_dataset, without_fill_values
@@ -30,7 +30,7 @@ class GroundComponent(StrEnum):
 def signal_of(motion: object, component: object, *, owner: str) -> Signal:
     """Take one component of a motion."""
     if not isinstance(motion, GroundMotion):
-        msg = f"{owner}: motion needs a GroundMotion, got {shown(motion)}"
+        msg = f"{owner}: motion needs a GroundMotion, got {short_repr(motion)}"
         raise ComponentError(msg)
     which = checked_choice(GroundComponent, component, owner=owner, name="component")
     if which is GroundComponent.HORIZONTAL:

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import checked_integer
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, short_repr
 from rockframe.measures.common import Inputs, build_over, check_some
 from rockframe.measures.response import (
     checked_periods,
@@ -29,7 +29,7 @@ from rockframe.signals.spectra import (
     spectral_peaks,
     unit_vectors,
 )
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.units import QuantityLike, RatioLike
 
 _SPECTRUM: Final = "rotated_spectrum"
@@ -41,7 +41,7 @@ _REFERENCES: Final = (
 _MOST_DIRECTIONS: Final = 3600
 
 
-@hinted()
+@with_hints()
 def rotated_spectrum(
     pair: HorizontalPair | Mapping[str, HorizontalPair],
     periods: ArrayLike | Iterable[QuantityLike] | None = None,
@@ -142,7 +142,7 @@ def rotated_spectrum(
     return looked.labelled(dataset)
 
 
-@hinted()
+@with_hints()
 def principal_axes(pair: HorizontalPair | Mapping[str, HorizontalPair]) -> xr.Dataset:
     """Find the axes along which the horizontal components are uncorrelated.
 
@@ -228,14 +228,15 @@ def _pairs(value: object, *, owner: str) -> Inputs[HorizontalPair]:
         return Inputs([value], None, {"motion": value.name, "references": _REFERENCES})
     if not isinstance(value, Mapping):
         wanted = "two horizontal components, rf.HorizontalPair(first, second)"
-        msg = f"{owner}: pair needs {wanted}, got {shown(value)}"
+        msg = f"{owner}: pair needs {wanted}, got {short_repr(value)}"
         raise ComponentError(msg)
     pairs = cast("Mapping[Any, Any]", value)
     check_some(pairs, owner=owner)
     for label, one in pairs.items():
         if not isinstance(one, HorizontalPair):
             msg = (
-                f"{owner}: {label!r} is {shown(one)}, expected a HorizontalPair; those of a suite "
+                f"{owner}: {label!r} is {short_repr(one)}, expected a HorizontalPair; those of a "
+                "suite "
                 "are suite.pairs"
             )
             raise ComponentError(msg)

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import checked_choice
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, short_repr
 from rockframe.measures.common import Inputs, build_over, read_inputs
 from rockframe.motion import GroundMotion
 from rockframe.motion.operations.timing import Interpolation
@@ -18,7 +18,7 @@ from rockframe.motion.quantities import ArrayLike
 from rockframe.signals import Signal
 from rockframe.signals.arrays import Array
 from rockframe.signals.spectra import DAMPING_RATIO, check_cost, pseudo_spectra, spectral_peaks
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.units import PERIOD, QuantityLike, RatioLike, to_ratio, to_si_values
 
 SAMPLES_PER_PERIOD: Final = 25
@@ -29,7 +29,7 @@ _OWNER: Final = "response_spectrum"
 _REMEDY: Final = "interpolation='band-limited' refines records"
 
 
-@hinted()
+@with_hints()
 def response_spectrum(
     motion: GroundMotion | Mapping[str, GroundMotion],
     periods: ArrayLike | Iterable[QuantityLike] | None = None,
@@ -175,7 +175,8 @@ def checked_periods(value: object, *, owner: str) -> Array:
     seconds = np.array(to_si_values(value, PERIOD, owner=owner, name="periods"))
     if seconds.size == 0 or seconds[0] < 0.0 or not (np.diff(seconds) > 0.0).all():
         msg = (
-            f"{owner}: periods must be one or more, from zero up and increasing, got {shown(value)}"
+            f"{owner}: periods must be one or more, from zero up and increasing, got "
+            f"{short_repr(value)}"
         )
         raise ComponentError(msg)
     return seconds
@@ -193,6 +194,6 @@ def checked_ratios(argument: Any, *, owner: str) -> Array:
         for value in values
     ]
     if not ratios or len(set(ratios)) < len(ratios):
-        msg = f"{owner}: damping_ratios must be one or more, each once, got {shown(argument)}"
+        msg = f"{owner}: damping_ratios must be one or more, each once, got {short_repr(argument)}"
         raise ComponentError(msg)
     return np.array(ratios)

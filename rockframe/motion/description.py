@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from rockframe.constants import STANDARD_GRAVITY
-from rockframe.errors import SchemaError, nearest, shown
+from rockframe.errors import SchemaError, did_you_mean, short_repr
 from rockframe.motion.constructors.analytic import PULSES
 from rockframe.motion.value import MotionType, MotionValue
 from rockframe.notebook import html_summary, sparkline
@@ -122,7 +122,10 @@ def from_dict(kind: type[MotionType], description: Mapping[str, Any]) -> MotionT
     True
     """
     if not isinstance(description, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance]
-        msg = f"{kind.__name__}.from_dict: found {shown(description)}; expected what to_dict gives"
+        msg = (
+            f"{kind.__name__}.from_dict: found {short_repr(description)}; expected what to_dict "
+            "gives"
+        )
         raise SchemaError(msg)
     arguments = {key: value for key, value in description.items() if key != "type"}
     constructor = arguments.pop("constructor", None)
@@ -139,7 +142,7 @@ def from_dict(kind: type[MotionType], description: Mapping[str, Any]) -> MotionT
         )
         raise SchemaError(msg)
     if constructor not in CONSTRUCTORS:
-        found = f"{shown(constructor)}{nearest(constructor, CONSTRUCTORS)}"
+        found = f"{short_repr(constructor)}{did_you_mean(constructor, CONSTRUCTORS)}"
         msg = f"found the constructor {found}; expected one of {', '.join(CONSTRUCTORS)}"
         raise SchemaError(msg)
     if constructor == "stochastic":
@@ -150,7 +153,7 @@ def from_dict(kind: type[MotionType], description: Mapping[str, Any]) -> MotionT
         for operation in operations:
             ((name, values),) = operation.items()
             if name not in OPERATIONS:
-                found = f"{shown(name)}{nearest(name, OPERATIONS)}"
+                found = f"{short_repr(name)}{did_you_mean(name, OPERATIONS)}"
                 msg = f"found the operation {found}; expected one of {', '.join(OPERATIONS)}"
                 raise SchemaError(msg)
             if values.get("other") is not None:

@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from rockframe.constants import STANDARD_GRAVITY
-from rockframe.errors import ComponentError, RecordError, RecordWarning, shown, warn
+from rockframe.errors import ComponentError, RecordError, RecordWarning, short_repr, warn
 from rockframe.motion.ground_motion import GroundMotion
 from rockframe.motion.operations.derived import SAME_STEP
 from rockframe.motion.operations.pulses import (
@@ -25,7 +25,7 @@ from rockframe.motion.velocity_pulse import VelocityPulse
 from rockframe.records import Reading, RecordLike, read_components, read_source, same_start
 from rockframe.signals import Signal
 from rockframe.signals.integrals import arias_history
-from rockframe.suggestions import SuggestingMeta, proposing
+from rockframe.suggestions import SuggestingMeta, suggests_names
 from rockframe.units import ANGLE, Quantity, QuantityLike
 
 _RIGHT_ANGLE: Final = 90.0
@@ -33,7 +33,7 @@ _TOLERANCE: Final = 1.0  # degree; agencies round azimuths to whole degrees
 _EXAMPLE: Final = "HorizontalPair(north, east)"
 
 
-@proposing
+@suggests_names
 @dataclass(frozen=True)
 class HorizontalPair(metaclass=SuggestingMeta):
     """Two horizontal components at a right angle, and optionally the vertical one.
@@ -79,7 +79,10 @@ class HorizontalPair(metaclass=SuggestingMeta):
             named["vertical"] = self.vertical
         for name, motion in named.items():
             if not isinstance(motion, GroundMotion):
-                msg = f"{owner}: {name} needs a GroundMotion, got {shown(motion)}; write {_EXAMPLE}"
+                msg = (
+                    f"{owner}: {name} needs a GroundMotion, got {short_repr(motion)}; write "
+                    f"{_EXAMPLE}"
+                )
                 raise ComponentError(msg)
             _check_same_step_and_start(self.first, motion, name, owner)
         azimuths = [motion.metadata.get("azimuth") for motion in (self.first, self.second)]

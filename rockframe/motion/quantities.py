@@ -10,7 +10,7 @@ import numpy.typing as npt
 import pint
 import xarray as xr
 
-from rockframe.errors import ComponentError, UnitsError, shown
+from rockframe.errors import ComponentError, UnitsError, short_repr
 from rockframe.records import acceleration_unit
 from rockframe.units import (
     ACCELERATION,
@@ -58,7 +58,7 @@ def accelerations_to_si(value: object, *, owner: str, name: str) -> Array:
         check_attached_unit(value[0], value[1], owner=owner, name=name)
         return _scaled(value[0], _unit_factor(value[1], owner, name), owner, name)
     if isinstance(value, str):
-        found = f"{shown(value)}, which is one value"
+        found = f"{short_repr(value)}, which is one value"
     else:
         found = foreign_quantity_hint(value) or f"a {type(value).__name__} without a unit"
     msg = (
@@ -91,7 +91,7 @@ def times_to_si(value: object, *, owner: str, name: str) -> Array:
     else:
         msg = (
             f"{owner}: {name} needs an array of times with a unit such as {TIME.unit}, got "
-            f"{shown(value)}; write for example {name}=(values, 's')"
+            f"{short_repr(value)}; write for example {name}=(values, 's')"
         )
         raise UnitsError(msg)
     times = _scaled(values, factor, owner, name)
@@ -111,7 +111,7 @@ def _unit_factor(unit: str, owner: str, name: str, *, udunits: bool = False) -> 
         better = "m/s^2" if known is None else known.spelling
         msg = (
             f"{owner}: {name} needs the unit of an acceleration such as {ACCELERATION.unit}, "
-            f"got {shown(unit)}; write for example {name}=(values, {better!r})"
+            f"got {short_repr(unit)}; write for example {name}=(values, {better!r})"
         )
         raise UnitsError(msg) from problem
 

@@ -7,12 +7,12 @@ from types import MappingProxyType
 from typing import Any, Final, TypeVar
 
 from rockframe.arguments import checked_bool, checked_text
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, short_repr
 from rockframe.motion.quantities import as_quantity
 from rockframe.signals import Motion, Signal
 from rockframe.signals.integrals import ground_path
 from rockframe.signals.motion import greatest, knots_of
-from rockframe.suggestions import Immutable, proposing
+from rockframe.suggestions import Immutable, suggests_names
 from rockframe.units import ACCELERATION, LENGTH, TIME, VELOCITY, Quantity
 
 UNNAMED: Final = "unnamed motion"
@@ -21,7 +21,7 @@ MotionType = TypeVar("MotionType", bound="MotionValue")
 """The class of a motion, kept by constructors and operations."""
 
 
-@proposing
+@suggests_names
 class MotionValue(Immutable):
     """A motion in SI units with a name, metadata and a history; immutable.
 
@@ -72,7 +72,7 @@ class MotionValue(Immutable):
             if isinstance(value, bool) or not isinstance(value, str | int | float):
                 msg = (
                     f"GroundMotion: metadata {key!r} must be a string or a number, "
-                    f"got {shown(value)}"
+                    f"got {short_repr(value)}"
                 )
                 raise ComponentError(msg)
         values = {

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Generic
 
 from rockframe.motion.value import MotionType
-from rockframe.suggestions import proposing
+from rockframe.suggestions import suggests_names
 from rockframe.units import VELOCITY
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ MIN_PEAK_VELOCITY: Final = 0.3
 """Least peak velocity of a pulse-like motion [m s^-1] (Baker 2007)."""
 
 
-@proposing
+@suggests_names
 @dataclass(frozen=True)
 class VelocityPulse(Generic[MotionType]):
     """The strongest pulse in the velocity of a motion.

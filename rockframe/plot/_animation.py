@@ -17,7 +17,7 @@ from rockframe.plot._player import KIND, Player, player
 from rockframe.plot._response import response, strips_of
 from rockframe.plot._runs import Window, runs_of, verdict_of_case
 from rockframe.plot._scene import Moving, figure_size
-from rockframe.suggestions import proposing
+from rockframe.suggestions import suggests_names
 from rockframe.units import LENGTH
 from rockframe.units.display import UnitsLike
 from rockframe.version import __version__
@@ -39,7 +39,7 @@ _TRAILER: Final = b"\x3b"
 _PICTURES: Final = FileKind.marked("an animation", (".gif", ".mp4", *KIND.suffixes), _MARK)
 
 
-@proposing
+@suggests_names
 class Animation:
     """A run as an animation.
 

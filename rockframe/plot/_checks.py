@@ -22,7 +22,7 @@ from rockframe.shared_arguments import (
 from rockframe.simulation.system import System
 from rockframe.studies.sweeps.axes import in_unit, in_units_of_schema
 from rockframe.studies.sweeps.case import SweepCase, system_of_case
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.units import POSITIVE, Unit, to_ratio
 from rockframe.units.display import KINDS as SHOWN_KINDS
 from rockframe.units.display import UnitsLike, display_units
@@ -141,7 +141,7 @@ def draws(
             KINDS[name] = kind
             text = with_raises_section(text, refused)
         drawing.__doc__ = text
-        return hinted()(drawing)
+        return with_hints()(drawing)
 
     return decorate
 

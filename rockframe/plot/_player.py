@@ -29,7 +29,7 @@ from rockframe.plot._scene import Moving
 from rockframe.results.outcome import LEAST_SLIP
 from rockframe.results.variables.variable import words_of_flags
 from rockframe.signals.arrays import Array
-from rockframe.suggestions import proposing
+from rockframe.suggestions import suggests_names
 from rockframe.units import ACCELERATION, ANGLE, LENGTH
 from rockframe.units.display import UnitsLike, with_superscripts
 from rockframe.version import __version__
@@ -66,7 +66,7 @@ class _Layer(NamedTuple):
     points: Array  # at all instants, shape (instants, points, 2) [m]
 
 
-@proposing
+@suggests_names
 class Player:
     """A page that plays a run, a few tens of kilobytes in size.
 

@@ -12,7 +12,7 @@ import xarray as xr
 
 from rockframe.arguments import checked_bool
 from rockframe.dynamics.events import ContactState
-from rockframe.errors import ComponentError, nearest, shown
+from rockframe.errors import ComponentError, did_you_mean, short_repr
 from rockframe.plot._axes import (
     BLUE,
     COLOURS,
@@ -307,10 +307,10 @@ def _chosen(panels: object, runs: list[Run]) -> tuple[str, ...]:
     if not chosen or unknown:
         known = ", ".join(repr(name) for name in _HEIGHTS)
         found = unknown[0] if unknown else panels
-        near = nearest(found, [*_HEIGHTS, *histories]) or "."
+        near = did_you_mean(found, [*_HEIGHTS, *histories]) or "."
         msg = (
             f"rf.plot.response: panels are some of {known}, and histories of the runs, got "
-            f"{shown(found)}{near} They hold {', '.join(map(repr, histories))}"
+            f"{short_repr(found)}{near} They hold {', '.join(map(repr, histories))}"
         )
         raise ComponentError(msg)
     return tuple(map(str, chosen))

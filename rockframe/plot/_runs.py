@@ -8,7 +8,7 @@ from typing import Any, TypeAlias, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, short_repr
 from rockframe.plot._axes import colour_of, labels_of_names, style_of
 from rockframe.plot._checks import checked_run
 from rockframe.results.outcome import verdict_of
@@ -63,7 +63,7 @@ def window_of(window: object, function: str, name: str = "window") -> tuple[floa
     if len(ends) != 2:
         msg = (
             f"{owner}: {name} must be a pair of times, such as ('2 s', '8 s'), or None for an open "
-            f"end, got {shown(window)}"
+            f"end, got {short_repr(window)}"
         )
         raise ComponentError(msg)
     start, end = (
@@ -71,7 +71,7 @@ def window_of(window: object, function: str, name: str = "window") -> tuple[floa
         for one, none in zip(ends, (-np.inf, np.inf), strict=True)
     )  # fmt: skip
     if start >= end:
-        msg = f"{owner}: {name} must end after it starts, got {shown(window)}"
+        msg = f"{owner}: {name} must end after it starts, got {short_repr(window)}"
         raise ComponentError(msg)
     return start, end
 

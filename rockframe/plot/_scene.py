@@ -8,7 +8,7 @@ import xarray as xr
 
 from rockframe.arguments import checked_bool
 from rockframe.dynamics.events import LinkState
-from rockframe.errors import ComponentError, SchemaError, shown
+from rockframe.errors import ComponentError, SchemaError, short_repr
 from rockframe.plot._artists import Drawer, SceneArtist, part_labels
 from rockframe.plot._axes import FigureUnits, units_of
 from rockframe.plot._checks import RUN, above_zero, checked_run, draws, refuse, system_of_run
@@ -245,7 +245,7 @@ class Moving:
         if not self.time[0] - slack <= when <= self.time[-1] + slack:
             msg = (
                 f"{owner}: the run goes from {self.time[0]:.6g} s to {self.time[-1]:.6g} s, got "
-                f"time={shown(time)}"
+                f"time={short_repr(time)}"
             )
             raise ComponentError(msg)
         return int(np.argmin(np.abs(self.time - when)))

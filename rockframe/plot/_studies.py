@@ -5,7 +5,7 @@ from typing import Any, Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import ComponentError, SchemaError, nearest, shown
+from rockframe.errors import ComponentError, SchemaError, did_you_mean, short_repr
 from rockframe.plot._axes import (
     BLUE,
     GREY,
@@ -252,8 +252,8 @@ def _values(dataset: xr.Dataset, variable: object) -> xr.DataArray:
         known = ", ".join(
             repr(str(name)) for name, one in dataset.data_vars.items() if 0 < one.ndim < 3
         )
-        near = nearest(variable, map(str, dataset.data_vars))
-        msg = f"rf.plot.sweep: the runs have no {shown(variable)}{near}; they have {known}"
+        near = did_you_mean(variable, map(str, dataset.data_vars))
+        msg = f"rf.plot.sweep: the runs have no {short_repr(variable)}{near}; they have {known}"
         raise SchemaError(msg)
     values = dataset[variable]
     if not 1 <= values.ndim <= _MOST_AXES:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import IO, Any, Final, TypeAlias, cast
 
 from rockframe.arguments import is_iterable
-from rockframe.errors import RecordError, shown
+from rockframe.errors import RecordError, short_repr
 from rockframe.records.archives import (
     MAXIMUM_BYTES,
     check_unpackable,
@@ -179,7 +179,7 @@ def files_of(given: object) -> Iterator[Source | Unread]:
         except (OSError, ValueError):
             there = folder = False
         if not there:
-            found = f"no such file or folder, {shown(given)}"
+            found = f"no such file or folder, {short_repr(given)}"
             raise RecordError(str(path), found=found, expected="records")
         yield from _files_in_folder(path) if folder else _files_at_path(path)
 

@@ -5,7 +5,7 @@ import re
 from dataclasses import replace
 from typing import Any, Final, cast
 
-from rockframe.errors import ComponentError, RecordError, nearest, shown
+from rockframe.errors import ComponentError, RecordError, did_you_mean, short_repr
 from rockframe.records.asdf import ASDF
 from rockframe.records.cosmos import COSMOS
 from rockframe.records.csmip import CSMIP
@@ -156,8 +156,8 @@ def format_by_name(name: str) -> Format:
         if entry.name == normalised:
             return entry
     names = [entry.name for entry in formats()]
-    known, near = ", ".join(map(repr, names)), nearest(name, names)
-    msg = f"GroundMotion.read: format must be one of {known}, got {shown(name)}{near}"
+    known, near = ", ".join(map(repr, names)), did_you_mean(name, names)
+    msg = f"GroundMotion.read: format must be one of {known}, got {short_repr(name)}{near}"
     raise ComponentError(msg)
 
 

@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Final, cast
 
 from rockframe.arguments import checked_name, is_iterable
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, short_repr
 from rockframe.notebook import html_summary, number_with_unit
 from rockframe.reports import page
 from rockframe.reports.page import KIND
-from rockframe.suggestions import proposing
+from rockframe.suggestions import suggests_names
 from rockframe.units import Unit
 from rockframe.units.display import (
     DisplayUnits,
@@ -26,7 +26,7 @@ from rockframe.writing import write_file
 _SAID: Final = {True: ("satisfied", "good"), False: ("not satisfied", "bad")}
 
 
-@proposing
+@suggests_names
 @dataclass(frozen=True)
 class CheckedLine:
     """A number of a check.
@@ -75,7 +75,7 @@ class CheckedLine:
         return number_with_unit(self.value, "" if self.unit is Unit.ONE else str(self.unit))
 
 
-@proposing
+@suggests_names
 @dataclass(frozen=True)
 class CheckedVerdict:
     """A verdict of a check.
@@ -103,7 +103,7 @@ class CheckedVerdict:
     source: str
 
 
-@proposing
+@suggests_names
 @dataclass(frozen=True)
 class CodeCheck:
     """A check by a code of practice.
@@ -305,11 +305,16 @@ def checks_of(value: object, owner: str) -> list[CodeCheck]:
     if several is None:
         return []
     if not is_iterable(several) or isinstance(several, str):
-        msg = f"{owner}: checks must be of rf.codes, one or a list of them, got {shown(several)}"
+        msg = (
+            f"{owner}: checks must be of rf.codes, one or a list of them, got {short_repr(several)}"
+        )
         raise ComponentError(msg)
     found = list(cast("Iterable[object]", several))
     for one in found:
         if not isinstance(one, CodeCheck):
-            msg = f"{owner}: checks must be of rf.codes, such as circolare_2019, got {shown(one)}"
+            msg = (
+                f"{owner}: checks must be of rf.codes, such as circolare_2019, got "
+                f"{short_repr(one)}"
+            )
             raise ComponentError(msg)
     return cast("list[CodeCheck]", found)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rockframe import plot
 from rockframe.arguments import is_iterable
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.reports import page
 from rockframe.reports.values import column_head, number_in
@@ -66,7 +66,7 @@ def aim_of(value: object, motions: object, owner: str) -> Aim | None:
             return Aim(target, value["period"].to_numpy())
     msg = (
         f"{owner}: target must be a TargetSpectrum, or the result of suite.scaling_to or "
-        f"suite.selection_for for one at several periods, got {shown(value)}"
+        f"suite.selection_for for one at several periods, got {short_repr(value)}"
     )
     raise ComponentError(msg)
 
@@ -92,7 +92,7 @@ def _named(value: object, owner: str) -> dict[str, GroundMotion]:
         return {}
     several = [value] if isinstance(value, GroundMotion) else value
     if not is_iterable(several) or isinstance(several, str):
-        msg = f"{owner}: motions must be a GroundMotion, or several, got {shown(value)}"
+        msg = f"{owner}: motions must be a GroundMotion, or several, got {short_repr(value)}"
         raise ComponentError(msg)
     return dict(MotionSuite(cast("Iterable[GroundMotion]", several)))
 

@@ -15,7 +15,7 @@ from rockframe.errors import (
     RecordWarning,
     RockframeWarning,
     SchemaError,
-    shown,
+    short_repr,
     warn,
 )
 from rockframe.motion import GroundMotion
@@ -26,7 +26,7 @@ from rockframe.reports.checks import CodeCheck, checks_of
 from rockframe.reports.motions import Aim, aim_of, motions_of, spectra_section
 from rockframe.reports.project import Project, project_of
 from rockframe.simulation.system import System
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.suites import TargetSpectrum
 from rockframe.units.display import DisplayUnits, display_units
 from rockframe.writing import checked_path, write_file
@@ -35,7 +35,7 @@ _OWNER: Final = "report"
 
 
 @warning_once
-@hinted()
+@with_hints()
 def report(
     response: xr.Dataset,
     path: "str | PathLike[str]",
@@ -140,7 +140,7 @@ def report(
     checked_bool(certify, owner=_OWNER, name="certify")
     value = "" if title is None else checked_text(title, owner=_OWNER, name="title")
     if motion is not None and not isinstance(cast("object", motion), GroundMotion):
-        msg = f"{_OWNER}: motion must be a GroundMotion, got {shown(motion)}"
+        msg = f"{_OWNER}: motion must be a GroundMotion, got {short_repr(motion)}"
         raise ComponentError(msg)
     about = project_of(project, dataset, _OWNER)
     chosen = display_units(units, owner=_OWNER)

@@ -9,12 +9,12 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import checked_bool, checked_dataset, is_iterable
-from rockframe.errors import SchemaError, shown
+from rockframe.errors import SchemaError, short_repr
 from rockframe.results.schema import SCHEMA, dated, without_fill_values
 from rockframe.results.variables.bodies import BODY, RESTRAINER
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import AFTER_END, EVENT, TIME
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.units import attached_unit
 
 OF_ONE_RUN: Final = frozenset(
@@ -49,7 +49,7 @@ OF_ITS_MOTIONS: Final = ("motion_names", "motions_json")
 _OWNER: Final = "concat"
 
 
-@hinted()
+@with_hints()
 def concat(
     runs: Iterable[xr.Dataset],
     dim: str = "run",
@@ -155,7 +155,7 @@ def concat(
 def _each(runs: object) -> Iterable[Any]:
     if is_iterable(runs) and not isinstance(runs, str | xr.Dataset | xr.DataArray):
         return runs
-    msg = f"{_OWNER}: found {shown(runs)}; expected a list of datasets"
+    msg = f"{_OWNER}: found {short_repr(runs)}; expected a list of datasets"
     raise SchemaError(msg)
 
 
@@ -163,7 +163,7 @@ def _check_dimension(runs: Sequence[xr.Dataset], dim: object) -> None:
     if not isinstance(dim, str) or dim in (*TIME, *EVENT, *AFTER_END):
         msg = (
             f"{_OWNER}: dim must be the name of a dimension of many runs, such as 'run' or "
-            f"'scale', got {shown(dim)}"
+            f"'scale', got {short_repr(dim)}"
         )
         raise SchemaError(msg)
     having = sum(dim in run.dims for run in runs)
@@ -275,12 +275,14 @@ def _labelled(
     joined: xr.Dataset, dim: str, labels: Sequence[Any] | np.ndarray | xr.DataArray
 ) -> xr.Dataset:
     if isinstance(labels, str) or not is_iterable(labels):
-        msg = f"{_OWNER}: labels must be a list of values, one for each run, got {shown(labels)}"
+        msg = (
+            f"{_OWNER}: labels must be a list of values, one for each run, got {short_repr(labels)}"
+        )
         raise SchemaError(msg)
     each = labels.to_numpy() if isinstance(labels, xr.DataArray) else list(labels)
     if any(attached_unit(one) for one in each):
         example = "xr.DataArray([1, 2], attrs={'units': 'm s^-2'})"
-        msg = f"{_OWNER}: labels with a unit come as {example}, got {shown(labels)}"
+        msg = f"{_OWNER}: labels with a unit come as {example}, got {short_repr(labels)}"
         raise SchemaError(msg)
     values = np.asarray(each)
     if values.shape != (joined.sizes[dim],):

@@ -15,7 +15,7 @@ from rockframe.results.variables.bodies import BODY, RESTRAINER
 from rockframe.results.variables.requests import POINT
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import EVENT, TIME, TRUTH, words_of_flags
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.units import Unit
 from rockframe.units.display import UnitsLike, display_units
 
@@ -40,7 +40,7 @@ _MISSING: Final = {
 }
 
 
-@hinted()
+@with_hints()
 def table(
     runs: xr.Dataset | Iterable[xr.Dataset] | Mapping[Any, xr.Dataset],
     contents: str = Contents.SCALARS,

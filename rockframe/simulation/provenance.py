@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rockframe.arguments import checked_mapping
 from rockframe.components import Component, InitialState, component_from_dict
-from rockframe.errors import RecordWarning, SchemaError, nearest, shown, warn
+from rockframe.errors import RecordWarning, SchemaError, did_you_mean, short_repr, warn
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import display_name
 from rockframe.solve.accuracy import Accuracy
@@ -173,7 +173,9 @@ def parts_and_options(
     known = [name for name in arguments if name != "parts"]
     allowed = (*known, "parts", "motion")
     strange = [
-        f"{shown(name)}{nearest(name, allowed)}" for name in description if name not in allowed
+        f"{short_repr(name)}{did_you_mean(name, allowed)}"
+        for name in description
+        if name not in allowed
     ]
     if strange:
         msg = f"found {', '.join(strange)}; expected parts, motion, {', '.join(known)}"

@@ -7,11 +7,11 @@ import pint
 
 from rockframe.arguments import checked_list
 from rockframe.components import Block, Component
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, short_repr
 from rockframe.results.diagnostics import DIAGNOSTICS, Diagnostic, add_diagnostic
 from rockframe.results.schema import GROUPS, SCHEMA
 from rockframe.results.variables.variable import EVENT, TIME, Variable
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.system.assembly import add_scene, twin_of
 from rockframe.system.links import OwnLink
 from rockframe.system.own_base import OwnAnswers, OwnBase
@@ -26,7 +26,7 @@ _OF_A_RUN: Final = (*TIME, *EVENT)
 """Dimensions that every run has."""
 
 
-@hinted()
+@with_hints()
 def register(
     kind: "type[OwnBase] | type[OwnScene] | type[OwnLink] | Diagnostic | Callable[..., Any]",
     *,
@@ -140,7 +140,7 @@ def _faults_of(kind: Any) -> list[str]:
         return [] if kind.law is not OwnLink.law else [f"{kind.__name__} has no method law(mass)"]
     return [
         "expected a class derived from OwnBase or OwnScene, or from OwnLink, a Diagnostic or a "
-        f"function, got {shown(kind)}"
+        f"function, got {short_repr(kind)}"
     ]
 
 
@@ -148,7 +148,7 @@ def _faults_of_base(kind: type[OwnBase]) -> list[str]:
     faults: list[str] = []
     if kind.slot not in SLOTS:
         known = " or ".join(repr(slot) for slot in SLOTS)
-        faults.append(f"{kind.__name__}.slot must be {known}, got {shown(kind.slot)}")
+        faults.append(f"{kind.__name__}.slot must be {known}, got {short_repr(kind.slot)}")
     if kind.support is OwnBase.support:
         faults.append(f"{kind.__name__} has no method support(load)")
     return faults
@@ -162,7 +162,7 @@ def _faults_of_scene(kind: type[OwnScene]) -> list[str]:
         return [
             *faults,
             f"{kind.__name__}.made_of must name slots and classes of parts, such as "
-            f"{{'block': Block, 'floor': Floor}}, got {shown(made_of)}",
+            f"{{'block': Block, 'floor': Floor}}, got {short_repr(made_of)}",
         ]
     of_parts = [fault for row in made_of.items() for fault in _faults_of_part(kind.__name__, *row)]
     if of_parts:
@@ -194,7 +194,7 @@ def _faults_of_part(owner: str, slot: Any, part: Any) -> list[str]:
     if not (isinstance(slot, str) and slot.isidentifier()):
         return [f"{where}: a slot is called by a name such as 'floor'"]
     if not (isinstance(part, type) and issubclass(part, Component)):
-        return [f"{where} must be a class of components, got {shown(part)}"]
+        return [f"{where} must be a class of components, got {short_repr(part)}"]
     fills = slot_of_kind(part)
     if fills is not None and fills != slot:
         return [f"{where}: {part.__name__} fills the slot {fills!r}"]
@@ -205,7 +205,7 @@ def _faults_of_part(owner: str, slot: Any, part: Any) -> list[str]:
 
 def _faults_in(row: Any, columns: Sequence[Any]) -> list[str]:
     if not isinstance(row, Variable):
-        return [f"columns must be Variables, got {shown(row)}"]
+        return [f"columns must be Variables, got {short_repr(row)}"]
     faults = _faults_in_name(row.name, "a column")
     labels = {one.name for one in columns if isinstance(one, Variable) and one.dims == (one.name,)}
     faults += [
@@ -222,10 +222,10 @@ def _faults_in(row: Any, columns: Sequence[Any]) -> list[str]:
 def _faults_in_diagnostic(value: Diagnostic) -> list[str]:
     name = cast("Any", value.name)
     if not isinstance(name, str):
-        return [f"the name of a diagnostic must be a word, got {shown(name)}"]
+        return [f"the name of a diagnostic must be a word, got {short_repr(name)}"]
     faults = _faults_in_name(name, "a diagnostic")
     if not callable(value.function):
-        faults.append(f"diagnostic {name!r} needs a function, got {shown(value.function)}")
+        faults.append(f"diagnostic {name!r} needs a function, got {short_repr(value.function)}")
     if not isinstance(cast("Any", value.long_name), str) or not value.long_name:
         faults.append(f"diagnostic {name!r} needs a long_name, or a docstring")
     if cast("Any", value.unit) is None:

@@ -10,7 +10,7 @@ from rockframe.arguments import checked_integer
 from rockframe.components import InitialState
 from rockframe.shared_arguments import Argument
 from rockframe.solve.accuracy import AccuracyLevel
-from rockframe.suggestions import proposing
+from rockframe.suggestions import suggests_names
 from rockframe.system.options import AccuracyLike, Overturning, OverturningLike, PointsLike
 from rockframe.units import Condition, QuantityLike, to_ratio
 
@@ -119,7 +119,7 @@ FEWEST_RUNS: Final = 60
 MOST_RUNS: Final = 100_000
 
 
-@proposing
+@suggests_names
 @dataclass(frozen=True, init=False)
 class Certification:
     """The further runs that a certificate makes.

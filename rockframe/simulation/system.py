@@ -22,7 +22,7 @@ from rockframe.simulation.provenance import (
 from rockframe.simulation.run_arguments import NO_ARGUMENTS, Certification
 from rockframe.simulation.value import SystemValue
 from rockframe.solve.accuracy import AccuracyLevel
-from rockframe.suggestions import hinted, proposing
+from rockframe.suggestions import suggests_names, with_hints
 from rockframe.system.assembly import assemble
 from rockframe.system.options import (
     AccuracyLike,
@@ -44,7 +44,7 @@ _DAMAGED: Final = (ValueError, KeyError, TypeError, AttributeError)
 """Exceptions that a damaged description of a system may raise."""
 
 
-@proposing
+@suggests_names
 class System(SystemValue):
     """An assembled scene: parts in any order, checked together, ready to simulate.
 
@@ -126,7 +126,7 @@ class System(SystemValue):
         """
         return self._assembly.description
 
-    @hinted(**NO_ARGUMENTS)
+    @with_hints(**NO_ARGUMENTS)
     def simulate(
         self,
         motion: GroundMotion | None = None,

@@ -42,7 +42,7 @@ from rockframe.studies.limit_states import (
 )
 from rockframe.studies.logistic import Logistic, fit_logistic
 from rockframe.studies.sweeps.motions import MotionsLike
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.units import POSITIVE, RatioLike
 
 _OWNER: Final = "cloud_analysis"
@@ -169,7 +169,7 @@ def _beyond(
     return falls + (1.0 - falls) * moves * beyond
 
 
-@hinted()
+@with_hints()
 def cloud_analysis(
     runs: xr.Dataset,
     intensity: str | xr.DataArray = "PGA",

@@ -7,19 +7,19 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import checked_dataset, checked_list
-from rockframe.errors import ComponentError, SchemaError, nearest, shown
+from rockframe.errors import ComponentError, SchemaError, did_you_mean, short_repr
 from rockframe.results.schema import build_dataset
 from rockframe.results.variables.studies import MOTION
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import clopper_pearson, read_level, read_shares
 from rockframe.studies.probability import SAMPLED
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.units import RatioLike
 
 _OWNER: Final = "ensemble_statistics"
 
 
-@hinted()
+@with_hints()
 def ensemble_statistics(
     runs: xr.Dataset | xr.DataArray,
     name: str = "peak_relative_rotation",
@@ -124,7 +124,7 @@ def _values(runs: Any, name: str) -> xr.DataArray:
     dataset = checked_dataset(runs, owner=_OWNER)
     if not isinstance(cast("Any", name), str) or name not in dataset:
         known = [str(one) for one in dataset]
-        found = f"{shown(name)}{nearest(name, known)}"
+        found = f"{short_repr(name)}{did_you_mean(name, known)}"
         msg = f"{_OWNER}: found no {found}; expected one of {', '.join(known)}"
         raise SchemaError(msg)
     return dataset[name]

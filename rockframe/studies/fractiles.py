@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import checked_list
-from rockframe.errors import ComponentError, StudyError, shown
+from rockframe.errors import ComponentError, StudyError, short_repr
 from rockframe.motion.quantities import ArrayLike
 from rockframe.results.outcome import Generic, overturns
 from rockframe.results.schema import build_dataset, with_labels, with_variables
@@ -21,7 +21,7 @@ from rockframe.studies.intensities import PeriodLike, measure_in, period_attribu
 from rockframe.studies.limit_states import check_runs, scalar_of
 from rockframe.studies.lines import SCALE
 from rockframe.studies.sweeps.motions import MotionsLike
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.units import Measure, RatioLike, Unit, to_ratio, to_si_values
 
 _OWNER: Final = "fractile_curves"
@@ -31,7 +31,7 @@ _LEVEL: Final = "response_level"
 _TITLE: Final = "Fractile curves of scaled motions"
 
 
-@hinted()
+@with_hints()
 def fractile_curves(
     runs: xr.Dataset,
     intensity: str | xr.DataArray = SCALE,
@@ -299,7 +299,7 @@ def _levels(value: Any, values: xr.DataArray, lines: Sequence[_Line]) -> Array:
         measure = Measure("a response", Unit(unit), f"1 {unit}")
         found = np.array(to_si_values(value, measure, owner=_OWNER, name="levels"))
     if not len(found) or not (np.diff(found) > 0.0).all():
-        msg = f"{_OWNER}: levels must be one or more, and increase, got {shown(value)}"
+        msg = f"{_OWNER}: levels must be one or more, and increase, got {short_repr(value)}"
         raise ComponentError(msg)
     return found
 

@@ -10,7 +10,7 @@ import xarray as xr
 from numpy.polynomial.legendre import leggauss
 
 from rockframe.arguments import checked_dataset, checked_function
-from rockframe.errors import ComponentError, ModelWarning, SchemaError, UnitsError, shown, warn
+from rockframe.errors import ComponentError, ModelWarning, SchemaError, UnitsError, short_repr, warn
 from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.variable import unit_behind
@@ -19,7 +19,7 @@ from rockframe.studies.fragility.likelihood import log_shares
 from rockframe.studies.fragility.words import in_own_units, measures_of
 from rockframe.studies.intensities import PERIOD_OF, measure_words
 from rockframe.studies.sweeps.axes import free_values
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.units import POSITIVE, Unit, check_attached_unit, to_ratio
 
 _OWNER: Final = "annual_rate"
@@ -63,7 +63,7 @@ class HazardCurve:
         )
 
 
-@hinted()
+@with_hints()
 def annual_rate(
     fragility: xr.Dataset,
     hazard: Mapping[str, Any] | xr.DataArray | Callable[[Array], Any],
@@ -166,7 +166,7 @@ def read_hazard(value: object, along: xr.DataArray, between: object) -> HazardCu
             raise ComponentError(msg)
         ends = _intensities(between, name, unit)
         if len(ends) != 2 or not 0.0 < ends[0] < ends[1]:
-            msg = f"{_OWNER}: between must be two intensities that rise, got {shown(between)}"
+            msg = f"{_OWNER}: between must be two intensities that rise, got {short_repr(between)}"
             raise ComponentError(msg)
         values = np.geomspace(float(ends[0]), float(ends[1]), _OF_FUNCTIONS)
         rate = checked_function(value, "intensities", owner=_OWNER, name="hazard")
@@ -182,12 +182,17 @@ def read_hazard(value: object, along: xr.DataArray, between: object) -> HazardCu
             wanted = " or ".join(
                 ", ".join(map(repr, names)) for names in (_BY_RATE, _BY_PROBABILITY)
             )
-            msg = f"{_OWNER}: a table of hazard has {wanted}; found {', '.join(map(shown, table))}"
+            msg = (
+                f"{_OWNER}: a table of hazard has {wanted}; found "
+                f"{', '.join(map(short_repr, table))}"
+            )
             raise ComponentError(msg)
         values = _intensities(table["intensity"], name, unit)
         rates = _rates(table)
     else:
-        msg = f"{_OWNER}: hazard must be a table, a DataArray or a function, got {shown(value)}"
+        msg = (
+            f"{_OWNER}: hazard must be a table, a DataArray or a function, got {short_repr(value)}"
+        )
         raise ComponentError(msg)
     if rates.shape != values.shape or len(values) < 2:
         msg = (
@@ -199,7 +204,7 @@ def read_hazard(value: object, along: xr.DataArray, between: object) -> HazardCu
     if not (falls and values[0] > 0.0 and rates[-1] > 0.0 and math.isfinite(rates[0])):
         msg = (
             f"{_OWNER}: in a hazard curve intensities above zero rise, and rates above zero fall; "
-            f"found {shown(values.tolist())} and {shown(rates.tolist())}"
+            f"found {short_repr(values.tolist())} and {short_repr(rates.tolist())}"
         )
         raise ComponentError(msg)
     return HazardCurve(values, rates)
@@ -213,7 +218,7 @@ def _intensities(value: object, name: str, unit: str) -> Array:
         return np.asarray(free_values(list(pair[0]), "intensity", owner=_OWNER)[0], float)
     values, own = free_values(value, "intensity", owner=_OWNER, expected=unit)
     if own != unit:
-        msg = f"{_OWNER}: {name} is in {unit}, got {shown(value)}"
+        msg = f"{_OWNER}: {name} is in {unit}, got {short_repr(value)}"
         raise UnitsError(msg)
     return np.asarray(values, dtype=np.float64)
 
@@ -225,7 +230,10 @@ def _rates(table: Mapping[str, Any]) -> Array:
     years = to_ratio(table["years"], owner=_OWNER, name="years", condition=POSITIVE, example="50")
     chance = np.asarray(table["probability"], dtype=np.float64)
     if np.any(chance <= 0.0) or np.any(chance >= 1.0):
-        msg = f"{_OWNER}: probabilities must be above 0 and below 1, got {shown(chance.tolist())}"
+        msg = (
+            f"{_OWNER}: probabilities must be above 0 and below 1, got "
+            f"{short_repr(chance.tolist())}"
+        )
         raise ComponentError(msg)
     return -np.log1p(-chance) / years
 

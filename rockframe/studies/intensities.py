@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import checked_name, checked_text
-from rockframe.errors import ComponentError, SchemaError, StudyError, nearest, shown
+from rockframe.errors import ComponentError, SchemaError, StudyError, did_you_mean, short_repr
 from rockframe.measures import average_spectral_acceleration, intensity_measures, response_spectrum
 from rockframe.measures.intensity import measure_of_ground
 from rockframe.measures.response import checked_periods
@@ -321,13 +321,16 @@ class ScaledIntensity:
         spectral = name in OSCILLATORS
         if spectral != (period is not None):
             needed = "needs a period, for example period='0.5 s'" if spectral else "has no period"
-            msg = f"{owner}: intensity {shown(name)} {needed}"
+            msg = f"{owner}: intensity {short_repr(name)} {needed}"
             raise ComponentError(msg)
         self.period = None if period is None else to_si(period, PERIOD, owner=owner, name="period")
         known = sorted({*map(str, self._measures(motion)), *OSCILLATORS} - {*_OF_THE_BLOCK})
         if name not in known:
-            near = nearest(name, [*SHORT, *known])
-            msg = f"{owner}: intensity must be one of {', '.join(known)}, got {shown(name)}{near}"
+            near = did_you_mean(name, [*SHORT, *known])
+            msg = (
+                f"{owner}: intensity must be one of {', '.join(known)}, got "
+                f"{short_repr(name)}{near}"
+            )
             raise ComponentError(msg)
         self.name = str(name)
 

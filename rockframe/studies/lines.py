@@ -20,7 +20,7 @@ from rockframe.errors import (
     SolverWarning,
     StudyError,
     collected_warnings,
-    shown,
+    short_repr,
     warn,
 )
 from rockframe.motion import GroundMotion
@@ -408,7 +408,7 @@ def read_rising(value: object, measure: Measure, name: str, *, owner: str) -> Ar
     """Read values above zero, sorted, equal ones once."""
     values = np.unique(numbers_of(value, measure, name))
     if not len(values) or values[0] <= 0.0:
-        msg = f"{owner}: {name} must be above zero, got {shown(value)}"
+        msg = f"{owner}: {name} must be above zero, got {short_repr(value)}"
         raise ComponentError(msg)
     return values
 
@@ -418,7 +418,7 @@ def read_scales(value: object, *, owner: str) -> Array:
     values = np.unique(numbers_of(value, TARGETS[SCALE].measure, SCALE))
     if not 2 <= len(values) <= _MOST_SCALES or values[0] <= 0.0:
         wanted = f"2 to {_MOST_SCALES} different numbers above zero"
-        msg = f"{owner}: scale needs {wanted}, got {shown(value)}"
+        msg = f"{owner}: scale needs {wanted}, got {short_repr(value)}"
         raise ComponentError(msg)
     return values
 

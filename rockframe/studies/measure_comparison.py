@@ -9,7 +9,7 @@ import pandas as pd
 import xarray as xr
 
 from rockframe.arguments import checked_list
-from rockframe.errors import ComponentError, StudyError, shown
+from rockframe.errors import ComponentError, StudyError, short_repr
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.studies import MOTION
@@ -26,7 +26,7 @@ from rockframe.studies.intensities import (
 )
 from rockframe.studies.limit_states import check_runs, scalar_of
 from rockframe.studies.sweeps.motions import MotionsLike
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 
 _OWNER: Final = "compare_intensities"
 _AGAINST: Final = 0.05
@@ -35,7 +35,7 @@ Covariates = Mapping[str, Any]
 """Numbers of the motions by name: in order of motions, by their labels, or over ``motion``."""
 
 
-@hinted()
+@with_hints()
 def compare_intensities(
     runs: xr.Dataset,
     measures: Iterable[str | tuple[str, PeriodLike] | xr.DataArray],
@@ -162,7 +162,7 @@ def _with_period(value: object) -> tuple[Any, Any]:
         pair = cast("tuple[Any, ...]", value)
         if len(pair) == 2 and isinstance(pair[0], str):
             return pair[0], pair[1]
-        msg = f"{_OWNER}: a measure with a period is ('SA', '1 s'), got {shown(value)}"
+        msg = f"{_OWNER}: a measure with a period is ('SA', '1 s'), got {short_repr(value)}"
         raise ComponentError(msg)
     return value, None
 
@@ -176,7 +176,7 @@ def _covariates(runs: xr.Dataset, values: Sequence[str] | Covariates) -> dict[st
     for name in checked_list(values, owner=_OWNER, name="against", of="names"):
         one = named_column(runs, name)
         if not isinstance(one, xr.DataArray) or not set(one.dims) <= set(runs["status"].dims):
-            msg = f"{_OWNER}: against names {shown(name)}, which is no coordinate of the runs"
+            msg = f"{_OWNER}: against names {short_repr(name)}, which is no coordinate of the runs"
             raise ComponentError(msg)
         found[str(name)] = one
     return found

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import checked_function, checked_integer
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.results.schema import SCHEMA, with_labels, with_variables
 from rockframe.results.variables.studies import MOTION
@@ -162,13 +162,13 @@ def _made(pulse: object, frequency: float) -> GroundMotion:
     if not callable(pulse):
         msg = (
             f"{_OWNER}: pulse must be a GroundMotion or a function such as "
-            f"rf.GroundMotion.sine_pulse, got {shown(pulse)}"
+            f"rf.GroundMotion.sine_pulse, got {short_repr(pulse)}"
         )
         raise ComponentError(msg)
     pulse = checked_function(pulse, "amplitude", "frequency", owner=_OWNER, name="pulse")
     made = pulse(quantity(1.0, ACCELERATION), quantity(frequency, FREQUENCY))
     if not isinstance(made, GroundMotion):
-        msg = f"{_OWNER}: pulse must return a GroundMotion, got {shown(made)}"
+        msg = f"{_OWNER}: pulse must return a GroundMotion, got {short_repr(made)}"
         raise ComponentError(msg)
     return made
 

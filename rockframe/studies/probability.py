@@ -9,7 +9,13 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import checked_choice, checked_integer
-from rockframe.errors import ComponentError, RockframeError, StudyError, collected_warnings, shown
+from rockframe.errors import (
+    ComponentError,
+    RockframeError,
+    StudyError,
+    collected_warnings,
+    short_repr,
+)
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import with_variables
 from rockframe.results.table import head
@@ -56,7 +62,10 @@ class Spread:
 def read_spread(value: object, scene: SweptScene, *, owner: str) -> tuple[Spread, ...]:
     """Read the argument ``spread``."""
     if not isinstance(value, Mapping) or not value:
-        msg = f"{owner}: spread must give distributions by names of parameters, got {shown(value)}"
+        msg = (
+            f"{owner}: spread must give distributions by names of parameters, got "
+            f"{short_repr(value)}"
+        )
         raise ComponentError(msg)
     found: list[Spread] = []
     faults: list[str] = []
@@ -83,7 +92,7 @@ def read_correlation(argument: object, names: Sequence[str], *, owner: str) -> A
             if len(two) != 2 or two[0] == two[1] or not set(two) <= set(names):
                 msg = (
                     f"{owner}: correlation needs pairs of two of {', '.join(names)}, "
-                    f"got {shown(pair)}"
+                    f"got {short_repr(pair)}"
                 )
                 raise ComponentError(msg)
             i, j = (names.index(one) for one in two)
@@ -99,7 +108,7 @@ def read_correlation(argument: object, names: Sequence[str], *, owner: str) -> A
     if not alike or not np.allclose(np.diag(matrix), 1.0, rtol=0.0, atol=1e-12):
         msg = (
             f"{owner}: correlation must be a symmetric matrix of {size} rows with ones on its "
-            f"diagonal, in the order of {', '.join(names)}, got {shown(argument)}"
+            f"diagonal, in the order of {', '.join(names)}, got {short_repr(argument)}"
         )
         raise ComponentError(msg)
     if float(np.linalg.eigvalsh(matrix)[0]) <= 0.0:
@@ -145,7 +154,7 @@ def _read(name: str, value: Any, scene: SweptScene, owner: str) -> Spread:
         known = ", ".join(_KINDS.values())
         msg = (
             f"{owner}: {name} needs {known}, or a distribution of scipy.stats and its unit, "
-            f"got {shown(value)}"
+            f"got {short_repr(value)}"
         )
         raise ComponentError(msg)
     kind, first, second = parts
@@ -154,7 +163,7 @@ def _read(name: str, value: Any, scene: SweptScene, owner: str) -> Spread:
     if kind == "lognormal":
         log = to_ratio(second, owner=owner, name=name, condition=POSITIVE, example="0.2")
         if start <= 0.0:
-            msg = f"{owner}: {name} needs a median above zero, got {shown(first)}"
+            msg = f"{owner}: {name} needs a median above zero, got {short_repr(first)}"
             raise ComponentError(msg)
         return Spread(axis.name, str(axis.unit), stats.lognorm(s=log, scale=start))
     width = float(_axis(scene, name, second, owner).values[0])
@@ -163,7 +172,7 @@ def _read(name: str, value: Any, scene: SweptScene, owner: str) -> Spread:
     if kind == "uniform" and width > start:
         return Spread(axis.name, str(axis.unit), stats.uniform(loc=start, scale=width - start))
     wrong = "standard deviation above zero" if kind == "normal" else "greatest above the least"
-    msg = f"{owner}: {name} needs a {wrong}, got {shown(second)}"
+    msg = f"{owner}: {name} needs a {wrong}, got {short_repr(second)}"
     raise ComponentError(msg)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import checked_list, is_iterable, with_string_keys
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.results.joining import CASE_COUNT
 from rockframe.results.outcome import Generic
@@ -139,11 +139,11 @@ def _sequences(value: object) -> dict[str, list[GroundMotion]]:
             each, owner=_OWNER, name=repr(name), of="GroundMotions"
         )  # fmt: skip
         if not motions or not all(isinstance(one, GroundMotion) for one in motions):
-            msg = f"{_OWNER}: {name!r} needs GroundMotions in their order, got {shown(each)}"
+            msg = f"{_OWNER}: {name!r} needs GroundMotions in their order, got {short_repr(each)}"
             raise ComponentError(msg)
         found[name] = motions
     if not found:
-        msg = f"{_OWNER}: found {shown(value)}; expected sequences of GroundMotions"
+        msg = f"{_OWNER}: found {short_repr(value)}; expected sequences of GroundMotions"
         raise ComponentError(msg)
     return {name: _of_one_step(each) for name, each in found.items()}
 

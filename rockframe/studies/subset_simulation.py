@@ -14,7 +14,7 @@ from rockframe.errors import (
     SolverWarning,
     StudyError,
     collected_warnings,
-    shown,
+    short_repr,
     warn,
 )
 from rockframe.motion import GroundMotion
@@ -220,7 +220,7 @@ def _read_limit(argument: object) -> LimitState:
     if not isinstance(argument, str | int | float | tuple):
         msg = (
             f"{_OWNER}: limit must be one limit state: 'overturning', a peak rotation over the "
-            f"overturning angle, or ('peak_slip', '5 cm') and the like, got {shown(argument)}"
+            f"overturning angle, or ('peak_slip', '5 cm') and the like, got {short_repr(argument)}"
         )
         raise ComponentError(msg)
     state = limit_states([argument], owner=_OWNER, name="limit")[0]

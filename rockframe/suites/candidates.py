@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockframe.arguments import checked_choice, checked_list
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, short_repr
 from rockframe.measures import rotated_spectrum
 from rockframe.measures.common import read_inputs
 from rockframe.measures.response import checked_periods, shortest_of, spectra_of
@@ -130,7 +130,7 @@ def _bounds(items: tuple[RatioLike, RatioLike] | None, owner: str) -> tuple[floa
         )
         if low <= high:
             return low, high
-    msg = f"{owner}: bounds must be the least and the greatest factor, got {shown(items)}"
+    msg = f"{owner}: bounds must be the least and the greatest factor, got {short_repr(items)}"
     raise ComponentError(msg)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import numpy as np
 
 from rockframe.arguments import checked_function
-from rockframe.errors import ComponentError, nearest, shown
+from rockframe.errors import ComponentError, did_you_mean, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import peak_text
 from rockframe.notebook import CELL_STYLE, TABLE_STYLE, html_summary, sparkline
@@ -104,7 +104,7 @@ def check_column(motions: Mapping[str, GroundMotion], name: object, *, owner: st
     """Refuse a column for which no motion has a value."""
     known = dict.fromkeys([*COLUMNS, *(key for one in motions.values() for key in one.metadata)])
     if not isinstance(name, str) or name not in known:
-        requested = f"{shown(name)}{nearest(name, known)}"
+        requested = f"{short_repr(name)}{did_you_mean(name, known)}"
         msg = f"{owner}: there is no column {requested}; known are {', '.join(known)}"
         raise ComponentError(msg)
 
@@ -133,7 +133,7 @@ def _test(name: str, argument: Any) -> Test:
     if isinstance(argument, tuple):
         bounds = cast("tuple[Any, ...]", argument)
         if len(bounds) != 2:
-            msg = f"{_OWNER}: {name} needs a range of two values, got {shown(argument)}"
+            msg = f"{_OWNER}: {name} needs a range of two values, got {short_repr(argument)}"
             raise ComponentError(msg)
         low, high = (None if bound is None else _value(name, bound) for bound in bounds)
         return lambda value: (low is None or low <= value) and (high is None or value <= high)

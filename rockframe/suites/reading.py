@@ -18,7 +18,7 @@ from rockframe.records import (
     read_components,
     request_of,
 )
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.suites.records import RecordedComponent, assign_records, number_in_name
 from rockframe.suites.stored import is_stored_suite, stored_suite
 from rockframe.suites.suite import MotionSuite
@@ -31,7 +31,7 @@ _COMPANIONS: Final = (*_OTHER_MOTIONS, ".pdf", ".xml")
 _LISTED: Final = 3
 
 
-@hinted()
+@with_hints()
 def read_suite(
     path: RecordLike | Iterable[RecordLike],
     *,

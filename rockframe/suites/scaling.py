@@ -13,7 +13,7 @@ from rockframe.motion.quantities import ArrayLike
 from rockframe.results.joining import MOTION
 from rockframe.results.schema import SCHEMA, build_dataset, with_variables, without_fill_values
 from rockframe.signals.arrays import Array
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.suites.candidates import Candidates, Combination, candidates_of
 from rockframe.suites.target import TargetSpectrum
 from rockframe.suites.value import LabelledMotions
@@ -24,7 +24,7 @@ USUAL_BOUNDS: Final = (0.25, 4.0)
 _ROUNDING: Final = 1e-9
 
 
-@hinted()
+@with_hints()
 def scaling_to(
     suite: LabelledMotions,
     target: TargetSpectrum,

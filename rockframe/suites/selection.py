@@ -13,7 +13,7 @@ from rockframe.errors import ComponentError
 from rockframe.motion.quantities import ArrayLike
 from rockframe.results.schema import with_variables
 from rockframe.signals.arrays import Array
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.suites.candidates import Combination, candidates_of
 from rockframe.suites.scaling import USUAL_BOUNDS, scaled_set
 from rockframe.suites.target import TargetSpectrum
@@ -29,7 +29,7 @@ _REFERENCES: Final = (
 )
 
 
-@hinted()
+@with_hints()
 def selection_for(
     suite: LabelledMotions,
     target: TargetSpectrum,

@@ -14,13 +14,20 @@ from rockframe.arguments import (
     is_iterable,
     with_string_keys,
 )
-from rockframe.errors import ComponentError, LabelError, RecordWarning, nearest, shown, warn
+from rockframe.errors import (
+    ComponentError,
+    LabelError,
+    RecordWarning,
+    did_you_mean,
+    short_repr,
+    warn,
+)
 from rockframe.motion import GroundMotion
 from rockframe.motion.pair import HorizontalPair
 from rockframe.results.joining import MOTION
 from rockframe.results.schema import build_dataset
 from rockframe.results.table import table as table_of
-from rockframe.suggestions import SuggestingMeta, proposing
+from rockframe.suggestions import SuggestingMeta, suggests_names
 from rockframe.suites.columns import (
     check_column,
     chosen,
@@ -35,7 +42,7 @@ from rockframe.suites.target import TargetSpectrum
 _EXAMPLE: Final = "rf.read_suite(path) reads files"
 
 
-@proposing
+@suggests_names
 class LabelledMotions(Mapping[str, GroundMotion], metaclass=SuggestingMeta):
     """Labelled motions in an order; immutable. A suite without its measures and targets."""
 
@@ -72,7 +79,10 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=SuggestingMeta):
         try:
             return self._motions[label]
         except KeyError:  # as mappings have it
-            msg = f"no motion of the suite is called {shown(label)}{nearest(label, self._motions)}"
+            msg = (
+                "no motion of the suite is called "
+                f"{short_repr(label)}{did_you_mean(label, self._motions)}"
+            )
             raise LabelError(msg) from None
 
     def __iter__(self) -> Iterator[str]:
@@ -202,7 +212,7 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=SuggestingMeta):
         requested = checked_list(labels, owner=owner, name="labels", of="labels")
         unknown = [one for one in requested if not isinstance(one, str) or one not in self._motions]
         if unknown:
-            found = f"{shown(unknown[0])}{nearest(unknown[0], self._motions)}"
+            found = f"{short_repr(unknown[0])}{did_you_mean(unknown[0], self._motions)}"
             msg = f"{owner}: there is no motion {found}"
             raise ComponentError(msg)
         return self._with({label: self._motions[label] for label in requested})
@@ -343,10 +353,10 @@ def _named(value: object, owner: str) -> dict[str, GroundMotion]:
                 raise ComponentError(msg)
             motions[name] = one
     else:
-        msg = f"{owner}: motions must be several motions, got {shown(value)}; {_EXAMPLE}"
+        msg = f"{owner}: motions must be several motions, got {short_repr(value)}; {_EXAMPLE}"
         raise ComponentError(msg)
     for label, one in motions.items():
         if not isinstance(one, GroundMotion):
-            msg = f"{owner}: {label!r} needs a GroundMotion, got {shown(one)}; {_EXAMPLE}"
+            msg = f"{owner}: {label!r} needs a GroundMotion, got {short_repr(one)}; {_EXAMPLE}"
             raise ComponentError(msg)
     return motions

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
 import numpy as np
 import numpy.typing as npt
 
-from rockframe.errors import ComponentError, UnitsError, nearest, shown
+from rockframe.errors import ComponentError, UnitsError, did_you_mean, short_repr
 from rockframe.units import kinds
 from rockframe.units.kinds import Measure
 from rockframe.units.reading import to_si
@@ -87,7 +87,10 @@ def degrees_text(radians: float, digits: int = _DIGITS) -> str:
 def display_unit(value: object, measure: Measure, *, owner: str, name: str) -> DisplayUnit:
     """Read the unit in which numbers of a kind are shown."""
     if not isinstance(value, str):
-        msg = f"{owner}: {name} must be a unit, such as {str(measure.unit)!r}, got {shown(value)}"
+        msg = (
+            f"{owner}: {name} must be a unit, such as {str(measure.unit)!r}, got "
+            f"{short_repr(value)}"
+        )
         raise ComponentError(msg)
     read = _PINT_SYMBOLS.get((value, measure), value)
     try:
@@ -176,12 +179,12 @@ def display_units(value: object, *, owner: str) -> DisplayUnits:
         return DisplayUnits()
     example = "such as units={'force': 'kN', 'angle': 'deg'}"
     if not isinstance(value, Mapping):
-        msg = f"{owner}: units must be a mapping, {example}, got {shown(value)}"
+        msg = f"{owner}: units must be a mapping, {example}, got {short_repr(value)}"
         raise ComponentError(msg)
     chosen = dict[str, DisplayUnit]()
     for name, unit in cast("Mapping[Any, Any]", value).items():
         if name not in KINDS:
-            found = f"found {shown(name)}{nearest(name, KINDS)}"
+            found = f"found {short_repr(name)}{did_you_mean(name, KINDS)}"
             known = f"known are {', '.join(KINDS)}; times stay in s, and frequencies in Hz"
             msg = f"{owner}: units belong to kinds of quantities, {example}; {found}; {known}"
             raise ComponentError(msg)

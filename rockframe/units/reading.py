@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 import pint
 from pint.facets.plain import PlainQuantity
 
-from rockframe.errors import ComponentError, UnitsError, shown
+from rockframe.errors import ComponentError, UnitsError, short_repr
 from rockframe.units.kinds import Condition, Measure, Unit
 from rockframe.units.spelling import (
     AMBIGUOUS,
@@ -66,7 +66,7 @@ def to_si(
     magnitude = _si_magnitude(argument, measure)
     if not isinstance(magnitude, Real) and getattr(magnitude, "ndim", 1) != 0:
         msg = (
-            f"{owner}: {name} needs {measure.name}, one value only, got {shown(value)}; "
+            f"{owner}: {name} needs {measure.name}, one value only, got {short_repr(value)}; "
             f"{measure.example_of(name)}"
         )
         raise UnitsError(msg)
@@ -148,7 +148,7 @@ def _scaled_number(number: Any, factor: float, unit: str, *, owner: str, name: s
     if isinstance(number, bool) or not isinstance(number, Real):
         msg = (
             f"{owner}: {name} needs numbers only, as their common unit {unit!r} is given; "
-            f"got {shown(number)}"
+            f"got {short_repr(number)}"
         )
         raise UnitsError(msg)
     return _check_value(
@@ -231,7 +231,7 @@ def to_ratio(
         number = magnitude.item() if getattr(magnitude, "ndim", 1) == 0 else magnitude
     if isinstance(number, bool) or not isinstance(number, Real):
         msg = (
-            f"{owner}: {name} needs a pure ratio (a bare number), got {shown(value)}; "
+            f"{owner}: {name} needs a pure ratio (a bare number), got {short_repr(value)}; "
             f"{ratio.example_of(name)}"
         )
         raise UnitsError(msg)
@@ -265,24 +265,24 @@ def _parse(value: object, measure: Measure, *, owner: str, name: str) -> Quantit
         why = foreign_quantity_hint(value) or f"{kind} has no unit{share}"
         if isinstance(value, tuple):
             why = "one number and its unit are needed"
-        msg = f"{needed}, got {shown(value)} ({why}); {example}"
+        msg = f"{needed}, got {short_repr(value)} ({why}); {example}"
         raise UnitsError(msg)
     value = _with_gravity_unit(value, measure)
     for pattern, words in AMBIGUOUS:
         if re.search(pattern, value):
-            msg = f"{needed}, got {shown(value)} ({words}); {example}"
+            msg = f"{needed}, got {short_repr(value)} ({words}); {example}"
             raise UnitsError(msg)
     written = pint_spelling(value)
     if written is None:
         hint = misread_unit_hint(value, measure)
         expected = "a number" if measure.unit == Unit.ONE else "one number and a unit"
-        msg = f"{needed}, got {shown(value)}, which is not {expected}{hint}; {example}"
+        msg = f"{needed}, got {short_repr(value)}, which is not {expected}{hint}; {example}"
         raise UnitsError(msg)
     try:
         return pint.get_application_registry().Quantity(written)
     except Exception as problem:  # pint's parser raises many unrelated types
         hint = misread_unit_hint(value, measure)
-        msg = f"{needed}, got {shown(value)}, whose unit cannot be read{hint}; {example}"
+        msg = f"{needed}, got {short_repr(value)}, whose unit cannot be read{hint}; {example}"
         raise UnitsError(msg) from problem
 
 
@@ -326,7 +326,7 @@ def _check_kind(
     text = str(value)
     hint = related_kind_hint(argument, text, measure) or misread_unit_hint(text, measure)
     msg = (
-        f"{owner}: {name} needs {measure.name}{unit_needed}, got {shown(text)} ({unit})"
+        f"{owner}: {name} needs {measure.name}{unit_needed}, got {short_repr(text)} ({unit})"
         f"{hint}; {measure.example_of(name)}"
     )
     raise UnitsError(msg)
@@ -344,10 +344,10 @@ def _check_value(
     number: float, value: object, condition: Condition | None, *, owner: str, name: str
 ) -> float:
     if not math.isfinite(number):
-        msg = f"{owner}: {name} must be finite, got {shown(str(value))}"
+        msg = f"{owner}: {name} must be finite, got {short_repr(str(value))}"
         raise ComponentError(msg)
     if condition is not None and not condition.holds(number):
         hint = condition.hint(str(value))
-        msg = f"{owner}: {name} must be {condition.words}, got {shown(str(value))}{hint}"
+        msg = f"{owner}: {name} must be {condition.words}, got {short_repr(str(value))}{hint}"
         raise ComponentError(msg)
     return number

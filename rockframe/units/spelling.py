@@ -3,7 +3,7 @@
 import re
 from typing import Any, Final
 
-from rockframe.errors import shown
+from rockframe.errors import short_repr
 from rockframe.units.kinds import (
     BED_STIFFNESS,
     FREQUENCY,
@@ -136,8 +136,10 @@ def _weight_hint(value: Any, text: str, measure: Measure) -> str:
     except Exception:  # offset units such as degC cannot be compared
         return ""
     if over_g:
-        return f" ('g' is the gram there; write {shown(f'{text}_0')})" if is_weight else ""
-    return f" (a force is no mass; divide it by g_0: {shown(f'{text}/g_0')})" if is_weight else ""
+        return f" ('g' is the gram there; write {short_repr(f'{text}_0')})" if is_weight else ""
+    return (
+        f" (a force is no mass; divide it by g_0: {short_repr(f'{text}/g_0')})" if is_weight else ""
+    )
 
 
 def _subgrade_hint(value: Any, measure: Measure) -> str:
@@ -157,7 +159,7 @@ def _period_hint(value: Any, measure: Measure) -> str:
     seconds = float(value.m_as(str(TIME.unit)))
     if not seconds > 0.0:
         return ""
-    return f" (a period; its frequency is {shown(f'{1.0 / seconds:.6g} {FREQUENCY.unit}')})"
+    return f" (a period; its frequency is {short_repr(f'{1.0 / seconds:.6g} {FREQUENCY.unit}')})"
 
 
 def _is_in(value: Any, unit: Unit) -> bool:
@@ -176,7 +178,7 @@ def misread_unit_hint(text: str, measure: Measure) -> str:
             return f" ({words})"
     sign = invalid_character(text)
     if sign is not None:
-        return f" ({shown(sign)} occurs in no number and in no unit)"
+        return f" ({short_repr(sign)} occurs in no number and in no unit)"
     if measure is FREQUENCY:
         return " (a cyclic frequency in Hz is the angular one in rad/s divided by 2 pi)"
     return ""

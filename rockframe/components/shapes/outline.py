@@ -21,7 +21,7 @@ from rockframe.components.shapes.standing import (
 )
 from rockframe.errors import ComponentError
 from rockframe.signals.arrays import Array
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.units import DENSITY, LENGTH, MASS, POSITIVE, THICKNESS, Measure, QuantityLike, to_si
 from rockframe.units.display import degrees_text
 
@@ -177,7 +177,7 @@ def _corner_text(corner: OutlineCorner) -> str:
     return f"{corner.words} ({corner.x:.6g} m, {corner.y:.6g} m)"
 
 
-@hinted()
+@with_hints()
 def from_outline(
     cls: type[ComponentType],
     points: PointsLike,
@@ -253,7 +253,7 @@ def from_outline(
     )
 
 
-@hinted()
+@with_hints()
 def cylinder(
     cls: type[ComponentType],
     *,

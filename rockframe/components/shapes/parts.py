@@ -18,8 +18,8 @@ from rockframe.components.shapes.standing import (
     read_point,
     shaped_body,
 )
-from rockframe.errors import ComponentError, shown
-from rockframe.suggestions import hinted
+from rockframe.errors import ComponentError, short_repr
+from rockframe.suggestions import with_hints
 from rockframe.units import (
     INERTIA,
     LENGTH,
@@ -85,13 +85,14 @@ def read_part(name: str, arguments: Mapping[str, Any], owner: str) -> PlacedPart
     if kind is None:
         msg = (
             f"{place} needs width and height, an outline, a body, or its mass alone; got "
-            f"{', '.join(map(shown, arguments)) or 'nothing'}"
+            f"{', '.join(map(short_repr, arguments)) or 'nothing'}"
         )
         raise ComponentError(msg)
     foreign = [word for word in values if word not in _KINDS[kind]]
     if foreign:
         msg = (
-            f"{place} has {', '.join(map(shown, foreign))}, which a part with {shown(kind)} does "
+            f"{place} has {', '.join(map(short_repr, foreign))}, which a part with "
+            f"{short_repr(kind)} does "
             f"not take; expected some of {', '.join(_KINDS[kind])}"
         )
         raise ComponentError(msg)
@@ -129,7 +130,7 @@ def _outline(
 def _body(name: str, values: Mapping[str, Any], at: tuple[float, float], owner: str) -> PlacedPart:
     si = getattr(values["body"], "si", None)
     if not hasattr(si, "centre_height"):
-        msg = f"{owner} needs a Block as its body, got {shown(values['body'])}"
+        msg = f"{owner} needs a Block as its body, got {short_repr(values['body'])}"
         raise ComponentError(msg)
     block: Block = values["body"]
     (x, y), si = at, block.si
@@ -190,11 +191,11 @@ def _read(value: object, owner: str) -> list[PlacedPart]:
     example = "{'case': {'width': '0.8 m', 'height': '1.9 m', 'mass': '60 kg'}, ...}"
     if not isinstance(value, Mapping) or not value:
         msg = f"{owner}: parts needs a mapping from names to parts, such as {example}; got "
-        raise ComponentError(msg + shown(cast("object", value)))
+        raise ComponentError(msg + short_repr(cast("object", value)))
     parts = cast("Mapping[object, object]", value)
     for name, part in parts.items():
         if not isinstance(part, Mapping):
-            msg = f"{owner}: part {name!r} needs a mapping, as in {example}; got {shown(part)}"
+            msg = f"{owner}: part {name!r} needs a mapping, as in {example}; got {short_repr(part)}"
             raise ComponentError(msg)
     return [
         read_part(str(name), cast("Mapping[str, Any]", part), owner) for name, part in parts.items()
@@ -237,7 +238,7 @@ def _given_base(
 ) -> BaseSegment:
     left, right = read_point(base, owner=owner, name="base")
     if left >= right:
-        msg = f"{owner}: base needs the left end, then the right end, got {shown(base)}"
+        msg = f"{owner}: base needs the left end, then the right end, got {short_repr(base)}"
         raise ComponentError(msg)
     for x, part in on_ground.items():
         if not left - slack <= x <= right + slack:
@@ -249,7 +250,7 @@ def _given_base(
     return BaseSegment(left, right, 0.0)
 
 
-@hinted()
+@with_hints()
 def from_parts(
     cls: type[ComponentType], parts: Mapping[str, Part], *, base: PointLike | None = None
 ) -> ComponentType:

@@ -17,7 +17,7 @@ from rockframe.errors import (
     ModelWarning,
     UnitsError,
     collected_warnings,
-    shown,
+    short_repr,
     warn,
 )
 from rockframe.signals.arrays import Array
@@ -90,14 +90,14 @@ def read_points(value: object, *, owner: str, name: str) -> Array:
         factor = to_si(type(whole)(1.0, whole.units), LENGTH, owner=owner, name=name)
         return _point_array(whole.magnitude, factor, message)
     if isinstance(value, str | Mapping) or not is_iterable(value):
-        msg = f"{message}; got {shown(value)}"
+        msg = f"{message}; got {short_repr(value)}"
         raise ComponentError(msg)
     each: list[Any] = list(value)
     if len(each) == 2 and isinstance(each[1], str) and not isinstance(each[0], str):
         check_attached_unit(each[0], each[1], owner=owner, name=name)
         return _point_array(each[0], to_si(f"1 {each[1]}", LENGTH, owner=owner, name=name), message)
     if isinstance(value, np.ndarray) or _is_bare(each):
-        msg = f"{message}; got {shown(value)}, bare numbers"
+        msg = f"{message}; got {short_repr(value)}, bare numbers"
         raise UnitsError(msg)
     pairs = [read_point(one, owner=owner, name=f"{name}[{k}]") for k, one in enumerate(each)]
     return np.array(pairs, dtype=np.float64).reshape(-1, 2)
@@ -117,7 +117,10 @@ def read_point(value: object, *, owner: str, name: str) -> tuple[float, float]:
     if is_iterable(value) and not isinstance(value, str | Mapping):
         pair = list(value)
     if len(pair) != 2:
-        msg = f"{owner}: {name} needs two lengths, such as ('0.2 m', '1.5 m'), got {shown(value)}"
+        msg = (
+            f"{owner}: {name} needs two lengths, such as ('0.2 m', '1.5 m'), got "
+            f"{short_repr(value)}"
+        )
         raise ComponentError(msg)
     x, y = (to_si(one, LENGTH, owner=owner, name=f"{name}[{k}]") for k, one in enumerate(pair))
     return x, y
@@ -145,7 +148,7 @@ def _point_array(values: object, factor: float, message: str) -> Array:
     except (ValueError, TypeError):  # rows of different lengths, or not an array
         array = np.array([None])
     if array.dtype.kind not in "fiu" or array.ndim != 2 or array.shape[1] != 2:
-        found = f"shape {array.shape}" if array.dtype.kind in "fiu" else shown(values)
+        found = f"shape {array.shape}" if array.dtype.kind in "fiu" else short_repr(values)
         msg = f"{message}; got {found}"
         raise ComponentError(msg)
     points = np.asarray(array, dtype=np.float64) * factor

@@ -8,10 +8,10 @@ from inspect import signature
 from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
 from rockframe.arguments import checked_integer
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, short_repr
 from rockframe.motion.pulses import impulse_duration
 from rockframe.shared_arguments import with_raises_section
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.units import (
     ACCELERATION,
     ANGLE,
@@ -82,7 +82,7 @@ class ArgumentReader:
         elif isinstance(value, bool):
             self._store(name, value, value, *[name if value else f"not {name}"] * 2)
         else:
-            msg = f"{owner}: {name} must be True or False, got {shown(value)}"
+            msg = f"{owner}: {name} must be True or False, got {short_repr(value)}"
             raise ComponentError(msg)
 
     def _read_quantity(
@@ -118,7 +118,7 @@ def pulse_constructor(
         own = signature(declared)
         declared.__qualname__ = declared.__name__  # as messages name it
         PULSES.append(declared.__name__)
-        checked = hinted()(declared)
+        checked = with_hints()(declared)
 
         @wraps(checked)
         def construct(kind: type[Any], *items: Any, **named: Any) -> Any:

@@ -11,12 +11,19 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import numpy as np
 
 from rockframe.arguments import checked_text
-from rockframe.errors import ComponentError, RecordWarning, UnitsError, nearest, shown, warn
+from rockframe.errors import (
+    ComponentError,
+    RecordWarning,
+    UnitsError,
+    did_you_mean,
+    short_repr,
+    warn,
+)
 from rockframe.motion.quantities import ArrayLike, accelerations_to_si, attached_times
 from rockframe.motion.value import UNNAMED, MotionType
 from rockframe.records import PathLike, RecordLike, read_record, request_of
 from rockframe.signals import Motion
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.units import POSITIVE, TIME_STEP, QuantityLike, to_si
 
 if TYPE_CHECKING:
@@ -29,7 +36,7 @@ _SAME_STEP: Final = 1e-6
 _UNEVEN: Final = 0.01
 
 
-@hinted()
+@with_hints()
 def read(
     kind: type[MotionType],
     path: RecordLike,
@@ -116,7 +123,7 @@ def read(
     )
 
 
-@hinted()
+@with_hints()
 def from_arrays(
     kind: type[MotionType],
     acceleration: ArrayLike,
@@ -208,7 +215,7 @@ def _check_times(times: Array, step: float, *, owner: str, label: str) -> None:
 _PROVENANCE: Final = "provenance.toml"
 
 
-@hinted()
+@with_hints()
 def example(
     kind: type[MotionType],
     name: str = "loma-prieta",
@@ -250,7 +257,7 @@ def example(
     record = records.get(name) if isinstance(cast("object", name), str) else None
     if record is None:
         known = ", ".join(repr(one) for one in records)
-        got = f"{shown(name)}{nearest(name, records)}"
+        got = f"{short_repr(name)}{did_you_mean(name, records)}"
         msg = f"{kind.__name__}.example: name must be one of {known}, got {got}"
         raise ComponentError(msg)
     file = io.BytesIO((folder / record["file"]).read_bytes())

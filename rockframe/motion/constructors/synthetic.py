@@ -16,7 +16,7 @@ from rockframe.motion.stochastic import (
 )
 from rockframe.motion.value import MotionType
 from rockframe.signals import Motion
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.units import (
     DENSITY,
     NOT_NEGATIVE,
@@ -62,7 +62,7 @@ _STEPS: Final = Condition("from 0.0005 s to 0.02 s", lambda value: 0.0005 <= val
 _EXPONENTS: Final = Condition("from 0 to 1", lambda value: 0.0 <= value <= 1.0)
 
 
-@hinted()
+@with_hints()
 def stochastic(
     kind: type[MotionType],
     magnitude: RatioLike,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import numpy as np
 
 from rockframe.arguments import checked_choice
-from rockframe.errors import ComponentError, RecordWarning, nearest, shown, warn
+from rockframe.errors import ComponentError, RecordWarning, did_you_mean, short_repr, warn
 from rockframe.motion.processing.samples import sample_times
 from rockframe.motion.quantities import (
     ArrayLike,
@@ -31,7 +31,7 @@ from rockframe.records import (
     uniform_step,
 )
 from rockframe.signals import Motion
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.units import POSITIVE, TIME_STEP, QuantityLike, to_si
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ _METHOD_NOTES: Final = {
 }
 
 
-@hinted()
+@with_hints()
 def from_times(
     kind: type[MotionType],
     times: ArrayLike,
@@ -160,7 +160,7 @@ def _interpolated(times: Array, values: Array, grid: Array, between: UnevenInter
     return np.asarray(spline(grid), dtype=np.float64)
 
 
-@hinted()
+@with_hints()
 def from_frame(
     kind: type[MotionType],
     frame: Any,
@@ -221,12 +221,12 @@ def from_frame(
     """
     owner = f"{kind.__name__}.from_frame"
     if not (hasattr(frame, "columns") and hasattr(frame, "index") and hasattr(frame, "loc")):
-        msg = f"{owner}: frame needs a pandas DataFrame, got {shown(frame)}"
+        msg = f"{owner}: frame needs a pandas DataFrame, got {short_repr(frame)}"
         raise ComponentError(msg)
     record_unit = argument_unit(unit, owner=owner)
     for what, label in (("component", component), ("vertical", vertical), ("time", time)):
         if label is not None and not isinstance(cast("object", label), Hashable):
-            msg = f"{owner}: {what} must name a column, got {shown(label)}"
+            msg = f"{owner}: {what} must name a column, got {short_repr(label)}"
             raise ComponentError(msg)
     labels = [label for label in frame.columns if label not in (time, vertical)]
     if component is None and len(labels) != 1:
@@ -259,8 +259,8 @@ def from_frame(
 def _column(frame: Any, label: object, owner: str, argument: str) -> Array:
     if label not in frame.columns:
         listed = ", ".join(repr(one) for one in list(frame.columns)[:10])
-        near = nearest(label, map(str, frame.columns))
-        msg = f"{owner}: {argument} {shown(label)} is none of the columns {listed}{near}"
+        near = did_you_mean(label, map(str, frame.columns))
+        msg = f"{owner}: {argument} {short_repr(label)} is none of the columns {listed}{near}"
         raise ComponentError(msg)
     values = np.asarray(frame[label])
     if values.ndim != 1 or values.dtype.kind not in "fiu" or not np.isfinite(values).all():
@@ -284,8 +284,8 @@ def _step(frame: Any, time: str | None, time_step: QuantityLike | None, owner: s
                 msg = f"{owner}: the column {time!r} must hold times, in seconds or as dates"
                 raise ComponentError(msg) from problem
     else:
-        near = nearest(time, map(str, frame.columns))
-        msg = f"{owner}: time {shown(time)} is none of the columns{near}"
+        near = did_you_mean(time, map(str, frame.columns))
+        msg = f"{owner}: time {short_repr(time)} is none of the columns{near}"
         raise ComponentError(msg)
     times = relative_seconds(axis, "s")
     if times is None:
@@ -314,7 +314,7 @@ def _step(frame: Any, time: str | None, time_step: QuantityLike | None, owner: s
 _NEEDED: Final = ("id", "data", "stats")
 
 
-@hinted()
+@with_hints()
 def from_trace(
     kind: type[MotionType],
     trace: Any,
@@ -389,7 +389,8 @@ def _listed(stream: Any, owner: str) -> list[Any]:
     traces: list[Any] = list(getattr(stream, "traces", ()))
     if not traces or not all(hasattr(one, part) for one in traces for part in _NEEDED):
         msg = (
-            f"{owner}: trace needs an ObsPy Trace, or a Stream that holds one, got {shown(stream)}"
+            f"{owner}: trace needs an ObsPy Trace, or a Stream that holds one, got "
+            f"{short_repr(stream)}"
         )
         raise ComponentError(msg)
     return traces

@@ -23,7 +23,7 @@ from rockframe.records import DOWNWARDS, SENSE, UPWARDS
 from rockframe.records import VERTICAL as EITHER
 from rockframe.signals import Motion, Signal
 from rockframe.signals.motion import COEFFICIENTS, VERTICAL
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.units import ANGLE, QuantityLike, to_si
 from rockframe.units.display import degrees_text
 
@@ -34,7 +34,7 @@ _RIGHT_ANGLE_TOLERANCE: Final = 1.0  # degree; agencies round azimuths to whole 
 _ROUNDING: Final = 1e-15
 
 
-@hinted()
+@with_hints()
 def with_vertical(motion: MotionType, other: MotionValue | None) -> MotionType:
     """Add a vertical component: the horizontal component of another motion, positive upwards.
 
@@ -116,7 +116,7 @@ def with_vertical(motion: MotionType, other: MotionValue | None) -> MotionType:
     )
 
 
-@hinted()
+@with_hints()
 def rotated(
     motion: MotionType,
     other: MotionValue,

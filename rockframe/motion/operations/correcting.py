@@ -21,7 +21,7 @@ from rockframe.motion.processing.samples import (
 )
 from rockframe.motion.value import MotionType
 from rockframe.signals.motion import MAXIMUM_SAMPLES
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.units import FREQUENCY, POSITIVE, QuantityLike, to_si
 
 _HIGHEST_ORDER: Final = 12
@@ -35,7 +35,7 @@ class Baseline(StrEnum):
     VELOCITY = "velocity"
 
 
-@hinted()
+@with_hints()
 def filtered(
     motion: MotionType,
     low: QuantityLike | None = None,
@@ -156,7 +156,7 @@ def filtered(
     )
 
 
-@hinted()
+@with_hints()
 def baseline_corrected(
     motion: MotionType, order: int = 1, *, fit: Baseline | str = Baseline.ACCELERATION
 ) -> MotionType:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, Protocol, runtime_checkable
 
 import numpy as np
 
-from rockframe.errors import ComponentError, RecordWarning, shown, warn
+from rockframe.errors import ComponentError, RecordWarning, short_repr, warn
 from rockframe.motion.matching.iteration import (
     MatchingGoal,
     MatchResult,
@@ -21,7 +21,7 @@ from rockframe.motion.operations.derived import derived_motion, dropped_pieces_n
 from rockframe.motion.processing.samples import time_step_for_period, warn_of_coarse_samples
 from rockframe.motion.value import MotionType
 from rockframe.signals.spectra import check_cost
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.units import PERIOD, Condition, QuantityLike, RatioLike, to_ratio, to_si_values
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ class Target(Protocol):
         ...
 
 
-@hinted(damping_ratio="the target has one")
+@with_hints(damping_ratio="the target has one")
 def matched(
     motion: MotionType,
     target: Target,
@@ -177,13 +177,13 @@ def matched(
 
 def _goal(target: object, periods: object, tolerance: RatioLike, owner: str) -> MatchingGoal:
     if not isinstance(target, Target):
-        msg = f"{owner}: target needs a TargetSpectrum, got {shown(target)}; write {_EXAMPLE}"
+        msg = f"{owner}: target needs a TargetSpectrum, got {short_repr(target)}; write {_EXAMPLE}"
         raise ComponentError(msg)
     seconds = to_si_values(periods, PERIOD, owner=owner, name="periods")
     if len(seconds) != 2 or not 0.0 < seconds[0] < seconds[1] < math.inf:
         msg = (
             f"{owner}: periods must be the shortest and the longest, above zero and increasing, "
-            f"for example ('0.1 s', '2 s'), got {shown(periods)}"
+            f"for example ('0.1 s', '2 s'), got {short_repr(periods)}"
         )
         raise ComponentError(msg)
     damping = to_ratio(

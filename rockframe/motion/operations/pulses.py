@@ -20,7 +20,7 @@ from rockframe.motion.velocity_pulse import VelocityPulse
 from rockframe.signals import Motion
 from rockframe.signals.integrals import ground_path
 from rockframe.signals.motion import MAXIMUM_SAMPLES, knots_of
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.units import PERIOD, POSITIVE, TIME, VELOCITY, QuantityLike, to_si
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ LONGEST_PERIOD: Final = "15 s"
 _STEPS_PER_PERIOD: Final = 4.0
 
 
-@hinted()
+@with_hints()
 def velocity_pulse(
     motion: MotionType,
     *,

@@ -20,7 +20,7 @@ from rockframe.signals.spectra import (
     pseudo_spectra,
     spectral_peaks,
 )
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.units import (
     ACCELERATION,
     PERIOD,
@@ -45,7 +45,7 @@ _TARGETS: Final = {
 }
 
 
-@hinted()
+@with_hints()
 def scaled(
     motion: MotionType,
     factor: RatioLike | None = None,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 import numpy as np
 
 from rockframe.arguments import checked_choice, checked_integer, is_iterable
-from rockframe.errors import ComponentError, RecordWarning, shown, warn
+from rockframe.errors import ComponentError, RecordWarning, short_repr, warn
 from rockframe.motion.operations.derived import (
     cleared_vertical_metadata,
     derived_motion,
@@ -30,7 +30,7 @@ from rockframe.motion.value import MotionType
 from rockframe.signals import Motion
 from rockframe.signals.motion import MAXIMUM_SAMPLES
 from rockframe.signals.spectra import DAMPING_RATIO, MAXIMUM_PARTS
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.units import (
     MASS,
     NOT_NEGATIVE,
@@ -163,7 +163,7 @@ def _values(value: object, measure: Measure, owner: str, name: str, *, zero: boo
     values = np.array(to_si_values(value, measure, owner=owner, name=name))
     least = "zero or more" if zero else "greater than zero"
     if values.size == 0 or not ((values >= 0.0) if zero else (values > 0.0)).all():
-        msg = f"{owner}: {name} must be one or more values, each {least}, got {shown(value)}"
+        msg = f"{owner}: {name} must be one or more values, each {least}, got {short_repr(value)}"
         raise ComponentError(msg)
     return values
 
@@ -207,7 +207,7 @@ class VerticalComponent(StrEnum):
     OMITTED = "omitted"
 
 
-@hinted()
+@with_hints()
 def through_storeys(
     motion: MotionType,
     periods: ArrayLike | Iterable[QuantityLike] | QuantityLike | None = None,

@@ -26,7 +26,7 @@ from rockframe.motion.processing.samples import (
 )
 from rockframe.motion.value import MotionType
 from rockframe.signals.motion import MAXIMUM_SAMPLES
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.units import POSITIVE, TIME, TIME_STEP, QuantityLike, to_si
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ _METHOD_NOTES: Final = {
 }
 
 
-@hinted()
+@with_hints()
 def window(
     motion: MotionType,
     start: QuantityLike | None = None,
@@ -138,7 +138,7 @@ def _sub_signal(signal: Signal, first: int, final: int) -> Signal:
     return replace(signal, samples=signal.samples[first : final + 1], polynomials=pieces)
 
 
-@hinted()
+@with_hints()
 def resampled(
     motion: MotionType,
     time_step: QuantityLike,

@@ -12,7 +12,7 @@ from rockframe.arguments import checked_choice
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError
 from rockframe.motion.value import MotionValue
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.writing import FileKind, checked_path, write_file
 
 _TITLE: Final = "PEER FORMAT ACCELERATION FILE, WRITTEN BY ROCKFRAME"
@@ -29,7 +29,7 @@ class WrittenComponent(StrEnum):
     VERTICAL = "vertical"
 
 
-@hinted()
+@with_hints()
 def to_at2(
     motion: MotionValue,
     path: str | os.PathLike[str],

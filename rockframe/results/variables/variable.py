@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from rockframe.suggestions import proposing
+from rockframe.suggestions import suggests_names
 from rockframe.units import Unit
 from rockframe.units.display import unit_suffix
 
@@ -27,7 +27,7 @@ TRUTH: Final = ("false", "true")
 """Meanings of the flags 0 and 1, by which truth values are stored in files."""
 
 
-@proposing
+@suggests_names
 @dataclass(frozen=True)
 class Variable:
     """A row of the table.

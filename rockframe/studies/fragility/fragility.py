@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import checked_choice, checked_list, checked_name, is_iterable
-from rockframe.errors import ComponentError, SchemaError, UnitsError, shown
+from rockframe.errors import ComponentError, SchemaError, UnitsError, short_repr
 from rockframe.results.schema import with_labels, with_variables
 from rockframe.results.variables.analyses import LIMIT_STATE
 from rockframe.simulation.soundness import share_words
@@ -44,7 +44,7 @@ from rockframe.studies.limit_states import (
 from rockframe.studies.lines import SCALE
 from rockframe.studies.sweeps.axes import free_values
 from rockframe.studies.sweeps.motions import MotionsLike
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.units import RatioLike
 
 _OWNER: Final = "fragility"
@@ -58,7 +58,7 @@ _MOST_LEFT_OUT: Final = 80
 """Motions up to which each is left out in turn; with more the sandwich has equal coverage."""
 
 
-@hinted()
+@with_hints()
 def fragility(
     runs: xr.Dataset | dict[str, Any],
     intensity: str | xr.DataArray | Sequence[str | xr.DataArray] = "PGA",
@@ -263,10 +263,10 @@ def _of_counts(
 ) -> xr.Dataset:
     """Fit a capacity to counts: intensities, and how many of how many trials exceeded there."""
     if set(counts) != set(_COLUMNS) or others or not isinstance(measure, str):
-        found = ", ".join(map(shown, [*counts, *others]))
+        found = ", ".join(map(short_repr, [*counts, *others]))
         msg = (
             f"{_OWNER}: counts have {', '.join(map(repr, _COLUMNS))} and go with one name of a "
-            f"measure, without limits, motions and pooled; found {found} and {shown(measure)}"
+            f"measure, without limits, motions and pooled; found {found} and {short_repr(measure)}"
         )
         raise ComponentError(msg)
     intensity, exceeded, trials = (counts[name] for name in _COLUMNS)
@@ -274,7 +274,7 @@ def _of_counts(
     expected = which.attributes()["units"]
     values, unit = free_values(intensity, "intensity", owner=_OWNER, expected=expected)
     if unit != expected:
-        msg = f"{_OWNER}: {which.name} is in {expected}, got {shown(intensity)}"
+        msg = f"{_OWNER}: {which.name} is in {expected}, got {short_repr(intensity)}"
         raise UnitsError(msg)
     over = np.asarray(exceeded, dtype=np.float64)
     count = np.broadcast_to(np.asarray(trials, dtype=np.float64), values.shape)
@@ -285,7 +285,8 @@ def _of_counts(
     if wrong or not whole or not np.array_equal(count, np.round(count)):
         msg = (
             f"{_OWNER}: expected intensities above zero and for each of them a number of "
-            f"exceedances from 0 to that of the trials, got {shown(exceeded)} of {shown(trials)}"
+            f"exceedances from 0 to that of the trials, got {short_repr(exceeded)} of "
+            f"{short_repr(trials)}"
         )
         raise ComponentError(msg)
     means = Means(_bands(bands, Bands.PROFILE, 1), read_level(confidence, owner=_OWNER))
@@ -361,7 +362,7 @@ def _several(value: object) -> list[object]:
         return [value]
     listed = list(value) if is_iterable(value) else []
     if not 1 <= len(listed) <= _MOST_MEASURES:
-        msg = f"{_OWNER}: intensity needs one measure, or two, got {shown(value)}"
+        msg = f"{_OWNER}: intensity needs one measure, or two, got {short_repr(value)}"
         raise ComponentError(msg)
     return listed
 

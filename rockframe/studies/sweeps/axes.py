@@ -13,7 +13,7 @@ import pint
 import xarray as xr
 from numpy.typing import NDArray
 
-from rockframe.errors import ComponentError, UnitsError, shown
+from rockframe.errors import ComponentError, UnitsError, short_repr
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import CASE, MOTION
@@ -132,10 +132,12 @@ def free_values(
     items = _as_python(items_of(value))
     array = np.array(items)
     if array.ndim != 1 or array.dtype.kind not in "ifbU":  # whole numbers beyond int64 are "u"
-        msg = f"{owner}: {name} needs numbers, words or quantities in a row, got {shown(value)}"
+        msg = (
+            f"{owner}: {name} needs numbers, words or quantities in a row, got {short_repr(value)}"
+        )
         raise ComponentError(msg)
     if array.dtype.kind == "U" and not all(isinstance(item, str) for item in items):
-        msg = f"{owner}: {name} needs values of one sort, got {shown(value)}"
+        msg = f"{owner}: {name} needs values of one sort, got {short_repr(value)}"
         raise ComponentError(msg)
     if array.dtype.kind == "i":
         return array.astype(np.int64), str(Unit.ONE)
@@ -180,7 +182,7 @@ def _measure_of(unit: str, name: str, owner: str, expected: str) -> Measure:
             number_of(f"1 {unit}", measure, owner=owner, name=name)
             return measure
     known = ", ".join(str(one) for one in Unit)
-    msg = f"{owner}: {name} has the unit {shown(unit)}; expected that of a quantity in {known}"
+    msg = f"{owner}: {name} has the unit {short_repr(unit)}; expected that of a quantity in {known}"
     raise UnitsError(msg)
 
 

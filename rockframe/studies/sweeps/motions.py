@@ -7,7 +7,7 @@ from typing import Any, Final, TypeAlias, cast
 import numpy as np
 
 from rockframe.arguments import is_iterable, with_string_keys
-from rockframe.errors import ComponentError, StudyError, shown
+from rockframe.errors import ComponentError, StudyError, short_repr
 from rockframe.motion import GroundMotion, HorizontalPair
 from rockframe.motion.description import display_name
 from rockframe.studies.sweeps.axes import OWNER
@@ -86,7 +86,7 @@ def named_motions(value: object) -> dict[str, GroundMotion]:
         named = {"": value}
     wrong = [one for one in named.values() if not isinstance(one, GroundMotion)]
     if wrong or not named:
-        found = shown(wrong[0]) if wrong else "none"
+        found = short_repr(wrong[0]) if wrong else "none"
         msg = f"{OWNER}: motions must be a GroundMotion, or several, got {found}"
         raise ComponentError(msg)
     return named
@@ -127,7 +127,7 @@ def motion_number(wanted: object, names: Sequence[str], *, owner: str) -> int:
             return number
     few = ", ".join(map(repr, names[:_FEW])) + ", ..." * (len(names) > _FEW)
     msg = (
-        f"{owner}: there is no motion {shown(wanted)}; expected a name, or a number from 0 to "
+        f"{owner}: there is no motion {short_repr(wanted)}; expected a name, or a number from 0 to "
         f"{len(names) - 1}; there are {few}"
     )
     raise StudyError(msg)

@@ -11,7 +11,14 @@ from typing import Any, Final, TypeVar, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import RecordWarning, RockframeError, SolverWarning, StudyError, shown, warn
+from rockframe.errors import (
+    RecordWarning,
+    RockframeError,
+    SolverWarning,
+    StudyError,
+    short_repr,
+    warn,
+)
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import GROUPS, SCHEMA
@@ -228,7 +235,7 @@ def _table(cases: object) -> dict[str, object]:
     if hasattr(cases, "to_dict") and hasattr(cases, "columns"):  # a DataFrame
         columns = {name: columns[name] for name in columns.columns}
     if not isinstance(columns, Mapping) or not columns:
-        msg = f"cases must be a DataFrame, or columns by their names, got {shown(cases)}"
+        msg = f"cases must be a DataFrame, or columns by their names, got {short_repr(cases)}"
         raise StudyError(msg)
     table: dict[str, object] = {}
     for head, values in cast("Mapping[Any, Any]", columns).items():
@@ -271,7 +278,7 @@ def _name_fault(name: object) -> str | None:
     if not isinstance(name, str) or not all(part.isidentifier() for part in name.split(".")):
         written = re.sub(r"[^\w.]", "_", name) if isinstance(name, str) else ""
         way = f"; write {written!r} for what is called so" if "." in written else ""
-        return f"{shown(name)} cannot be the name of an axis{way}"
+        return f"{short_repr(name)} cannot be the name of an axis{way}"
     if name in _TAKEN:
         way = "; write 'System.rotation' for the option" if name == "rotation" else ""
         return f"axis {name!r} has the name of a result, or of a dimension of results{way}"

@@ -11,7 +11,7 @@ import numpy as np
 from rockframe.arguments import checked_choice
 from rockframe.components import Component, InitialState, RockingFrame, Stack
 from rockframe.components.parameters import Choice, Count, Declared, Flag, Text
-from rockframe.errors import ModelWarning, StudyError, shown, warn
+from rockframe.errors import ModelWarning, StudyError, short_repr, warn
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import SCHEMA
@@ -270,7 +270,7 @@ class FunctionScene:
         }
         found = self.function(**arguments)
         if not isinstance(found, System):
-            msg = f"{self.name} must return a System, got {shown(found)}"
+            msg = f"{self.name} must return a System, got {short_repr(found)}"
             raise StudyError(msg)
         return found
 
@@ -290,7 +290,10 @@ def scene_of(value: object) -> SweptScene:
         return SystemScene(value.assembly)
     if callable(value) and not isinstance(value, type):
         return FunctionScene(value)
-    msg = f"scene must be a System, or a function of the axes that returns one, got {shown(value)}"
+    msg = (
+        "scene must be a System, or a function of the axes that returns one, got "
+        f"{short_repr(value)}"
+    )
     raise StudyError(msg)
 
 

@@ -14,7 +14,7 @@ import xarray as xr
 from rockframe.arguments import checked_bool, checked_integer, checked_list
 from rockframe.compiled import COMPILED
 from rockframe.components import InitialState
-from rockframe.errors import ModelWarning, SolverWarning, StudyError, shown, warn
+from rockframe.errors import ModelWarning, SolverWarning, StudyError, short_repr, warn
 from rockframe.shared_arguments import with_documented_arguments
 from rockframe.simulation.run import respond
 from rockframe.simulation.system import System
@@ -34,7 +34,7 @@ from rockframe.studies.sweeps.planning import plan_study
 from rockframe.studies.sweeps.store import Store, begin_with
 from rockframe.studies.sweeps.study import Study
 from rockframe.studies.sweeps.words import cases_verdict, not_screened, warn_of_missing_results
-from rockframe.suggestions import hinted
+from rockframe.suggestions import with_hints
 from rockframe.system.options import Overturning, OverturningLike, PointsLike, SweepAccuracyLike
 from rockframe.system.own_base import OwnBase
 from rockframe.system.own_scene import OwnScene
@@ -50,7 +50,7 @@ _LOOK: Final = 1.0
 """Time between two checks of the chunks run by other jobs [s]."""
 
 
-@hinted()
+@with_hints()
 @with_documented_arguments(SweepArguments)
 def sweep(
     scene: System | Callable[..., System],
@@ -158,7 +158,7 @@ def sweep(
     """
     named = axes is None or isinstance(axes, Mapping)  # pyright: ignore[reportUnnecessaryIsInstance]
     if not named:
-        found = f"axes must be a mapping of names to values, got {shown(axes)}"
+        found = f"axes must be a mapping of names to values, got {short_repr(axes)}"
         msg = f"{found}; write for example axes={{'Block.mass': ['1 t', '2 t']}}"
         raise StudyError(msg)
     values = dict(axes or {})
@@ -192,7 +192,7 @@ def sweep(
         return dataset
 
 
-@hinted()
+@with_hints()
 def open_study(path: str | PathLike[str], *, lazy: bool = False) -> xr.Dataset:
     """Read the stored results of a sweep, even while it runs.
 
@@ -401,5 +401,5 @@ def folder_of(path: object, *, owner: str = "") -> Path:
     """Read the argument ``store``, of a function that is named in messages, if there is one."""
     if isinstance(path, PathLike) or (isinstance(path, str) and path):
         return Path(path)  # pyright: ignore[reportUnknownArgumentType]
-    words = f"store must be the path of a folder, got {shown(path)}"
+    words = f"store must be the path of a folder, got {short_repr(path)}"
     raise StudyError(f"{owner}: {words}" if owner else words)
