@@ -32,7 +32,7 @@ _MATCHED_STEP: Final = re.compile(r"scaled by \S+ and matched to ")
 
 
 def display_name(name: str, history: Iterable[str]) -> str:
-    """Return the name of a motion, with its factor before it and its processing behind it."""
+    """Return the name of a motion, preceded by its factor and followed by its processing."""
     steps = list(history)
     factors = [_SCALED_STEP.fullmatch(step) for step in steps]
     factor = math.prod(float(found[1]) for found in factors if found is not None)

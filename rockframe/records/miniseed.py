@@ -142,8 +142,8 @@ def _rate(factor: int, multiplier: int) -> float:
 @contextmanager
 def _collect_obspy_warnings() -> Generator[list[warnings.WarningMessage]]:
     """Collect the warnings of ObsPy about damaged files instead of printing them."""
-    # it raises errors in callbacks of the C library under it, which Python cannot pass on and
-    # prints; what is wrong shows in what comes back
+    # ObsPy raises errors in callbacks of its C library. Python cannot propagate them and prints
+    # them; the returned data show the damage, too
     hook = sys.unraisablehook
     sys.unraisablehook = lambda _: None
     try:

@@ -92,7 +92,7 @@ def _names(source: Source, table: Table, columns: int) -> tuple[list[str], int]:
 
 
 def _names_times(name: str) -> bool:
-    """Tell whether a name says nothing but that there are times below it."""
+    """Tell whether a name is only that of a column of times."""
     plain = _BRACKETED.sub("", name).strip().casefold()
     return plain in ("t", "time") or any(
         unit.casefold() in TIME_UNITS for unit in in_brackets(name)

@@ -157,7 +157,7 @@ def _scaled_number(number: Any, factor: float, unit: str, *, owner: str, name: s
 
 
 def _check_mask(number: Any, *, owner: str, name: str) -> None:
-    """Refuse a masked number, which is zero where it is read."""
+    """Refuse a masked number, whose value would be read as zero."""
     if getattr(number, "ndim", None) == 0 and bool(getattr(number, "mask", False)):
         msg = f"{owner}: {name} has masked values; fill them in first"
         raise ComponentError(msg)
