@@ -182,4 +182,4 @@ def suite_html(suite: "LabelledMotions") -> str:
     left = len(suite) - _SHOWN
     more = f"<div>and {left} more; <code>suite.table</code> has all</div>" if left > 0 else ""
     table = f'<table style="{TABLE_STYLE}">{lines}</table>{more}'
-    return html_summary(type(suite).__name__, rows, more=table)
+    return html_summary(type(suite).__name__, rows, extra=table)
