@@ -45,7 +45,7 @@ def __getattr__(name: str) -> Any:
     if home is None:
         if name.startswith("__"):
             raise AttributeError(name)
-        return import_module(f"{__name__}.old_names").old_name(name, __all__)
+        return import_module(f"{__name__}.deprecated").deprecated_object(name, __all__)
     if home == __name__:
         value = import_module(f"{__name__}.{name}")
     else:

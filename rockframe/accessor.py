@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import xarray as xr
 
 from rockframe.errors import RockframeError
-from rockframe.proposals import proposing
+from rockframe.suggestions import suggests_names
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from rockframe.plot import Player
     from rockframe.simulation.system import System
-    from rockframe.units.shown import UnitsLike
+    from rockframe.units.display import UnitsLike
 
 _SHOWN = (
     "peak_rotation",
@@ -28,7 +28,7 @@ _SHOWN = (
 
 
 @xr.register_dataset_accessor("rockframe")
-@proposing
+@suggests_names
 class RockframeAccessor:
     """Figures, tables and a summary of a result of rockframe, also of one read from a file.
 
@@ -191,8 +191,8 @@ class RockframeAccessor:
         return self.summary
 
     def _repr_html_(self) -> str:
-        from rockframe.notebook import card, curve
-        from rockframe.units.shown import in_degrees
+        from rockframe.notebook import html_summary, sparkline
+        from rockframe.units.display import degrees_text
 
         value, lines = self._dataset, self.summary.splitlines()
         kind = str(value.attrs.get("title", ""))
@@ -203,18 +203,18 @@ class RockframeAccessor:
             rows[name.replace("_", " ")] = words
         for name in ("peak_rotation", "uplift_angle", "overturning_angle"):
             if name in value and value[name].ndim == 0:
-                rows[name.replace("_", " ")] = in_degrees(value[name].item())
+                rows[name.replace("_", " ")] = degrees_text(value[name].item())
         history = value.get("rotation")
         trace = ""
         if history is not None and history.ndim == 1:  # of a case of a sweep, up to its end
-            trace = curve(history.dropna(history.dims[0]).to_numpy().tolist())
-        return card(first, rows, self._drawing(), trace)
+            trace = sparkline(history.dropna(history.dims[0]).to_numpy().tolist())
+        return html_summary(first, rows, self._drawing(), trace)
 
     def _drawing(self) -> str:
         """Draw the scene of a result that stores its system."""
         if "system_json" not in self._dataset.attrs:
             return ""
-        from rockframe.notebook import drawing
+        from rockframe.notebook import shapes_svg
         from rockframe.plot._checks import system_of_run
         from rockframe.system.geometry import geometry_of, scene_polygons
 
@@ -222,4 +222,4 @@ class RockframeAccessor:
             system = system_of_run(self._dataset, "card")
         except RockframeError:  # for example a user's own component that is not registered
             return ""
-        return drawing(scene_polygons(geometry_of(system.assembly)))
+        return shapes_svg(scene_polygons(geometry_of(system.assembly)))

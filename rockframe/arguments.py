@@ -8,102 +8,105 @@ from typing import Any, SupportsIndex, TypeGuard, TypeVar, cast
 
 import xarray as xr
 
-from rockframe.errors import ComponentError, SchemaError, nearest, shown
+from rockframe.errors import ComponentError, SchemaError, did_you_mean, short_repr
 
-Words = TypeVar("Words", bound=StrEnum)
+Option = TypeVar("Option", bound=StrEnum)
 
 
-def by_words(values: Mapping[Any, Any], *, owner: str) -> dict[str, Any]:
+def with_string_keys(values: Mapping[Any, Any], *, owner: str) -> dict[str, Any]:
     """Convert the keys of a mapping, such as numbers, to strings that differ."""
     found = {str(key): value for key, value in values.items()}
     if len(found) < len(values):
         words = [str(key) for key in values]
-        twice = next(word for word in words if words.count(word) > 1)
-        msg = f"{owner}: two entries are called {twice!r}; expected names that differ"
+        repeated = next(word for word in words if words.count(word) > 1)
+        msg = f"{owner}: two entries are called {repeated!r}; expected names that differ"
         raise ComponentError(msg)
     return found
 
 
-def one_of_words(kind: type[Words], value: object, *, owner: str, name: str) -> Words:
+def checked_choice(kind: type[Option], value: object, *, owner: str, name: str) -> Option:
     """Read an argument that is one of a few words."""
     try:
         return kind(str(value))
     except ValueError:
         known = " or ".join(repr(str(one)) for one in kind)
-        near = nearest(value, map(str, kind))
-        msg = f"{owner}: {name} must be {known}, got {shown(value)}{near}"
+        near = did_you_mean(value, map(str, kind))
+        msg = f"{owner}: {name} must be {known}, got {short_repr(value)}{near}"
         raise ComponentError(msg) from None
 
 
-def text(value: object, *, owner: str, name: str) -> str:
+def checked_text(value: object, *, owner: str, name: str) -> str:
     """Read an argument that is a text."""
     if isinstance(value, str):
         return value
-    msg = f"{owner}: {name} must be a text, got {shown(value)}"
+    msg = f"{owner}: {name} must be a text, got {short_repr(value)}"
     raise ComponentError(msg)
 
 
-def one_of_names(value: object, known: Iterable[str], *, owner: str, name: str) -> str:
+def checked_name(value: object, known: Iterable[str], *, owner: str, name: str) -> str:
     """Read an argument that is one of some names."""
     listed = list(known)
     if isinstance(value, str) and value in listed:
         return value
-    near = nearest(value, listed)
-    msg = f"{owner}: {name} must be one of {', '.join(map(repr, listed))}, got {shown(value)}{near}"
+    near = did_you_mean(value, listed)
+    msg = (
+        f"{owner}: {name} must be one of {', '.join(map(repr, listed))}, got "
+        f"{short_repr(value)}{near}"
+    )
     raise ComponentError(msg)
 
 
-def iterates(value: object) -> TypeGuard[Iterable[Any]]:
+def is_iterable(value: object) -> TypeGuard[Iterable[Any]]:
     """Whether a value has elements; arrays and quantities without dimensions only seem to."""
     return isinstance(value, Iterable) and getattr(value, "ndim", 1) != 0
 
 
-def several(value: object, *, owner: str, name: str, of: str) -> list[Any]:
+def checked_list(value: object, *, owner: str, name: str, of: str) -> list[Any]:
     """Read an argument that is a sequence; a single text counts as a sequence of one element."""
     if isinstance(value, str):
         return [value]
-    if iterates(value) and not isinstance(value, Mapping | bytes):
+    if is_iterable(value) and not isinstance(value, Mapping | bytes):
         return list(value)
-    msg = f"{owner}: {name} must be a list of {of}, got {shown(value)}"
+    msg = f"{owner}: {name} must be a list of {of}, got {short_repr(value)}"
     raise ComponentError(msg)
 
 
-def by_names(value: object, *, owner: str, name: str, example: str) -> Mapping[str, Any]:
+def checked_mapping(value: object, *, owner: str, name: str, example: str) -> Mapping[str, Any]:
     """Read an argument that is a mapping with texts as keys."""
     plain = isinstance(value, Mapping) and not isinstance(value, xr.Dataset)
     if plain and all(isinstance(key, str) for key in cast("Mapping[Any, Any]", value)):
         return cast("Mapping[str, Any]", value)
-    msg = f"{owner}: {name} must be a mapping, such as {example}, got {shown(value)}"
+    msg = f"{owner}: {name} must be a mapping, such as {example}, got {short_repr(value)}"
     raise ComponentError(msg)
 
 
-def function_of(value: object, *arguments: str, owner: str, name: str) -> Callable[..., Any]:
+def checked_function(value: object, *arguments: str, owner: str, name: str) -> Callable[..., Any]:
     """Read an argument that is a function of some positional arguments."""
-    wanted = f"a function of {' and '.join(arguments)}"
+    expected = f"a function of {' and '.join(arguments)}"
     if not callable(value):
-        msg = f"{owner}: {name} must be {wanted}, got {shown(value)}"
+        msg = f"{owner}: {name} must be {expected}, got {short_repr(value)}"
         raise ComponentError(msg)
     try:
-        takes = signature(value)
+        parameters = signature(value)
     except ValueError:  # no signature, as of functions of NumPy
         return value
     try:
-        takes.bind(*arguments)
+        parameters.bind(*arguments)
     except TypeError as problem:
-        msg = f"{owner}: {name} must be {wanted}, got {shown(value)}: {problem}"
+        msg = f"{owner}: {name} must be {expected}, got {short_repr(value)}: {problem}"
         raise ComponentError(msg) from None
     return value
 
 
-def truth(value: object, *, owner: str, name: str) -> bool:
+def checked_bool(value: object, *, owner: str, name: str) -> bool:
     """Read an argument that is True or False."""
     if isinstance(value, bool):
         return value
-    msg = f"{owner}: {name} must be True or False, got {shown(value)}"
+    msg = f"{owner}: {name} must be True or False, got {short_repr(value)}"
     raise ComponentError(msg)
 
 
-def whole_number(
+def checked_integer(
     value: object, *, owner: str, name: str, lowest: int, highest: int | None = None
 ) -> int:
     """Read an argument that is a whole number of Python or NumPy."""
@@ -113,8 +116,8 @@ def whole_number(
         number = None
     if number is not None and lowest <= number and (highest is None or number <= highest):
         return number
-    wanted = f", {lowest} or more" if highest is None else f" from {lowest} to {highest}"
-    msg = f"{owner}: {name} must be a whole number{wanted}, got {shown(value)}"
+    limits = f", {lowest} or more" if highest is None else f" from {lowest} to {highest}"
+    msg = f"{owner}: {name} must be a whole number{limits}, got {short_repr(value)}"
     raise ComponentError(msg)
 
 
@@ -123,6 +126,7 @@ def checked_dataset(value: object, *, owner: str) -> xr.Dataset:
     if isinstance(value, xr.Dataset):
         return value
     msg = (
-        f"{owner}: found {shown(value)}; expected a dataset: open a file with xr.open_dataset first"
+        f"{owner}: found {short_repr(value)}; expected a dataset: open a file with xr.open_dataset "
+        "first"
     )
     raise SchemaError(msg)

@@ -15,7 +15,7 @@ from inspect import currentframe
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Final, NoReturn
 
-LONGEST_SHOWN = 100
+MAX_SHOWN_LENGTH = 100
 """A message shows a value up to this number of characters."""
 
 
@@ -29,16 +29,18 @@ class RockframeError(Exception):
         before = (self.__cause__, self.__context__)
         self.__cause__ = self.__context__ = None  # their tracebacks would be shown, too, and first
         try:
-            return shown_by.structured_traceback(type(self), self, _outside(self.__traceback__))
+            return shown_by.structured_traceback(
+                type(self), self, _user_traceback(self.__traceback__)
+            )
         finally:
             self.__context__, self.__cause__ = before[1], before[0]
 
 
-def _outside(trace: TracebackType | None) -> TracebackType | None:
+def _user_traceback(trace: TracebackType | None) -> TracebackType | None:
     """Return a traceback without the frames of rockframe."""
     if trace is None:
         return None
-    rest = _outside(trace.tb_next)
+    rest = _user_traceback(trace.tb_next)
     if str(trace.tb_frame.f_globals.get("__name__", "")).partition(".")[0] == _PACKAGE:
         return rest
     return TracebackType(rest, trace.tb_frame, trace.tb_lasti, trace.tb_lineno)
@@ -186,10 +188,10 @@ class RecordWarning(RockframeWarning):
     """A ground-motion file contradicts itself, or a motion is sampled too coarsely."""
 
 
-def shown(value: object) -> str:
+def short_repr(value: object) -> str:
     """Return a value for a message: its repr if that is short, else a shorter text."""
     text = repr(value)
-    if len(text) <= LONGEST_SHOWN and "\n" not in text:
+    if len(text) <= MAX_SHOWN_LENGTH and "\n" not in text:
         return text
     kind = f"a {type(value).__name__}"
     if hasattr(value, "shape"):
@@ -197,7 +199,7 @@ def shown(value: object) -> str:
     if hasattr(value, "data_vars"):
         return kind
     line = " ".join(text.split())
-    return line if len(line) <= LONGEST_SHOWN else f"{line[: LONGEST_SHOWN - 3]}..."
+    return line if len(line) <= MAX_SHOWN_LENGTH else f"{line[: MAX_SHOWN_LENGTH - 3]}..."
 
 
 _SYMBOLS: Final = {
@@ -221,7 +223,7 @@ _SYMBOLS: Final = {
 out: in papers they are half the width and half the height."""
 
 
-def nearest(value: object, known: Iterable[str]) -> str:
+def did_you_mean(value: object, known: Iterable[str]) -> str:
     """Return question whether a similar word was meant, for the end of a message; or nothing."""
     words = {one.casefold(): one for one in known}
     wanted = str(value).casefold()
@@ -233,7 +235,7 @@ def nearest(value: object, known: Iterable[str]) -> str:
 def unexpected_argument(call: str, name: str, known: Iterable[str]) -> ArgumentError:
     """Return Python's error of an unexpected argument, and propose a similar one."""
     names = list(known)
-    words = f"{call} got an unexpected keyword argument {name!r}{nearest(name, names) or '.'}"
+    words = f"{call} got an unexpected keyword argument {name!r}{did_you_mean(name, names) or '.'}"
     return ArgumentError(f"{words} It takes {', '.join(names) or 'none'}")
 
 
@@ -241,7 +243,7 @@ def unknown_attribute(owner: str, name: str, known: Iterable[str]) -> AccessErro
     """Return Python's error of a missing attribute, and propose a similar one."""
     words = f"{owner} has no attribute {name!r}"
     if not name.startswith("_"):  # programs look up those with an underscore
-        words += nearest(name, (one for one in known if not one.startswith("_")))
+        words += did_you_mean(name, (one for one in known if not one.startswith("_")))
     return AccessError(words, name=name)
 
 

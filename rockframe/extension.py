@@ -34,9 +34,9 @@ from rockframe.dynamics.protocol import (
     Start,
 )
 from rockframe.dynamics.protocol import Equations as System
-from rockframe.proposals import attributes_of
 from rockframe.results.diagnostics import Diagnostic
 from rockframe.results.variables.variable import EVENT, TIME, Variable
+from rockframe.suggestions import module_getattr
 from rockframe.system.bodies import BaseLoad
 from rockframe.system.links import OwnLink
 from rockframe.system.own_base import OwnBase
@@ -120,7 +120,7 @@ __all__ = [
 ]
 
 if not TYPE_CHECKING:  # or no name would be unknown to type checkers
-    __getattr__ = attributes_of(__name__, __all__)
+    __getattr__ = module_getattr(__name__, __all__)
 
 
 def __dir__() -> list[str]:

@@ -8,8 +8,8 @@ from functools import wraps
 from textwrap import fill
 from typing import Any, Final, TypeVar, cast, get_type_hints
 
-from rockframe.errors import ArgumentError, nearest
-from rockframe.proposals import raise_refused
+from rockframe.errors import ArgumentError, did_you_mean
+from rockframe.suggestions import raise_call_error
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -27,84 +27,92 @@ class Argument:
 
     default: object  # value if the argument is left out
     kind: str  # type, as the documentation writes it
-    words: str  # description, with its unit
+    description: str  # description, with its unit
 
 
-def declared_in(kind: type) -> dict[str, Argument]:
+def declared_arguments(kind: type) -> dict[str, Argument]:
     """Return the arguments of a typed dictionary by name."""
     hints = get_type_hints(kind, include_extras=True)
     return {name: hint.__metadata__[0] for name, hint in hints.items()}
 
 
-def documented_by(kind: type) -> Callable[[Function], Function]:
+def with_documented_arguments(kind: type) -> Callable[[Function], Function]:
     """Add the shared arguments to the docstring of a function that takes them by name."""
 
     def decorate(function: Function) -> Function:
         names = inspect.signature(function).parameters
-        function.__doc__ = completed(function.__doc__ or "", names, declared_in(kind))
+        function.__doc__ = completed_docstring(
+            function.__doc__ or "", names, declared_arguments(kind)
+        )
         return function
 
     return decorate
 
 
-def takes(
-    kind: type, *, further: str | None = None, **otherwise: object
+def with_shared_arguments(
+    kind: type, *, extra_into: str | None = None, **defaults: object
 ) -> Callable[[Function], Function]:
     """Make a function take shared arguments, which it declares as ``**run: Unpack[kind]``.
 
-    An argument of any other name goes into the mapping argument `further`, if that is set.
+    An argument of any other name goes into the mapping argument `extra_into`, if that is set.
     """
-    declared = declared_in(kind)
+    declared = declared_arguments(kind)
 
     def decorate(function: Function) -> Function:
         own = inspect.signature(function)
         first = [one for one in own.parameters.values() if one.kind is not one.VAR_KEYWORD]
         shared = [
             inspect.Parameter(
-                name, inspect.Parameter.KEYWORD_ONLY, default=otherwise.get(name, one.default)
+                name, inspect.Parameter.KEYWORD_ONLY, default=defaults.get(name, one.default)
             )
             for name, one in declared.items()
         ]
         whole = own.replace(parameters=[*first, *shared])
-        more = inspect.Parameter(f"more_{further}", inspect.Parameter.VAR_KEYWORD, annotation=Any)
-        shown = whole.replace(parameters=[*first, *shared, *([more] if further else [])])
+        more = inspect.Parameter(
+            f"more_{extra_into}", inspect.Parameter.VAR_KEYWORD, annotation=Any
+        )
+        shown = whole.replace(parameters=[*first, *shared, *([more] if extra_into else [])])
 
         @wraps(function)
         def call(*values: Any, **named: Any) -> Any:
             others = [name for name in named if name not in whole.parameters]
-            if others and further is None:
-                raise ArgumentError(_unknown(function.__qualname__, others[0], whole.parameters))
-            if others and further is not None:
+            if others and extra_into is None:
+                raise ArgumentError(
+                    _unknown_argument(function.__qualname__, others[0], whole.parameters)
+                )
+            if others and extra_into is not None:
                 more_named = {name: named.pop(name) for name in others}
-                mapping = {} if named.get(further) is None else named[further]
+                mapping = {} if named.get(extra_into) is None else named[extra_into]
                 if isinstance(mapping, Mapping):  # the function refuses anything else
-                    named[further] = _together(function.__qualname__, further, mapping, more_named)
+                    named[extra_into] = _merged_arguments(
+                        function.__qualname__, extra_into, mapping, more_named
+                    )
             try:
-                return function(*values, **{**otherwise, **named})
+                return function(*values, **{**defaults, **named})
             except TypeError as problem:
-                raise_refused(problem, whole.parameters)
+                raise_call_error(problem, whole.parameters)
                 raise
 
         cast("Any", call).__signature__ = shown
-        cast("Any", call).hints = {}  # so that `hinted` does not wrap it again
-        call.__doc__ = completed(function.__doc__ or "", shown.parameters, declared)
+        cast("Any", call).hints = {}  # so that `with_hints` does not wrap it again
+        call.__doc__ = completed_docstring(function.__doc__ or "", shown.parameters, declared)
         return cast("Function", call)
 
     return decorate
 
 
-def _together(
-    called: str, further: str, mapping: Mapping[Any, Any], more: Mapping[str, Any]
+def _merged_arguments(
+    function: str, name: str, mapping: Mapping[Any, Any], more: Mapping[str, Any]
 ) -> dict[Any, Any]:
     """Add arguments to those of a mapping; refuse one that is given twice."""
-    twice = [name for name in more if name in mapping]
+    twice = [one for one in more if one in mapping]
     if twice:
-        msg = f"{called}() got {twice[0]!r} twice, also in {further!r}"
+        msg = f"{function}() got {twice[0]!r} twice, also in {name!r}"
         raise ArgumentError(msg)
     return {**mapping, **more}
 
 
-def _unknown(function: str, name: str, known: Iterable[str]) -> str:
+def _unknown_argument(function: str, name: str, known: Iterable[str]) -> str:
     names = list(known)
     # axes are named like parameters, so `width` would be the width of a block
     if f"bracket_{name}" in names:
@@ -122,10 +130,10 @@ def _unknown(function: str, name: str, known: Iterable[str]) -> str:
 
 def suggestion(name: str, known: Iterable[str]) -> str:
     """Ask whether a similar name was meant; a full stop if there is none."""
-    return nearest(name, known) or "."
+    return did_you_mean(name, known) or "."
 
 
-def completed(text: str, names: Iterable[str], declared: Mapping[str, Argument]) -> str:
+def completed_docstring(text: str, names: Iterable[str], declared: Mapping[str, Argument]) -> str:
     """Insert rows for declared arguments into the section on parameters of a docstring."""
     if not text:  # if Python runs without docstrings
         return text
@@ -138,7 +146,7 @@ def completed(text: str, names: Iterable[str], declared: Mapping[str, Argument])
         for name in row.split(" :")[0].split("\n")[0].split(",")
     }
     ordered = dict.fromkeys(
-        rows[name] if name in rows else _row(name, declared[name])
+        rows[name] if name in rows else _parameter_row(name, declared[name])
         for name in names
         if name in rows or name in declared
     )
@@ -146,15 +154,15 @@ def completed(text: str, names: Iterable[str], declared: Mapping[str, Argument])
     return before + "\n".join(ordered) + f"\n\n{after}".rstrip() + "\n"
 
 
-def _row(name: str, one: Argument) -> str:
+def _parameter_row(name: str, argument: Argument) -> str:
     words = fill(
-        one.words, _WIDTH, initial_indent=_INDENT, subsequent_indent=_INDENT,
+        argument.description, _WIDTH, initial_indent=_INDENT, subsequent_indent=_INDENT,
         break_long_words=False, break_on_hyphens=False,
     )  # fmt: skip
-    return f"{name} : {one.kind}\n{words}"
+    return f"{name} : {argument.kind}\n{words}"
 
 
-def with_raises(text: str, raises: str) -> str:
+def with_raises_section(text: str, raises: str) -> str:
     """Insert a section Raises before Notes and Examples, unless there is one."""
     return with_section(text, "Raises", raises, ("See Also", "Notes", "Examples"))
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Self, TypeAlias
 
-from rockframe.errors import ComponentError, FileError, shown
+from rockframe.errors import ComponentError, FileError, short_repr
 
-_MARKED_WITHIN: Final = 65536
+_MARK_SEARCH_LENGTH: Final = 65536
 """Length at both ends of a file within which the mark of rockframe is found [bytes]."""
 
 PathLike: TypeAlias = str | os.PathLike[str]
@@ -22,26 +22,26 @@ Content: TypeAlias = bytes | Callable[[Path], object]
 class FileKind:
     """A kind of file that rockframe writes."""
 
-    words: str  # name of the kind, with an article
-    endings: tuple[str, ...]  # endings of file names, in small letters
+    name: str  # name of the kind, with an article
+    suffixes: tuple[str, ...]  # endings of file names, in small letters
     # whether rockframe wrote an existing file as one of this kind
     is_own: Callable[[Path], bool]
 
     @classmethod
-    def marked(cls, words: str, endings: tuple[str, ...], *marks: str) -> Self:
+    def marked(cls, name: str, suffixes: tuple[str, ...], *marks: str) -> Self:
         """Make a kind whose files contain one of some marks near the beginning or the end."""
 
         def is_own(path: Path) -> bool:
             with path.open("rb") as file:
-                beginning = file.read(_MARKED_WITHIN)
-                file.seek(max(0, path.stat().st_size - _MARKED_WITHIN))
+                beginning = file.read(_MARK_SEARCH_LENGTH)
+                file.seek(max(0, path.stat().st_size - _MARK_SEARCH_LENGTH))
                 end = file.read()
             return any(mark.encode() in beginning or mark.encode() in end for mark in marks)
 
-        return cls(words, endings, is_own)
+        return cls(name, suffixes, is_own)
 
 
-def generator(what: str, version: str = "") -> str:
+def generator_tag(what: str, version: str = "") -> str:
     """Return the HTML tag that names rockframe as the author; without a version, its beginning."""
     begun = f'<meta name="generator" content="{what} by rockframe '
     return f'{begun}{version}">' if version else begun
@@ -52,20 +52,22 @@ def checked_path(
 ) -> Path:
     """Raise an error if a file must not be written; called before the computation."""
     if not isinstance(overwrite, bool):  # pyright: ignore[reportUnnecessaryIsInstance]
-        msg = f"overwrite must be True or False, got {shown(overwrite)}"
+        msg = f"overwrite must be True or False, got {short_repr(overwrite)}"
         raise ComponentError(msg)
     try:
-        named = Path(path).expanduser()
-        place = Path(os.path.realpath(named))
-        fault = _fault_of_place(named, place, kind)
-        if fault is None and os.path.lexists(place):
-            fault = _fault_of_present(place, kind, overwrite, read)
+        requested = Path(path).expanduser()
+        target = Path(os.path.realpath(requested))
+        fault = _path_fault(requested, target, kind)
+        if fault is None and os.path.lexists(target):
+            fault = _overwrite_fault(target, kind, overwrite, read)
     except (TypeError, ValueError, OSError, RuntimeError) as problem:
-        words = f"found {shown(path)}; expected the path of a file that can be written ({problem})"
-        raise FileError(shown(path), words) from problem
+        words = (
+            f"found {short_repr(path)}; expected the path of a file that can be written ({problem})"
+        )
+        raise FileError(short_repr(path), words) from problem
     if fault is not None:
         raise FileError(os.fspath(path), fault)
-    return place
+    return target
 
 
 def write_file(
@@ -77,8 +79,8 @@ def write_file(
     read: Iterable[PathLike] = (),
 ) -> Path:
     """Write a file completely or not at all: under another name, then renamed."""
-    place = checked_path(path, kind, overwrite=overwrite, read=read)
-    part = place.with_name(f".{os.getpid()}.{os.urandom(4).hex()}{Path(path).suffix}")
+    target = checked_path(path, kind, overwrite=overwrite, read=read)
+    part = target.with_name(f".{os.getpid()}.{os.urandom(4).hex()}{Path(path).suffix}")
     try:
         if isinstance(content, bytes):
             part.write_bytes(content)
@@ -86,9 +88,9 @@ def write_file(
             content(part)
         with part.open("rb") as file:
             os.fsync(file.fileno())
-        if place.exists():
-            shutil.copymode(place, part)
-        part.replace(place)
+        if target.exists():
+            shutil.copymode(target, part)
+        part.replace(target)
     except OSError as problem:
         words = f"it cannot be written ({problem.strerror or problem})"
         raise FileError(os.fspath(path), words) from problem
@@ -98,51 +100,51 @@ def write_file(
     return Path(path).expanduser()
 
 
-def _fault_of_place(named: Path, place: Path, kind: FileKind) -> str | None:
+def _path_fault(requested: Path, target: Path, kind: FileKind) -> str | None:
     """Say why a path cannot name such a file: a folder, another ending, or no such folder."""
-    if place.is_dir():
+    if target.is_dir():
         return "this is a folder; name a file in it"
-    if named.suffix.lower() not in kind.endings:
-        endings = " or ".join(kind.endings)
-        found = f"ends in {named.suffix!r}" if named.suffix else "has no ending"
-        printed = named.suffix.lower() == ".pdf" and ".html" in kind.endings
+    if requested.suffix.lower() not in kind.suffixes:
+        suffixes = " or ".join(kind.suffixes)
+        found = f"ends in {requested.suffix!r}" if requested.suffix else "has no ending"
+        printed = requested.suffix.lower() == ".pdf" and ".html" in kind.suffixes
         how = "; a browser prints the page into a PDF" if printed else ""
-        return f"the name {found}; that of {kind.words} ends in {endings}{how}"
-    if not place.parent.is_dir():
-        return f"there is no folder {str(named.parent)!r}"
+        return f"the name {found}; that of {kind.name} ends in {suffixes}{how}"
+    if not target.parent.is_dir():
+        return f"there is no folder {str(requested.parent)!r}"
     return None
 
 
 def check_not_read(path: PathLike, read: Iterable[PathLike]) -> None:
     """Refuse to overwrite an input file, or a file in an input folder."""
-    place = Path(os.path.realpath(Path(path).expanduser()))
-    fault = _fault_of_read(place, read) if os.path.lexists(place) else None
+    target = Path(os.path.realpath(Path(path).expanduser()))
+    fault = _input_fault(target, read) if os.path.lexists(target) else None
     if fault is not None:
         raise FileError(os.fspath(path), fault)
 
 
-def _fault_of_read(place: Path, read: Iterable[PathLike]) -> str | None:
+def _input_fault(target: Path, read: Iterable[PathLike]) -> str | None:
     for one in read:
         source = Path(one).expanduser()
-        if source.is_dir() and source.resolve() in place.parents:
+        if source.is_dir() and source.resolve() in target.parents:
             return f"this file is in the input folder {str(one)!r}; name another one"
-        if source.exists() and source.samefile(place):
+        if source.exists() and source.samefile(target):
             return "this file is an input and is not overwritten; name another one"
     return None
 
 
-def _fault_of_present(
-    place: Path, kind: FileKind, overwrite: bool, read: Iterable[PathLike]
+def _overwrite_fault(
+    target: Path, kind: FileKind, overwrite: bool, read: Iterable[PathLike]
 ) -> str | None:
     """Say why a file is not replaced: it is an input, no file, or not written by rockframe."""
-    fault = _fault_of_read(place, read)
+    fault = _input_fault(target, read)
     if fault is not None:
         return fault
-    if not place.is_file():
+    if not target.is_file():
         return "this is not a regular file; name a regular file or a new one"
-    if not overwrite and not kind.is_own(place):
+    if not overwrite and not kind.is_own(target):
         return (
-            f"this file exists already and is not {kind.words} that rockframe wrote; name "
+            f"this file exists already and is not {kind.name} that rockframe wrote; name "
             "another one, or replace it with --overwrite (in Python overwrite=True)"
         )
     return None

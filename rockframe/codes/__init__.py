@@ -4,13 +4,13 @@ from typing import TYPE_CHECKING
 
 from rockframe.codes.asce import asce_7_22
 from rockframe.codes.circolare import circolare_2019
-from rockframe.proposals import attributes_of
 from rockframe.reports.checks import CheckedLine, CheckedVerdict, CodeCheck
+from rockframe.suggestions import module_getattr
 
 __all__ = ["CheckedLine", "CheckedVerdict", "CodeCheck", "asce_7_22", "circolare_2019"]
 
 if not TYPE_CHECKING:  # or no name would be unknown to type checkers
-    __getattr__ = attributes_of(__name__, __all__)
+    __getattr__ = module_getattr(__name__, __all__)
 
 
 def __dir__() -> list[str]:

@@ -7,9 +7,9 @@ from typing import Final, NamedTuple, Self
 from rockframe.codes.check import peaks_of, read_motions, rocking_block, scene_words
 from rockframe.components import Block
 from rockframe.motion import GroundMotion
-from rockframe.proposals import hinted
 from rockframe.reports.checks import CheckedLine, CheckedVerdict, CodeCheck
 from rockframe.simulation.system import System
+from rockframe.suggestions import with_hints
 from rockframe.units import POSITIVE, QuantityLike, RatioLike, Unit, to_ratio
 
 _OWNER: Final = "asce_7_22"
@@ -21,7 +21,7 @@ _RESISTING: Final = 0.9
 """Share of the weight that counts against tipping."""
 
 
-@hinted()
+@with_hints()
 def asce_7_22(
     block: Block | System,
     floor_motions: GroundMotion | Mapping[str, GroundMotion] | None = None,

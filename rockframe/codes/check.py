@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any, NamedTuple, cast
 
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, short_repr
 from rockframe.measures.common import check_not_empty
 from rockframe.motion import GroundMotion
 from rockframe.simulation.system import System
@@ -20,7 +20,7 @@ def rocking_block(
     With `carries` it may carry loads that are masses, with `slides` it may slide.
     """
     if not isinstance(system, System):
-        msg = f"{owner}: system needs a System, got {shown(system)}"
+        msg = f"{owner}: system needs a System, got {short_repr(system)}"
         raise ComponentError(msg)
     setting = system.setting
     level = system.options.slope.level
@@ -49,13 +49,15 @@ def read_motions(value: object, owner: str) -> dict[str, GroundMotion]:
     """Read one motion, or several by their labels."""
     several = {value.name: value} if isinstance(value, GroundMotion) else value
     if not isinstance(several, Mapping):
-        msg = f"{owner}: expected a GroundMotion or several by their labels, got {shown(value)}"
+        msg = (
+            f"{owner}: expected a GroundMotion or several by their labels, got {short_repr(value)}"
+        )
         raise ComponentError(msg)
     motions = cast("Mapping[str, GroundMotion]", several)
     check_not_empty(motions, owner=owner)
     for label, motion in motions.items():
         if not isinstance(cast("Any", motion), GroundMotion):
-            msg = f"{owner}: {label!r} needs a GroundMotion, got {shown(motion)}"
+            msg = f"{owner}: {label!r} needs a GroundMotion, got {short_repr(motion)}"
             raise ComponentError(msg)
     return {str(label): motion for label, motion in motions.items()}
 

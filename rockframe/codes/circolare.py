@@ -7,15 +7,15 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from rockframe.arguments import one_of_names
+from rockframe.arguments import checked_name
 from rockframe.codes.check import peaks_of, read_motions, rocking_block, scene_words
 from rockframe.components import Load
 from rockframe.errors import ComponentError
 from rockframe.measures import response_spectrum
 from rockframe.motion import GroundMotion
-from rockframe.proposals import hinted
 from rockframe.reports.checks import CheckedLine, CheckedVerdict, CodeCheck
 from rockframe.simulation.system import System
+from rockframe.suggestions import with_hints
 from rockframe.suites import TargetSpectrum
 from rockframe.system.rigid_ground import RigidGroundSetting
 from rockframe.system.sliding_stack import RestrainedSetting
@@ -43,7 +43,7 @@ _SHORTEST: Final = 0.2
 """Shortest period at which the spectra of motions are evaluated [s]."""
 
 
-@hinted()
+@with_hints()
 def circolare_2019(
     system: System,
     demand: TargetSpectrum | GroundMotion | Mapping[str, GroundMotion],
@@ -106,7 +106,7 @@ def circolare_2019(
     factor = to_ratio(
         confidence_factor, owner=_OWNER, name="confidence_factor", condition=_FACTOR, example="1.35"
     )
-    one_of_names(limit_state, (*LIMIT_STATES, SLD), owner=_OWNER, name="limit_state")
+    checked_name(limit_state, (*LIMIT_STATES, SLD), owner=_OWNER, name="limit_state")
     to_si(free_vibration, TIME, owner=_OWNER, name="free_vibration", condition=POSITIVE)
     if (elastic_period is None) == (limit_state == SLD):
         msg = f"{_OWNER}: elastic_period goes with limit_state='SLD', for example '0.2 s'"

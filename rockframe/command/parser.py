@@ -8,7 +8,7 @@ from typing import Any, Final, NoReturn
 from rockframe.command.arguments import EVERYWHERE, Command
 from rockframe.command.commands import COMMANDS
 from rockframe.command.streams import STREAM
-from rockframe.errors import nearest
+from rockframe.errors import did_you_mean
 from rockframe.shared_arguments import suggestion
 from rockframe.version import __version__
 
@@ -91,7 +91,7 @@ def misspelt(typed: Sequence[str]) -> str | None:
     if foreign:
         return _no_option(foreign[0].split("=")[0], None, _options(None))
     if first is not None and first not in known:
-        near = nearest(first, known)
+        near = did_you_mean(first, known)
         listed = ", ".join(known)
         return f"rockframe: invalid choice: {first!r} is no command{near} There are {listed}"
     command = None if first is None else known[first]

@@ -19,7 +19,7 @@ from rockframe.command.files.scenes import Described, read_scene
 from rockframe.command.files.tables import arguments_of
 from rockframe.command.streams import INPUT, STREAM, StandardInput, bar_for, opened
 from rockframe.constants import STANDARD_GRAVITY
-from rockframe.errors import ComponentError, FileError, RecordError, SolverError, shown
+from rockframe.errors import ComponentError, FileError, RecordError, SolverError, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.reports.project import ATTRIBUTE
 from rockframe.results.table import head_of
@@ -165,13 +165,13 @@ def values_of(words: str, option: str, example: str) -> tuple[list[float], str]:
         with_unit = " followed by their unit" if " " in example else " without a unit"
         msg = (
             f"{option}: expected numbers{with_unit}, as from:to:step, such as '{example}', or "
-            f"listed with commas, decimals with a point; got {shown(words)}"
+            f"listed with commas, decimals with a point; got {short_repr(words)}"
         )
         raise ComponentError(msg) from None
     if 0.0 in found:
         msg = (
             f"{option}: expected numbers other than zero, got {', '.join(f'{x:g}' for x in found)} "
-            f"from {shown(words)}; commas separate numbers, decimals have a point, as in 0.5"
+            f"from {short_repr(words)}; commas separate numbers, decimals have a point, as in 0.5"
         )
         raise ComponentError(msg)
     return found, unit
@@ -248,7 +248,7 @@ class Outputs:
         if path is None:
             return
         if str(path) == STREAM:
-            self._answer.hands_on(_bytes_of(content, kind.endings[0]))
+            self._answer.hands_on(_bytes_of(content, kind.suffixes[0]))
             return
         write_file(path, kind, content, **self._given)
         self._answer.wrote(title, path)

@@ -8,7 +8,7 @@ from typing import Any, Final, TypeVar
 
 from rockframe.codes import CodeCheck, asce_7_22, circolare_2019
 from rockframe.command.files.tables import arguments_of, read_columns
-from rockframe.errors import ComponentError, FileError, nearest
+from rockframe.errors import ComponentError, FileError, did_you_mean
 from rockframe.suites import TargetSpectrum
 
 Made = TypeVar("Made")
@@ -54,7 +54,7 @@ def call_of(
     name, *typed = words
     if name not in functions:
         known = ", ".join(functions)
-        msg = f"{option}: there is no {name!r}{nearest(name, functions)}; known are {known}"
+        msg = f"{option}: there is no {name!r}{did_you_mean(name, functions)}; known are {known}"
         raise ComponentError(msg)
     function = functions[name]
     first = tuple(arguments_of(function))[:before]
@@ -63,7 +63,7 @@ def call_of(
     unknown = [one for one in value if one not in known]
     lacking = [one for one, needed in known.items() if needed and one not in value]
     if unknown or lacking:
-        message = f"has no {unknown[0]!r}{nearest(unknown[0], known)}" if unknown else ""
+        message = f"has no {unknown[0]!r}{did_you_mean(unknown[0], known)}" if unknown else ""
         message = message or f"needs {lacking[0]}=..."
         msg = f"{option}: {name} {message}; it takes {', '.join(known)}"
         raise ComponentError(msg)

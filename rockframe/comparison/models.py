@@ -15,10 +15,10 @@ from rockframe.components import (
     TwoSpringSupport,
     WinklerSoil,
 )
-from rockframe.components.block_numbers import squat
+from rockframe.components.block_numbers import squat_body_warnings
 from rockframe.errors import ModelWarning
-from rockframe.proposals import hinted
 from rockframe.simulation.system import System, check_system
+from rockframe.suggestions import with_hints
 from rockframe.system.options import Coupling, Rotation, Sliding
 from rockframe.system.own_base import OwnBase
 
@@ -49,7 +49,7 @@ _LINK_WORDS: Final[dict[type, str]] = {
 """Words for links; links of a user's own are named by their classes."""
 
 
-@hinted()
+@with_hints()
 def model_ladder(system: System) -> dict[str, System]:
     """Return the models of a scene, from the simplest to the scene itself.
 
@@ -92,7 +92,7 @@ def model_ladder(system: System) -> dict[str, System]:
     present = system.parts.signature
     rows = _MODELS[:1] if system.parts.own else _MODELS
     slides = system.setting.slides and not system.parts.own
-    if slides and "stack" not in present and squat(system.parts.block_si, ""):
+    if slides and "stack" not in present and squat_body_warnings(system.parts.block_si, ""):
         rows = ()  # held against sliding, it would not rock
     # a wall prevents the sliding of the model without it
     prevents_sliding = slides or "wall" in present

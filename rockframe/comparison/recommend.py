@@ -6,8 +6,8 @@ from typing import Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import ComponentError, SchemaError, nearest, shown
-from rockframe.proposals import hinted, proposing
+from rockframe.errors import ComponentError, SchemaError, did_you_mean, short_repr
+from rockframe.suggestions import suggests_names, with_hints
 from rockframe.units import POSITIVE, to_ratio
 
 _OWNER: Final = "recommend"
@@ -17,7 +17,7 @@ _NEEDED: Final = ("run_time", "verdict_agrees", "model", "accuracy")
 _ERRORS: Final = {"peak_error": "the peak rotation", "history_error": "the rotation along time"}
 
 
-@proposing
+@suggests_names
 @dataclass(frozen=True)
 class Recommendation:
     """The cheapest model and accuracy that meet a tolerance; ``str`` gives it as a sentence.
@@ -48,7 +48,7 @@ class Recommendation:
         return self.sentence
 
 
-@hinted()
+@with_hints()
 def recommend(
     dataset: xr.Dataset, tolerance: float = 0.01, *, error: str = "peak_error"
 ) -> Recommendation:
@@ -88,14 +88,14 @@ def recommend(
     limit = to_ratio(tolerance, owner=_OWNER, name="tolerance", condition=POSITIVE)
     if limit > 1.0:
         msg = (
-            f"{_OWNER}: tolerance must be at most 1, the whole peak, got {shown(tolerance)}; "
+            f"{_OWNER}: tolerance must be at most 1, the whole peak, got {short_repr(tolerance)}; "
             f"for {_plain_number(limit, 3)} % write {_plain_number(0.01 * limit, 3)}"
         )
         raise ComponentError(msg)
     dataset = _check_comparison(dataset)
     if not isinstance(cast("object", error), str) or error not in _ERRORS:
-        known, near = " or ".join(map(repr, _ERRORS)), nearest(error, _ERRORS)
-        msg = f"{_OWNER}: error must be {known}, got {shown(error)}{near}"
+        known, near = " or ".join(map(repr, _ERRORS)), did_you_mean(error, _ERRORS)
+        msg = f"{_OWNER}: error must be {known}, got {short_repr(error)}{near}"
         raise SchemaError(msg)
     missing = [name for name in (error, *_NEEDED) if name not in dataset]
     if missing:
@@ -136,7 +136,7 @@ def _check_comparison(value: object) -> xr.Dataset:
     if isinstance(value, xr.Dataset):
         return value
     msg = (
-        f"{_OWNER}: found {shown(value)}; expected a comparison of models, "
+        f"{_OWNER}: found {short_repr(value)}; expected a comparison of models, "
         "as rockframe.tradeoff(system, motion) gives it"
     )
     raise SchemaError(msg)

@@ -10,14 +10,14 @@ from typing import Any, Final, TypeAlias, Unpack
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import several, whole_number
+from rockframe.arguments import checked_integer, checked_list
 from rockframe.comparison.models import model_ladder
 from rockframe.comparison.recommend import recommend
-from rockframe.errors import ComponentError, ModelWarning, SolverWarning, nearest, shown
+from rockframe.errors import ComponentError, ModelWarning, SolverWarning, did_you_mean, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import MIN_REPORTED_SLIP, PEAK_SLIPS, Generic, verdict_of
 from rockframe.results.schema import build_dataset
-from rockframe.shared_arguments import takes
+from rockframe.shared_arguments import with_shared_arguments
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.provenance import motion_attributes
 from rockframe.simulation.run import compute_response, run
@@ -104,7 +104,7 @@ _COMPILE_TIMEOUT: Final = 60.0
 """Longest wait for machine code before a model is timed [s]."""
 
 
-@takes(ComparedArguments)
+@with_shared_arguments(ComparedArguments)
 def tradeoff(
     system: System,
     motion: GroundMotion | None = None,
@@ -172,15 +172,15 @@ def tradeoff(
     [[True, True]]
     """
     check_system(system, _OWNER)
-    repeats = whole_number(repeats, owner=_OWNER, name="repeats", lowest=1, highest=_MAX_REPEATS)
+    repeats = checked_integer(repeats, owner=_OWNER, name="repeats", lowest=1, highest=_MAX_REPEATS)
     models_of_scene = model_ladder(system)
     chosen = _select_models(models_of_scene, models)
     is_single = isinstance(accuracies, str | float | int | Accuracy)
-    entries: list[Any] = [accuracies] if is_single else several(
+    entries: list[Any] = [accuracies] if is_single else checked_list(
         accuracies, owner=_OWNER, name="accuracies", of="accuracies"
     )  # fmt: skip
     if not entries:
-        msg = f"{_OWNER}: accuracies must be one or more, got {shown(accuracies)}"
+        msg = f"{_OWNER}: accuracies must be one or more, got {short_repr(accuracies)}"
         raise ComponentError(msg)
     settings = {_label(accuracy): accuracy_of(accuracy, owner=_OWNER) for accuracy in entries}
     record = system.motion if motion is None else motion
@@ -272,12 +272,12 @@ def _time_of_run(scene: System, plan: Plan) -> float:
 def _select_models(known: dict[str, System], models: object) -> dict[str, System]:
     if models is None:
         return known
-    requested = several(models, owner=_OWNER, name="models", of="models")
+    requested = checked_list(models, owner=_OWNER, name="models", of="models")
     unknown = [name for name in requested if not isinstance(name, str) or name not in known]
     if unknown or not requested:
         names = ", ".join(repr(name) for name in known)
-        near = nearest(unknown[0], known) if unknown else ""
-        msg = f"{_OWNER}: models must be some of {names}, got {shown(requested)}{near}"
+        near = did_you_mean(unknown[0], known) if unknown else ""
+        msg = f"{_OWNER}: models must be some of {names}, got {short_repr(requested)}{near}"
         raise ComponentError(msg)
     return {name: known[name] for name in requested}
 

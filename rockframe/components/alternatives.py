@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from rockframe.errors import ComponentError
-from rockframe.proposals import hinted
+from rockframe.suggestions import with_hints
 
 
 @lru_cache
@@ -36,7 +36,7 @@ class OneOf:
     ways: tuple[tuple[str, ...], ...]
     required: bool
 
-    @hinted()
+    @with_hints()
     def __init__(self, *ways: str | tuple[str, ...], required: bool = True) -> None:
         split = tuple((way,) if isinstance(way, str) else way for way in ways)
         object.__setattr__(self, "ways", split)

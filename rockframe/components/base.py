@@ -7,7 +7,8 @@ from inspect import Signature, cleandoc
 from textwrap import fill
 from typing import Any, ClassVar, Final, Self
 
-from rockframe.arguments import by_names, several
+from rockframe.arguments import checked_list, checked_mapping
+from rockframe.case_arrays import CaseArray, isfinite
 from rockframe.components.alternatives import OneOf
 from rockframe.components.parameters import DERIVED, REQUIRED, Declared, SIValues
 from rockframe.components.registry import register_class
@@ -15,14 +16,13 @@ from rockframe.errors import (
     ArgumentError,
     ComponentError,
     ModelWarning,
-    nearest,
-    shown,
+    did_you_mean,
+    short_repr,
     unexpected_argument,
     warn,
 )
-from rockframe.many import Many, isfinite
-from rockframe.notebook import Polygon, arguments_in_words, card, drawing
-from rockframe.proposals import Immutable, proposing
+from rockframe.notebook import Polygon, html_summary, readable_arguments, shapes_svg
+from rockframe.suggestions import Immutable, suggests_names
 from rockframe.units import to_ratio
 
 _SECTION: Final = re.compile(r"^\w[\w ]*\n-{3,}$", re.MULTILINE)
@@ -30,9 +30,9 @@ _WIDTH: Final = 79
 _INDENT: Final = "    "
 
 
-def with_parameters(text: str, declared: Iterable[Declared[Any, Any]]) -> str:
+def with_parameters_section(text: str, declared: Iterable[Declared[Any, Any]]) -> str:
     """Insert the section "Parameters" of a numpydoc docstring."""
-    rows = [_row(parameter) for parameter in declared]
+    rows = [_parameter_row(parameter) for parameter in declared]
     clean = cleandoc(text)
     found = _SECTION.search(clean)
     if not rows or (found and found[0].startswith("Parameters\n")):
@@ -42,7 +42,7 @@ def with_parameters(text: str, declared: Iterable[Declared[Any, Any]]) -> str:
     return f"{clean[:place].rstrip()}\n\n{section}\n\n{clean[place:]}".rstrip() + "\n"
 
 
-def _row(parameter: Declared[Any, Any]) -> str:
+def _parameter_row(parameter: Declared[Any, Any]) -> str:
     optional = "" if parameter.default is REQUIRED else ", optional"
     unit = f"[{parameter.unit}]"
     whole = parameter.words.replace(unit, unit.replace(" ", "~"))  # not broken between lines
@@ -51,7 +51,7 @@ def _row(parameter: Declared[Any, Any]) -> str:
     return f"{parameter.name} : {parameter.written_as}{optional}\n{words}"
 
 
-@proposing
+@suggests_names
 class Component(Immutable):
     """An immutable value object with the parameters that its class declares.
 
@@ -104,13 +104,13 @@ class Component(Immutable):
         cls._declared = {**cls._declared, **own}
         if own and "__init__" not in vars(cls):
             cls.__init__ = _constructor(cls)
-        proposing(cls)
+        suggests_names(cls)
         if cls.__doc__ is not None:
-            cls.__doc__ = with_parameters(cls.__doc__, cls._declared.values())
+            cls.__doc__ = with_parameters_section(cls.__doc__, cls._declared.values())
         register_class(cls)
 
     def __init__(self, **values: object) -> None:
-        self._fill(values)
+        self._set_arguments(values)
         self._warn()
 
     def _warn(self) -> None:
@@ -127,14 +127,16 @@ class Component(Immutable):
         """
         return [f"{type(self).__name__}: {words}" for words in self._cautions()]
 
-    def _fill(self, values: Mapping[str, object]) -> None:
+    def _set_arguments(self, values: Mapping[str, object]) -> None:
         """Check and store the arguments of the constructor."""
-        every = _every_argument(type(self), values)
-        owner = self._owner(every)
-        self._check(every, owner)
-        self._hold({name: one.accept(every[name], owner) for name, one in self._declared.items()})
+        arguments = _with_defaults(type(self), values)
+        owner = self._owner(arguments)
+        self._check(arguments, owner)
+        self._set_values(
+            {name: one.accept(arguments[name], owner) for name, one in self._declared.items()}
+        )
 
-    def _hold(self, values: Mapping[str, object]) -> None:
+    def _set_values(self, values: Mapping[str, object]) -> None:
         """Store values in SI units, and the numbers derived from them."""
         items = SIValues(**values)
         object.__setattr__(self, "given", items)
@@ -191,8 +193,8 @@ class Component(Immutable):
 
     def _repr_html_(self) -> str:
         shapes = self._shapes()
-        drawn = drawing(shapes) if shapes else ""
-        return card(type(self).__name__, arguments_in_words(self._arguments()), drawn)
+        svg = shapes_svg(shapes) if shapes else ""
+        return html_summary(type(self).__name__, readable_arguments(self._arguments()), svg)
 
     def __reduce__(self) -> tuple[object, ...]:
         return (type(self).from_dict, (self._arguments(),))
@@ -228,13 +230,13 @@ class Component(Immutable):
             As the constructor.
         """
         part = object.__new__(cls)
-        part._fill(cls._described(arguments))
+        part._set_arguments(cls._arguments_from(arguments))
         return part
 
     @classmethod
-    def _described(cls, description: Mapping[str, float | str]) -> dict[str, Any]:
+    def _arguments_from(cls, description: Mapping[str, float | str]) -> dict[str, Any]:
         """Return the arguments in a description; refuse one of another class."""
-        description = by_names(
+        description = checked_mapping(
             description,
             owner=f"{cls.__name__}.from_dict",
             name="description",
@@ -244,7 +246,7 @@ class Component(Immutable):
         if kind != cls.__name__:
             msg = (
                 f"{cls.__name__}.from_dict: expected a {cls.__name__}, got the description of a "
-                f"component of type {shown(kind)}; component_from_dict builds any"
+                f"component of type {short_repr(kind)}; component_from_dict builds any"
             )
             raise ComponentError(msg)
         return {name: value for name, value in description.items() if name != "type"}
@@ -267,7 +269,7 @@ class Component(Immutable):
         TypeError, UnitsError, ComponentError
             As the constructor.
         """
-        return type(self)(**replaced(self._arguments(), changes, self.alternatives))
+        return type(self)(**changed_arguments(self._arguments(), changes, self.alternatives))
 
     @classmethod
     def declared(cls) -> Mapping[str, Declared[Any, Any]]:
@@ -318,7 +320,7 @@ class Component(Immutable):
         tuple of str
             Names of parameters; empty for most classes.
         """
-        for name in several(changed, owner=type(self).__name__, name="changed", of="names"):
+        for name in checked_list(changed, owner=type(self).__name__, name="changed", of="names"):
             self._check_name(name, self.varied() or self.parameters())
         return ()
 
@@ -342,25 +344,27 @@ class Component(Immutable):
         """
         example = "{'width': 0.8}"
         kind = type(self).__name__
-        values = by_names(values, owner=f"{kind}.with_si", name="values", example=example)
+        values = checked_mapping(values, owner=f"{kind}.with_si", name="values", example=example)
         if not values:
             return self
         for name in values:
             self._check_name(name, self._declared)
-        gone = dict.fromkeys(name for each in self.alternatives for name in each.displaced(values))
-        changed = {**vars(self.given), **gone, **values}
+        removed = dict.fromkeys(
+            name for each in self.alternatives for name in each.displaced(values)
+        )
+        changed = {**vars(self.given), **removed, **values}
         owner = self._owner(changed)
         for name, value in values.items():
             one = self._declared[name]
             holds: Any = isfinite if one.condition is None else one.condition.holds
-            if not isinstance(value, float | Many) or not holds(value):
+            if not isinstance(value, float | CaseArray) or not holds(value):
                 # raises the error for a wrong value
                 plain = isinstance(value, str) or one.measure is None
                 written = value if plain else one.write(value)
                 changed[name] = one.read(written, owner)
         part = object.__new__(type(self))
         part._check(changed, owner)
-        part._hold(changed)
+        part._set_values(changed)
         return part
 
     def parameters(self) -> tuple[str, ...]:
@@ -370,7 +374,7 @@ class Component(Immutable):
         -------
         tuple of str
         """
-        return tuple(name for name, value in self._arguments().items() if _number_in(value))
+        return tuple(name for name, value in self._arguments().items() if _leading_number(value))
 
     def with_scaled(self, name: str, factor: float) -> Self:
         """Build a component with one argument multiplied by a factor.
@@ -400,22 +404,22 @@ class Component(Immutable):
         listed = list(known)
         if isinstance(name, str) and name in listed:
             return
-        called, has = f"{shown(name)}{nearest(name, listed)}", ", ".join(listed) or "none"
+        called, has = f"{short_repr(name)}{did_you_mean(name, listed)}", ", ".join(listed) or "none"
         msg = f"{type(self).__name__}: no parameter is called {called} (it has {has})"
         raise ComponentError(msg)
 
 
-def replaced(
+def changed_arguments(
     arguments: Mapping[str, float | str],
     changes: Mapping[str, Any],
     alternatives: tuple[OneOf, ...],
 ) -> dict[str, Any]:
     """Return arguments with changes, without those that the changes replace."""
-    gone = {name for each in alternatives for name in each.displaced(changes)}
-    return {**{name: value for name, value in arguments.items() if name not in gone}, **changes}
+    removed = {name for each in alternatives for name in each.displaced(changes)}
+    return {**{name: value for name, value in arguments.items() if name not in removed}, **changes}
 
 
-def _every_argument(kind: type[Component], values: Mapping[str, object]) -> dict[str, object]:
+def _with_defaults(kind: type[Component], values: Mapping[str, object]) -> dict[str, object]:
     """Add defaults to arguments; refuse unknown and missing ones as Python does."""
     declared = kind._declared  # pyright: ignore[reportPrivateUsage]
     call = f"{kind.__qualname__}.__init__()"
@@ -444,10 +448,10 @@ def _default(one: Declared[Any, Any], required: object) -> object:
 def _constructor(kind: type[Component]) -> Any:
     """Make a constructor with the signature of the declarations."""
 
-    def __init__(self: Component, *strange: object, **values: object) -> None:  # noqa: N807
-        if strange:
+    def __init__(self: Component, *positional: object, **values: object) -> None:  # noqa: N807
+        if positional:
             names = ", ".join(kind._declared)  # pyright: ignore[reportPrivateUsage]
-            call, count = f"{kind.__qualname__}.__init__()", 1 + len(strange)
+            call, count = f"{kind.__qualname__}.__init__()", 1 + len(positional)
             msg = f"{call} takes 1 positional argument but {count} were given. It takes {names}"
             raise ArgumentError(msg)
         Component.__init__(self, **values)
@@ -470,7 +474,7 @@ def _constructor(kind: type[Component]) -> Any:
     return __init__
 
 
-def _number_in(value: float | str) -> float:
+def _leading_number(value: float | str) -> float:
     """Return the number in an argument; zero for a word."""
     if not isinstance(value, str):
         return value

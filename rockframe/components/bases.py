@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import ClassVar, Final, Literal, Self, TypeAlias
 
+from rockframe.case_arrays import hypot
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.components.parameters import (
@@ -13,12 +14,11 @@ from rockframe.components.parameters import (
     Ratio,
     SIValues,
     check_frictions,
-    friction_at_rest,
-    friction_of_slip,
+    kinetic_friction_parameter,
+    static_friction_parameter,
 )
-from rockframe.many import hypot
 from rockframe.notebook import Polygon
-from rockframe.proposals import hinted
+from rockframe.suggestions import with_hints
 from rockframe.units import (
     BED_DAMPING,
     BED_STIFFNESS,
@@ -83,8 +83,8 @@ class RigidGround(Component):
         default=None,
         example="0.9",
     )
-    friction = friction_at_rest("the block")
-    kinetic_friction = friction_of_slip()
+    friction = static_friction_parameter("the block")
+    kinetic_friction = kinetic_friction_parameter()
     impact = Choice(
         Impact.COULOMB,
         doc="Whether a corner slips during its impact against kinetic friction, or is held.",
@@ -173,8 +173,8 @@ class TwoSpringSupport(Component):
         example="0.9",
     )
 
-    friction = friction_at_rest("the block")
-    kinetic_friction = friction_of_slip()
+    friction = static_friction_parameter("the block")
+    kinetic_friction = kinetic_friction_parameter()
 
     def __init__(
         self,
@@ -291,7 +291,7 @@ class Separation(StrEnum):
 SeparationLike: TypeAlias = Separation | Literal["displacement", "pressure"]
 
 
-_BY_DEPTH: Final = (
+_SUBGRADE_HINT: Final = (
     "WinklerSoil.from_subgrade_modulus('20 MN/m^3', depth='4 m', ...) takes it, with the depth of "
     "the base"
 )
@@ -345,12 +345,12 @@ class WinklerSoil(Component):
         "paper; or also where springs and dashpots together would pull.",
     )
 
-    friction = friction_at_rest("what stands on it")
-    kinetic_friction = friction_of_slip()
+    friction = static_friction_parameter("what stands on it")
+    kinetic_friction = kinetic_friction_parameter()
 
     _depth: float | None = None
 
-    @hinted(subgrade_modulus=_BY_DEPTH, modulus=_BY_DEPTH)
+    @with_hints(subgrade_modulus=_SUBGRADE_HINT, modulus=_SUBGRADE_HINT)
     def __init__(
         self,
         *,

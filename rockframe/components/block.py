@@ -3,20 +3,20 @@
 from collections.abc import Collection, Mapping
 from typing import Any, ClassVar, Final, Self, cast
 
-from rockframe.arguments import by_names
+from rockframe.arguments import checked_mapping
+from rockframe.case_arrays import hypot
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.components.block_numbers import (
     BlockSI,
-    check_centre,
+    check_centre_of_mass,
     check_representable,
-    unphysical_inertia,
-    width_by_radius,
+    inertia_warnings,
+    width_from_radius,
 )
 from rockframe.components.parameters import DERIVED, Declared, Parameter, Ratio, SIValues
 from rockframe.components.shapes import outline, parts
-from rockframe.errors import ComponentError, ModelWarning, shown, warn
-from rockframe.many import hypot
+from rockframe.errors import ComponentError, ModelWarning, short_repr, warn
 from rockframe.notebook import Polygon
 from rockframe.units import (
     ANGLE,
@@ -42,15 +42,15 @@ _SIZES: Final = frozenset({"width", "height", "mass"})
 _SIDES: Final = ("width", "height")
 
 
-class _Size:
+class _SizeParameters:
     """Quantities that determine width and height together, as in :meth:`Block.from_size`."""
 
     radius = Parameter(LENGTH, POSITIVE, doc="R0, distance from a corner to the centre of mass.")
     slenderness = Ratio(POSITIVE, doc="Height over width, H/B.", example="4")
 
 
-_BY_SIZE: Final = {
-    name: one for name, one in vars(_Size).items() if isinstance(one, Parameter | Ratio)
+_SIZE_PARAMETERS: Final = {
+    name: one for name, one in vars(_SizeParameters).items() if isinstance(one, Parameter | Ratio)
 }
 
 
@@ -134,7 +134,7 @@ class Block(Component):
         eccentricity: QuantityLike | None = None,
     ) -> None:
         if centre_of_mass is not None:
-            centre_height, eccentricity = _pair(
+            centre_height, eccentricity = _centre_of_mass_arguments(
                 type(self).__name__, centre_of_mass, centre_height, eccentricity
             )
         super().__init__(
@@ -184,23 +184,25 @@ class Block(Component):
         """
         if "centre_of_mass" in changes:
             height, beside = changes.get("centre_height"), changes.get("eccentricity")
-            place = _pair(type(self).__name__, changes.pop("centre_of_mass"), height, beside)
-            changes |= {"centre_height": place[0], "eccentricity": place[1]}
-        made = super().replace(**changes)
-        same = {name for name in _SIZES if getattr(made.si, name) == getattr(self.si, name)}
-        behind = self.left_behind(changes.keys() - same)
-        if behind:
-            left = " and ".join(
-                f"{name}, {getattr(self.si, name):.4g} {self._declared[name].unit}"
-                for name in behind
+            place = _centre_of_mass_arguments(
+                type(self).__name__, changes.pop("centre_of_mass"), height, beside
             )
-            ways = ", and ".join(behind).replace("inertia", "inertia or shape_factor")
+            changes |= {"centre_height": place[0], "eccentricity": place[1]}
+        block = super().replace(**changes)
+        same = {name for name in _SIZES if getattr(block.si, name) == getattr(self.si, name)}
+        unchanged = self.left_behind(changes.keys() - same)
+        if unchanged:
+            values = " and ".join(
+                f"{name}, {getattr(self.si, name):.4g} {self._declared[name].unit}"
+                for name in unchanged
+            )
+            ways = ", and ".join(unchanged).replace("inertia", "inertia or shape_factor")
             msg = (
-                f"{type(self).__name__}.replace: kept from the old size and mass: {left}; give "
+                f"{type(self).__name__}.replace: kept from the old size and mass: {values}; give "
                 f"{ways}, too"
             )
             warn(msg, ModelWarning)
-        return made
+        return block
 
     @classmethod
     def varied(cls) -> Mapping[str, Declared[Any, Any]]:
@@ -215,7 +217,7 @@ class Block(Component):
         >>> set(Block.varied()) - set(Block.declared()) == {"radius", "slenderness"}
         True
         """
-        return {**super().varied(), **_BY_SIZE}
+        return {**super().varied(), **_SIZE_PARAMETERS}
 
     def too_many(self, changed: Collection[str]) -> tuple[str, ...]:
         """Name changed quantities that together overdetermine width and height.
@@ -235,7 +237,7 @@ class Block(Component):
         >>> block.too_many(["radius", "width", "mass"])
         ('radius', 'width')
         """
-        named = [name for name in (*_BY_SIZE, *_SIDES) if name in changed]
+        named = [name for name in (*_SIZE_PARAMETERS, *_SIDES) if name in changed]
         sides = sum(name in _SIDES for name in named)
         twice = sides == 2 and "slenderness" in named
         return tuple(named) if twice or ("radius" in named and sides) else ()
@@ -266,17 +268,21 @@ class Block(Component):
         <Quantity(4.0, 'meter')>
         """
         example = "{'width': 0.8}"
-        values = by_names(values, owner="Block.with_si", name="values", example=example)
-        sizes = {name: values[name] for name in _BY_SIZE if name in values}
+        values = checked_mapping(values, owner="Block.with_si", name="values", example=example)
+        sizes = {name: values[name] for name in _SIZE_PARAMETERS if name in values}
         if not sizes:
             return super().with_si(values)
         for name, value in sizes.items():
             if not POSITIVE.holds(value):
-                _BY_SIZE[name].read(_BY_SIZE[name].write(value), type(self).__name__)
-        others = {name: value for name, value in values.items() if name not in _BY_SIZE}
-        return super().with_si({**others, **self._sides(sizes, others)})
+                _SIZE_PARAMETERS[name].read(
+                    _SIZE_PARAMETERS[name].write(value), type(self).__name__
+                )
+        others = {name: value for name, value in values.items() if name not in _SIZE_PARAMETERS}
+        return super().with_si({**others, **self._width_and_height(sizes, others)})
 
-    def _sides(self, sizes: Mapping[str, Any], others: Mapping[str, Any]) -> dict[str, Any]:
+    def _width_and_height(
+        self, sizes: Mapping[str, Any], others: Mapping[str, Any]
+    ) -> dict[str, Any]:
         """Compute width and height from radius and slenderness, or from a side and slenderness.
 
         The radius is the distance to the centre of mass, whose given height does not change.
@@ -288,7 +294,7 @@ class Block(Component):
             return {"width": others["height"] / ratio}
         radius = sizes.get("radius", self.si.radius)
         centre = others.get("centre_height", self.given.centre_height)
-        width = width_by_radius(type(self).__name__, radius, ratio, centre)
+        width = width_from_radius(type(self).__name__, radius, ratio, centre)
         return {"width": width, "height": ratio * width}
 
     def left_behind(self, changed: Collection[str]) -> tuple[str, ...]:
@@ -316,21 +322,21 @@ class Block(Component):
         super().left_behind(changed)
         if self.given.inertia is None:
             return ()
-        if any(name in changed for name in _BY_SIZE):
+        if any(name in changed for name in _SIZE_PARAMETERS):
             changed = {*changed, *_SIDES}
-        behind: list[str] = []
+        unchanged: list[str] = []
         if _SIZES.intersection(changed) and not {"inertia", "shape_factor"}.intersection(changed):
-            behind.append("inertia")
+            unchanged.append("inertia")
         centred = self.given.centre_height is None or "centre_height" in changed
         if "height" in changed and not centred:
-            behind.append("centre_height")
-        return tuple(behind)
+            unchanged.append("centre_height")
+        return tuple(unchanged)
 
     def _numbers(self, numbers: SIValues) -> BlockSI:
         owner = type(self).__name__
         height = 0.5 * numbers.height if numbers.centre_height is None else numbers.centre_height
-        beside = 0.0 if numbers.eccentricity is None else numbers.eccentricity
-        check_centre(numbers.width, numbers.height, height, beside, owner)
+        eccentricity = 0.0 if numbers.eccentricity is None else numbers.eccentricity
+        check_centre_of_mass(numbers.width, numbers.height, height, eccentricity, owner)
         diagonal = hypot(numbers.width, 2.0 * height)
         mu: float = numbers.shape_factor or SOLID_RECTANGLE_SHAPE_FACTOR
         if numbers.inertia is not None:
@@ -339,17 +345,17 @@ class Block(Component):
             # the inertia of the solid rectangle by default
             whole = hypot(numbers.width, numbers.height)
             mu *= (diagonal / whole) ** 2
-        si = BlockSI(numbers.width, numbers.height, numbers.mass, mu, height, beside)
+        si = BlockSI(numbers.width, numbers.height, numbers.mass, mu, height, eccentricity)
         check_representable(si, owner)
         return si
 
     def _cautions(self) -> list[str]:
-        return [*super()._cautions(), *self._unphysical()]
+        return [*super()._cautions(), *self._inertia_cautions()]
 
-    def _unphysical(self) -> list[str]:
+    def _inertia_cautions(self) -> list[str]:
         """Warn of a given inertia that no body within the rectangle can have."""
         stated = self.given.shape_factor is not None or self.given.inertia is not None
-        return unphysical_inertia(self.si) if stated else []
+        return inertia_warnings(self.si) if stated else []
 
     def _shapes(self) -> list[Polygon]:
         half, si = self.si.half_width, self.si
@@ -441,7 +447,7 @@ class Block(Component):
         ratio = to_ratio(
             slenderness, owner=owner, name="slenderness", condition=POSITIVE, example="4"
         )
-        width = width_by_radius(owner, metres, ratio)
+        width = width_from_radius(owner, metres, ratio)
         return cls(
             width=f"{width!r} {LENGTH.unit}",
             height=f"{width * ratio!r} {LENGTH.unit}",
@@ -482,7 +488,7 @@ class Block(Component):
         return self.si.maximum_restitution
 
 
-def _pair(
+def _centre_of_mass_arguments(
     owner: str, value: object, height: object, eccentricity: object
 ) -> tuple[QuantityLike, QuantityLike]:
     """Read the position of the centre of mass: height above the base, and eccentricity."""
@@ -493,6 +499,6 @@ def _pair(
         return cast("tuple[QuantityLike, QuantityLike]", value)
     msg = (
         f"{owner}: centre_of_mass needs two lengths, the height above the base and the distance "
-        f"to the right of its middle, such as ('0.7 m', '0.05 m'); got {shown(value)}"
+        f"to the right of its middle, such as ('0.7 m', '0.05 m'); got {short_repr(value)}"
     )
     raise ComponentError(msg)

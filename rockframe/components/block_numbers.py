@@ -4,9 +4,9 @@ import math
 from dataclasses import dataclass, field
 from typing import Any, Final
 
+from rockframe.case_arrays import atan2, cos, hypot, sqrt
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError
-from rockframe.many import atan2, cos, hypot, sqrt
 
 _ROUNDING: Final = 1e-9
 _PERCENT: Final = 0.01
@@ -25,8 +25,10 @@ class BodyGeometry:
     radius: float  # R0, distance from an end of the base to the point h above its middle [m]
 
     def __post_init__(self) -> None:
-        b, beside = self.half_width, self.eccentricity
-        vars(self).update(left=b + beside, right=b - beside, radius=hypot(b, self.centre_height))
+        b, eccentricity = self.half_width, self.eccentricity
+        vars(self).update(
+            left=b + eccentricity, right=b - eccentricity, radius=hypot(b, self.centre_height)
+        )
 
     def frequency_at(self, gravity: float) -> float:
         """Angular frequency omega of Eq. (6) at an acceleration of gravity [rad s^-1]."""
@@ -77,10 +79,10 @@ class BlockSI(BodyGeometry):
     @property
     def maximum_restitution(self) -> float:
         """eps_max = (1 + mu cos 2 theta)/(1 + mu), Eq. (4); the lesser of both corners."""
-        return min(greatest_restitutions(self))
+        return min(maximum_restitutions(self))
 
 
-def greatest_restitutions(body: BodyGeometry) -> tuple[float, float]:
+def maximum_restitutions(body: BodyGeometry) -> tuple[float, float]:
     """Return the ratios of the angular velocities after and before impacts, left and right corner.
 
     For a rigid body that goes on rocking about this corner without a bounce,
@@ -95,14 +97,16 @@ def greatest_restitutions(body: BodyGeometry) -> tuple[float, float]:
     return kept / onto_left, kept / onto_right
 
 
-def check_centre(width: float, height: float, above: float, beside: float, owner: str) -> None:
+def check_centre_of_mass(
+    width: float, height: float, centre_height: float, eccentricity: float, owner: str
+) -> None:
     """Refuse a centre of mass that is not above the base, within the height."""
-    if above < height and abs(beside) < 0.5 * width:
+    if centre_height < height and abs(eccentricity) < 0.5 * width:
         return
     msg = (
-        f"{owner}: the centre of mass, {above:.6g} m above the base and {beside:.6g} m to the "
-        f"right of its middle, is not within {height:.6g} m of height and {0.5 * width:.6g} m to "
-        "both sides"
+        f"{owner}: the centre of mass, {centre_height:.6g} m above the base and "
+        f"{eccentricity:.6g} m to the right of its middle, is not within {height:.6g} m of height "
+        f"and {0.5 * width:.6g} m to both sides"
     )
     raise ComponentError(msg)
 
@@ -118,7 +122,7 @@ def check_representable(si: BlockSI, owner: str) -> None:
     raise ComponentError(msg)
 
 
-def squat(si: BlockSI, owner: str) -> list[str]:
+def squat_body_warnings(si: BlockSI, owner: str) -> list[str]:
     """Warn of a body too squat to continue rocking after an impact, Eq. (5)."""
     if si.maximum_restitution > 0.0:
         return []
@@ -130,22 +134,22 @@ def squat(si: BlockSI, owner: str) -> list[str]:
     ]
 
 
-def unphysical_inertia(si: BlockSI) -> list[str]:
+def inertia_warnings(si: BlockSI) -> list[str]:
     """Warn of an inertia that no body within the rectangle can have, :eq:`eq-greatest-inertia`."""
     radius = si.radius  # lengths are divided by it, so that squares do not overflow
-    beside = (si.left / radius) * (si.right / radius)
-    above = (si.centre_height / radius) * ((si.height - si.centre_height) / radius)
-    least = 1.0 / (beside + above)  # with all mass in the corners
-    if si.shape_factor >= (1.0 - _ROUNDING) * least:
+    horizontal = (si.left / radius) * (si.right / radius)
+    vertical = (si.centre_height / radius) * ((si.height - si.centre_height) / radius)
+    least_shape_factor = 1.0 / (horizontal + vertical)  # with all mass in the corners
+    if si.shape_factor >= (1.0 - _ROUNDING) * least_shape_factor:
         return []
-    greatest = si.inertia * (si.shape_factor / least)
+    greatest = si.inertia * (si.shape_factor / least_shape_factor)
     words = (
         f"a shape factor of {si.shape_factor:.4g} is not physical: the moment of inertia about "
         f"the centre of mass is {si.inertia:.4g} kg m^2, that of a body within this width and "
-        f"height {greatest:.4g} kg m^2 or less, and its shape factor {least:.4g} or more; the "
-        "value is used as given"
+        f"height {greatest:.4g} kg m^2 or less, and its shape factor {least_shape_factor:.4g} or "
+        "more; the value is used as given"
     )
-    if _about_a_corner(si):
+    if _is_about_corner(si):
         words += (
             ". It is, to a percent, the inertia of the solid rectangle about a corner, "
             "I_O + m R0^2; `inertia` is I_O, about the centre of mass"
@@ -153,16 +157,18 @@ def unphysical_inertia(si: BlockSI) -> list[str]:
     return [words]
 
 
-def _about_a_corner(si: BlockSI) -> bool:
+def _is_about_corner(si: BlockSI) -> bool:
     """Whether the inertia is that of the solid rectangle about an end of the base."""
     radius = si.radius
     width, height, above = si.width / radius, si.height / radius, si.centre_height / radius
-    own = (width * width + height * height) / 12.0 + above * above
-    ratios = (si.shape_factor * (own + x * x) for x in (si.left / radius, si.right / radius))
+    about_centre = (width * width + height * height) / 12.0 + above * above
+    ratios = (
+        si.shape_factor * (about_centre + x * x) for x in (si.left / radius, si.right / radius)
+    )
     return any(abs(ratio - 1.0) <= _PERCENT for ratio in ratios)
 
 
-def width_by_radius(owner: str, radius: Any, slenderness: Any, centre_height: Any = None) -> Any:
+def width_from_radius(owner: str, radius: Any, slenderness: Any, centre_height: Any = None) -> Any:
     """Return the width [m] of a block by R0 [m] and H/B; `owner` is named in messages.
 
     The centre of mass is at half the height, unless its height above the base is given [m].

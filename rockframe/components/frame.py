@@ -6,17 +6,17 @@ from typing import Any, Final, Self
 
 import xarray as xr
 
-from rockframe.components.base import replaced
+from rockframe.components.base import changed_arguments
 from rockframe.components.block import Block
-from rockframe.components.frame_building import Building, building_of
-from rockframe.components.frame_members import Member, members_table
+from rockframe.components.frame_building import Building, make_building
+from rockframe.components.frame_members import Member, make_members_table
 from rockframe.components.frame_regular import INFILL_THICKNESS, SLAB_THICKNESS, RegularFrame
 from rockframe.components.parameters import DERIVED, Ratio
-from rockframe.errors import ComponentError, SchemaError, shown
+from rockframe.errors import ComponentError, SchemaError, short_repr
 from rockframe.notebook import Polygon
 from rockframe.units import LENGTH, POSITIVE, Quantity, QuantityLike, RatioLike, quantity
 
-_LEAST_SHAPE_FACTOR = 1.0 - 1e-9  # a shape factor derived from an inertia is rounded
+_MIN_SHAPE_FACTOR = 1.0 - 1e-9  # a shape factor derived from an inertia is rounded
 
 
 _CORNERS: Final = ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))
@@ -159,7 +159,7 @@ class FrameEquivalent(Block):
         >>> round(frame.shape_factor, 3), round(frame.space_proportion, 3)
         (2.774, 0.127)
         """
-        frame = cls._of_members(
+        frame = cls._from_arguments(
             members,
             width=width,
             height=height,
@@ -232,16 +232,16 @@ class FrameEquivalent(Block):
         >>> rf.FrameEquivalent.from_dict(frame.to_dict()) == frame
         True
         """
-        values = cls._described(arguments)
+        values = cls._arguments_from(arguments)
         if not {"members", "density"} & set(values):
             return super().from_dict(values)
         if "members" in values:
             try:
                 values["members"] = json.loads(values["members"])
             except (TypeError, ValueError) as problem:
-                msg = f"found members {shown(values['members'])}; expected a list in JSON"
+                msg = f"found members {short_repr(values['members'])}; expected a list in JSON"
                 raise SchemaError(msg) from problem
-        return cls._of_members(**values)
+        return cls._from_arguments(**values)
 
     def replace(self, **changes: Any) -> Self:
         """Build a frame with some parameters changed.
@@ -263,7 +263,9 @@ class FrameEquivalent(Block):
         if self._building is None:
             return super().replace(**changes)
         arguments = self._plain_arguments()
-        return type(self).from_members(**replaced(arguments, changes, RegularFrame.alternatives))
+        return type(self).from_members(
+            **changed_arguments(arguments, changes, RegularFrame.alternatives)
+        )
 
     def parameters(self) -> tuple[str, ...]:
         """Name the numbers of the equivalent block other than zero.
@@ -346,7 +348,7 @@ class FrameEquivalent(Block):
                 "equivalent parameters; use FrameEquivalent.from_members(...)"
             )
             raise ComponentError(msg)
-        return members_table(
+        return make_members_table(
             building.members,
             self.si.height,
             {
@@ -362,13 +364,13 @@ class FrameEquivalent(Block):
         )
 
     @classmethod
-    def _of_members(
-        cls, members: object = None, *, centre_of_mass: object = None, **measures: Any
+    def _from_arguments(
+        cls, members: object = None, *, centre_of_mass: object = None, **dimensions: Any
     ) -> Self:
         owner = f"{cls.__name__}.from_members"
-        building = building_of(members, centre_of_mass, measures, owner)
+        building = make_building(members, centre_of_mass, dimensions, owner)
         frame = object.__new__(cls)
-        frame._fill(building.block_arguments(owner))
+        frame._set_arguments(building.block_arguments(owner))
         object.__setattr__(frame, "_building", building)
         return frame
 
@@ -384,12 +386,12 @@ class FrameEquivalent(Block):
     def _cautions(self) -> list[str]:
         return super()._cautions() if self._building is None else self._building.cautions()
 
-    def _unphysical(self) -> list[str]:
+    def _inertia_cautions(self) -> list[str]:
         si = self.si
         in_the_middle = si.centre_height == 0.5 * si.height and si.eccentricity == 0.0
         if not in_the_middle:
-            return super()._unphysical()
-        if si.shape_factor >= _LEAST_SHAPE_FACTOR:
+            return super()._inertia_cautions()
+        if si.shape_factor >= _MIN_SHAPE_FACTOR:
             return []
         return [
             f"a shape factor of {si.shape_factor:.4g} is not physical: in the plane of "

@@ -11,15 +11,19 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any, Final
 
-from rockframe.arguments import iterates, one_of_words
+from rockframe.arguments import checked_choice, is_iterable
 from rockframe.components.frame_members import Member, MemberSI
 from rockframe.components.frame_regular import INFILL_THICKNESS, SLAB_THICKNESS, RegularFrame
-from rockframe.components.shapes.standing import CENTRED, centre_of_mass, mean_by_mass
-from rockframe.errors import ComponentError, shown
+from rockframe.components.shapes.standing import (
+    MIN_ECCENTRICITY,
+    centre_of_mass,
+    mass_weighted_mean,
+)
+from rockframe.errors import ComponentError, short_repr
 from rockframe.units import INERTIA, LENGTH, MASS, POSITIVE, to_si
 
 _ROUNDING: Final = 1e-9  # relative to the outline
-_FAR: Final = 0.1  # offset of the centre of mass over the outline that causes a warning
+_MAX_OFFSET: Final = 0.1  # offset of the centre of mass over the outline that causes a warning
 _REMEDY: Final = "centre_of_mass='members' uses its real position"
 
 
@@ -41,7 +45,7 @@ class Building:
     height: float
     depth: float | None  # None if it is unknown
     arguments: dict[str, float | str]
-    taken: CentreOfMass
+    assumed_centre: CentreOfMass
 
     @property
     def radius(self) -> float:
@@ -72,8 +76,9 @@ class Building:
 
     def shape_factor(self, point: tuple[float, float], radius: float) -> float:
         """Shape factor for inertia about a point and a radius, by :eq:`eq-frame-mean` [1]."""
-        inverse = mean_by_mass(
-            [member.si for member in self.members], lambda si: _spread(si, point, radius)
+        inverse = mass_weighted_mean(
+            [member.si for member in self.members],
+            lambda si: _mean_square_distance(si, point, radius),
         )
         return 1.0 / inverse if inverse > 0.0 else math.inf
 
@@ -85,12 +90,12 @@ class Building:
             "height": f"{self.height!r} {LENGTH.unit}",
             "mass": f"{mass!r} {MASS.unit}",
         }
-        if self.taken is CentreOfMass.MIDDLE:  # eq-frame-shape-factor
+        if self.assumed_centre is CentreOfMass.MIDDLE:  # eq-frame-shape-factor
             # members may exceed the outline by rounding
             mu = max(1.0, self.shape_factor(self.middle, self.radius))
             return {**arguments, "shape_factor": mu}
         x, y = self.centre_of_mass
-        if abs(x) > CENTRED * self.width:
+        if abs(x) > MIN_ECCENTRICITY * self.width:
             arguments["eccentricity"] = f"{x!r} {LENGTH.unit}"
         # eq-frame-about-centre
         about_centre = self.shape_factor((x, y), math.hypot(0.5 * self.width, y))
@@ -102,19 +107,19 @@ class Building:
 
     def cautions(self) -> list[str]:
         """Warn of a centre of mass far from its assumed position."""
-        if self.taken is CentreOfMass.MEMBERS:
+        if self.assumed_centre is CentreOfMass.MEMBERS:
             return []
         x, y = self.centre_of_mass
         beside, above = x / self.width, y / self.height - 0.5
         cautions: list[str] = []
-        if abs(above) > _FAR:
+        if abs(above) > _MAX_OFFSET:
             cautions.append(
                 f"the centre of mass lies {y:.4g} m above the base, at {0.5 + above:.3g} of the "
                 "height; the model assumes half the height, and an overturning angle of "
                 f"{math.atan2(self.width, self.height):.4g} rad instead of "
                 f"{math.atan2(0.5 * self.width, y):.4g} rad; {_REMEDY}"
             )
-        if abs(beside) > _FAR:
+        if abs(beside) > _MAX_OFFSET:
             cautions.append(
                 f"the centre of mass lies {abs(x):.4g} m {'right' if x > 0.0 else 'left'} of the "
                 f"middle of a base of {self.width:.4g} m; the model assumes the middle; "
@@ -144,7 +149,9 @@ class Building:
                 f"{self.width:.6g} m by {self.depth:.6g} m by {self.height:.6g} m; do they overlap?"
             )
             raise ComponentError(msg)
-        if not any(_spread(member.si, self.middle, self.radius) for member in members):
+        if not any(
+            _mean_square_distance(member.si, self.middle, self.radius) for member in members
+        ):
             msg = f"{owner}: all mass is in the middle of the building, so that it has no inertia"
             raise ComponentError(msg)
 
@@ -170,7 +177,7 @@ class Building:
                 f"building's {self.depth:.6g} m"
             )
             raise ComponentError(msg)
-        if _spread(si, self.middle, self.radius) > 1.0 + _ROUNDING:
+        if _mean_square_distance(si, self.middle, self.radius) > 1.0 + _ROUNDING:
             distance = si.distance(self.height)
             largest = si.mass * (self.radius - distance) * (self.radius + distance)
             msg = (
@@ -181,83 +188,87 @@ class Building:
             raise ComponentError(msg)
 
 
-def _spread(si: MemberSI, point: tuple[float, float], radius: float) -> float:
+def _mean_square_distance(si: MemberSI, point: tuple[float, float], radius: float) -> float:
     """Return the mean square distance of a member's mass from a point, over a radius squared."""
     if si.width is None or si.height is None:
-        turning = si.inertia / si.mass / radius / radius
+        own = si.inertia / si.mass / radius / radius
     else:
-        turning = (math.hypot(si.width, si.height) / radius) ** 2 / 12.0
-    return turning + (math.hypot(si.x - point[0], si.y - point[1]) / radius) ** 2
+        own = (math.hypot(si.width, si.height) / radius) ** 2 / 12.0
+    return own + (math.hypot(si.x - point[0], si.y - point[1]) / radius) ** 2
 
 
 _DEFAULTS: Final = {"slab_thickness": SLAB_THICKNESS, "infill_thickness": INFILL_THICKNESS}
 _OUTLINE: Final = ("width", "height", "depth")
 
 
-def building_of(
-    members: object, centre_of_mass: object, measures: Mapping[str, Any], owner: str
+def make_building(
+    members: object, centre_of_mass: object, dimensions: Mapping[str, Any], owner: str
 ) -> Building:
     """Make a building from a list of members, or from the dimensions of a regular frame."""
-    usual = CentreOfMass.MIDDLE if members is None else CentreOfMass.MEMBERS
-    taken = usual
+    default = CentreOfMass.MIDDLE if members is None else CentreOfMass.MEMBERS
+    assumed_centre = default
     if centre_of_mass is not None:
-        taken = one_of_words(CentreOfMass, centre_of_mass, owner=owner, name="centre_of_mass")
+        assumed_centre = checked_choice(
+            CentreOfMass, centre_of_mass, owner=owner, name="centre_of_mass"
+        )
     if members is None:
-        found = _regular(measures, owner, taken)
+        found = _regular_building(dimensions, owner, assumed_centre)
     else:
-        found = _of_list(members, measures, owner, taken)
-    if taken is not usual:
-        found.arguments["centre_of_mass"] = str(taken)
+        found = _building_of_members(members, dimensions, owner, assumed_centre)
+    if assumed_centre is not default:
+        found.arguments["centre_of_mass"] = str(assumed_centre)
     found.check(owner)
     return found
 
 
-def _regular(measures: Mapping[str, Any], owner: str, taken: CentreOfMass) -> Building:
+def _regular_building(
+    dimensions: Mapping[str, Any], owner: str, assumed_centre: CentreOfMass
+) -> Building:
     """Make the building of a regular frame."""
     needed = ["column_width", "beam_height", "beam_width", "density"]
-    if measures.get("storey_heights") is None:
+    if dimensions.get("storey_heights") is None:
         needed = ["storeys", "height", *needed]
-    missing = [name for name in needed if measures.get(name) is None]
+    missing = [name for name in needed if dimensions.get(name) is None]
     if missing:
         msg = (
             f"{owner}: give members, or the dimensions of a regular frame, of which "
             f"{', '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing"
         )
         raise ComponentError(msg)
-    frame = RegularFrame(**measures)
+    frame = RegularFrame(**dimensions)
     si = frame.si
     arguments = {name: value for name, value in frame.to_dict().items() if name != "type"}
     return Building(
         members=frame.members, width=si.width, height=si.height, depth=si.depth,
-        arguments=arguments, taken=taken,
+        arguments=arguments, assumed_centre=assumed_centre,
     )  # fmt: skip
 
 
-def _of_list(
-    members: object, measures: Mapping[str, Any], owner: str, taken: CentreOfMass
+def _building_of_members(
+    members: object, dimensions: Mapping[str, Any], owner: str, assumed_centre: CentreOfMass
 ) -> Building:
     """Make a building from a list of members and its outer dimensions."""
-    foreign = [
+    excluded = [
         name
-        for name, value in measures.items()
+        for name, value in dimensions.items()
         if name not in _OUTLINE
         and value is not None
         and not (isinstance(value, str) and value == _DEFAULTS.get(name))
     ]
-    if foreign:
-        msg = f"{owner}: give members or {', '.join(foreign)}, not both"
+    if excluded:
+        msg = f"{owner}: give members or {', '.join(excluded)}, not both"
         raise ComponentError(msg)
-    if measures.get("height") is None:
+    if dimensions.get("height") is None:
         msg = f"{owner}: members need the height of the building; it is missing"
         raise ComponentError(msg)
 
     def length(name: str) -> float:
-        return to_si(measures.get(name), LENGTH, owner=owner, name=name, condition=POSITIVE)
+        return to_si(dimensions.get(name), LENGTH, owner=owner, name=name, condition=POSITIVE)
 
-    depth = None if measures.get("depth") is None else length("depth")
+    depth = None if dimensions.get("depth") is None else length("depth")
     width, height = length("width"), length("height")
-    if isinstance(members, str | Member | Mapping) or not iterates(members):
-        msg = f"{owner}: members must be a list of Member, got {shown(members)}"
+    if isinstance(members, str | Member | Mapping) or not is_iterable(members):
+        msg = f"{owner}: members must be a list of Member, got {short_repr(members)}"
         raise ComponentError(msg)
     built = tuple(_member(entry, k, owner) for k, entry in enumerate(members))
     written = [
@@ -267,7 +278,7 @@ def _of_list(
     sizes = {"width": width, "height": height, "depth": depth}
     arguments = {name: f"{value!r} {LENGTH.unit}" for name, value in sizes.items() if value}
     return Building(
-        members=built, width=width, height=height, depth=depth, taken=taken,
+        members=built, width=width, height=height, depth=depth, assumed_centre=assumed_centre,
         arguments={**arguments, "members": json.dumps(written)},
     )  # fmt: skip
 
@@ -276,7 +287,7 @@ def _member(entry: object, number: int, owner: str) -> Member:
     if isinstance(entry, Member):
         return entry
     if not isinstance(entry, Mapping):
-        msg = f"{owner}: members[{number}] must be a Member or a mapping, got {shown(entry)}"
+        msg = f"{owner}: members[{number}] must be a Member or a mapping, got {short_repr(entry)}"
         raise ComponentError(msg)
     arguments = {str(name): value for name, value in entry.items()}
     if arguments.get("type") == Member.__name__:
@@ -285,6 +296,7 @@ def _member(entry: object, number: int, owner: str) -> Member:
         return Member(**arguments)
     except TypeError as problem:
         msg = (
-            f"{owner}: members[{number}] does not describe a Member: {problem}; got {shown(entry)}"
+            f"{owner}: members[{number}] does not describe a Member: {problem}; got "
+            f"{short_repr(entry)}"
         )
         raise ComponentError(msg) from problem

@@ -170,7 +170,7 @@ class Member(Component):
         (x, y), (width, height, depth) = centre, size
         values = {"name": name, "kind": kind, "density": density, "x": x, "y": y}
         values |= {"width": width, "height": height, "depth": depth, "mass": None, "inertia": None}
-        member._hold(values)
+        member._set_values(values)
         return member
 
     @classmethod
@@ -237,7 +237,7 @@ _COLUMNS: Final = {
 }
 
 
-def members_table(
+def make_members_table(
     members: Sequence[Member], height: float, attributes: dict[str, float | None]
 ) -> xr.Dataset:
     """Return a table of the members of a building of some height [m], with sums as attributes."""

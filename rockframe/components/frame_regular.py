@@ -250,12 +250,12 @@ class RegularFrame(Component):
         if one_by_one and any(of_all):
             _refuse("storey_heights determines storeys and height; do not give these with it")
 
-    def _hold(self, values: Mapping[str, object]) -> None:
+    def _set_values(self, values: Mapping[str, object]) -> None:
         square = {
             "depth": values["depth"] or values["width"],
             "column_depth": values["column_depth"] or values["column_width"],
         }
-        super()._hold({**values, **square})
+        super()._set_values({**values, **square})
 
     def _numbers(self, numbers: SIValues) -> RegularFrameSI:
         values = dict(vars(numbers))

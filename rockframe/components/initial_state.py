@@ -7,7 +7,7 @@ from typing import ClassVar, Final
 
 from rockframe.components.base import Component
 from rockframe.components.parameters import Parameter, SIValues
-from rockframe.errors import shown
+from rockframe.errors import short_repr
 from rockframe.units import (
     ANGLE,
     ANGULAR_VELOCITY,
@@ -21,7 +21,7 @@ from rockframe.units import (
 def _in_degrees(rotation: str) -> str:
     """Return the question whether degrees were meant by a rotation in radians."""
     degrees = re.sub(r"\brad(ians?)?\b", "deg", rotation)
-    return "" if degrees == rotation else f"; was {shown(degrees)} meant?"
+    return "" if degrees == rotation else f"; was {short_repr(degrees)} meant?"
 
 
 _RISE: Final = LENGTH.like("0.01 m")

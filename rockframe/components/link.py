@@ -3,7 +3,7 @@
 from enum import StrEnum
 from typing import Any, ClassVar, Final, Literal
 
-from rockframe.arguments import one_of_words
+from rockframe.arguments import checked_choice
 from rockframe.components.base import Component
 from rockframe.components.parameters import (
     Choice,
@@ -11,7 +11,7 @@ from rockframe.components.parameters import (
     Declared,
     Flag,
     Parameter,
-    Place,
+    Position,
     Ratio,
     SIValues,
     Text,
@@ -34,7 +34,7 @@ from rockframe.units import (
     to_ratio,
 )
 
-BODY: Final = 1
+DEFAULT_BODY: Final = 1
 """Number of the body that a link acts on by default."""
 
 
@@ -61,11 +61,11 @@ class Link(Component):
         return tuple(one for one in super().parameters() if one not in ("on_body", "to_body"))
 
 
-def _on_body() -> Count[int]:
-    return Count(doc="Number of the body, from the top down.", default=BODY)
+def _body_parameter() -> Count[int]:
+    return Count(doc="Number of the body, from the top down.", default=DEFAULT_BODY)
 
 
-def _name() -> Text[None]:
+def _name_parameter() -> Text[None]:
     return Text(doc="Name in results; its number unless given.", default=None)
 
 
@@ -85,15 +85,15 @@ class PointLink(Link):
     (True, ('stiffness',))
     """
 
-    on = Place(doc="The point of the body.")
-    to = Place(doc="The other point.")
-    on_body = _on_body()
+    on = Position(doc="The point of the body.")
+    to = Position(doc="The other point.")
+    on_body = _body_parameter()
     to_body = Count(
         doc="Number of the body of the other point; the ground, or a wall that moves with it, "
         "unless given.",
         default=None,
     )
-    name = _name()
+    name = _name_parameter()
 
 
 class Restrainer(PointLink):
@@ -169,7 +169,7 @@ class Restrainer(PointLink):
         breaking_elongation: QuantityLike | None = None,
         damping: QuantityLike | None = None,
         compression: bool = False,
-        on_body: int = BODY,
+        on_body: int = DEFAULT_BODY,
         to_body: int | None = None,
         name: str | None = None,
     ) -> None:
@@ -242,8 +242,8 @@ class Tendon(Link):
         FORCE, POSITIVE, doc="Greatest force; unlimited unless given.", default=None
     )
     brittle = Flag(doc="Whether it breaks at its strength, or yields.", default=False)
-    on_body = _on_body()
-    name = _name()
+    on_body = _body_parameter()
+    name = _name_parameter()
 
     def __init__(
         self,
@@ -254,7 +254,7 @@ class Tendon(Link):
         depth: QuantityLike = "0 m",
         strength: QuantityLike | None = None,
         brittle: bool = False,
-        on_body: int = BODY,
+        on_body: int = DEFAULT_BODY,
         name: str | None = None,
     ) -> None:
         super().__init__(
@@ -289,7 +289,7 @@ class Load(Link):
 
     noun: ClassVar[str] = "load"
 
-    at = Place(doc="Point of the body.")
+    at = Position(doc="Point of the body.")
     vertical = Parameter(FORCE, doc="Force downwards; none unless given.", default="0 N")
     horizontal = Parameter(FORCE, doc="Force to the right; none unless given.", default="0 N")
     moving_mass = Parameter(
@@ -297,8 +297,8 @@ class Load(Link):
         doc="Mass at the point, a part of the body, with its weight; none unless given.",
         default=None,
     )  # fmt: skip
-    on_body = _on_body()
-    name = _name()
+    on_body = _body_parameter()
+    name = _name_parameter()
 
     def __init__(
         self,
@@ -307,7 +307,7 @@ class Load(Link):
         vertical: QuantityLike = "0 N",
         horizontal: QuantityLike = "0 N",
         moving_mass: QuantityLike | None = None,
-        on_body: int = BODY,
+        on_body: int = DEFAULT_BODY,
         name: str | None = None,
     ) -> None:
         super().__init__(
@@ -349,14 +349,14 @@ class WallImpact(StrEnum):
 
 SideLike = WallSide | Literal["left", "right"]
 WallImpactLike = WallImpact | Literal["sorrentino", "newton"] | RatioLike
-REBOUND = Condition("from -1 to 0", lambda value: -1.0 <= value <= 0.0)
-SHARE = Condition("from 0 to 1", lambda value: 0.0 <= value <= 1.0)
+REBOUND_RANGE = Condition("from -1 to 0", lambda value: -1.0 <= value <= 0.0)
+RESTITUTION_RANGE = Condition("from 0 to 1", lambda value: 0.0 <= value <= 1.0)
 
 
-_OF_SPRING: Final = ("damping", "gap", "height")
+_ELASTIC_PARAMETERS: Final = ("damping", "gap", "height")
 
 
-class _Impact(Declared[Any, Any]):
+class _ReboundParameter(Declared[Any, Any]):
     """A parameter that is the name of a law, or a ratio."""
 
     written_as = '{"sorrentino", "newton"} or float'
@@ -365,12 +365,12 @@ class _Impact(Declared[Any, Any]):
 
     def __init__(self, *, doc: str, default: WallImpact) -> None:
         measure = Measure("a pure ratio", Unit.ONE, "-0.4")
-        super().__init__(measure, REBOUND, doc=doc, default=default)
+        super().__init__(measure, REBOUND_RANGE, doc=doc, default=default)
 
     def read(self, value: object, owner: str) -> WallImpact | float:
         """Read the name of a law, or a number."""
         if isinstance(value, str) and value in list(WallImpact):
-            return one_of_words(WallImpact, value, owner=owner, name=self.name)
+            return checked_choice(WallImpact, value, owner=owner, name=self.name)
         return to_ratio(
             value, owner=owner, name=self.name, condition=self.condition,
             example=f'"{WallImpact.SORRENTINO}", "{WallImpact.NEWTON}" or -0.4',
@@ -412,14 +412,14 @@ class RearWall(Link):
     noun: ClassVar[str] = "wall"
 
     side = Choice(WallSide.LEFT, doc="Side of the wall; the body rocks to the other side.")
-    restitution = _Impact(
+    restitution = _ReboundParameter(
         doc="Ratio of the angular velocities after and before an impact: a law, "
         '"sorrentino" (impacts on the base, on the wall and on the base again) or "newton" (the '
         "same with a coefficient of the wall); or the ratio itself, zero or negative.",
         default=WallImpact.SORRENTINO,
     )
     wall_restitution = Ratio(
-        SHARE,
+        RESTITUTION_RANGE,
         doc='Coefficient of the wall, of the law "newton"; 0 for a wall that stops the body.',
         default=None,
         example="0.3",
@@ -445,7 +445,7 @@ class RearWall(Link):
         doc="Height above its base at which a body touches an elastic wall; its top unless given.",
         default=None,
     )  # fmt: skip
-    on_body = _on_body()
+    on_body = _body_parameter()
 
     def __init__(
         self,
@@ -457,7 +457,7 @@ class RearWall(Link):
         damping: QuantityLike | None = None,
         gap: QuantityLike | None = None,
         height: QuantityLike | None = None,
-        on_body: int = BODY,
+        on_body: int = DEFAULT_BODY,
     ) -> None:
         super().__init__(
             side=side, restitution=restitution, wall_restitution=wall_restitution,
@@ -484,9 +484,9 @@ class RearWall(Link):
             )
             msg = f"RearWall: {words}"
             raise ComponentError(msg)
-        of_spring = [name for name in _OF_SPRING if getattr(numbers, name) is not None]
-        if of_spring and numbers.stiffness is None:
-            msg = f"RearWall: give a stiffness with {' and '.join(of_spring)}, for an elastic wall"
+        elastic = [name for name in _ELASTIC_PARAMETERS if getattr(numbers, name) is not None]
+        if elastic and numbers.stiffness is None:
+            msg = f"RearWall: give a stiffness with {' and '.join(elastic)}, for an elastic wall"
             raise ComponentError(msg)
         if numbers.stiffness is not None and numbers.restitution is not WallImpact.SORRENTINO:
             msg = "RearWall: give restitution or stiffness, not both; a spring has no restitution"

@@ -7,9 +7,9 @@ from typing import Any, ClassVar, Final, Generic, NoReturn, Self, TypeVar, overl
 
 import numpy as np
 
-from rockframe.arguments import one_of_words
-from rockframe.errors import AccessError, ComponentError, shown
-from rockframe.proposals import hinted
+from rockframe.arguments import checked_choice
+from rockframe.errors import AccessError, ComponentError, short_repr
+from rockframe.suggestions import with_hints
 from rockframe.units import (
     LENGTH,
     NOT_NEGATIVE,
@@ -35,12 +35,12 @@ class Missing(Enum):
 REQUIRED: Final = Missing.REQUIRED
 DERIVED: Final = Missing.DERIVED
 
-Public = TypeVar("Public")
-Usual = TypeVar("Usual")
-Words = TypeVar("Words", bound=StrEnum)
+PublicValue = TypeVar("PublicValue")
+Default = TypeVar("Default")
+Option = TypeVar("Option", bound=StrEnum)
 
 
-class Declared(Generic[Public, Usual]):
+class Declared(Generic[PublicValue, Default]):
     """A parameter of a component: an argument of its constructor, and a property.
 
     Parameters
@@ -67,15 +67,15 @@ class Declared(Generic[Public, Usual]):
         condition: Condition | None = None,
         *,
         doc: str,
-        default: Usual = REQUIRED,
+        default: Default = REQUIRED,
     ) -> None:
         for name, value, kind in (
             ("measure", measure, Measure), ("condition", condition, Condition), ("doc", doc, str)
         ):  # fmt: skip
             missing = value is None and name != "doc"
             if not missing and not isinstance(value, kind):
-                wanted = "a text" if kind is str else f"a rockframe.units.{kind.__name__}"
-                msg = f"{type(self).__name__}: {name} must be {wanted}, got {shown(value)}"
+                expected = "a text" if kind is str else f"a rockframe.units.{kind.__name__}"
+                msg = f"{type(self).__name__}: {name} must be {expected}, got {short_repr(value)}"
                 raise ComponentError(msg)
         self.measure = measure
         self.condition = condition
@@ -91,9 +91,11 @@ class Declared(Generic[Public, Usual]):
     @overload
     def __get__(self, instance: None, owner: type) -> Self: ...
     @overload
-    def __get__(self: "Declared[Public, None]", instance: object, owner: type) -> Public | None: ...
+    def __get__(
+        self: "Declared[PublicValue, None]", instance: object, owner: type
+    ) -> PublicValue | None: ...
     @overload
-    def __get__(self, instance: object, owner: type) -> Public: ...
+    def __get__(self, instance: object, owner: type) -> PublicValue: ...
     def __get__(self, instance: Any, owner: type) -> Any:
         if instance is None:
             return self
@@ -127,7 +129,7 @@ class Declared(Generic[Public, Usual]):
         return None
 
 
-class Parameter(Declared[Quantity, Usual]):
+class Parameter(Declared[Quantity, Default]):
     """A parameter with a unit.
 
     Parameters
@@ -161,14 +163,14 @@ class Parameter(Declared[Quantity, Usual]):
     annotation = QuantityLike
     measure: Measure
 
-    @hinted()
+    @with_hints()
     def __init__(
         self,
         measure: Measure,
         condition: Condition | None = None,
         *,
         doc: str,
-        default: Usual = REQUIRED,
+        default: Default = REQUIRED,
     ) -> None:
         super().__init__(measure, condition, doc=doc, default=default)
 
@@ -185,7 +187,7 @@ class Parameter(Declared[Quantity, Usual]):
         return quantity(value, self.measure)
 
 
-class Ratio(Declared[float, Usual]):
+class Ratio(Declared[float, Default]):
     """A parameter that is a pure number.
 
     Parameters
@@ -216,13 +218,13 @@ class Ratio(Declared[float, Usual]):
     annotation = RatioLike
     measure: Measure
 
-    @hinted()
+    @with_hints()
     def __init__(
         self,
         condition: Condition | None = None,
         *,
         doc: str,
-        default: Usual = REQUIRED,
+        default: Default = REQUIRED,
         example: str = "0.1",
     ) -> None:
         measure = Measure("a pure ratio", Unit.ONE, example)
@@ -236,7 +238,7 @@ class Ratio(Declared[float, Usual]):
         )
 
 
-class Choice(Declared[Words, Words]):
+class Choice(Declared[Option, Option]):
     """A parameter that is one of a few words; descriptions leave out the default.
 
     Parameters
@@ -262,24 +264,26 @@ class Choice(Declared[Words, Words]):
 
     annotation = str
 
-    @hinted()
-    def __init__(self, default: Words, *, doc: str) -> None:
+    @with_hints()
+    def __init__(self, default: Option, *, doc: str) -> None:
         if not isinstance(default, StrEnum):  # pyright: ignore[reportUnnecessaryIsInstance]
-            msg = f"Choice: default must be one of the words of a StrEnum, got {shown(default)}"
+            msg = (
+                f"Choice: default must be one of the words of a StrEnum, got {short_repr(default)}"
+            )
             raise ComponentError(msg)
         super().__init__(doc=doc, default=default)
         self.written_as = "{" + ", ".join(f'"{word}"' for word in type(default)) + "}"
 
-    def read(self, value: object, owner: str) -> Words:
-        """Find the word, with :func:`rockframe.arguments.one_of_words`."""
-        return one_of_words(type(self.default), value, owner=owner, name=self.name)
+    def read(self, value: object, owner: str) -> Option:
+        """Find the word, with :func:`rockframe.arguments.checked_choice`."""
+        return checked_choice(type(self.default), value, owner=owner, name=self.name)
 
-    def write(self, value: Words) -> str | None:
+    def write(self, value: Option) -> str | None:
         """Write the word; None for the default."""
         return None if value is self.default else str(value)
 
 
-class Text(Declared[str, Usual]):
+class Text(Declared[str, Default]):
     """A parameter that is a text.
 
     Parameters
@@ -301,8 +305,8 @@ class Text(Declared[str, Usual]):
     written_as = "str"
     annotation = str
 
-    @hinted()
-    def __init__(self, *, doc: str, default: Usual = REQUIRED) -> None:
+    @with_hints()
+    def __init__(self, *, doc: str, default: Default = REQUIRED) -> None:
         super().__init__(doc=doc, default=default)
 
     def read(self, value: object, owner: str) -> str:
@@ -316,7 +320,10 @@ class Text(Declared[str, Usual]):
         if isinstance(value, str) and value.strip():
             return value
         missing = ", or None" if self.default is None else ""
-        msg = f"{owner}: {self.name} must be a text that is not empty{missing}, got {shown(value)}"
+        msg = (
+            f"{owner}: {self.name} must be a text that is not empty{missing}, got "
+            f"{short_repr(value)}"
+        )
         raise ComponentError(msg)
 
 
@@ -330,9 +337,9 @@ class Flag(Declared[bool, bool]):
         """Read a truth value, or the word ``true`` or ``false``."""
         if isinstance(value, bool | np.bool_):
             return bool(value)
-        if isinstance(value, str) and value in _TRUTHS:
-            return _TRUTHS[value]
-        msg = f"{owner}: {self.name} must be True or False, got {shown(value)}"
+        if isinstance(value, str) and value in _BOOLEANS:
+            return _BOOLEANS[value]
+        msg = f"{owner}: {self.name} must be True or False, got {short_repr(value)}"
         raise ComponentError(msg)
 
     def write(self, value: bool) -> str | None:
@@ -340,13 +347,13 @@ class Flag(Declared[bool, bool]):
         return None if value is self.default else str(value).lower()
 
 
-MOST_COUNTED: Final = 1_000_000
+MAX_COUNT: Final = 1_000_000
 """Largest plausible count."""
 
-_TRUTHS: Final = {"true": True, "false": False}
+_BOOLEANS: Final = {"true": True, "false": False}
 
 
-class Count(Declared[int, Usual]):
+class Count(Declared[int, Default]):
     """A parameter that is a positive whole number."""
 
     written_as = "int"
@@ -355,11 +362,11 @@ class Count(Declared[int, Usual]):
     def read(self, value: object, owner: str) -> int:
         """Read the number."""
         number = value if not isinstance(value, bool) else None
-        if isinstance(number, int | np.integer | float) and 1 <= number <= MOST_COUNTED:
+        if isinstance(number, int | np.integer | float) and 1 <= number <= MAX_COUNT:
             whole = int(number)
             if whole == number:
                 return whole
-        msg = f"{owner}: {self.name} must be a whole number from 1 on, got {shown(value)}"
+        msg = f"{owner}: {self.name} must be a whole number from 1 on, got {short_repr(value)}"
         raise ComponentError(msg)
 
     def write(self, value: int) -> int | None:
@@ -367,7 +374,7 @@ class Count(Declared[int, Usual]):
         return None if value == self.default else value
 
 
-class Place(Declared[tuple[Quantity, Quantity], Missing]):
+class Position(Declared[tuple[Quantity, Quantity], Missing]):
     """A parameter that is a point: its coordinates to the right and upwards."""
 
     single = False
@@ -379,14 +386,14 @@ class Place(Declared[tuple[Quantity, Quantity], Missing]):
 
     def read(self, value: object, owner: str) -> tuple[float, float]:
         """Convert to SI units."""
-        written = _PLACE.fullmatch(value) if isinstance(value, str) else None
+        written = _POSITION.fullmatch(value) if isinstance(value, str) else None
         if written is not None:
             value = tuple(f"{one} m" for one in written.groups())
         pair: list[Any] = list(value) if isinstance(value, tuple | list) else []
         if len(pair) != 2:
             msg = (
                 f'{owner}: {self.name} must be a point such as ("-0.5 m", "3 m"), to the right '
-                f"and above, got {shown(value)}"
+                f"and above, got {short_repr(value)}"
             )
             raise ComponentError(msg)
         x, y = (
@@ -403,7 +410,7 @@ class Place(Declared[tuple[Quantity, Quantity], Missing]):
         return quantity(value[0], LENGTH), quantity(value[1], LENGTH)
 
 
-_PLACE: Final = re.compile(r"\((\S+), (\S+)\) m")
+_POSITION: Final = re.compile(r"\((\S+), (\S+)\) m")
 
 
 class SIValues(SimpleNamespace):
@@ -418,13 +425,13 @@ class SIValues(SimpleNamespace):
         raise AccessError(msg)
 
 
-def friction_at_rest(of: str) -> Ratio[None]:
+def static_friction_parameter(of: str) -> Ratio[None]:
     """Declare a static coefficient of friction under a body."""
     words = f"Coefficient of friction under {of} while it does not slip; without one it is held."
     return Ratio(NOT_NEGATIVE, doc=words, default=None, example="0.5")
 
 
-def friction_of_slip() -> Ratio[None]:
+def kinetic_friction_parameter() -> Ratio[None]:
     """Declare a kinetic coefficient of friction."""
     words = "Kinetic coefficient of friction, of slip; the static one unless given."
     return Ratio(NOT_NEGATIVE, doc=words, default=None, example="0.45")
@@ -443,7 +450,7 @@ def check_frictions(owner: str, numbers: SIValues) -> SIValues:
     return numbers
 
 
-CRITICAL: Final = 1.0
+CRITICAL_DAMPING_RATIO: Final = 1.0
 """Damping ratio of critical damping, above which there is no oscillation [1]."""
 
 
@@ -456,13 +463,13 @@ class DampingRatio(Ratio[None]):
         Description in one sentence.
     """
 
-    @hinted()
+    @with_hints()
     def __init__(self, *, doc: str) -> None:
         super().__init__(NOT_NEGATIVE, doc=doc, default=None)
 
     def caution(self, value: float) -> str | None:
         """Ask whether a value above 1 was meant in per cent."""
-        if value <= CRITICAL:
+        if value <= CRITICAL_DAMPING_RATIO:
             return None
         return (
             f"{self.name} = {value:.6g} is {100.0 * value:.6g} % of critical; "

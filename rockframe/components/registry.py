@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from inspect import signature
 from typing import TYPE_CHECKING, Final
 
-from rockframe.errors import ComponentError, SchemaError, nearest, shown
+from rockframe.errors import ComponentError, SchemaError, did_you_mean, short_repr
 
 if TYPE_CHECKING:
     from rockframe.components.base import Component
@@ -25,7 +25,7 @@ def register_class(kind: "type[Component]") -> None:
     _KINDS[kind.__name__] = kind
 
 
-def kinds() -> Mapping[str, "type[Component]"]:
+def registered_classes() -> Mapping[str, "type[Component]"]:
     """Return all registered classes by name."""
     return _KINDS
 
@@ -33,13 +33,14 @@ def kinds() -> Mapping[str, "type[Component]"]:
 def component_from_dict(description: Mapping[str, float | str]) -> "Component":
     """Build a component of any class from the result of :meth:`Component.to_dict`."""
     if not isinstance(description, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance]
-        msg = f"found {shown(description)}; expected the description of a component, a mapping"
+        msg = f"found {short_repr(description)}; expected the description of a component, a mapping"
         raise SchemaError(msg)
     kind = description.get(_TYPE)
     if not isinstance(kind, str) or kind not in _KINDS:
         known = ", ".join(sorted(_KINDS))
         msg = (
-            f"found a component of type {shown(kind)}{nearest(kind, _KINDS)}; expected one of "
+            f"found a component of type {short_repr(kind)}{did_you_mean(kind, _KINDS)}; expected "
+            "one of "
             f"{known}, or of a class of your own in a module that has been imported"
         )
         raise SchemaError(msg)
@@ -47,14 +48,14 @@ def component_from_dict(description: Mapping[str, float | str]) -> "Component":
         return _KINDS[kind].from_dict(description)
     except TypeError as problem:
         known = [name for name in signature(_KINDS[kind]).parameters if name != _TYPE]
-        strange = [
-            f"{shown(name)} in {kind}{nearest(name, known)}"
+        unknown = [
+            f"{short_repr(name)} in {kind}{did_you_mean(name, known)}"
             for name in description
             if name not in (_TYPE, *known)
         ]
-        if not strange:
+        if not unknown:
             raise
-        msg = f"found {', '.join(strange)}; expected some of {', '.join(known)}"
+        msg = f"found {', '.join(unknown)}; expected some of {', '.join(known)}"
         raise SchemaError(msg) from problem
 
 

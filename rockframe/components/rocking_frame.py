@@ -9,20 +9,20 @@ from rockframe.components.block import Block
 from rockframe.components.block_numbers import BlockSI
 from rockframe.components.parameters import Count, Declared, Missing, Parameter, SIValues
 from rockframe.components.registry import component_from_dict
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, short_repr
 from rockframe.notebook import Polygon
 from rockframe.units import LENGTH, MASS, NOT_NEGATIVE, POSITIVE, QuantityLike
 
-FEWEST_COLUMNS: Final = 2
+MIN_COLUMNS: Final = 2
 """Fewest columns that keep a beam level."""
-SPACING: Final = 1.0
+SPACING_RATIO: Final = 1.0
 """Default distance of the columns in drawings, over their height [1]."""
-BEAM_HEIGHT: Final = 0.2
+BEAM_HEIGHT_RATIO: Final = 0.2
 """Default height of the beam in drawings, over that of the columns [1]."""
-_OF_COLUMN: Final = " of column"
+_COLUMN_SUFFIX: Final = " of column"
 
 
-class _Column(Declared[Block, Missing]):
+class _BlockParameter(Declared[Block, Missing]):
     """A parameter that is a block."""
 
     single = False
@@ -34,7 +34,7 @@ class _Column(Declared[Block, Missing]):
         if isinstance(value, Mapping):
             value = component_from_dict({"type": Block.__name__, **value})
         if not isinstance(value, Block):
-            msg = f"{owner}: {self.name} must be a Block, got {shown(value)}"
+            msg = f"{owner}: {self.name} must be a Block, got {short_repr(value)}"
             raise ComponentError(msg)
         if value.si.eccentricity != 0.0:
             msg = (
@@ -87,7 +87,7 @@ class RockingFrame(Component):
     si: RockingFrameSI
     noun: ClassVar[str] = "frame"
 
-    column = _Column(doc="One of the equal columns.")
+    column = _BlockParameter(doc="One of the equal columns.")
     columns = Count(doc="Number of columns, at least 2.")
     beam_mass = Parameter(MASS, NOT_NEGATIVE, doc="Mass of the beam and of its load.")
     spacing = Parameter(
@@ -118,12 +118,14 @@ class RockingFrame(Component):
         )  # fmt: skip
 
     def _numbers(self, numbers: SIValues) -> RockingFrameSI:
-        if numbers.columns < FEWEST_COLUMNS:
-            msg = f"RockingFrame: columns must be {FEWEST_COLUMNS} or more, got {numbers.columns}"
+        if numbers.columns < MIN_COLUMNS:
+            msg = f"RockingFrame: columns must be {MIN_COLUMNS} or more, got {numbers.columns}"
             raise ComponentError(msg)
         si = numbers.column.si
-        spacing = SPACING * si.height if numbers.spacing is None else numbers.spacing
-        depth = BEAM_HEIGHT * si.height if numbers.beam_height is None else numbers.beam_height
+        spacing = SPACING_RATIO * si.height if numbers.spacing is None else numbers.spacing
+        depth = (
+            BEAM_HEIGHT_RATIO * si.height if numbers.beam_height is None else numbers.beam_height
+        )
         return RockingFrameSI(si, numbers.columns, numbers.beam_mass, spacing, depth)
 
     def cautions(self) -> list[str]:
@@ -143,7 +145,7 @@ class RockingFrame(Component):
         tuple of str
             For example "height of column" and "beam_mass".
         """
-        of_column = (f"{name}{_OF_COLUMN}" for name in self.given.column.parameters())
+        of_column = (f"{name}{_COLUMN_SUFFIX}" for name in self.given.column.parameters())
         return (*of_column, *(["beam_mass"] if self.si.beam_mass else []))
 
     def with_scaled(self, name: str, factor: float) -> Self:
@@ -166,7 +168,7 @@ class RockingFrame(Component):
             No such parameter, or its new value is out of range.
         """
         self._check_name(name, self.parameters())
-        own = name.removesuffix(_OF_COLUMN)
+        own = name.removesuffix(_COLUMN_SUFFIX)
         if own == name:
             return super().with_scaled(name, factor)
         column = self.given.column.with_scaled(own, factor)
@@ -187,7 +189,7 @@ class RockingFrame(Component):
 def frame_outlines(si: RockingFrameSI) -> list[list[tuple[float, float]]]:
     """Return the corners of all columns and of the beam, from the middle of the bases [m]."""
     half, height = si.column.half_width, si.column.height
-    places = column_places(si)
+    places = column_positions(si)
     reach, top = places[-1] + 2.0 * half, height + si.beam_height
     found = [
         [(x - half, 0.0), (x + half, 0.0), (x + half, height), (x - half, height)] for x in places
@@ -195,6 +197,6 @@ def frame_outlines(si: RockingFrameSI) -> list[list[tuple[float, float]]]:
     return [*found, [(-reach, height), (reach, height), (reach, top), (-reach, top)]]
 
 
-def column_places(si: RockingFrameSI) -> list[float]:
+def column_positions(si: RockingFrameSI) -> list[float]:
     """Return the coordinates of the column axes, to the right of the middle of the frame [m]."""
     return [(k - 0.5 * (si.columns - 1)) * si.spacing for k in range(si.columns)]

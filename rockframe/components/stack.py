@@ -5,16 +5,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Final, Self
 
-from rockframe.arguments import several
+from rockframe.arguments import checked_list
 from rockframe.components.base import Component
 from rockframe.components.block import Block
 from rockframe.components.block_numbers import BlockSI
 from rockframe.components.parameters import SIValues
 from rockframe.components.registry import component_from_dict
-from rockframe.errors import ComponentError, shown, unexpected_argument
+from rockframe.errors import ComponentError, short_repr, unexpected_argument
 from rockframe.units import LENGTH, Quantity, QuantityLike, quantity, to_si
 
-MOST_BODIES: Final = 12
+MAX_BODIES: Final = 12
 """Most bodies in a stack: the combined contact states of more exceed the range of integers."""
 
 
@@ -71,46 +71,48 @@ class Stack(Component):
         interfaces: Sequence[Component],
         offsets: Sequence[QuantityLike] | None = None,
     ) -> None:
-        self._keep(bodies, interfaces, offsets)
+        self._set_parts(bodies, interfaces, offsets)
         self._warn()
 
-    def _keep(self, bodies: Sequence[Any], interfaces: object, offsets: object) -> None:
+    def _set_parts(self, bodies: Sequence[Any], interfaces: object, offsets: object) -> None:
         """Check the arguments and store them."""
-        interfaces = several(interfaces, owner="Stack", name="interfaces", of="bases")
-        beside = None if offsets is None else [
+        interfaces = checked_list(interfaces, owner="Stack", name="interfaces", of="bases")
+        distances = None if offsets is None else [
             to_si(one, LENGTH, owner="Stack", name=f"offsets[{i}]") for i, one in
-            enumerate(several(offsets, owner="Stack", name="offsets", of="lengths"))
+            enumerate(checked_list(offsets, owner="Stack", name="offsets", of="lengths"))
         ]  # fmt: skip
         faults = [
-            f"a body of a stack is a Block, got {shown(one)}"
+            f"a body of a stack is a Block, got {short_repr(one)}"
             for one in bodies
             if not isinstance(one, Block)
         ]
         faults += [
-            f"an interface is a base such as TwoSpringSupport, got {shown(one)}"
+            f"an interface is a base such as TwoSpringSupport, got {short_repr(one)}"
             for one in interfaces
             if not isinstance(one, Component) or isinstance(one, Block)
         ]
-        if not 2 <= len(bodies) <= MOST_BODIES:
-            faults.append(f"it has 2 to {MOST_BODIES} bodies, got {len(bodies)}")
+        if not 2 <= len(bodies) <= MAX_BODIES:
+            faults.append(f"it has 2 to {MAX_BODIES} bodies, got {len(bodies)}")
         if len(interfaces) != len(bodies) - 1:
             faults.append(
                 f"{len(bodies)} bodies have {max(len(bodies) - 1, 0)} interfaces between them, got "
                 f"{len(interfaces)}; the base of the lowest body is a part of the system"
             )
-        if beside is not None and len(beside) != len(bodies) - 1:
+        if distances is not None and len(distances) != len(bodies) - 1:
             faults.append(
                 f"offsets needs {max(len(bodies) - 1, 0)} values, one for each body but the "
-                f"lowest, got {len(beside)}"
+                f"lowest, got {len(distances)}"
             )
         if faults:
             msg = f"Stack: {'; '.join(faults)}"
             raise ComponentError(msg)
-        beside = [0.0] * (len(bodies) - 1) if beside is None else beside
-        _refuse_overhang([one.si for one in bodies], beside)
-        values = SIValues(bodies=tuple(bodies), interfaces=tuple(interfaces), offsets=tuple(beside))
+        distances = [0.0] * (len(bodies) - 1) if distances is None else distances
+        _check_overhang([one.si for one in bodies], distances)
+        values = SIValues(
+            bodies=tuple(bodies), interfaces=tuple(interfaces), offsets=tuple(distances)
+        )
         object.__setattr__(self, "given", values)
-        object.__setattr__(self, "si", StackSI(tuple(one.si for one in bodies), (*beside, 0.0)))
+        object.__setattr__(self, "si", StackSI(tuple(one.si for one in bodies), (*distances, 0.0)))
 
     @property
     def bodies(self) -> tuple[Block, ...]:
@@ -180,7 +182,7 @@ class Stack(Component):
         parts: list[Any] = bodies if kind == "body" else interfaces
         parts[int(k) - 1] = parts[int(k) - 1].with_scaled(own, factor)
         part = object.__new__(type(self))
-        part._keep(bodies, interfaces, self._arguments()["offsets"])
+        part._set_parts(bodies, interfaces, self._arguments()["offsets"])
         return part
 
     def replace(self, **changes: Any) -> Self:
@@ -207,7 +209,7 @@ class Stack(Component):
                 call = f"{type(self).__name__}.replace()"
                 raise unexpected_argument(call, name, values)
         bodies, interfaces, offsets = (changes.get(name, old) for name, old in values.items())
-        kept = several(bodies, owner="Stack", name="bodies", of="blocks")
+        kept = checked_list(bodies, owner="Stack", name="bodies", of="blocks")
         return type(self)(*kept, interfaces=interfaces, offsets=offsets)
 
     def _arguments(self) -> dict[str, Any]:
@@ -246,22 +248,22 @@ class Stack(Component):
         SchemaError, ComponentError, UnitsError
             As for its parts, and as the constructor.
         """
-        described = cls._described(arguments)
+        described = cls._arguments_from(arguments)
         part = object.__new__(cls)
         bodies, interfaces = (
             [
                 component_from_dict(one)
-                for one in several(
+                for one in checked_list(
                     described.get(name, ()), owner="Stack.from_dict", name=name, of="descriptions"
                 )
             ]
             for name in ("bodies", "interfaces")
         )
-        part._keep(bodies, interfaces, described.get("offsets"))
+        part._set_parts(bodies, interfaces, described.get("offsets"))
         return part
 
 
-def _refuse_overhang(bodies: Sequence[BlockSI], offsets: Sequence[float]) -> None:
+def _check_overhang(bodies: Sequence[BlockSI], offsets: Sequence[float]) -> None:
     """Refuse a base that reaches beyond the top of the body below."""
     for i, (offset, upper, lower) in enumerate(zip(offsets, bodies, bodies[1:], strict=False)):
         reach = abs(offset) + upper.half_width

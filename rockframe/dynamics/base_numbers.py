@@ -7,6 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from rockframe.case_arrays import hypot, sqrt
 from rockframe.compiled import Vector
 from rockframe.dynamics.base import Base, positive_root
 from rockframe.dynamics.bed import Bed, Rigid
@@ -15,7 +16,6 @@ from rockframe.dynamics.pads import LEAVE, REENGAGE, ROUNDING, ElasticPads, Pads
 from rockframe.dynamics.point_law import Point, Viscoelastic
 from rockframe.dynamics.protocol import Column
 from rockframe.dynamics.springs import GUARDS, Springs
-from rockframe.many import hypot, sqrt
 
 
 @dataclass(frozen=True)

@@ -10,18 +10,11 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from rockframe.case_arrays import asin, sqrt
 from rockframe.dynamics.base import BaseForce
 from rockframe.dynamics.bed import both_contacts
-from rockframe.dynamics.body import (
-    PIVOT_LEFT,
-    PIVOT_RIGHT,
-    Attitude,
-    BaseLine,
-    BodyState,
-    Reach,
-)
+from rockframe.dynamics.body import PIVOT_LEFT, PIVOT_RIGHT, Attitude, BaseLine, BodyState, Reach
 from rockframe.dynamics.on_base import BodyOnBase, Mode
-from rockframe.many import asin, sqrt
 
 ROUNDING: Final = 4.0 * sys.float_info.epsilon
 """Rounding noise of heights over their sizes [1]."""

@@ -20,7 +20,7 @@ from rockframe.dynamics.events import (
     SILENT,
 )
 from rockframe.dynamics.point_law import complete_law, methods_of_law
-from rockframe.proposals import hinted
+from rockframe.suggestions import with_hints
 
 Law = TypeVar("Law")
 REQUIRED: Final = ("force", "energy")
@@ -129,7 +129,7 @@ class LinkLaw:
         return filled(self, numbers)
 
 
-@hinted()
+@with_hints()
 def link_law(law: type[Law]) -> type[Law]:
     """Make a named tuple the law of a link: mark its methods, and give it those it lacks.
 

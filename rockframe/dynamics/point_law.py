@@ -18,8 +18,8 @@ from rockframe.compiled import Vector, inlined, kernel, view_of
 from rockframe.dynamics.base import Variables
 from rockframe.dynamics.body import BaseLine
 from rockframe.dynamics.protocol import Guards
-from rockframe.errors import ArgumentError, shown
-from rockframe.proposals import hinted
+from rockframe.errors import ArgumentError, short_repr
+from rockframe.suggestions import with_hints
 
 Law = TypeVar("Law")
 FREE: Final = -1
@@ -182,7 +182,7 @@ def methods_of_law(
 ) -> tuple[dict[str, Any], list[str]]:
     """Return a law's own methods, and what is wrong with its class and the names of its fields."""
     if not isinstance(law, type):  # pyright: ignore[reportUnnecessaryIsInstance]
-        msg = f"a law is a NamedTuple, got {shown(law)}"
+        msg = f"a law is a NamedTuple, got {short_repr(law)}"
         raise ArgumentError(msg)
     own = {name: each for name, each in vars(law).items() if inspect.isfunction(each)}
     fields = getattr(law, "_fields", None)
@@ -213,7 +213,7 @@ def complete_law(
     return law
 
 
-@hinted()
+@with_hints()
 def point_law(law: type[Law]) -> type[Law]:
     """Make a named tuple a law: mark its methods for compiling, and give it those it lacks.
 

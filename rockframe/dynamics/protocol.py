@@ -16,9 +16,9 @@ from typing import Final, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 
+from rockframe.case_arrays import python_number
 from rockframe.compiled import Integers, Vector, inlined, kernel
 from rockframe.errors import AssemblyError
-from rockframe.many import python_number
 
 Numbers: TypeAlias = tuple[float, ...] | Vector
 """Numbers of a system; in an array where their count is not known when it is compiled."""

@@ -10,6 +10,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from rockframe.case_arrays import atan2, hypot, sqrt, tan
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.base import Guards
 from rockframe.dynamics.body import REST_AMPLITUDE
@@ -28,7 +29,6 @@ from rockframe.dynamics.protocol import (
     Start,
 )
 from rockframe.dynamics.trigonometry import sine_cosine
-from rockframe.many import atan2, hypot, sqrt, tan
 
 # modes; rocking on the right corner has alpha > 0
 RESTING: Final = 0

@@ -7,6 +7,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from rockframe.case_arrays import atan2, hypot, sqrt
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.base import Guards, Variables
 from rockframe.dynamics.base_numbers import BaseNumbers
@@ -33,7 +34,6 @@ from rockframe.dynamics.protocol import (
     Start,
 )
 from rockframe.dynamics.switching import lift_per_slip, switch_mode
-from rockframe.many import atan2, hypot, sqrt
 
 HORIZONTAL: Final = 2
 BASE_VARIABLES: Final = 2 * BODY_DOF

@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 
+from rockframe.case_arrays import atan2, hypot, sqrt
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics import events
 from rockframe.dynamics.body import REST_AMPLITUDE
@@ -44,7 +45,6 @@ from rockframe.dynamics.slide_motion import (
     SlideMotion,
 )
 from rockframe.dynamics.trigonometry import sine_cosine
-from rockframe.many import atan2, hypot, sqrt
 
 
 class SlideSwitches(SlideMotion):

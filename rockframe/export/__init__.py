@@ -4,12 +4,12 @@ from typing import TYPE_CHECKING
 
 from rockframe.export._fragility import to_openquake, to_pelicun
 from rockframe.export._opensees import to_opensees
-from rockframe.proposals import attributes_of
+from rockframe.suggestions import module_getattr
 
 __all__ = ["to_openquake", "to_opensees", "to_pelicun"]
 
 if not TYPE_CHECKING:  # otherwise type checkers would accept any name
-    __getattr__ = attributes_of(__name__, __all__)
+    __getattr__ = module_getattr(__name__, __all__)
 
 
 def __dir__() -> list[str]:

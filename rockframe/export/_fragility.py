@@ -11,13 +11,20 @@ from typing import Any, Final
 import pandas as pd
 import xarray as xr
 
-from rockframe.arguments import by_names, checked_dataset, one_of_names, text, truth, whole_number
+from rockframe.arguments import (
+    checked_bool,
+    checked_dataset,
+    checked_integer,
+    checked_mapping,
+    checked_name,
+    checked_text,
+)
 from rockframe.constants import STANDARD_GRAVITY
-from rockframe.errors import ComponentError, SchemaError, shown
-from rockframe.proposals import hinted
+from rockframe.errors import ComponentError, SchemaError, short_repr
 from rockframe.results.variables.analyses import LIMIT_STATE, FragilityStatus
 from rockframe.studies.fragility.words import in_own_units
 from rockframe.studies.intensities import MEASURE_ABBREVIATIONS, PERIOD_ATTRIBUTE
+from rockframe.suggestions import with_hints
 from rockframe.units import POSITIVE, to_ratio
 from rockframe.version import __version__
 from rockframe.writing import FileKind, write_file
@@ -48,7 +55,7 @@ _OPENQUAKE_MEASURES: Final = {
 }
 
 
-@hinted()
+@with_hints()
 def to_pelicun(
     fragility: xr.Dataset,
     component: str,
@@ -105,13 +112,13 @@ def to_pelicun(
     """
     import pandas as pd
 
-    identifier = text(component, owner=_PELICUN, name="component")
-    storeys = whole_number(offset, owner=_PELICUN, name="offset", lowest=-_MOST_STOREYS)
-    truth(directional, owner=_PELICUN, name="directional")
+    identifier = checked_text(component, owner=_PELICUN, name="component")
+    storeys = checked_integer(offset, owner=_PELICUN, name="offset", lowest=-_MOST_STOREYS)
+    checked_bool(directional, owner=_PELICUN, name="directional")
     measure, states = _fits(fragility, _PELICUN_MEASURES, owner=_PELICUN)
     kind, unit, size = _PELICUN_MEASURES[measure]
     if demand is not None:
-        _check_demand(text(demand, owner=_PELICUN, name="demand"), measure, kind)
+        _check_demand(checked_text(demand, owner=_PELICUN, name="demand"), measure, kind)
     if measure == MEASURE_ABBREVIATIONS["SA"]:
         kind = f"{kind}|{_period(fragility, _PELICUN):g}"
     row: dict[str, Any] = {
@@ -144,7 +151,7 @@ def _check_demand(demand: str, measure: str, kind: str) -> None:
         raise ComponentError(msg)
 
 
-@hinted()
+@with_hints()
 def to_openquake(
     fragilities: Mapping[str, xr.Dataset],
     path: str | PathLike[str],
@@ -209,13 +216,13 @@ def to_openquake(
     >>> rf.export.to_openquake({"bookcase": found}, f"{tempfile.mkdtemp()}/model.xml").name
     'model.xml'
     """
-    one_of_names(loss, _LOSSES, owner=_OPENQUAKE, name="loss")
+    checked_name(loss, _LOSSES, owner=_OPENQUAKE, name="loss")
     for what, wanted in (("description", description), ("category", category)):
-        text(wanted, owner=_OPENQUAKE, name=what)
+        checked_text(wanted, owner=_OPENQUAKE, name=what)
     limit_given = None if no_damage_limit is None else to_ratio(
         no_damage_limit, owner=_OPENQUAKE, name="no_damage_limit", condition=POSITIVE
     )  # fmt: skip
-    fragilities = by_names(
+    fragilities = checked_mapping(
         fragilities, owner=_OPENQUAKE, name="fragilities", example="{'bookcase': fragility}"
     )
     if not fragilities:
@@ -313,7 +320,10 @@ def _period(dataset: xr.Dataset, owner: str) -> float:
 
 def _check_word(value: object) -> None:
     if not isinstance(value, str) or not _WORD.fullmatch(value):
-        msg = f"{_OPENQUAKE}: names have up to 100 letters, digits, '-' and '_', got {shown(value)}"
+        msg = (
+            f"{_OPENQUAKE}: names have up to 100 letters, digits, '-' and '_', got "
+            f"{short_repr(value)}"
+        )
         raise ComponentError(msg)
 
 

@@ -10,7 +10,7 @@ from typing import Any, Final, NamedTuple, cast
 
 import numpy as np
 
-from rockframe.arguments import one_of_words, whole_number
+from rockframe.arguments import checked_choice, checked_integer
 from rockframe.components import (
     Block,
     FrameEquivalent,
@@ -18,10 +18,10 @@ from rockframe.components import (
     TwoSpringSupport,
     WinklerSoil,
 )
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, short_repr
 from rockframe.motion import GroundMotion
-from rockframe.proposals import hinted
 from rockframe.simulation.system import System
+from rockframe.suggestions import with_hints
 from rockframe.system.options import Restraint, Rotation
 from rockframe.units import QuantityLike
 from rockframe.version import __version__
@@ -56,7 +56,7 @@ class SpringsOfBase(NamedTuple):
     words: str  # the model, and differences to expect
 
 
-@hinted()
+@with_hints()
 def to_opensees(
     system: System,
     motion: GroundMotion,
@@ -120,11 +120,11 @@ def to_opensees(
     """
     for one, kind in ((system, System), (motion, GroundMotion)):
         if not isinstance(cast("object", one), kind):
-            msg = f"{_OWNER} needs a {kind.__name__}, got {shown(one)}"
+            msg = f"{_OWNER} needs a {kind.__name__}, got {short_repr(one)}"
             raise ComponentError(msg)
     _check(system)
-    count = whole_number(springs, owner=_OWNER, name="springs", lowest=2)
-    held = one_of_words(Dashpots, dashpots, owner=_OWNER, name="dashpots")
+    count = checked_integer(springs, owner=_OWNER, name="springs", lowest=2)
+    held = checked_choice(Dashpots, dashpots, owner=_OWNER, name="dashpots")
     checked_path(path, _KIND, overwrite=overwrite)
     base = _springs(system, count)
     run = system.simulate(

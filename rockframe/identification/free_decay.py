@@ -5,8 +5,8 @@ from typing import Final
 
 import xarray as xr
 
-from rockframe.arguments import one_of_words, several
-from rockframe.errors import ComponentError, shown
+from rockframe.arguments import checked_choice, checked_list
+from rockframe.errors import ComponentError, short_repr
 from rockframe.identification.fitting import fit_history, fit_peaks
 from rockframe.identification.measured import (
     OWNER,
@@ -20,9 +20,9 @@ from rockframe.identification.prediction import Prediction, start_values
 from rockframe.identification.report import fit_dataset
 from rockframe.identification.swings import swings_of
 from rockframe.identification.unknowns import Circumstance, TrialSystems
-from rockframe.proposals import hinted
 from rockframe.simulation.system import System, check_system
 from rockframe.solve.accuracy import AccuracyLevel, accuracy_of
+from rockframe.suggestions import with_hints
 from rockframe.system.options import AccuracyLike
 from rockframe.system.words import angle_words
 from rockframe.units import Condition, QuantityLike, RatioLike, to_ratio
@@ -30,7 +30,7 @@ from rockframe.units import Condition, QuantityLike, RatioLike, to_ratio
 _CONFIDENCE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value < 1.0)
 
 
-@hinted()
+@with_hints()
 def fit_free_decay(
     system: System,
     measured: xr.DataArray | tuple[object, object] | None = None,
@@ -175,10 +175,10 @@ def _check_swings(system: System) -> None:
 
 
 def _read_names(parameters: Sequence[str] | str) -> tuple[str, ...]:
-    names = tuple(several(parameters, owner=OWNER, name="parameters", of="names"))
+    names = tuple(checked_list(parameters, owner=OWNER, name="parameters", of="names"))
     if names and len(set(names)) == len(names):
         return names
-    msg = f"{OWNER}: parameters must name one or more, each once, got {shown(parameters)}"
+    msg = f"{OWNER}: parameters must name one or more, each once, got {short_repr(parameters)}"
     raise ComponentError(msg)
 
 
@@ -195,8 +195,8 @@ def _read_circumstances(
         return tuple(circumstances)
     if isinstance(data, MeasuredPeaks) and data.signed:
         circumstances.append(Circumstance.GAUGE_OFFSET)
-    listed = several(values, owner=OWNER, name="circumstances", of="names")
-    names = [one_of_words(Circumstance, one, owner=OWNER, name="circumstances") for one in listed]
+    listed = checked_list(values, owner=OWNER, name="circumstances", of="names")
+    names = [checked_choice(Circumstance, one, owner=OWNER, name="circumstances") for one in listed]
     for name in names:
         if name not in circumstances:
             needed = "times" if name is Circumstance.RELEASE_TIME else "their signs"

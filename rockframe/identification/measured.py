@@ -8,11 +8,11 @@ import numpy as np
 import pint
 import xarray as xr
 
-from rockframe.errors import ComponentError, UnitsError, shown
+from rockframe.errors import ComponentError, UnitsError, short_repr
 from rockframe.signals.arrays import Array
 from rockframe.system.bodies import OverturningAngles
-from rockframe.units import ANGLE, TIME, Measure, check_own_unit, to_si
-from rockframe.units.shown import in_degrees
+from rockframe.units import ANGLE, TIME, Measure, check_attached_unit, to_si
+from rockframe.units.display import degrees_text
 
 OWNER: Final = "fit_free_decay"
 _EXAMPLE_UNITS: Final = {"rotation": "deg", "time": "s"}
@@ -69,13 +69,13 @@ def read_history(value: object) -> History:
         if name is None or name not in value.coords:
             msg = (
                 f"{OWNER}: measured needs one dimension with times as its coordinate, got "
-                f"{shown(value)}; {_HISTORY}"
+                f"{short_repr(value)}; {_HISTORY}"
             )
             raise ComponentError(msg)
         return History(*_times_and_rotations(value[name], value))
     pair = _pair_of_arrays(value)
     if pair is None:
-        msg = f"{OWNER}: measured needs times and rotations, got {shown(value)}; {_HISTORY}"
+        msg = f"{OWNER}: measured needs times and rotations, got {short_repr(value)}; {_HISTORY}"
         raise UnitsError(msg)
     return History(*_times_and_rotations(*pair))
 
@@ -90,13 +90,13 @@ def read_peaks(value: object) -> MeasuredPeaks:
         rotation = _read_array(cast("object", value), ANGLE, "peaks")
         peaks = MeasuredPeaks(rotation, np.sign(rotation))
     else:
-        msg = f"{OWNER}: peaks needs rotations with a unit, got {shown(value)}; {_PEAKS}"
+        msg = f"{OWNER}: peaks needs rotations with a unit, got {short_repr(value)}; {_PEAKS}"
         raise UnitsError(msg)
     side_changes = np.diff(peaks.sides)
     if not np.all(peaks.sides) or (peaks.signed and not np.all(side_changes)):
         msg = (
             f"{OWNER}: peaks must alternate in sign, from one swing to the next, or all be given "
-            f"without a sign, and none be zero; got {shown(peaks.rotation.tolist())} rad"
+            f"without a sign, and none be zero; got {short_repr(peaks.rotation.tolist())} rad"
         )
         raise ComponentError(msg)
     return peaks
@@ -148,11 +148,12 @@ def _read_array(value: object, measure: Measure, name: str) -> Array:
         if len(pair) == 2:
             values, unit = pair
             if isinstance(unit, str):
-                check_own_unit(values, unit, owner=OWNER, name=name)
+                check_attached_unit(values, unit, owner=OWNER, name=name)
     if not isinstance(unit, str):
         example = _EXAMPLE_UNITS["time" if measure is TIME else "rotation"]
         msg = (
-            f"{OWNER}: {name} needs an array with a unit such as {example}, got {shown(value)}; "
+            f"{OWNER}: {name} needs an array with a unit such as {example}, got "
+            f"{short_repr(value)}; "
             f"write for example (values, {example!r})"
         )
         raise UnitsError(msg)
@@ -160,10 +161,10 @@ def _read_array(value: object, measure: Measure, name: str) -> Array:
     try:
         array: Any = np.ma.filled(np.ma.asarray(values, dtype=np.float64), math.nan)
     except (TypeError, ValueError) as problem:
-        msg = f"{OWNER}: {name} needs numbers, got {shown(values)}"
+        msg = f"{OWNER}: {name} needs numbers, got {short_repr(values)}"
         raise ComponentError(msg) from problem
     if array.ndim != 1 or array.size == 0:
-        msg = f"{OWNER}: {name} needs a one-dimensional array of numbers, got {shown(values)}"
+        msg = f"{OWNER}: {name} needs a one-dimensional array of numbers, got {short_repr(values)}"
         raise ComponentError(msg)
     wrong = np.flatnonzero(~np.isfinite(array))
     if wrong.size:
@@ -200,4 +201,4 @@ def _datum_words(measured: History | MeasuredPeaks, index: int) -> str:
 
 
 def _angle_words(value: float) -> str:
-    return f"{value:.6g} rad ({in_degrees(value)})"
+    return f"{value:.6g} rad ({degrees_text(value)})"

@@ -20,7 +20,7 @@ from rockframe.identification.unknowns import Circumstance
 from rockframe.results.schema import build_dataset
 from rockframe.results.variables.studies import FitStatus
 from rockframe.signals.arrays import Array
-from rockframe.units.shown import in_degrees
+from rockframe.units.display import degrees_text
 
 _HIGH_AUTOCORRELATION: Final = 0.3
 """Autocorrelation of residuals above which they do not count as independent."""
@@ -44,7 +44,7 @@ def fit_verdict(
     )
     history = "measured_rotation" in values
     data = values["measured_rotation" if history else "measured_peak_rotation"]
-    residual = in_degrees(float(values["rotation_rms_residual"]), 2)
+    residual = degrees_text(float(values["rotation_rms_residual"]), 2)
     begin = found[0].upper() + found[1:]
     return (
         f"{begin} ({100.0 * confidence:g} %); residual {residual} (root mean square of "

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rockframe.components import Component, Stack
 from rockframe.components.parameters import Ratio
-from rockframe.errors import ComponentError, nearest, shown
+from rockframe.errors import ComponentError, did_you_mean, short_repr
 from rockframe.identification.measured import OWNER
 from rockframe.simulation.system import System
 from rockframe.system.assembly import Assembly, assemble
@@ -135,7 +135,8 @@ def _find_parameter(
         if parameter is not None:
             return parameter
         msg = (
-            f"{OWNER}: {shown(name)} cannot be fitted, since the part was given without it; give "
+            f"{OWNER}: {short_repr(name)} cannot be fitted, since the part was given without it; "
+            "give "
             f"{matches[0]} as a start value, instead of what stands for it"
         )
         raise ComponentError(msg)
@@ -143,12 +144,13 @@ def _find_parameter(
     if not matches and any(name in (full, full.partition(".")[2]) for full in inside):
         found = f"of the parts of the system, which are {choice}" if known else "of other parts"
         msg = (
-            f"{OWNER}: {shown(name)} is a parameter of an interface of the Stack; fitted are those "
+            f"{OWNER}: {short_repr(name)} is a parameter of an interface of the Stack; fitted are "
+            "those "
             f"{found}. To find that of an interface, compare the measured rotation with runs of a "
             "sweep over a function that returns the system"
         )
         raise ComponentError(msg)
     found = "several parts have" if matches else "no part of the system has"
-    near = "" if matches else nearest(name, {one.rpartition(".")[2] for one in known})
-    msg = f"{OWNER}: {found} the parameter {shown(name)}{near}; expected one of {choice}"
+    near = "" if matches else did_you_mean(name, {one.rpartition(".")[2] for one in known})
+    msg = f"{OWNER}: {found} the parameter {short_repr(name)}{near}; expected one of {choice}"
     raise ComponentError(msg)

@@ -7,7 +7,7 @@ from rockframe.measures.directions import principal_axes, rotated_spectrum
 from rockframe.measures.histories import fourier_spectrum, velocity_and_displacement
 from rockframe.measures.intensity import intensity_measures
 from rockframe.measures.response import response_spectrum
-from rockframe.proposals import attributes_of
+from rockframe.suggestions import module_getattr
 
 __all__ = [
     "average_spectral_acceleration",
@@ -20,7 +20,7 @@ __all__ = [
 ]
 
 if not TYPE_CHECKING:  # or no name would be unknown to type checkers
-    __getattr__ = attributes_of(__name__, __all__)
+    __getattr__ = module_getattr(__name__, __all__)
 
 
 def __dir__() -> list[str]:

@@ -12,8 +12,8 @@ from rockframe.measures.response import checked_periods, response_spectrum
 from rockframe.motion import GroundMotion
 from rockframe.motion.pair import HorizontalPair
 from rockframe.motion.quantities import ArrayLike
-from rockframe.proposals import hinted
 from rockframe.results.schema import build_dataset
+from rockframe.suggestions import with_hints
 from rockframe.units import PERIOD, QuantityLike, RatioLike
 
 _OWNER: Final = "average_spectral_acceleration"
@@ -24,7 +24,7 @@ _PAIR_AVERAGES: Final = {
 }
 
 
-@hinted()
+@with_hints()
 def average_spectral_acceleration(
     motion: GroundMotion | HorizontalPair | Mapping[str, GroundMotion | HorizontalPair],
     periods: ArrayLike | Iterable[QuantityLike],

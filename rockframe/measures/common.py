@@ -10,9 +10,9 @@ from typing import Any, Final, Generic, TypeVar, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import one_of_words
+from rockframe.arguments import checked_choice
 from rockframe.compiled import COMPILED
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.results.joining import MOTION
 from rockframe.results.schema import SCHEMA, build_dataset, without_fill_values
@@ -30,9 +30,9 @@ class GroundComponent(StrEnum):
 def signal_of(motion: object, component: object, *, owner: str) -> Signal:
     """Take one component of a motion."""
     if not isinstance(motion, GroundMotion):
-        msg = f"{owner}: motion needs a GroundMotion, got {shown(motion)}"
+        msg = f"{owner}: motion needs a GroundMotion, got {short_repr(motion)}"
         raise ComponentError(msg)
-    which = one_of_words(GroundComponent, component, owner=owner, name="component")
+    which = checked_choice(GroundComponent, component, owner=owner, name="component")
     if which is GroundComponent.HORIZONTAL:
         return motion.si.horizontal
     if motion.si.vertical is None:

@@ -6,8 +6,8 @@ from typing import Any, Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import whole_number
-from rockframe.errors import ComponentError, shown
+from rockframe.arguments import checked_integer
+from rockframe.errors import ComponentError, short_repr
 from rockframe.measures.common import Inputs, build_over, check_not_empty
 from rockframe.measures.response import (
     checked_periods,
@@ -15,10 +15,9 @@ from rockframe.measures.response import (
     oscillator_axes,
     shortest_positive_period,
 )
-from rockframe.motion.pair import HorizontalPair, axis_and_intensities
+from rockframe.motion.pair import HorizontalPair, principal_axis_and_intensities
 from rockframe.motion.processing.samples import warn_of_coarse_samples
 from rockframe.motion.quantities import ArrayLike
-from rockframe.proposals import hinted
 from rockframe.results.schema import build_dataset
 from rockframe.signals import Signal
 from rockframe.signals.arrays import Array
@@ -30,6 +29,7 @@ from rockframe.signals.spectra import (
     spectral_peaks,
     unit_vectors,
 )
+from rockframe.suggestions import with_hints
 from rockframe.units import QuantityLike, RatioLike
 
 _SPECTRUM: Final = "rotated_spectrum"
@@ -41,7 +41,7 @@ _REFERENCES: Final = (
 _MAX_DIRECTIONS: Final = 3600
 
 
-@hinted()
+@with_hints()
 def rotated_spectrum(
     pair: HorizontalPair | Mapping[str, HorizontalPair],
     periods: ArrayLike | Iterable[QuantityLike] | None = None,
@@ -104,7 +104,7 @@ def rotated_spectrum(
     inputs = _pairs(pair, owner=_SPECTRUM)
     seconds = checked_periods(periods, owner=_SPECTRUM)
     ratios = checked_ratios(damping_ratios, owner=_SPECTRUM)
-    count = whole_number(
+    count = checked_integer(
         directions, owner=_SPECTRUM, name="directions", lowest=2, highest=_MAX_DIRECTIONS
     )
     if count % 2:
@@ -142,7 +142,7 @@ def rotated_spectrum(
     return inputs.labelled(dataset)
 
 
-@hinted()
+@with_hints()
 def principal_axes(pair: HorizontalPair | Mapping[str, HorizontalPair]) -> xr.Dataset:
     """Find the axes along which the horizontal components are uncorrelated.
 
@@ -216,7 +216,7 @@ def _vertical(signal: Signal, seconds: Array, ratios: Array) -> Array:
 
 
 def _axes(pair: HorizontalPair) -> dict[str, float]:
-    angle, major, minor = axis_and_intensities(pair)
+    angle, major, minor = principal_axis_and_intensities(pair)
     return {
         "major_axis_angle": angle, "major_arias_intensity": major, "minor_arias_intensity": minor
     }  # fmt: skip
@@ -228,14 +228,15 @@ def _pairs(value: object, *, owner: str) -> Inputs[HorizontalPair]:
         return Inputs([value], None, {"motion": value.name, "references": _REFERENCES})
     if not isinstance(value, Mapping):
         wanted = "two horizontal components, rf.HorizontalPair(first, second)"
-        msg = f"{owner}: pair needs {wanted}, got {shown(value)}"
+        msg = f"{owner}: pair needs {wanted}, got {short_repr(value)}"
         raise ComponentError(msg)
     pairs = cast("Mapping[Any, Any]", value)
     check_not_empty(pairs, owner=owner)
     for label, one in pairs.items():
         if not isinstance(one, HorizontalPair):
             msg = (
-                f"{owner}: {label!r} is {shown(one)}, expected a HorizontalPair; those of a suite "
+                f"{owner}: {label!r} is {short_repr(one)}, expected a HorizontalPair; those of a "
+                "suite "
                 "are suite.pairs"
             )
             raise ComponentError(msg)

@@ -12,14 +12,14 @@ from rockframe.measures.common import (
     signal_of,
 )
 from rockframe.motion import GroundMotion
-from rockframe.proposals import hinted
 from rockframe.results.schema import build_dataset
 from rockframe.signals.integrals import ground_path, transform_of
 from rockframe.signals.motion import knots_of
+from rockframe.suggestions import with_hints
 from rockframe.units import FREQUENCY, POSITIVE, QuantityLike, to_si
 
 
-@hinted()
+@with_hints()
 def velocity_and_displacement(motion: GroundMotion, *, component: str = "horizontal") -> xr.Dataset:
     """Integrate a motion to velocity and displacement of the ground.
 
@@ -77,7 +77,7 @@ def velocity_and_displacement(motion: GroundMotion, *, component: str = "horizon
 _OWNER: Final = "fourier_spectrum"
 
 
-@hinted()
+@with_hints()
 def fourier_spectrum(
     motion: GroundMotion,
     *,

@@ -9,10 +9,9 @@ import xarray as xr
 
 from rockframe.components import Block
 from rockframe.constants import STANDARD_GRAVITY
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, short_repr
 from rockframe.measures.common import GroundComponent, read_inputs
 from rockframe.motion import GroundMotion
-from rockframe.proposals import hinted
 from rockframe.results.schema import build_dataset
 from rockframe.signals import Signal
 from rockframe.signals.integrals import (
@@ -30,6 +29,7 @@ from rockframe.signals.integrals import (
 )
 from rockframe.signals.motion import absolute_peak
 from rockframe.signals.spectra import DAMPING_RATIO, check_cost
+from rockframe.suggestions import with_hints
 from rockframe.units import ACCELERATION, POSITIVE, QuantityLike, RatioLike, to_ratio, to_si
 
 _OWNER: Final = "intensity_measures"
@@ -39,7 +39,7 @@ _DAMPING: Final = 0.05
 _PERIODS: Final = np.concatenate([HOUSNER_PERIODS, PREDOMINANT_PERIODS])
 
 
-@hinted()
+@with_hints()
 def intensity_measures(
     motion: GroundMotion | Mapping[str, GroundMotion],
     *,
@@ -197,7 +197,7 @@ def _block_measures(
 
 def _check_block(block: object, component: str) -> None:
     if not isinstance(block, Block):
-        msg = f"{_OWNER}: block needs a Block or a FrameEquivalent, got {shown(block)}"
+        msg = f"{_OWNER}: block needs a Block or a FrameEquivalent, got {short_repr(block)}"
         raise ComponentError(msg)
     if component == GroundComponent.VERTICAL:
         msg = (

@@ -8,17 +8,17 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import one_of_words
-from rockframe.errors import ComponentError, shown
+from rockframe.arguments import checked_choice
+from rockframe.errors import ComponentError, short_repr
 from rockframe.measures.common import Inputs, build_over, read_inputs
 from rockframe.motion import GroundMotion
 from rockframe.motion.operations.timing import Interpolation
 from rockframe.motion.processing.samples import band_limited, warn_of_coarse_samples
 from rockframe.motion.quantities import ArrayLike
-from rockframe.proposals import hinted
 from rockframe.signals import Signal
 from rockframe.signals.arrays import Array
 from rockframe.signals.spectra import DAMPING_RATIO, check_cost, pseudo_spectra, spectral_peaks
+from rockframe.suggestions import with_hints
 from rockframe.units import PERIOD, QuantityLike, RatioLike, to_ratio, to_si_values
 
 SAMPLES_PER_PERIOD: Final = 25
@@ -29,7 +29,7 @@ _OWNER: Final = "response_spectrum"
 _REMEDY: Final = "interpolation='band-limited' refines records"
 
 
-@hinted()
+@with_hints()
 def response_spectrum(
     motion: GroundMotion | Mapping[str, GroundMotion],
     periods: ArrayLike | Iterable[QuantityLike] | None = None,
@@ -98,7 +98,7 @@ def response_spectrum(
     inputs = read_inputs(motion, component, owner=_OWNER)
     seconds = checked_periods(periods, owner=_OWNER)
     ratios = checked_ratios(damping_ratios, owner=_OWNER)
-    method = one_of_words(Interpolation, interpolation, owner=_OWNER, name="interpolation")
+    method = checked_choice(Interpolation, interpolation, owner=_OWNER, name="interpolation")
     if method is Interpolation.LINEAR and periods is not None:
         warn_of_coarse_samples(
             inputs.items, shortest_positive_period(seconds), owner=_OWNER, remedy=_REMEDY
@@ -177,7 +177,8 @@ def checked_periods(value: object, *, owner: str) -> Array:
     seconds = np.array(to_si_values(value, PERIOD, owner=owner, name="periods"))
     if seconds.size == 0 or seconds[0] < 0.0 or not (np.diff(seconds) > 0.0).all():
         msg = (
-            f"{owner}: periods must be one or more, from zero up and increasing, got {shown(value)}"
+            f"{owner}: periods must be one or more, from zero up and increasing, got "
+            f"{short_repr(value)}"
         )
         raise ComponentError(msg)
     return seconds
@@ -195,6 +196,6 @@ def checked_ratios(argument: Any, *, owner: str) -> Array:
         for value in values
     ]
     if not ratios or len(set(ratios)) < len(ratios):
-        msg = f"{owner}: damping_ratios must be one or more, each once, got {shown(argument)}"
+        msg = f"{owner}: damping_ratios must be one or more, each once, got {short_repr(argument)}"
         raise ComponentError(msg)
     return np.array(ratios)

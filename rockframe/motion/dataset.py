@@ -11,7 +11,7 @@ import xarray as xr
 
 from rockframe.arguments import checked_dataset
 from rockframe.constants import CONVENTIONS
-from rockframe.motion.value import UNNAMED, Made, MotionValue
+from rockframe.motion.value import UNNAMED, MotionType, MotionValue
 from rockframe.records import LONG_NAMES, stored_motion
 from rockframe.units import Unit
 
@@ -36,7 +36,7 @@ def to_dataset(motion: MotionValue) -> xr.Dataset:
     si = motion.si
     components = {"acceleration": si.horizontal, "vertical_acceleration": si.vertical}
     present = {name: signal for name, signal in components.items() if signal is not None}
-    held = {name: signal.samples for name, signal in present.items()} | {
+    arrays = {name: signal.samples for name, signal in present.items()} | {
         f"{name}_pieces": signal.polynomials for name, signal in present.items()
     }
     variables: dict[str, Any] = {
@@ -45,7 +45,7 @@ def to_dataset(motion: MotionValue) -> xr.Dataset:
             values.copy(),
             {"units": str(Unit.METRE_PER_SECOND_SQUARED), "long_name": LONG_NAMES[name]},
         )
-        for name, values in held.items()
+        for name, values in arrays.items()
         if values is not None
     }
     time = np.arange(len(motion)) * si.time_step
@@ -69,7 +69,7 @@ def to_dataset(motion: MotionValue) -> xr.Dataset:
     return dataset
 
 
-def from_dataset(kind: type[Made], dataset: xr.Dataset) -> Made:
+def from_dataset(kind: type[MotionType], dataset: xr.Dataset) -> MotionType:
     """Build the motion from the result of :meth:`to_dataset`, identical bit for bit.
 
     Parameters

@@ -10,15 +10,15 @@ from typing import Any, Final
 import numpy as np
 
 from rockframe.constants import STANDARD_GRAVITY
-from rockframe.errors import SchemaError, nearest, shown
+from rockframe.errors import SchemaError, did_you_mean, short_repr
 from rockframe.motion.constructors.analytic import PULSES
-from rockframe.motion.value import Made, MotionValue
-from rockframe.notebook import card, curve
+from rockframe.motion.value import MotionType, MotionValue
+from rockframe.notebook import html_summary, sparkline
 from rockframe.signals import Motion, Signal
 from rockframe.signals.motion import VERTICAL
 
-_SCALED: Final = re.compile(r"scaled by (\S+)(?: to .*)?")
-_PROCESSED: Final = {
+_SCALED_STEP: Final = re.compile(r"scaled by (\S+)(?: to .*)?")
+_PROCESSING_WORDS: Final = {
     "window from ": "cut",
     "tapered over ": "tapered",
     "resampled from ": "resampled",
@@ -28,26 +28,26 @@ _PROCESSED: Final = {
     "absolute acceleration of a floor": "at a floor",
 }
 """Beginnings of the steps of a history that change a motion, and the words for its name."""
-_MATCHED: Final = re.compile(r"scaled by \S+ and matched to ")
+_MATCHED_STEP: Final = re.compile(r"scaled by \S+ and matched to ")
 
 
-def shown_name(name: str, history: Iterable[str]) -> str:
-    """Return the name of a motion, with its factor before it and its processing behind it."""
+def display_name(name: str, history: Iterable[str]) -> str:
+    """Return the name of a motion, preceded by its factor and followed by its processing."""
     steps = list(history)
-    factors = [_SCALED.fullmatch(step) for step in steps]
+    factors = [_SCALED_STEP.fullmatch(step) for step in steps]
     factor = math.prod(float(found[1]) for found in factors if found is not None)
-    named = ", ".join([name, *dict.fromkeys(filter(None, map(_processing, steps)))])
+    named = ", ".join([name, *dict.fromkeys(filter(None, map(_processing_word, steps)))])
     return named if factor == 1.0 else f"{factor:.6g} times {named}"
 
 
-def _processing(step: str) -> str:
+def _processing_word(step: str) -> str:
     """Return the word for a step of a history that changes a motion; nothing for another."""
-    if _MATCHED.match(step):
+    if _MATCHED_STEP.match(step):
         return "matched"
-    return next((words for start, words in _PROCESSED.items() if step.startswith(start)), "")
+    return next((words for start, words in _PROCESSING_WORDS.items() if step.startswith(start)), "")
 
 
-_TOLD: tuple[str, ...] = ("event", "station", "component")
+_SHOWN_METADATA: tuple[str, ...] = ("event", "station", "component")
 """Metadata that notebooks show, if the file has them."""
 
 
@@ -56,26 +56,28 @@ def motion_html(motion: MotionValue) -> str:
     si = motion.si
     samples = np.asarray(si.horizontal.samples)
     rows: dict[str, Any] = {
-        "peak": peak_words(motion),
+        "peak": peak_text(motion),
         "duration": f"{(samples.size - 1) * si.time_step:.6g} s",
         "samples": f"{samples.size}, each {si.time_step:.6g} s",
     }
     if si.vertical is not None:
-        upwards = float(np.abs(np.asarray(si.vertical.samples)).max(initial=0.0))
-        rows["vertical peak"] = _in_gravity(upwards)
-    rows |= {name: str(motion.metadata[name]) for name in _TOLD if name in motion.metadata}
-    drawn = curve(samples.tolist())
-    title = f"{type(motion).__name__}: {shown_name(motion.name, motion.history)}"
-    return f"<div>{card(title, rows)}{drawn}</div>"
+        vertical_peak = float(np.abs(np.asarray(si.vertical.samples)).max(initial=0.0))
+        rows["vertical peak"] = _acceleration_text(vertical_peak)
+    rows |= {
+        name: str(motion.metadata[name]) for name in _SHOWN_METADATA if name in motion.metadata
+    }
+    drawn = sparkline(samples.tolist())
+    title = f"{type(motion).__name__}: {display_name(motion.name, motion.history)}"
+    return f"<div>{html_summary(title, rows)}{drawn}</div>"
 
 
-def peak_words(motion: MotionValue) -> str:
+def peak_text(motion: MotionValue) -> str:
     """Return the largest horizontal acceleration of the samples as a text."""
     samples = np.asarray(motion.si.horizontal.samples)
-    return _in_gravity(float(np.abs(samples).max(initial=0.0)))
+    return _acceleration_text(float(np.abs(samples).max(initial=0.0)))
 
 
-def _in_gravity(peak: float) -> str:
+def _acceleration_text(peak: float) -> str:
     return f"{peak:.4g} m/s² ({peak / STANDARD_GRAVITY:.3g} g)"
 
 
@@ -95,7 +97,7 @@ OPERATIONS: Final = (
 """Operations that a description may name."""
 
 
-def from_dict(kind: type[Made], description: Mapping[str, Any]) -> Made:
+def from_dict(kind: type[MotionType], description: Mapping[str, Any]) -> MotionType:
     """Build the motion from the result of :meth:`to_dict`.
 
     Parameters
@@ -120,12 +122,15 @@ def from_dict(kind: type[Made], description: Mapping[str, Any]) -> Made:
     True
     """
     if not isinstance(description, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance]
-        msg = f"{kind.__name__}.from_dict: found {shown(description)}; expected what to_dict gives"
+        msg = (
+            f"{kind.__name__}.from_dict: found {short_repr(description)}; expected what to_dict "
+            "gives"
+        )
         raise SchemaError(msg)
     arguments = {key: value for key, value in description.items() if key != "type"}
     constructor = arguments.pop("constructor", None)
     if constructor is None and "horizontal" in arguments:
-        return _sampled(kind, arguments)
+        return _from_samples(kind, arguments)
     operations = arguments.pop("operations", ())
     if constructor is None:
         known = " and ".join(
@@ -137,7 +142,7 @@ def from_dict(kind: type[Made], description: Mapping[str, Any]) -> Made:
         )
         raise SchemaError(msg)
     if constructor not in CONSTRUCTORS:
-        found = f"{shown(constructor)}{nearest(constructor, CONSTRUCTORS)}"
+        found = f"{short_repr(constructor)}{did_you_mean(constructor, CONSTRUCTORS)}"
         msg = f"found the constructor {found}; expected one of {', '.join(CONSTRUCTORS)}"
         raise SchemaError(msg)
     if constructor == "stochastic":
@@ -148,7 +153,7 @@ def from_dict(kind: type[Made], description: Mapping[str, Any]) -> Made:
         for operation in operations:
             ((name, values),) = operation.items()
             if name not in OPERATIONS:
-                found = f"{shown(name)}{nearest(name, OPERATIONS)}"
+                found = f"{short_repr(name)}{did_you_mean(name, OPERATIONS)}"
                 msg = f"found the operation {found}; expected one of {', '.join(OPERATIONS)}"
                 raise SchemaError(msg)
             if values.get("other") is not None:
@@ -160,23 +165,27 @@ def from_dict(kind: type[Made], description: Mapping[str, Any]) -> Made:
     return motion
 
 
-def _sampled(kind: type[Made], description: Mapping[str, Any]) -> Made:
+def _from_samples(kind: type[MotionType], description: Mapping[str, Any]) -> MotionType:
     """Build a motion from its samples, and compare these with the digest."""
     try:
-        step, upwards = description["time_step"], description["vertical"]
+        step, vertical_arrays = description["time_step"], description["vertical"]
         horizontal = Signal(step, **_arrays(description["horizontal"]))
-        vertical = None if upwards is None else Signal(step, **_arrays(upwards), name=VERTICAL)
+        vertical = (
+            None
+            if vertical_arrays is None
+            else Signal(step, **_arrays(vertical_arrays), name=VERTICAL)
+        )
         motion = kind(
             Motion(horizontal, vertical),
             name=description["name"],
             metadata=description["metadata"],
             history=tuple(description["history"]),
         )
-        written = description["sha256"]
+        digest = description["sha256"]
     except (KeyError, TypeError, ValueError, AttributeError) as problem:
         msg = f"found a description that holds no ground motion: {problem}"
         raise SchemaError(msg) from problem
-    if motion.sha256 != written:
+    if motion.sha256 != digest:
         msg = "found samples that differ from those of the digest 'sha256'; expected the same"
         raise SchemaError(msg)
     return motion

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import wraps
 from typing import TYPE_CHECKING
 
-from rockframe.errors import ArgumentError, ComponentError, shown
+from rockframe.errors import ArgumentError, ComponentError, short_repr
 from rockframe.motion import dataset, description, value
 from rockframe.motion.constructors import records, synthetic, tables
 from rockframe.motion.constructors.analytic import AnalyticMotion
@@ -20,11 +20,11 @@ from rockframe.motion.operations import (
     writing,
 )
 from rockframe.motion.value import MotionValue
-from rockframe.proposals import proposing
 from rockframe.signals import Motion
+from rockframe.suggestions import suggests_names
 
 
-@proposing
+@suggests_names
 class GroundMotion(AnalyticMotion):
     """Acceleration of the ground over time; immutable.
 
@@ -72,7 +72,7 @@ class GroundMotion(AnalyticMotion):
                 raise ArgumentError(msg)
             si = values[0] if values else named["si"]
             if not isinstance(si, Motion):
-                msg = f"{cls.__name__}: found {shown(si)}; write {usage}"
+                msg = f"{cls.__name__}: found {short_repr(si)}; write {usage}"
                 raise ComponentError(msg)
             return super().__new__(cls)
 

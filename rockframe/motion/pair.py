@@ -9,18 +9,23 @@ from typing import Any, Final
 import numpy as np
 
 from rockframe.constants import STANDARD_GRAVITY
-from rockframe.errors import ComponentError, RecordError, RecordWarning, shown, warn
+from rockframe.errors import ComponentError, RecordError, RecordWarning, short_repr, warn
 from rockframe.motion.ground_motion import GroundMotion
-from rockframe.motion.operations.following import SAME_STEP
-from rockframe.motion.operations.pulses import LONGEST, SHORTEST, searched, velocity_of
+from rockframe.motion.operations.derived import SAME_STEP
+from rockframe.motion.operations.pulses import (
+    LONGEST_PERIOD,
+    SHORTEST_PERIOD,
+    ground_velocity,
+    search_periods,
+)
 from rockframe.motion.processing.samples import padded
-from rockframe.motion.processing.velocity_pulses import strongest
-from rockframe.motion.quantities import with_quantity
+from rockframe.motion.processing.velocity_pulses import strongest_wavelet
+from rockframe.motion.quantities import as_quantity
 from rockframe.motion.velocity_pulse import VelocityPulse
-from rockframe.proposals import Proposing, proposing
 from rockframe.records import Reading, RecordLike, read_components, read_source, same_start
 from rockframe.signals import Signal
 from rockframe.signals.integrals import arias_history
+from rockframe.suggestions import SuggestingMeta, suggests_names
 from rockframe.units import ANGLE, Quantity, QuantityLike
 
 _RIGHT_ANGLE: Final = 90.0
@@ -28,9 +33,9 @@ _TOLERANCE: Final = 1.0  # degree; agencies round azimuths to whole degrees
 _EXAMPLE: Final = "HorizontalPair(north, east)"
 
 
-@proposing
+@suggests_names
 @dataclass(frozen=True)
-class HorizontalPair(metaclass=Proposing):
+class HorizontalPair(metaclass=SuggestingMeta):
     """Two horizontal components at a right angle, and optionally the vertical one.
 
     Parameters
@@ -74,24 +79,27 @@ class HorizontalPair(metaclass=Proposing):
             named["vertical"] = self.vertical
         for name, motion in named.items():
             if not isinstance(motion, GroundMotion):
-                msg = f"{owner}: {name} needs a GroundMotion, got {shown(motion)}; write {_EXAMPLE}"
+                msg = (
+                    f"{owner}: {name} needs a GroundMotion, got {short_repr(motion)}; write "
+                    f"{_EXAMPLE}"
+                )
                 raise ComponentError(msg)
-            _check_alike(self.first, motion, name, owner)
+            _check_same_step_and_start(self.first, motion, name, owner)
         azimuths = [motion.metadata.get("azimuth") for motion in (self.first, self.second)]
         known = [float(value) for value in azimuths if isinstance(value, int | float)]
         if len(known) == 2:
-            apart = abs((known[1] - known[0] + 180.0) % 360.0 - 180.0)
-            if abs(apart - _RIGHT_ANGLE) > _TOLERANCE:
+            angle = abs((known[1] - known[0] + 180.0) % 360.0 - 180.0)
+            if abs(angle - _RIGHT_ANGLE) > _TOLERANCE:
                 msg = (
                     f"{owner}: the components point to {known[0]:g}° and {known[1]:g}°, "
                     "which are not at a right angle"
                 )
                 raise ComponentError(msg)
-        upwards = [motion.si.vertical is not None for motion in (self.first, self.second)]
-        if self.vertical is None and upwards[0] != upwards[1]:
+        has_vertical = [motion.si.vertical is not None for motion in (self.first, self.second)]
+        if self.vertical is None and has_vertical[0] != has_vertical[1]:
             words = (
-                f"{owner}: only the {'first' if upwards[0] else 'second'} component has a vertical "
-                "one; give it as vertical= for both"
+                f"{owner}: only the {'first' if has_vertical[0] else 'second'} component has a "
+                "vertical one; give it as vertical= for both"
             )
             warn(words, RecordWarning)
 
@@ -134,10 +142,10 @@ class HorizontalPair(metaclass=Proposing):
             if isinstance(one, RecordError):
                 raise one
             readings.append(one)
-        level = [one for one in readings if not one.vertical]
-        upwards = [one for one in readings if one.vertical]
-        if len(level) != 2 or len(upwards) > 1:
-            found = f"{len(level)} horizontal and {len(upwards)} vertical components"
+        horizontal = [one for one in readings if not one.vertical]
+        vertical = [one for one in readings if one.vertical]
+        if len(horizontal) != 2 or len(vertical) > 1:
+            found = f"{len(horizontal)} horizontal and {len(vertical)} vertical components"
             expected = "two horizontal ones and at most one vertical; read them one by one"
             raise RecordError(source.path, found=found, expected=expected)
         for reading in readings:
@@ -150,7 +158,7 @@ class HorizontalPair(metaclass=Proposing):
                 metadata=one.metadata,
                 history=one.history,
             )
-            for one in (*level, *upwards)
+            for one in (*horizontal, *vertical)
         ]
         return cls(*motions)
 
@@ -176,7 +184,7 @@ class HorizontalPair(metaclass=Proposing):
     @property
     def principal_axis(self) -> Quantity:
         """Direction of the major principal axis, from the first component to the second [rad]."""
-        return with_quantity(axis_and_intensities(self)[0], ANGLE)
+        return as_quantity(principal_axis_and_intensities(self)[0], ANGLE)
 
     def rotated(
         self, angle: QuantityLike | None = None, *, azimuth: QuantityLike | None = None
@@ -207,11 +215,14 @@ class HorizontalPair(metaclass=Proposing):
         >>> rf.HorizontalPair(north, east).rotated("90 deg").peak_acceleration.round(3)
         <Quantity(4.0, 'meter / second ** 2')>
         """
-        turned = self.first.rotated(self.second, angle, azimuth=azimuth)
-        return turned if self.vertical is None else turned.with_vertical(self.vertical)
+        component = self.first.rotated(self.second, angle, azimuth=azimuth)
+        return component if self.vertical is None else component.with_vertical(self.vertical)
 
     def velocity_pulse(
-        self, *, shortest_period: QuantityLike = SHORTEST, longest_period: QuantityLike = LONGEST
+        self,
+        *,
+        shortest_period: QuantityLike = SHORTEST_PERIOD,
+        longest_period: QuantityLike = LONGEST_PERIOD,
     ) -> VelocityPulse[GroundMotion]:
         """Find the strongest velocity pulse of all directions, extract it, and classify it.
 
@@ -240,13 +251,13 @@ class HorizontalPair(metaclass=Proposing):
         """
         dt = self.first.si.time_step
         owner = f"{type(self).__name__}.velocity_pulse"
-        periods = searched(shortest_period, longest_period, dt, owner=owner)
-        velocities = np.array([velocity_of(signal) for signal in self.signals])
-        direction = strongest(velocities, dt, periods).direction
+        periods = search_periods(shortest_period, longest_period, dt, owner=owner)
+        velocities = np.array([ground_velocity(signal) for signal in self.signals])
+        direction = strongest_wavelet(velocities, dt, periods).direction
         pulse = self.rotated(f"{direction!r} rad").velocity_pulse(
             shortest_period=shortest_period, longest_period=longest_period
         )
-        return replace(pulse, angle=with_quantity(direction, ANGLE))
+        return replace(pulse, angle=as_quantity(direction, ANGLE))
 
     def in_axes(self, angle: QuantityLike) -> HorizontalPair:
         """Compute the components along rotated axes.
@@ -280,7 +291,7 @@ class HorizontalPair(metaclass=Proposing):
         return HorizontalPair(along, across, self.vertical)
 
 
-def axis_and_intensities(pair: HorizontalPair) -> tuple[float, float, float]:
+def principal_axis_and_intensities(pair: HorizontalPair) -> tuple[float, float, float]:
     """Compute :eq:`eq-principal-axes`: angle [rad], principal Arias intensities [m s^-1]."""
     # a record with a pulse at a right angle is a polynomial in every direction, also in its own
     first, both, second = (
@@ -293,7 +304,9 @@ def axis_and_intensities(pair: HorizontalPair) -> tuple[float, float, float]:
     return angle, middle + spread, max(middle - spread, 0.0)
 
 
-def _check_alike(first: GroundMotion, other: GroundMotion, name: str, owner: str) -> None:
+def _check_same_step_and_start(
+    first: GroundMotion, other: GroundMotion, name: str, owner: str
+) -> None:
     steps = first.si.time_step, other.si.time_step
     if not math.isclose(*steps, rel_tol=SAME_STEP):
         msg = (

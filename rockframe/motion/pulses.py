@@ -24,7 +24,9 @@ Places and step are times over the period; derivatives are by x.
 """
 
 
-def sampled(shape: Shape, *, length: float, frequency: float, intervals: int, owner: str) -> Motion:
+def sampled_motion(
+    shape: Shape, *, length: float, frequency: float, intervals: int, owner: str
+) -> Motion:
     """Sample a function that is smooth from the start to the end of the motion."""
     if length * intervals > MAXIMUM_SAMPLES:
         msg = f"{owner}: {length:.6g} cycles are more than can be sampled; shorten the motion"
@@ -46,16 +48,16 @@ def hermite_pieces(value: Array, slope: Array, curvature: Array) -> Array:
     """Compute quintic Hermite polynomials from nodal values and derivatives."""
     start, s0, c0 = value[:-1], slope[:-1], curvature[:-1]
     rise = value[1:] - start - s0 - 0.5 * c0
-    turn = slope[1:] - s0 - c0
-    bend = curvature[1:] - c0
+    slope_change = slope[1:] - s0 - c0
+    curvature_change = curvature[1:] - c0
     return np.column_stack(
         [
             start,
             s0,
             0.5 * c0,
-            10.0 * rise - 4.0 * turn + 0.5 * bend,
-            -15.0 * rise + 7.0 * turn - bend,
-            6.0 * rise - 3.0 * turn + 0.5 * bend,
+            10.0 * rise - 4.0 * slope_change + 0.5 * curvature_change,
+            -15.0 * rise + 7.0 * slope_change - curvature_change,
+            6.0 * rise - 3.0 * slope_change + 0.5 * curvature_change,
         ]
     )
 
@@ -66,7 +68,7 @@ INTERVALS_PER_CYCLE: Final = 128
 QUARTER_TURN: Final = 0.5 * math.pi
 _HALF: Final = 0.5
 _QUARTER: Final = 0.25
-_ROUNDS: Final = 20
+_PHASE_ITERATIONS: Final = 20
 
 
 class _Sine(NamedTuple):
@@ -81,8 +83,8 @@ def sine(
     owner: str, amplitude: float, frequency: float, cycles: float, phase: float = 0.0
 ) -> Motion:
     """Build ``a(t) = amplitude sin(2 pi frequency t + phase)``."""
-    return sampled(
-        _sum_of([_Sine(amplitude, 1.0, phase / (2.0 * math.pi))]),
+    return sampled_motion(
+        _sine_sum([_Sine(amplitude, 1.0, phase / (2.0 * math.pi))]),
         length=cycles,
         frequency=frequency,
         intervals=INTERVALS_PER_CYCLE,
@@ -104,7 +106,9 @@ def type_c_phase(order: int) -> float:
     It is the root of :eq:`eq-type-c-phase` in (0, pi/2).
     """
     phase = 0.0
-    for _ in range(_ROUNDS):  # each iteration reduces the error at least by a factor of 21
+    for _ in range(
+        _PHASE_ITERATIONS
+    ):  # each iteration reduces the error at least by a factor of 21
         phase = math.atan(1.0 / ((order + _HALF) * math.pi - phase))
     return phase
 
@@ -120,8 +124,8 @@ def mavroeidis_papageorgiou(
         return _Sine(share * ratio * amplitude, ratio, start - _HALF * cycles * ratio)
 
     faster, slower = 1.0 + 1.0 / cycles, 1.0 - 1.0 / cycles
-    return sampled(
-        _sum_of([part(1.0, 1.0), part(_HALF, faster), part(_HALF, slower)]),
+    return sampled_motion(
+        _sine_sum([part(1.0, 1.0), part(_HALF, faster), part(_HALF, slower)]),
         length=cycles,
         frequency=frequency,
         intervals=math.ceil(faster * INTERVALS_PER_CYCLE),
@@ -129,29 +133,29 @@ def mavroeidis_papageorgiou(
     )
 
 
-def sine_of_cycles(turns: Array) -> Array:
+def sine_of_cycles(cycles: Array) -> Array:
     """Compute sin(2 pi x), exactly zero at multiples of one half."""
-    rest = turns - np.round(turns)
+    rest = cycles - np.round(cycles)
     folded = np.where(np.abs(rest) > _QUARTER, np.copysign(_HALF, rest) - rest, rest)
     return np.sin(2.0 * math.pi * folded)
 
 
-def _sum_of(parts: Sequence[_Sine]) -> Shape:
+def _sine_sum(parts: Sequence[_Sine]) -> Shape:
     def shape(places: Array, step: float) -> tuple[Array, Array, Array]:
-        value, slope, curvature = _along(parts[0], places, step)
+        value, slope, curvature = _sine_samples(parts[0], places, step)
         for part in parts[1:]:
-            more = _along(part, places, step)
+            more = _sine_samples(part, places, step)
             value, slope, curvature = value + more[0], slope + more[1], curvature + more[2]
         return value, slope, curvature
 
     return shape
 
 
-def _along(part: _Sine, places: Array, step: float) -> tuple[Array, Array, Array]:
-    turns = part.ratio * places + part.start
-    value = part.amplitude * sine_of_cycles(turns)
+def _sine_samples(part: _Sine, places: Array, step: float) -> tuple[Array, Array, Array]:
+    cycles = part.ratio * places + part.start
+    value = part.amplitude * sine_of_cycles(cycles)
     angle = 2.0 * math.pi * part.ratio * step  # omega dt
-    slope = part.amplitude * sine_of_cycles(turns + _QUARTER) * angle
+    slope = part.amplitude * sine_of_cycles(cycles + _QUARTER) * angle
     return value, slope, -value * angle**2
 
 
@@ -161,11 +165,11 @@ INTERVALS_PER_PERIOD: Final = 256
 PERIODS_PER_SIDE: Final = 2.5
 """Periods from the centre to both ends, where the wavelet has 7e-16 of its amplitude."""
 
-_LEFT_ROOT: Final = 3.0 - math.sqrt(6.0)
+_SQUARED_PEAK_PLACE: Final = 3.0 - math.sqrt(6.0)
 """Square of the x at which the magnitude of He_3(x) exp(-x^2/2) is greatest."""
 
 
-class _Derivative(NamedTuple):
+class _GaussianDerivative(NamedTuple):
     """``sign He_n(x) exp(-x^2/2) / peak``, He_n the Hermite polynomial of degree n."""
 
     degree: int
@@ -173,9 +177,9 @@ class _Derivative(NamedTuple):
     peak: float
 
 
-SYMMETRIC: Final = _Derivative(2, -1.0, 1.0)
-ANTISYMMETRIC: Final = _Derivative(
-    3, 1.0, math.sqrt(6.0 * _LEFT_ROOT) * math.exp(-0.5 * _LEFT_ROOT)
+SYMMETRIC: Final = _GaussianDerivative(2, -1.0, 1.0)
+ANTISYMMETRIC: Final = _GaussianDerivative(
+    3, 1.0, math.sqrt(6.0 * _SQUARED_PEAK_PLACE) * math.exp(-0.5 * _SQUARED_PEAK_PLACE)
 )
 
 
@@ -194,7 +198,7 @@ def ricker(owner: str, amplitude: float, period: float, antisymmetric: bool) -> 
         )
         return value, slope, curvature
 
-    return sampled(
+    return sampled_motion(
         shape,
         length=2.0 * PERIODS_PER_SIDE,
         frequency=1.0 / period,
@@ -215,14 +219,14 @@ INTERVALS_PER_IMPULSE: Final = 16
 """Pieces per impulse. One would be exact, but the samples should show the impulse, too."""
 
 _ROUNDING: Final = 1e-9
-_SHORT: Final = 0.01
+_DURATION_RATIO: Final = 0.01
 """Default duration of an impulse over the time between two [1]."""
 
 
 def impulse_duration(owner: str, longest: float | None, interval: float) -> float:
     """Return the longest duration up to `longest` of which `interval` is a whole multiple."""
     if longest is None:
-        longest = _SHORT * interval
+        longest = _DURATION_RATIO * interval
     if longest > interval:
         msg = (
             f"{owner}: pulse_duration = {longest:.6g} s must not exceed "
@@ -240,7 +244,7 @@ def impulse_duration(owner: str, longest: float | None, interval: float) -> floa
 
 def opposite_impulses(_: str, velocity: float, interval: float, pulse_duration: float) -> Motion:
     """Build two opposite impulses of the shape :eq:`eq-impulse`."""
-    between = (round(interval / pulse_duration) - 1) * INTERVALS_PER_IMPULSE
+    gap = (round(interval / pulse_duration) - 1) * INTERVALS_PER_IMPULSE
     step = 1.0 / INTERVALS_PER_IMPULSE
     u = np.arange(INTERVALS_PER_IMPULSE + 1) * step
     height = 30.0 * velocity / pulse_duration
@@ -249,6 +253,6 @@ def opposite_impulses(_: str, velocity: float, interval: float, pulse_duration: 
         slope = height * 2.0 * u * (1.0 - u) * (1.0 - 2.0 * u) * step
         curvature = height * 2.0 * (1.0 - 6.0 * u * (1.0 - u)) * step**2
         pieces = hermite_pieces(value, slope, curvature)
-    rest = np.zeros((between, pieces.shape[1]))
-    samples = np.concatenate([value[:-1], np.zeros(between + 1), -value[1:]])
+    rest = np.zeros((gap, pieces.shape[1]))
+    samples = np.concatenate([value[:-1], np.zeros(gap + 1), -value[1:]])
     return Motion(Signal(pulse_duration * step, samples, np.concatenate([pieces, rest, -pieces])))

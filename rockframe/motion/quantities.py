@@ -10,15 +10,15 @@ import numpy.typing as npt
 import pint
 import xarray as xr
 
-from rockframe.errors import ComponentError, UnitsError, shown
+from rockframe.errors import ComponentError, UnitsError, short_repr
 from rockframe.records import acceleration_unit
 from rockframe.units import (
     ACCELERATION,
     TIME,
     Measure,
     Quantity,
-    check_own_unit,
-    foreign_quantity,
+    check_attached_unit,
+    foreign_quantity_hint,
     to_si,
 )
 
@@ -30,7 +30,7 @@ ArrayLike: TypeAlias = Quantity | xr.DataArray | tuple[Sequence[float] | npt.NDA
 _EXAMPLE: Final = "(values, 'm/s^2')"
 
 
-def with_quantity(value: float | Array, measure: Measure) -> Quantity:
+def as_quantity(value: float | Array, measure: Measure) -> Quantity:
     """Make a quantity from a number or array in SI units."""
     registry: Any = pint.get_application_registry()
     own = value.copy() if isinstance(value, np.ndarray) else value
@@ -55,12 +55,12 @@ def accelerations_to_si(value: object, *, owner: str, name: str) -> Array:
         factor = to_si(type(argument)(1.0, argument.units), ACCELERATION, owner=owner, name=name)
         return _scaled(argument.magnitude, factor, owner, name)
     if _has_unit(value):
-        check_own_unit(value[0], value[1], owner=owner, name=name)
+        check_attached_unit(value[0], value[1], owner=owner, name=name)
         return _scaled(value[0], _unit_factor(value[1], owner, name), owner, name)
     if isinstance(value, str):
-        found = f"{shown(value)}, which is one value"
+        found = f"{short_repr(value)}, which is one value"
     else:
-        found = foreign_quantity(value) or f"a {type(value).__name__} without a unit"
+        found = foreign_quantity_hint(value) or f"a {type(value).__name__} without a unit"
     msg = (
         f"{owner}: {name} needs an array of accelerations with a unit such as "
         f"{ACCELERATION.unit}, got {found}; write for example {name}={_EXAMPLE}"
@@ -85,13 +85,13 @@ def times_to_si(value: object, *, owner: str, name: str) -> Array:
         factor = to_si(type(argument)(1.0, argument.units), TIME, owner=owner, name=name)
         values = argument.magnitude
     elif _has_unit(value):
-        check_own_unit(value[0], value[1], owner=owner, name=name)
+        check_attached_unit(value[0], value[1], owner=owner, name=name)
         factor = to_si(f"1 {value[1]}", TIME, owner=owner, name=name)
         values = value[0]
     else:
         msg = (
             f"{owner}: {name} needs an array of times with a unit such as {TIME.unit}, got "
-            f"{shown(value)}; write for example {name}=(values, 's')"
+            f"{short_repr(value)}; write for example {name}=(values, 's')"
         )
         raise UnitsError(msg)
     times = _scaled(values, factor, owner, name)
@@ -111,7 +111,7 @@ def _unit_factor(unit: str, owner: str, name: str, *, udunits: bool = False) -> 
         better = "m/s^2" if known is None else known.spelling
         msg = (
             f"{owner}: {name} needs the unit of an acceleration such as {ACCELERATION.unit}, "
-            f"got {shown(unit)}; write for example {name}=(values, {better!r})"
+            f"got {short_repr(unit)}; write for example {name}=(values, {better!r})"
         )
         raise UnitsError(msg) from problem
 
@@ -145,7 +145,7 @@ def _has_unit(value: object) -> TypeGuard[tuple[object, str]]:
     return isinstance(value, tuple) and len(value) == 2 and isinstance(value[1], str)  # pyright: ignore[reportUnknownArgumentType]
 
 
-def declared_times(value: object) -> Array | None:
+def attached_times(value: object) -> Array | None:
     """Return the times that an array has itself: a time axis, or the index of a Series."""
     held = cast("tuple[object, ...]", value)[0] if isinstance(value, tuple) and value else value
     if isinstance(held, xr.DataArray):

@@ -94,8 +94,8 @@ def saturation_length(magnitude: float) -> float:
     start = (c - a) / (b - d) - 0.5 * TRANSITION
     within = min(max(magnitude - start, 0.0), TRANSITION)
     beyond = max(magnitude - start - TRANSITION, 0.0)
-    bend = (b - d) * (within**2 / (2.0 * TRANSITION) + beyond)
-    return KILOMETRE * 10.0 ** (a + b * magnitude - bend)
+    flattening = (b - d) * (within**2 / (2.0 * TRANSITION) + beyond)
+    return KILOMETRE * 10.0 ** (a + b * magnitude - flattening)
 
 
 def geometric_spreading(distance: float) -> float:
@@ -312,7 +312,7 @@ def accelerogram(source: PointSource, time_step: float, seed: int, stream: int =
     displacement, velocity, acceleration = (
         np.fft.irfft(spectrum * rate**order, points)[:count] for order in range(3)
     )
-    step, slope, curvature = faded(count, fade, time_step)
+    step, slope, curvature = fade_window(count, fade, time_step)
     return step * acceleration + 2.0 * slope * velocity + curvature * displacement
 
 
@@ -340,7 +340,7 @@ def normal_numbers(count: int, seed: int, stream: int) -> Array:
     return cast("Array", special.ndtri((leading.astype(np.float64) + 0.5) * 2.0**-53))
 
 
-def faded(count: int, fade: int, time_step: float) -> tuple[Array, Array, Array]:
+def fade_window(count: int, fade: int, time_step: float) -> tuple[Array, Array, Array]:
     """Return a smooth step up at the start and down at the end, and derivatives, :eq:`eq-step`."""
     x = np.minimum(np.arange(fade + 1) / fade, 1.0)
     rises = (

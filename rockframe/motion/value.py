@@ -6,22 +6,22 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any, Final, TypeVar
 
-from rockframe.arguments import text, truth
-from rockframe.errors import ComponentError, shown
-from rockframe.motion.quantities import with_quantity
-from rockframe.proposals import Immutable, proposing
+from rockframe.arguments import checked_bool, checked_text
+from rockframe.errors import ComponentError, short_repr
+from rockframe.motion.quantities import as_quantity
 from rockframe.signals import Motion, Signal
 from rockframe.signals.integrals import ground_path
 from rockframe.signals.motion import absolute_peak, knots_of
+from rockframe.suggestions import Immutable, suggests_names
 from rockframe.units import ACCELERATION, LENGTH, TIME, VELOCITY, Quantity
 
 UNNAMED: Final = "unnamed motion"
 
-Made = TypeVar("Made", bound="MotionValue")
+MotionType = TypeVar("MotionType", bound="MotionValue")
 """The class of a motion, kept by constructors and operations."""
 
 
-@proposing
+@suggests_names
 class MotionValue(Immutable):
     """A motion in SI units with a name, metadata and a history; immutable.
 
@@ -72,14 +72,15 @@ class MotionValue(Immutable):
             if isinstance(value, bool) or not isinstance(value, str | int | float):
                 msg = (
                     f"GroundMotion: metadata {key!r} must be a string or a number, "
-                    f"got {shown(value)}"
+                    f"got {short_repr(value)}"
                 )
                 raise ComponentError(msg)
         values = {
             "si": si,
-            "name": _one_line(text(name, owner=type(self).__name__, name="name")) or UNNAMED,
+            "name": _one_line(checked_text(name, owner=type(self).__name__, name="name"))
+            or UNNAMED,
             "metadata": MappingProxyType(entries),
-            "history": tuple(map(_Line, history)),
+            "history": tuple(map(_OneLine, history)),
             "recipe": None if recipe is None else MappingProxyType(dict(recipe)),
         }
         for key, value in values.items():
@@ -93,43 +94,43 @@ class MotionValue(Immutable):
     @property
     def time_step(self) -> Quantity:
         """Time between samples [s]."""
-        return with_quantity(self.si.time_step, TIME)
+        return as_quantity(self.si.time_step, TIME)
 
     @property
     def duration(self) -> Quantity:
         """Time from the first to the last sample [s]."""
-        return with_quantity(self.si.duration, TIME)
+        return as_quantity(self.si.duration, TIME)
 
     @property
     def acceleration(self) -> Quantity:
         """Horizontal acceleration of the ground, a copy of the samples [m s^-2]."""
-        return with_quantity(self.si.horizontal.samples, ACCELERATION)
+        return as_quantity(self.si.horizontal.samples, ACCELERATION)
 
     @property
     def vertical_acceleration(self) -> Quantity | None:
         """Vertical acceleration of the ground, upwards, or None [m s^-2]."""
         vertical = self.si.vertical
-        return None if vertical is None else with_quantity(vertical.samples, ACCELERATION)
+        return None if vertical is None else as_quantity(vertical.samples, ACCELERATION)
 
     @property
     def velocity(self) -> Quantity:
         """Horizontal velocity of the ground at the samples, from rest [m s^-1]."""
-        return with_quantity(knots_of(ground_path(self.si.horizontal)[0]), VELOCITY)
+        return as_quantity(knots_of(ground_path(self.si.horizontal)[0]), VELOCITY)
 
     @property
     def displacement(self) -> Quantity:
         """Horizontal displacement of the ground at the samples, from rest [m]."""
-        return with_quantity(knots_of(ground_path(self.si.horizontal)[1]), LENGTH)
+        return as_quantity(knots_of(ground_path(self.si.horizontal)[1]), LENGTH)
 
     @property
     def peak_acceleration(self) -> Quantity:
         """Greatest absolute horizontal acceleration, between samples too [m s^-2]."""
-        return with_quantity(self.si.peak, ACCELERATION)
+        return as_quantity(self.si.peak, ACCELERATION)
 
     @property
     def peak_velocity(self) -> Quantity:
         """Greatest absolute horizontal velocity from rest, between samples too [m s^-1]."""
-        return with_quantity(absolute_peak(ground_path(self.si.horizontal)[0]), VELOCITY)
+        return as_quantity(absolute_peak(ground_path(self.si.horizontal)[0]), VELOCITY)
 
     def __len__(self) -> int:
         return int(self.si.horizontal.samples.size)
@@ -165,13 +166,13 @@ class MotionValue(Immutable):
 
 
 def _rebuild(
-    kind: type[Made],
+    kind: type[MotionType],
     si: Motion,
     name: str,
     metadata: dict[str, str | float | int],
     history: tuple[str, ...],
     recipe: dict[str, Any] | None,
-) -> Made:
+) -> MotionType:
     return kind(si, name=name, metadata=metadata, history=history, recipe=recipe)
 
 
@@ -181,12 +182,12 @@ def _one_line(text: str) -> str:
     return " ".join(text.split())
 
 
-class _Line(str):
+class _OneLine(str):
     """A sentence of a history on one line; a copy is not processed again."""
 
     __slots__ = ()
 
-    def __new__(cls, text: str) -> _Line:
+    def __new__(cls, text: str) -> _OneLine:
         return text if isinstance(text, cls) else super().__new__(cls, _one_line(text))
 
 
@@ -215,18 +216,18 @@ def to_dict(motion: MotionValue, *, samples: bool = False) -> dict[str, Any]:
     if motion.recipe is not None:
         return {**kind, **motion.recipe}
     known = {**kind, "constructor": None, "name": motion.name, "sha256": motion.sha256}
-    if not truth(samples, owner=f"{type(motion).__name__}.to_dict", name="samples"):
+    if not checked_bool(samples, owner=f"{type(motion).__name__}.to_dict", name="samples"):
         return known
     return {
         **known,
         "metadata": dict(motion.metadata),
         "history": list(motion.history),
         "time_step": motion.si.time_step,
-        "horizontal": _described(motion.si.horizontal),
-        "vertical": None if motion.si.vertical is None else _described(motion.si.vertical),
+        "horizontal": _signal_as_dict(motion.si.horizontal),
+        "vertical": None if motion.si.vertical is None else _signal_as_dict(motion.si.vertical),
     }
 
 
-def _described(signal: Signal) -> dict[str, list[Any]]:
+def _signal_as_dict(signal: Signal) -> dict[str, list[Any]]:
     arrays = {"samples": signal.samples, "polynomials": signal.polynomials}
     return {name: array.tolist() for name, array in arrays.items() if array is not None}

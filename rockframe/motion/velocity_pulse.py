@@ -5,23 +5,23 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Generic
 
-from rockframe.motion.value import Made
-from rockframe.proposals import proposing
+from rockframe.motion.value import MotionType
+from rockframe.suggestions import suggests_names
 from rockframe.units import VELOCITY
 
 if TYPE_CHECKING:
     from rockframe.units import Quantity
 
-LEAST_INDICATOR: Final = 0.85
+MIN_INDICATOR: Final = 0.85
 """Least pulse indicator of a pulse-like motion [1] (Baker 2007)."""
 
-LEAST_PEAK_VELOCITY: Final = 0.3
+MIN_PEAK_VELOCITY: Final = 0.3
 """Least peak velocity of a pulse-like motion [m s^-1] (Baker 2007)."""
 
 
-@proposing
+@suggests_names
 @dataclass(frozen=True)
-class VelocityPulse(Generic[Made]):
+class VelocityPulse(Generic[MotionType]):
     """The strongest pulse in the velocity of a motion.
 
     :meth:`GroundMotion.velocity_pulse` and :meth:`HorizontalPair.velocity_pulse` find it.
@@ -69,8 +69,8 @@ class VelocityPulse(Generic[Made]):
     indicator: float
     pulse_start: Quantity
     motion_start: Quantity
-    extracted: Made
-    residual: Made
+    extracted: MotionType
+    residual: MotionType
     lead: Quantity
     angle: Quantity | None = None
 
@@ -78,17 +78,17 @@ class VelocityPulse(Generic[Made]):
     def unmet(self) -> tuple[str, ...]:
         """The criteria of a pulse-like motion that are not met, a sentence each."""
         found: list[str] = []
-        if not self.indicator > LEAST_INDICATOR:
-            found.append(f"indicator {self.indicator:.3g} is not above {LEAST_INDICATOR:g}")
+        if not self.indicator > MIN_INDICATOR:
+            found.append(f"indicator {self.indicator:.3g} is not above {MIN_INDICATOR:g}")
         if not self.motion_start > self.pulse_start:
             found.append(
                 f"the pulse arrives late: a tenth of it at {self.pulse_start.m_as('s'):.4g} s, a "
                 f"fifth of the motion at {self.motion_start.m_as('s'):.4g} s"
             )
         peak = float(self.peak_velocity.m_as(str(VELOCITY.unit)))
-        if not peak > LEAST_PEAK_VELOCITY:
+        if not peak > MIN_PEAK_VELOCITY:
             found.append(
-                f"peak velocity {peak:.3g} {VELOCITY.unit} is not above {LEAST_PEAK_VELOCITY:g}"
+                f"peak velocity {peak:.3g} {VELOCITY.unit} is not above {MIN_PEAK_VELOCITY:g}"
             )
         return tuple(found)
 

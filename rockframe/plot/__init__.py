@@ -17,7 +17,7 @@ from rockframe.plot._selection import selection
 from rockframe.plot._spectra import spectra, suite
 from rockframe.plot._studies import critical_scale, free_decay, sweep
 from rockframe.plot._tradeoff import tradeoff
-from rockframe.proposals import attributes_of
+from rockframe.suggestions import module_getattr
 
 __all__ = [
     "Animation",
@@ -54,7 +54,7 @@ __all__ = [
 ]
 
 if not TYPE_CHECKING:  # otherwise type checkers would accept any name
-    __getattr__ = attributes_of(__name__, __all__)
+    __getattr__ = module_getattr(__name__, __all__)
 
 
 def __dir__() -> list[str]:

@@ -17,9 +17,9 @@ from rockframe.plot._player import KIND, Player, player
 from rockframe.plot._response import response, strips_of
 from rockframe.plot._runs import Window, runs_of, verdict_of_case
 from rockframe.plot._scene import Moving, figure_size
-from rockframe.proposals import proposing
+from rockframe.suggestions import suggests_names
 from rockframe.units import LENGTH
-from rockframe.units.shown import UnitsLike
+from rockframe.units.display import UnitsLike
 from rockframe.version import __version__
 from rockframe.writing import FileKind, checked_path, write_file
 
@@ -36,10 +36,10 @@ _SIGNED: Final = f"{_MARK}{__version__}".encode()
 _COMMENT: Final = b"\x21\xfe%c%b\x00" % (len(_SIGNED), _SIGNED)  # a block of GIF89a
 _TRAILER: Final = b"\x3b"
 """The last byte of a GIF."""
-_PICTURES: Final = FileKind.marked("an animation", (".gif", ".mp4", *KIND.endings), _MARK)
+_PICTURES: Final = FileKind.marked("an animation", (".gif", ".mp4", *KIND.suffixes), _MARK)
 
 
-@proposing
+@suggests_names
 class Animation:
     """A run as an animation.
 
@@ -117,7 +117,7 @@ class Animation:
         from matplotlib.animation import FFMpegWriter, PillowWriter
 
         ending = Path(str(path)).suffix.lower()
-        if ending in KIND.endings:
+        if ending in KIND.suffixes:
             return self._player().save(path, overwrite=overwrite)
         dots = above_zero(dpi, "animation", "dpi")
         # checked before the frames are drawn, which takes a while

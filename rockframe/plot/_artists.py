@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from rockframe.components import Component, Load
-from rockframe.notebook import arguments_in_words
+from rockframe.notebook import readable_arguments
 from rockframe.plot._axes import (
     BLUE,
     GREEN,
@@ -17,7 +17,7 @@ from rockframe.plot._axes import (
     METRES,
     ORANGE,
     VERMILLION,
-    Shown,
+    DisplayUnit,
     as_label,
     ink,
     measured_in,
@@ -28,7 +28,7 @@ from rockframe.signals.arrays import Array
 from rockframe.system.geometry import Geometry, LinkedPoints
 from rockframe.system.links import link_labels
 from rockframe.system.parts import Parts
-from rockframe.units.shown import ReaderUnits, raised
+from rockframe.units.display import DisplayUnits, with_superscripts
 
 _PAD_WIDTH: Final = 0.17
 """Width of a pad over that of the base."""
@@ -253,7 +253,7 @@ class SceneArtist:
         axes: Axes,
         drawer: Drawer,
         names: Mapping[str, str] | None = None,
-        length: Shown = METRES,
+        length: DisplayUnit = METRES,
     ) -> None:
         self.axes, self.drawer, self._names = axes, drawer, names or {}
         self._artists: dict[str, Any] = {}
@@ -392,7 +392,7 @@ _DRAWN: Final = ("name", "on", "to", "on_body", "to_body", "depth")
 """Arguments of links that the drawing shows, and which the names omit."""
 
 
-def part_labels(parts: Parts, geometry: Geometry, units: ReaderUnits) -> dict[str, str]:
+def part_labels(parts: Parts, geometry: Geometry, units: DisplayUnits) -> dict[str, str]:
     """Return the names of the parts of a scene, with their parameters, by their slots."""
     found: dict[str, list[str]] = {}
     for slot in ("block", "wall", "pads", "cap", "soil"):
@@ -420,7 +420,7 @@ def part_labels(parts: Parts, geometry: Geometry, units: ReaderUnits) -> dict[st
         elif isinstance(link, Load):  # not drawn, therefore listed with its body
             body = link.si.on_body - 1
             found[f"stack {body - 1}" if body else "block"] += _in_lines(lines)
-    words = {slot: raised("\n   ".join(lines)) for slot, lines in found.items()}
+    words = {slot: with_superscripts("\n   ".join(lines)) for slot, lines in found.items()}
     return {**words, "centre": "centre of mass", "touching": "contact"}
 
 
@@ -429,14 +429,14 @@ def _in_lines(words: Sequence[str]) -> list[str]:
     return [line.replace(NO_BREAK, " ") for line in wrap(whole, _LETTERS)]
 
 
-def _numbers(part: Component | None, units: ReaderUnits, without: Sequence[str] = ()) -> list[str]:
+def _numbers(part: Component | None, units: DisplayUnits, without: Sequence[str] = ()) -> list[str]:
     """Write the parameters of a part, in the reader's units if these are chosen."""
     if part is None:
         return []
     arguments = {name: one for name, one in part.to_dict().items() if name not in without}
-    found = arguments_in_words({name: one for name, one in arguments.items() if one != "0.0 N"})
+    found = readable_arguments({name: one for name, one in arguments.items() if one != "0.0 N"})
     for name, one in arguments.items():
-        sentence = units.of_sentence(str(one))
+        sentence = units.convert_text(str(one))
         if sentence != str(one):
             found[name.replace("_", " ")] = sentence
     return [f"{name} {words}" for name, words in found.items()]

@@ -15,8 +15,8 @@ import xarray as xr
 
 from rockframe.studies.intensities import PERIOD_ATTRIBUTE, measure_words
 from rockframe.units import ANGLE, LENGTH, Measure
-from rockframe.units.shown import ReaderUnits, reader_units, shown_unit
-from rockframe.units.shown import Shown as Shown
+from rockframe.units.display import DisplayUnit as DisplayUnit
+from rockframe.units.display import DisplayUnits, display_unit, display_units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -201,10 +201,10 @@ def colour_steps(along: xr.DataArray) -> Any:
     return colormaps["viridis"](np.linspace(0.1, 0.85, along.size))
 
 
-METRES: Final = Shown(str(LENGTH.unit), 1.0)
+METRES: Final = DisplayUnit(str(LENGTH.unit), 1.0)
 
 
-def measured_in(axes: "Axes", length: Shown) -> None:
+def measured_in(axes: "Axes", length: DisplayUnit) -> None:
     """Label axes drawn in metres in another unit of length."""
     from matplotlib.ticker import FuncFormatter, MaxNLocator
 
@@ -231,30 +231,32 @@ class FigureUnits:
     """Units of a figure's axes: by the axis's own argument, else by `units`, else the default."""
 
     owner: str
-    reader: ReaderUnits
+    reader: DisplayUnits
 
-    def of(self, measure: Measure, usual: str = "", **values: object) -> Shown:
+    def of(self, measure: Measure, usual: str = "", **values: object) -> DisplayUnit:
         """Return the unit of an axis; `values` has the axis's own argument by its name."""
         for name, unit in values.items():
             if unit is not None:
-                return shown_unit(unit, measure, owner=self.owner, name=name)
+                return display_unit(unit, measure, owner=self.owner, name=name)
         usual = usual or str(measure.unit)
-        return self.reader.chose(measure) or shown_unit(usual, measure, owner=self.owner, name="")
+        return self.reader.chosen_unit(measure) or display_unit(
+            usual, measure, owner=self.owner, name=""
+        )
 
-    def unless_relative(self, measure: Measure, **items: object) -> Shown | None:
+    def unless_relative(self, measure: Measure, **items: object) -> DisplayUnit | None:
         """Return the unit of an axis; None where values are relative to a scale of the body."""
         (unit,) = items.values()
-        if unit is None and self.reader.chose(measure) is None:
+        if unit is None and self.reader.chosen_unit(measure) is None:
             return None
         told_relative = isinstance(unit, str) and unit == RELATIVE
         return None if told_relative else self.of(measure, "", **items)
 
     def rotations(self, rotation: str | None) -> str | None:
         """Return the unit of a history of rotations: the given one, that of `units`, or degrees."""
-        return "deg" if rotation is None and self.reader.chose(ANGLE) is None else rotation
+        return "deg" if rotation is None and self.reader.chosen_unit(ANGLE) is None else rotation
 
 
 def units_of(units: object, function: str) -> FigureUnits:
     """Read the units of a figure."""
     owner = f"rf.plot.{function}"
-    return FigureUnits(owner, reader_units(units, owner=owner))
+    return FigureUnits(owner, display_units(units, owner=owner))

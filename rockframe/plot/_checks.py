@@ -13,14 +13,19 @@ import xarray as xr
 
 from rockframe.errors import RockframeWarning, SchemaError
 from rockframe.motion import GroundMotion
-from rockframe.proposals import hinted
-from rockframe.shared_arguments import Argument, completed, with_raises, with_section
+from rockframe.shared_arguments import (
+    Argument,
+    completed_docstring,
+    with_raises_section,
+    with_section,
+)
 from rockframe.simulation.system import System
 from rockframe.studies.sweeps.axes import in_units_of_schema, labels_in_unit
 from rockframe.studies.sweeps.case import SweepCase, system_of_case
+from rockframe.suggestions import with_hints
 from rockframe.units import POSITIVE, Unit, to_ratio
-from rockframe.units.shown import KINDS as SHOWN_KINDS
-from rockframe.units.shown import UnitsLike, reader_units
+from rockframe.units.display import KINDS as SHOWN_KINDS
+from rockframe.units.display import UnitsLike, display_units
 
 Drawing = TypeVar("Drawing", bound=Callable[..., Any])
 
@@ -128,15 +133,15 @@ def draws(
 
     def decorate(drawing: Drawing) -> Drawing:
         name, text = drawing.__name__, drawing.__doc__ or ""
-        text = completed(text, signature(drawing).parameters, shared)
+        text = completed_docstring(text, signature(drawing).parameters, shared)
         drawn = "matplotlib.axes.Axes" if ax == "Axes" else "Panels"
         text = with_section(text, "Returns", drawn, ("Raises", "Notes", "Examples"))
         _NEEDED[name] = kind.words
         if known:
             KINDS[name] = kind
-            text = with_raises(text, refused)
+            text = with_raises_section(text, refused)
         drawing.__doc__ = text
-        return hinted()(drawing)
+        return with_hints()(drawing)
 
     return decorate
 
@@ -192,7 +197,7 @@ def checked_run(value: object, function: str) -> xr.Dataset:
 def drawable(value: object, function: str, units: UnitsLike = None) -> xr.Dataset:
     """Return the dataset that a function draws, in the chosen units; raise on anything else."""
     dataset = _checked(value, function, KINDS[function])
-    return reader_units(units, owner=f"rf.plot.{function}").of_all(dataset)
+    return display_units(units, owner=f"rf.plot.{function}").convert_dataset(dataset)
 
 
 def _checked(value: object, function: str, kind: DatasetKind) -> xr.Dataset:

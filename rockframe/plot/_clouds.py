@@ -16,7 +16,7 @@ from rockframe.plot._axes import (
 )
 from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Axes, AxesLike, single
-from rockframe.units.shown import UnitsLike, raised
+from rockframe.units.display import UnitsLike, with_superscripts
 
 
 @draws(
@@ -79,7 +79,7 @@ def cloud(
     label_log_ticks(axes)
     grid(axes)
     on.name_lines()
-    on.entitle(raised(str(data.attrs["verdict"])), title)
+    on.entitle(with_superscripts(str(data.attrs["verdict"])), title)
     return axes
 
 
@@ -146,5 +146,5 @@ def annual_rate(
     label_log_ticks(axes)
     grid(axes)
     on.name_lines()
-    on.entitle(raised(str(data.attrs["verdict"])), title)
+    on.entitle(with_superscripts(str(data.attrs["verdict"])), title)
     return axes

@@ -9,7 +9,7 @@ from rockframe.errors import SchemaError
 from rockframe.plot._axes import (
     COLOURS,
     GREY,
-    Shown,
+    DisplayUnit,
     axis_label,
     grid,
     ink,
@@ -32,8 +32,8 @@ from rockframe.plot._runs import Run, RunsLike, Window, runs_of, runs_title
 from rockframe.results.schema import ENERGIES, SCHEMA
 from rockframe.simulation.system import System
 from rockframe.units import ANGLE
+from rockframe.units.display import UnitsLike
 from rockframe.units.kinds import ENERGY, MOMENT
-from rockframe.units.shown import UnitsLike
 
 _STATES: Final = ("kinetic_energy", "potential_energy", "elastic_energy")
 _FAR: Final = 0.2
@@ -276,7 +276,7 @@ def energies(
     return on.axes
 
 
-def _rate(run: Run, unit: Shown | None) -> Any:
+def _rate(run: Run, unit: DisplayUnit | None) -> Any:
     """Return the angular velocity; without a unit over the overturning angle of its side."""
     rate = run.dataset["angular_velocity"].to_numpy()
     if unit is not None:
@@ -295,7 +295,7 @@ def _held(system: System, largest: float) -> xr.Dataset:
     return system.moment_rotation((angles, str(ANGLE.unit)))
 
 
-def _draw_held(axes: Axes, held: xr.Dataset, angle: Shown, size: Shown) -> None:
+def _draw_held(axes: Axes, held: xr.Dataset, angle: DisplayUnit, size: DisplayUnit) -> None:
     for name, words, colour, style in (
         ("base_moment", "of the base", COLOURS[0], "-"),
         ("restoring_moment", "that holds the body", COLOURS[1], "--"),
@@ -311,7 +311,7 @@ def _on_base(run: xr.Dataset) -> xr.DataArray:
     return run["rotation_on_cap" if "rotation_on_cap" in run else "rotation"]
 
 
-def _draw_beneath(axes: Axes, run: Run, angle: Shown, size: Shown) -> None:
+def _draw_beneath(axes: Axes, run: Run, angle: DisplayUnit, size: DisplayUnit) -> None:
     """Draw the moment in equilibrium over the range of rotations of a run."""
     system = system_of_run(run.dataset, "moment_rotation")
     rotation = run.dataset["rotation"].to_numpy()

@@ -21,7 +21,7 @@ from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Axes, AxesLike, Panels, chosen_panels, sheet, single
 from rockframe.studies.dynamic_analysis import verdict_of_analysis
 from rockframe.studies.fragility.trials import at_scales
-from rockframe.units.shown import UnitsLike, raised
+from rockframe.units.display import UnitsLike, with_superscripts
 
 _PANELS: Final = {"peaks": 1.4, "shares": 1.0}
 """Panels, which are side by side, and their relative widths."""
@@ -123,7 +123,7 @@ def dynamic_analysis(
         axes.set_ylabel(label_of_intensity(measure, data))
     on.name_lines()
     verdict = verdict_of_analysis(of_one_structure(dataset))
-    on.entitle(units_of(units, "dynamic_analysis").reader.of_sentence(verdict), title)
+    on.entitle(units_of(units, "dynamic_analysis").reader.convert_text(verdict), title)
     return on.panels
 
 
@@ -259,5 +259,5 @@ def fractile_curves(
     )
     grid(axes)
     on.name_lines()
-    on.entitle(raised(str(data.attrs["verdict"])), title)
+    on.entitle(with_superscripts(str(data.attrs["verdict"])), title)
     return axes

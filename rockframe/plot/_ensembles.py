@@ -24,7 +24,7 @@ from rockframe.results.outcome import overturns
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.studies.fragility.words import measures_of, verdict_of_fragility
 from rockframe.studies.sweeps.words import cases_verdict
-from rockframe.units.shown import UnitsLike, raised
+from rockframe.units.display import UnitsLike, with_superscripts
 
 
 @draws("an ensemble", "rf.ensemble_statistics(runs)", ("ordered_value", "cumulative_probability"))
@@ -62,7 +62,7 @@ def ensemble(
     axes.set(xlabel=label_of(values), ylabel="share of the ensemble [-]", ylim=(0.0, 1.02))
     grid(axes)
     on.name_lines()
-    on.entitle(raised(str(data.attrs["verdict"])), title)
+    on.entitle(with_superscripts(str(data.attrs["verdict"])), title)
     return axes
 
 
@@ -122,7 +122,7 @@ def probability(
     right.set(ylabel="share that overturns [-]", ylim=(0.0, 1.02))
     for axes in on.panels:
         grid(axes)
-    sentence = units_of(units, "probability").reader.of_sentence(cases_verdict(dataset))
+    sentence = units_of(units, "probability").reader.convert_text(cases_verdict(dataset))
     on.entitle(sentence, title)
     return on.panels
 
@@ -184,7 +184,7 @@ def subset_simulation(
         ylabel="probability of reaching it [-]",
     )  # fmt: skip
     grid(axes)
-    on.entitle(raised(str(data.attrs["verdict"])), title)
+    on.entitle(with_superscripts(str(data.attrs["verdict"])), title)
     return axes
 
 
@@ -257,7 +257,7 @@ def fragility(
             _contours(axes, one, measures)
     if len(measures) == 1:
         on.name_lines()
-    on.entitle(raised(verdict_of_fragility(data)), title)
+    on.entitle(with_superscripts(verdict_of_fragility(data)), title)
     return on.axes if len(measures) == 1 and not structures else on.panels
 
 

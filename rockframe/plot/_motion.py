@@ -10,13 +10,13 @@ import xarray as xr
 from rockframe.errors import ComponentError
 from rockframe.measures import velocity_and_displacement
 from rockframe.motion import GroundMotion, VelocityPulse
-from rockframe.motion.description import shown_name
+from rockframe.motion.description import display_name
 from rockframe.plot._axes import (
     BLUE,
     GREEN,
     GREY,
     VERMILLION,
-    Shown,
+    DisplayUnit,
     axis_label,
     colour_of,
     grid,
@@ -31,7 +31,7 @@ from rockframe.plot._checks import draws, refuse
 from rockframe.plot._panels import Axes, AxesLike, Panels, sheet
 from rockframe.plot._runs import Window, window_of
 from rockframe.units import ACCELERATION, LENGTH, VELOCITY
-from rockframe.units.shown import UnitsLike
+from rockframe.units.display import UnitsLike
 
 MotionsLike: TypeAlias = GroundMotion | Sequence[GroundMotion] | Mapping[Any, GroundMotion]
 
@@ -51,7 +51,7 @@ def motions_title(values: list[Drawn]) -> str:
     if len(values) != 1:
         return ""
     (one,) = values
-    return shown_name(one.motion.name, one.motion.history)
+    return display_name(one.motion.name, one.motion.history)
 
 
 def drawn_motions(value: object, function: str) -> list[Drawn]:
@@ -61,7 +61,8 @@ def drawn_motions(value: object, function: str) -> list[Drawn]:
         labelled = {str(key): one for key, one in value.items()}
     elif isinstance(value, list | tuple):
         names = [
-            shown_name(str(getattr(one, "name", "")), getattr(one, "history", ())) for one in value
+            display_name(str(getattr(one, "name", "")), getattr(one, "history", ()))
+            for one in value
         ]
         alike = len(set(names)) < len(names)
         labelled = {
@@ -176,7 +177,7 @@ def _part(history: xr.Dataset, cut: tuple[float, float]) -> xr.Dataset:
     return history.sel(time=slice(*cut)) if np.isfinite(cut).any() else history
 
 
-def _mark_peak(axes: Axes, dataset: xr.Dataset, name: str, unit: Shown, colour: Any) -> None:
+def _mark_peak(axes: Axes, dataset: xr.Dataset, name: str, unit: DisplayUnit, colour: Any) -> None:
     values = unit.of(dataset[name])
     place = int(np.argmax(np.abs(values)))
     time, peak = float(dataset["time"][place]), float(values[place])

@@ -23,7 +23,7 @@ from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Axes, AxesLike, Panels, Sheet, sheet, single
 from rockframe.results.outcome import overturns
 from rockframe.units import ACCELERATION
-from rockframe.units.shown import UnitsLike
+from rockframe.units.display import UnitsLike
 
 _MOST_NAMED: Final = 8
 """Largest number of motions that are named in the legend."""
@@ -66,7 +66,7 @@ def overturning_map(
     from matplotlib.patches import Patch
 
     data = drawable(dataset, "overturning_map", units)
-    shown = units_of(units, "overturning_map").reader.chose(ACCELERATION) is not None
+    shown = units_of(units, "overturning_map").reader.chosen_unit(ACCELERATION) is not None
     relative = "relative_peak_ground_acceleration" in data.coords and not shown
     across = data["relative_pulse_frequency" if relative else "frequency"]
     up = data["relative_peak_ground_acceleration" if relative else "amplitude"]

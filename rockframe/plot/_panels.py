@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
 
 import numpy as np
 
-from rockframe.arguments import text
-from rockframe.errors import ComponentError, nearest, shown
+from rockframe.arguments import checked_text
+from rockframe.errors import ComponentError, did_you_mean, short_repr
 from rockframe.plot._axes import escaped, key
 from rockframe.plot._fonts import make_legible
-from rockframe.proposals import proposing
+from rockframe.suggestions import suggests_names
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -62,7 +62,7 @@ def _lines(words: str, width: int) -> list[str]:
 _LETTERS_OF_HANDLE: Final = 7
 
 
-@proposing
+@suggests_names
 class Panels(tuple[Any, ...]):
     """The panels of one figure, in the order in which they were drawn.
 
@@ -108,7 +108,7 @@ class Sheet:
     def entitle(self, usual: str, title: str | None) -> None:
         """Write the title above a new figure; above given panels only if the caller set one."""
         if title is not None:
-            text(title, owner="rf.plot", name="title")
+            checked_text(title, owner="rf.plot", name="title")
         if self.own is not None:
             set_title(self.own, title or escaped(usual))
         elif title:
@@ -176,7 +176,7 @@ def chosen_panels(panels: object, known: Iterable[str], function: str) -> tuple[
         found = wrong[0] if wrong else panels
         msg = (
             f"rf.plot.{function}: panels are one or more of {', '.join(map(repr, names))}, each "
-            f"once, got {shown(found)}{nearest(found, names)}"
+            f"once, got {short_repr(found)}{did_you_mean(found, names)}"
         )
         raise ComponentError(msg)
     return tuple(chosen)
@@ -195,7 +195,7 @@ def _checked_axes(ax: Any, function: str, names: Sequence[str], *, choice: bool)
     wanted = "one Axes" if len(names) == 1 else f"{len(names)} Axes, for {', '.join(names)}"
     for one in found:
         if not isinstance(one, Axes):
-            msg = f"rf.plot.{function}: ax must be {wanted}, got {shown(one)}"
+            msg = f"rf.plot.{function}: ax must be {wanted}, got {short_repr(one)}"
             raise ComponentError(msg)
     if len(found) != len(names):
         msg = f"rf.plot.{function}: ax must be {wanted}, got {len(found)} Axes"

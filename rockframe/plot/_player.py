@@ -12,7 +12,7 @@ from typing import Any, Final, NamedTuple, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import text
+from rockframe.arguments import checked_text
 from rockframe.plot._artists import CONTACT, SOIL, Layout
 from rockframe.plot._axes import BLUE, GREEN, ORANGE, VERMILLION, units_of
 from rockframe.plot._checks import RUN, checked_run, draws
@@ -26,14 +26,14 @@ from rockframe.plot._response import (
 )
 from rockframe.plot._runs import Window, runs_of, verdict_of_case
 from rockframe.plot._scene import Moving
-from rockframe.proposals import proposing
 from rockframe.results.outcome import MIN_REPORTED_SLIP
 from rockframe.results.variables.variable import flag_words
 from rockframe.signals.arrays import Array
+from rockframe.suggestions import suggests_names
 from rockframe.units import ACCELERATION, ANGLE, LENGTH
-from rockframe.units.shown import UnitsLike, raised
+from rockframe.units.display import UnitsLike, with_superscripts
 from rockframe.version import __version__
-from rockframe.writing import FileKind, generator, write_file
+from rockframe.writing import FileKind, generator_tag, write_file
 
 _FRAMES_PER_SECOND: Final = 25.0
 _MOST_FRAMES: Final = 900
@@ -50,7 +50,7 @@ _NOWHERE: Final = -32768
 _TEMPLATE: Final = Path(__file__).with_name("player.html")
 _TITLE: Final = "player"
 KIND: Final = FileKind.marked(
-    "a player", (".html", ".htm"), generator(_TITLE), generator("animation")
+    "a player", (".html", ".htm"), generator_tag(_TITLE), generator_tag("animation")
 )
 _HEIGHT: Final = 640
 """Height of the player in a notebook [pixels]."""
@@ -66,7 +66,7 @@ class _Layer(NamedTuple):
     points: Array  # at all instants, shape (instants, points, 2) [m]
 
 
-@proposing
+@suggests_names
 class Player:
     """A page that plays a run, a few tens of kilobytes in size.
 
@@ -202,7 +202,7 @@ def player(
     sentence = (
         verdict_of_case(run, chosen.reader)
         if title is None
-        else text(title, owner="rf.plot.player", name="title")
+        else checked_text(title, owner="rf.plot.player", name="title")
     )
     data = {
         "times": [round(float(one), 6) for one in drawn.time[shown_at]],
@@ -212,7 +212,7 @@ def player(
         "colours": CONTACT_COLOURS,
         "pressed": CONTACT,
         "magnify": float(magnify),
-        "length": {"words": raised(length.words), "size": length.size},
+        "length": {"words": with_superscripts(length.words), "size": length.size},
         "levels": _LEVELS,
         "nowhere": _NOWHERE,
         "numbers": store.packed(),
@@ -336,7 +336,7 @@ def _surface(found: Layout) -> Array:
 
 
 def _label(words: str, unit: str) -> str:
-    return f"{words} [{raised(unit)}]"
+    return f"{words} [{with_superscripts(unit)}]"
 
 
 def _trace(values: np.ndarray, label: str, colour: str, store: _Numbers) -> dict[str, Any]:
@@ -365,6 +365,6 @@ def _page(sentence: str, motion: str, data: dict[str, Any]) -> str:
     # otherwise "</script>" in a text would end the script
     written = json.dumps(data, separators=(",", ":")).replace("</", "<\\/")
     page = _TEMPLATE.read_text(encoding="utf-8")
-    filled = {"GENERATOR": generator(_TITLE, __version__), "TITLE": escape(sentence or "A run"),
+    filled = {"GENERATOR": generator_tag(_TITLE, __version__), "TITLE": escape(sentence or "A run"),
               "MOTION": escape(motion), "DATA": written}  # fmt: skip
     return re.sub(r"@(\w+)@", lambda found: filled[found[1]], page)

@@ -10,9 +10,9 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import truth
+from rockframe.arguments import checked_bool
 from rockframe.dynamics.events import ContactState
-from rockframe.errors import ComponentError, nearest, shown
+from rockframe.errors import ComponentError, did_you_mean, short_repr
 from rockframe.plot._axes import (
     BLUE,
     COLOURS,
@@ -22,7 +22,7 @@ from rockframe.plot._axes import (
     ORANGE,
     PURPLE,
     VERMILLION,
-    Shown,
+    DisplayUnit,
     as_label,
     axis_label,
     colour_of,
@@ -37,7 +37,7 @@ from rockframe.plot._runs import Run, RunsLike, Window, runs_of, runs_title
 from rockframe.results.outcome import MIN_REPORTED_SLIP
 from rockframe.results.variables.variable import flag_words
 from rockframe.units import ACCELERATION, ANGLE, LENGTH
-from rockframe.units.shown import ReaderUnits, UnitsLike
+from rockframe.units.display import DisplayUnits, UnitsLike
 
 CONTACT_COLOURS: Final = {
     "full": "#ececec",
@@ -114,7 +114,7 @@ MARKS: Final = {
 horizontal restraint are not drawn: they coincide with a separation or a contact."""
 
 
-def draw_events(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
+def draw_events(axes: Axes, runs: list[Run], unit: DisplayUnit | None) -> None:
     """Mark events on the history of the rotation, and name them in the legend."""
     named: set[str] = set()
     for run in runs:
@@ -233,7 +233,7 @@ def response(
         "rotation": chosen.unless_relative(ANGLE, rotation=rotation),
         "vertical": chosen.unless_relative(LENGTH, vertical=vertical),
     }
-    marked = truth(events, owner="rf.plot.response", name="events")
+    marked = checked_bool(events, owner="rf.plot.response", name="events")
     strips = strips_of(data)
     names = [
         name
@@ -272,7 +272,7 @@ def response(
     return on.panels
 
 
-def of_rotation(run: Run, unit: Shown | None, name: str = "rotation") -> Any:
+def of_rotation(run: Run, unit: DisplayUnit | None, name: str = "rotation") -> Any:
     """Return a rotation in a unit; without a unit over the overturning angle of its side."""
     values = run.dataset[name].to_numpy()
     if unit is not None:
@@ -307,10 +307,10 @@ def _chosen(panels: object, runs: list[Run]) -> tuple[str, ...]:
     if not chosen or unknown:
         known = ", ".join(repr(name) for name in _HEIGHTS)
         found = unknown[0] if unknown else panels
-        near = nearest(found, [*_HEIGHTS, *histories]) or "."
+        near = did_you_mean(found, [*_HEIGHTS, *histories]) or "."
         msg = (
             f"rf.plot.response: panels are some of {known}, and histories of the runs, got "
-            f"{shown(found)}{near} They hold {', '.join(map(repr, histories))}"
+            f"{short_repr(found)}{near} They hold {', '.join(map(repr, histories))}"
         )
         raise ComponentError(msg)
     return tuple(map(str, chosen))
@@ -351,7 +351,7 @@ def _contacts_of(run: xr.Dataset, *, alone: bool) -> dict[str, xr.DataArray]:
     return {CONTACTS[name]: run[name] for name in names}
 
 
-def _ground(axes: Axes, runs: list[Run], unit: Shown) -> None:
+def _ground(axes: Axes, runs: list[Run], unit: DisplayUnit) -> None:
     across, upwards = "ground_acceleration", "vertical_ground_acceleration"
     moved = [
         run.dataset[[name for name in (across, upwards) if name in run.dataset]] for run in runs
@@ -369,7 +369,7 @@ def _ground(axes: Axes, runs: list[Run], unit: Shown) -> None:
     axes.set_ylabel(axis_label("ground\n", unit.words))
 
 
-def _history(axes: Axes, runs: list[Run], name: str, units: ReaderUnits) -> None:
+def _history(axes: Axes, runs: list[Run], name: str, units: DisplayUnits) -> None:
     """Draw any other history, of the runs that have it, with one line for each point."""
     runs = [run for run in runs if name in run.dataset]
     unit = units.of(str(runs[0].dataset[name].attrs.get("units", "1")))
@@ -393,7 +393,7 @@ def _history(axes: Axes, runs: list[Run], name: str, units: ReaderUnits) -> None
     axes.set_ylabel(axis_label(f"{words}\n", unit.words))
 
 
-def _rotation(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
+def _rotation(axes: Axes, runs: list[Run], unit: DisplayUnit | None) -> None:
     several = len(runs) > 1
     for run in runs:
         dataset = run.dataset
@@ -423,7 +423,7 @@ def _rotation(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
         _degrees_on_the_right(axes, *angles.pop())
 
 
-def _uplift(axes: Axes, dataset: xr.Dataset, unit: Shown | None) -> None:
+def _uplift(axes: Axes, dataset: xr.Dataset, unit: DisplayUnit | None) -> None:
     """Draw the rotations at which contact is first lost, if the run comes near them."""
     uplift, peak = float(dataset["uplift_angle"]), float(np.abs(dataset["rotation"]).max())
     if not (np.isfinite(uplift) and 0.0 < uplift < _NEAR * peak):
@@ -447,7 +447,7 @@ def _degrees_on_the_right(axes: Axes, left: float, right: float) -> None:
     axes.secondary_yaxis("right", functions=(degrees, share)).set_ylabel("[°]")
 
 
-def _vertical(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
+def _vertical(axes: Axes, runs: list[Run], unit: DisplayUnit | None) -> None:
     name = "relative_vertical_displacement"
     over_settlement = unit is None and all(name in run.dataset for run in runs)
     metres = unit or METRES

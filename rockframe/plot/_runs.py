@@ -8,13 +8,13 @@ from typing import Any, TypeAlias, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, short_repr
 from rockframe.plot._axes import colour_of, labels_of_names, style_of
 from rockframe.plot._checks import checked_run
 from rockframe.results.outcome import verdict_of
 from rockframe.results.variables.variable import flag_words, unit_suffix
 from rockframe.units import TIME, QuantityLike, to_si
-from rockframe.units.shown import ReaderUnits
+from rockframe.units.display import DisplayUnits
 
 Window: TypeAlias = tuple[QuantityLike | None, QuantityLike | None] | None
 RunsLike: TypeAlias = xr.Dataset | Sequence[xr.Dataset] | Mapping[Any, xr.Dataset]
@@ -63,7 +63,7 @@ def window_of(window: object, function: str, name: str = "window") -> tuple[floa
     if len(ends) != 2:
         msg = (
             f"{owner}: {name} must be a pair of times, such as ('2 s', '8 s'), or None for an open "
-            f"end, got {shown(window)}"
+            f"end, got {short_repr(window)}"
         )
         raise ComponentError(msg)
     start, end = (
@@ -71,12 +71,12 @@ def window_of(window: object, function: str, name: str = "window") -> tuple[floa
         for one, none in zip(ends, (-np.inf, np.inf), strict=True)
     )  # fmt: skip
     if start >= end:
-        msg = f"{owner}: {name} must end after it starts, got {shown(window)}"
+        msg = f"{owner}: {name} must end after it starts, got {short_repr(window)}"
         raise ComponentError(msg)
     return start, end
 
 
-def runs_title(runs: list[Run], units: ReaderUnits) -> str:
+def runs_title(runs: list[Run], units: DisplayUnits) -> str:
     """Return the title of a figure: the verdict of one run, or the common motion of several."""
     if len(runs) == 1:
         return verdict_of_case(runs[0].dataset, units)
@@ -84,10 +84,10 @@ def runs_title(runs: list[Run], units: ReaderUnits) -> str:
     return motions.pop() if len(motions) == 1 else ""
 
 
-def verdict_of_case(run: xr.Dataset, units: ReaderUnits) -> str:
+def verdict_of_case(run: xr.Dataset, units: DisplayUnits) -> str:
     """Return verdict of a run, also of one case of a sweep, whose attribute covers all cases."""
     if "axes_json" not in run.attrs:
-        return units.of_sentence(str(run.attrs.get("verdict", "")))
+        return units.convert_text(str(run.attrs.get("verdict", "")))
     fell = verdict_of(run)
     if fell is None:
         words = flag_words(run["status"].attrs)[run["status"].item()]
@@ -98,7 +98,7 @@ def verdict_of_case(run: xr.Dataset, units: ReaderUnits) -> str:
         share = 100.0 * float(run["peak_relative_rotation"])
         peak = f"peak rotation {float(run['peak_rotation']):.4g} rad"
         text = f"did not overturn, {peak}, {share:.3g} % of the overturning angle"
-    return units.of_sentence(f"{_labels_of(run)}: {text}")
+    return units.convert_text(f"{_labels_of(run)}: {text}")
 
 
 def _labels_of(run: xr.Dataset) -> str:

@@ -6,9 +6,9 @@ from typing import Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import truth
+from rockframe.arguments import checked_bool
 from rockframe.dynamics.events import LinkState
-from rockframe.errors import ComponentError, SchemaError, shown
+from rockframe.errors import ComponentError, SchemaError, short_repr
 from rockframe.plot._artists import Drawer, SceneArtist, part_labels
 from rockframe.plot._axes import FigureUnits, units_of
 from rockframe.plot._checks import RUN, above_zero, checked_run, draws, refuse, system_of_run
@@ -19,7 +19,7 @@ from rockframe.simulation.plan import read_body_points
 from rockframe.simulation.system import System
 from rockframe.system.geometry import Geometry, geometry_of
 from rockframe.units import ANGLE, LENGTH, TIME, QuantityLike, to_si
-from rockframe.units.shown import UnitsLike, behind
+from rockframe.units.display import UnitsLike, unit_suffix
 
 _FOLLOWED: Final = (
     "rotation",
@@ -89,7 +89,7 @@ def scene(
         raise ComponentError(refuse("scene", system))
     drawer = Drawer(geometry_of(system.assembly))
     at = Placement(drawer.geometry, UPRIGHT, system.restraint)
-    named = truth(legend, owner="rf.plot.scene", name="legend")
+    named = checked_bool(legend, owner="rf.plot.scene", name="legend")
     faults: list[str] = []
     marked = read_body_points(points, faults, owner="rf.plot.scene")
     if faults:
@@ -245,7 +245,7 @@ class Moving:
         if not self.time[0] - slack <= when <= self.time[-1] + slack:
             msg = (
                 f"{owner}: the run goes from {self.time[0]:.6g} s to {self.time[-1]:.6g} s, got "
-                f"time={shown(time)}"
+                f"time={short_repr(time)}"
             )
             raise ComponentError(msg)
         return int(np.argmin(np.abs(self.time - when)))
@@ -254,7 +254,7 @@ class Moving:
         """Write the time and rotation of a sample."""
         angle = float(self.angle.of(self._columns["rotation"][place])) + 0.0  # no negative zero
         share = abs(float(self.run["relative_rotation"][place]))
-        turned = f"{angle:.3g}{behind(self.angle.words)}"
+        turned = f"{angle:.3g}{unit_suffix(self.angle.words)}"
         whose = " of body 1" if "body" in self.run.dims else ""
         text = f"{self.time[place]:.3f} s: {turned}, {100.0 * share:.3g} % of overturning{whose}"
         factor = self.drawer.magnify

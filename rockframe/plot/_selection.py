@@ -17,7 +17,7 @@ from rockframe.plot._axes import (
 )
 from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import AxesLike, Panels, sheet
-from rockframe.units.shown import UnitsLike
+from rockframe.units.display import UnitsLike
 
 _MOST_NAMED: Final = 50
 _LETTERS: Final = 34

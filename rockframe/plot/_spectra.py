@@ -7,7 +7,7 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import one_of_words, truth
+from rockframe.arguments import checked_bool, checked_choice
 from rockframe.measures import fourier_spectrum, response_spectrum, velocity_and_displacement
 from rockframe.motion.quantities import ArrayLike
 from rockframe.plot._axes import (
@@ -15,7 +15,7 @@ from rockframe.plot._axes import (
     GREY,
     STANDS,
     VERMILLION,
-    Shown,
+    DisplayUnit,
     axis_label,
     colour_of,
     grid,
@@ -33,7 +33,7 @@ from rockframe.plot._runs import Window, window_of
 from rockframe.suites import TargetSpectrum
 from rockframe.suites.target import check_target
 from rockframe.units import ACCELERATION, VELOCITY, QuantityLike, RatioLike
-from rockframe.units.shown import UnitsLike
+from rockframe.units.display import UnitsLike
 
 _RESOLUTION: Final = "0.05 Hz"  # for short pulses; long records have a finer resolution
 _PREFIX: Final = {"horizontal": "", "vertical": "vertical_"}
@@ -123,7 +123,7 @@ def spectra(
     return on.panels
 
 
-def _response(axes: Axes, dataset: xr.Dataset, unit: Shown, one: Drawn) -> None:
+def _response(axes: Axes, dataset: xr.Dataset, unit: DisplayUnit, one: Drawn) -> None:
     drawn = dataset.isel(period=np.flatnonzero(dataset["period"].to_numpy() > 0.0))
     ratios = dataset["damping_ratio"].to_numpy().tolist()
     for place, ratio in enumerate(ratios):
@@ -138,7 +138,7 @@ def _response(axes: Axes, dataset: xr.Dataset, unit: Shown, one: Drawn) -> None:
         )
 
 
-def _label(panels: Panels, found: list[Any], unit: Shown, amplitude: Shown) -> None:
+def _label(panels: Panels, found: list[Any], unit: DisplayUnit, amplitude: DisplayUnit) -> None:
     history, response, fourier = panels
     several = len(found) > 1
     times = [each[1]["time"].to_numpy() for each in found]
@@ -236,7 +236,7 @@ def suite(
     data = drawn_motions(motions, "suite")
     if target is not None:
         check_target(target, owner="rf.plot.suite")
-    middle = one_of_words(Average, average, owner=_SUITE, name="average")
+    middle = checked_choice(Average, average, owner=_SUITE, name="average")
     cut = window_of(compared, "suite", "compared")
     unit = units_of(units, "suite").of(ACCELERATION, "g", acceleration=acceleration)
     labelled = {one.label or motions_title(data): one.motion for one in data}
@@ -247,7 +247,11 @@ def suite(
     )
     period = found["period"].to_numpy()
     on = single(ax, "suite", (6.0, 4.3))
-    few = len(data) <= _MOST_NAMED if named is None else truth(named, owner=_SUITE, name="named")
+    few = (
+        len(data) <= _MOST_NAMED
+        if named is None
+        else checked_bool(named, owner=_SUITE, name="named")
+    )
     for place, (label, one) in enumerate(zip(labelled, data, strict=True)):
         words: Any = label if few else ("motions" if place == 0 else None)
         on.axes.plot(

@@ -5,7 +5,7 @@ from typing import Any, Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import ComponentError, SchemaError, nearest, shown
+from rockframe.errors import ComponentError, SchemaError, did_you_mean, short_repr
 from rockframe.plot._axes import (
     BLUE,
     GREY,
@@ -28,7 +28,7 @@ from rockframe.results.outcome import overturns
 from rockframe.results.variables.studies import Outcome
 from rockframe.studies.sweeps.words import cases_verdict
 from rockframe.units import ANGLE
-from rockframe.units.shown import UnitsLike, reader_units
+from rockframe.units.display import UnitsLike, display_units
 
 _MOST_AXES: Final = 2
 """Largest number of dimensions in a figure of a sweep."""
@@ -66,7 +66,7 @@ def critical_scale(
     data = drawable(dataset, "critical_scale", units)
     scale, outcome = data["scale"].to_numpy(), data["outcome"].to_numpy()
     reader = units_of(units, "critical_scale").reader
-    angles = reader.chose(ANGLE) is not None
+    angles = reader.chosen_unit(ANGLE) is not None
     relative = "peak_relative_rotation" in data and not angles
     name = "peak_relative_rotation" if relative else "peak_rotation"
     peak = data[name].to_numpy()
@@ -88,7 +88,7 @@ def critical_scale(
     on.axes.set_ylim(bottom=0.0)
     grid(on.axes)
     key(on.axes)
-    on.entitle(reader.of_sentence(cases_verdict(dataset)), title)
+    on.entitle(reader.convert_text(cases_verdict(dataset)), title)
     return on.axes
 
 
@@ -139,7 +139,7 @@ def sweep(
     if not isinstance(cast("object", runs), xr.Dataset) or not runs.data_vars:
         raise SchemaError(refuse("sweep", runs))
     data = _without_single_values(runs, variable)
-    data = reader_units(units, owner="rf.plot.sweep").of_all(data)
+    data = display_units(units, owner="rf.plot.sweep").convert_dataset(data)
     values = _values(data, variable)
     fell = overturns(data) == 1 if "status" in data else None
     fell = None if fell is None or set(fell.dims) != set(values.dims) else fell
@@ -152,7 +152,7 @@ def sweep(
         _draw_lines(on.axes, data, values, fell, along, others)
     else:
         _draw_map(on.axes, data, values.transpose(*dims), fell, dims)
-    sentence = reader_units(units, owner="rf.plot.sweep").of_sentence(cases_verdict(runs))
+    sentence = display_units(units, owner="rf.plot.sweep").convert_text(cases_verdict(runs))
     on.entitle(sentence or str(data.attrs.get("title", "")), title)
     return on.axes
 
@@ -233,7 +233,7 @@ def free_decay(
         grid(axes)
     below.set_xlabel("time [s]" if histories or "measured_peak_time" in data else "peak")
     key(above)
-    on.entitle(chosen.reader.of_sentence(str(data.attrs.get("verdict", ""))), title)
+    on.entitle(chosen.reader.convert_text(str(data.attrs.get("verdict", ""))), title)
     return on.panels
 
 
@@ -252,8 +252,8 @@ def _values(dataset: xr.Dataset, variable: object) -> xr.DataArray:
         known = ", ".join(
             repr(str(name)) for name, one in dataset.data_vars.items() if 0 < one.ndim < 3
         )
-        near = nearest(variable, map(str, dataset.data_vars))
-        msg = f"rf.plot.sweep: the runs have no {shown(variable)}{near}; they have {known}"
+        near = did_you_mean(variable, map(str, dataset.data_vars))
+        msg = f"rf.plot.sweep: the runs have no {short_repr(variable)}{near}; they have {known}"
         raise SchemaError(msg)
     values = dataset[variable]
     if not 1 <= values.ndim <= _MOST_AXES:

@@ -8,7 +8,7 @@ import xarray as xr
 from rockframe.plot._axes import GREY, grid, ink, labels_of_names
 from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Axes, AxesLike, Panels, sheet
-from rockframe.units.shown import UnitsLike
+from rockframe.units.display import UnitsLike
 
 if TYPE_CHECKING:
     from matplotlib.lines import Line2D

@@ -19,15 +19,15 @@ from rockframe.errors import RecordError
 
 MAXIMUM_BYTES: Final = 40 * 2**20
 """Largest file that is opened [byte]."""
-MOST_MEMBERS: Final = 10_000
+MAX_MEMBERS: Final = 10_000
 """Most files in an archive."""
-MOST_EXPANSION: Final = 100
+MAX_EXPANSION: Final = 100
 """Largest ratio of unpacked to packed size, in addition to one file of the largest size [1]."""
 
 _ZIP: Final = (b"PK\x03\x04", b"PK\x05\x06")
 _GZIP: Final = b"\x1f\x8b"
 _TAR: Final = (257, b"ustar")
-_OTHERS: Final = {
+_OTHER_FORMATS: Final = {
     b"7z\xbc\xaf\x27\x1c": "a 7z archive",
     b"Rar!\x1a\x07": "a RAR archive",
     b"\xfd7zXZ\x00": "a file packed by xz",
@@ -40,7 +40,7 @@ _START: Final = 512
 _DIRECTORY_END: Final = b"PK\x05\x06"
 _END_LENGTH: Final = 22
 _LOCATOR: Final = b"PK\x06\x07"
-_LONGEST_DIRECTORY: Final = 2 * 2**20
+_MAX_DIRECTORY_LENGTH: Final = 2 * 2**20
 _ENCRYPTED: Final = 0x1
 _METHODS: Final = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 _DRIVE: Final = re.compile(r"[A-Za-z]:")
@@ -72,7 +72,7 @@ def is_gzip(start: bytes) -> bool:
     return start.startswith(_GZIP)
 
 
-def packs_tar(file: IO[bytes]) -> bool:
+def is_compressed_tar(file: IO[bytes]) -> bool:
     """Tell whether a file is a tar archive packed by gzip."""
     start = file.read(len(_GZIP))
     file.seek(0)
@@ -88,39 +88,39 @@ def packs_tar(file: IO[bytes]) -> bool:
 
 def check_unpackable(name: str, start: bytes) -> None:
     """Refuse a file that is packed by another program."""
-    for mark, words in _OTHERS.items():
+    for mark, words in _OTHER_FORMATS.items():
         if start.startswith(mark):
             raise RecordError(name, found=words, expected=_EXPECTED)
 
 
-def members(file: IO[bytes], name: str, size: int) -> Iterator[ArchiveMember]:
+def unpack_members(file: IO[bytes], name: str, size: int) -> Iterator[ArchiveMember]:
     """Unpack an archive file by file."""
-    budget = _Budget(name, MOST_EXPANSION * size + MAXIMUM_BYTES, MOST_MEMBERS)
-    for member in _unpacked(file, name, budget):
+    budget = _Budget(name, MAX_EXPANSION * size + MAXIMUM_BYTES, MAX_MEMBERS)
+    for member in _unpacked_members(file, name, budget):
         inner = member.data
-        if inner is None or not (is_archive(inner) or packs_tar(io.BytesIO(inner))):
-            yield _single(member)
+        if inner is None or not (is_archive(inner) or is_compressed_tar(io.BytesIO(inner))):
+            yield _check_not_packed(member)
             continue
         try:
-            for one in _unpacked(io.BytesIO(inner), f"{name}/{member.name}", budget):
-                yield _single(replace(one, name=f"{member.name}/{one.name}"))
+            for one in _unpacked_members(io.BytesIO(inner), f"{name}/{member.name}", budget):
+                yield _check_not_packed(replace(one, name=f"{member.name}/{one.name}"))
         except RecordError as problem:  # other files may be readable
-            if budget.spent:
+            if budget.is_exceeded:
                 raise
             yield ArchiveMember(member.name, None, problem.found)
 
 
-def _single(member: ArchiveMember) -> ArchiveMember:
+def _check_not_packed(member: ArchiveMember) -> ArchiveMember:
     """Refuse a file that is itself packed."""
     if member.data is not None and (is_archive(member.data) or is_gzip(member.data)):
         return ArchiveMember(member.name, None, _PACKED)
     return member
 
 
-def _unpacked(file: IO[bytes], name: str, budget: "_Budget") -> Iterator[ArchiveMember]:
+def _unpacked_members(file: IO[bytes], name: str, budget: "_Budget") -> Iterator[ArchiveMember]:
     start = file.read(_START)
     file.seek(0)
-    unpack = _of_zip if start.startswith(_ZIP) else _of_tar
+    unpack = _zip_members if start.startswith(_ZIP) else _tar_members
     try:
         for member in unpack(file, name, budget):
             budget.take_member()
@@ -137,33 +137,33 @@ class _Budget:
     """Remaining number of bytes and files to which an archive may expand."""
 
     name: str
-    left: int
-    members: int
+    bytes_left: int
+    members_left: int
 
     @property
-    def spent(self) -> bool:
+    def is_exceeded(self) -> bool:
         """Whether it has been exceeded."""
-        return self.left < 0 or self.members < 0
+        return self.bytes_left < 0 or self.members_left < 0
 
-    def take(self, count: int) -> None:
-        self.left -= count
-        if self.left < 0:
-            found = f"an archive that expands to more than {MOST_EXPANSION} times its size"
+    def take_bytes(self, count: int) -> None:
+        self.bytes_left -= count
+        if self.bytes_left < 0:
+            found = f"an archive that expands to more than {MAX_EXPANSION} times its size"
             raise RecordError(self.name, found=found, expected="an archive of records")
 
     def take_member(self) -> None:
-        self.members -= 1
-        if self.members < 0:
+        self.members_left -= 1
+        if self.members_left < 0:
             raise _too_many(self.name)
 
 
-def _of_zip(file: IO[bytes], name: str, budget: _Budget) -> Iterator[ArchiveMember]:
+def _zip_members(file: IO[bytes], name: str, budget: _Budget) -> Iterator[ArchiveMember]:
     _check_directory(file, name)
     with zipfile.ZipFile(file) as archive:
         for info in archive.infolist():
             if info.is_dir():
                 continue
-            reason = _misnamed(info.filename) or _zip_fault(info)
+            reason = _name_fault(info.filename) or _zip_fault(info)
             if reason:
                 yield ArchiveMember(_printable(info.filename), None, reason)
                 continue
@@ -174,7 +174,7 @@ def _of_zip(file: IO[bytes], name: str, budget: _Budget) -> Iterator[ArchiveMemb
                 reason = f"a file that cannot be unpacked ({type(problem).__name__})"
                 yield ArchiveMember(info.filename, None, reason)
                 continue
-            budget.take(len(data))
+            budget.take_bytes(len(data))
             yield _member(info.filename, data)
 
 
@@ -193,7 +193,7 @@ def _check_directory(file: IO[bytes], name: str) -> None:
     size = tail[place + 12 : place + 16]
     if tail[place - 20 : place - 16] == _LOCATOR:  # the zip64 form, which precedes
         size = tail[place - 36 : place - 28]
-    if int.from_bytes(size, "little") > _LONGEST_DIRECTORY:
+    if int.from_bytes(size, "little") > _MAX_DIRECTORY_LENGTH:
         raise _too_many(name)
 
 
@@ -206,16 +206,16 @@ def _zip_fault(info: zipfile.ZipInfo) -> str:
     return "a link" if kind == 0o120000 else ""
 
 
-def _of_tar(file: IO[bytes], name: str, budget: _Budget) -> Iterator[ArchiveMember]:
+def _tar_members(file: IO[bytes], name: str, budget: _Budget) -> Iterator[ArchiveMember]:
     packed = is_gzip(file.read(len(_GZIP)))
     file.seek(0)
     stream = cast("IO[bytes]", gzip.GzipFile(fileobj=file)) if packed else file
-    bounded = cast("IO[bytes]", _Bounded(stream, budget))
+    bounded = cast("IO[bytes]", _BoundedFile(stream, budget))
     with tarfile.open(fileobj=bounded, mode="r:") as archive:
         while (info := archive.next()) is not None:
             if info.isdir():
                 continue
-            reason = _misnamed(info.name) or _tar_fault(info)
+            reason = _name_fault(info.name) or _tar_fault(info)
             if reason:
                 yield ArchiveMember(_printable(info.name), None, reason)
                 continue
@@ -225,7 +225,7 @@ def _of_tar(file: IO[bytes], name: str, budget: _Budget) -> Iterator[ArchiveMemb
             yield _member(info.name, data)
 
 
-class _Bounded:
+class _BoundedFile:
     """A file that stops reading beyond the budget of an archive, and limits each read."""
 
     def __init__(self, file: IO[bytes], budget: _Budget) -> None:
@@ -250,7 +250,7 @@ class _Bounded:
         return self._file.tell()
 
     def _reach(self, place: int) -> None:
-        self._budget.take(max(0, place - self._furthest))
+        self._budget.take_bytes(max(0, place - self._furthest))
         self._furthest = max(self._furthest, place)
 
 
@@ -268,7 +268,7 @@ def _member(name: str, data: bytes) -> ArchiveMember:
     return ArchiveMember(name, data)
 
 
-def _misnamed(name: str) -> str:
+def _name_fault(name: str) -> str:
     """Return the fault of the name of a file in an archive, if any."""
     plain = name.replace("\\", "/")
     if plain.startswith("/") or _DRIVE.match(plain) or ".." in plain.split("/"):
@@ -281,5 +281,5 @@ def _printable(name: str) -> str:
 
 
 def _too_many(name: str) -> RecordError:
-    found = f"an archive of more than {MOST_MEMBERS} files"
+    found = f"an archive of more than {MAX_MEMBERS} files"
     return RecordError(name, found=found, expected="an archive of records")

@@ -26,16 +26,16 @@ from typing import Any, Final, cast
 import numpy as np
 
 from rockframe.errors import RecordError
-from rockframe.records.checks import settle_time_step
+from rockframe.records.checks import checked_time_step
 from rockframe.records.components import FileComponent, choose_component, orientation_of
 from rockframe.records.instruments import (
     InstrumentResponse,
     InstrumentResponses,
     check_finite,
     check_unit_or_response,
+    find_response,
     metadata_of_codes,
-    record_of_counts,
-    response_in,
+    record_from_counts,
 )
 from rockframe.records.reader import (
     MAXIMUM_SAMPLES,
@@ -44,8 +44,8 @@ from rockframe.records.reader import (
     Record,
     Request,
     Source,
-    begins_otherwise,
     source_of,
+    wrong_beginning_error,
 )
 from rockframe.records.unit_names import choose_unit
 from rockframe.signals.arrays import Array
@@ -53,7 +53,7 @@ from rockframe.signals.arrays import Array
 _MAGIC: Final = b"\x89HDF\r\n\x1a\n"
 _MARKS: Final = (b"Waveforms", b"file_format")
 _NODES: Final = {b"SNOD": 4, b"OHDR": 1}  # marks of nodes, and the approximate objects in each
-_MOST_OBJECTS: Final = 5_500
+_MAX_OBJECTS: Final = 5_500
 _WAVEFORM: Final = re.compile(
     r"(\w{1,8}\.\w{1,8}\.[\w-]{0,8}\.\w{1,8})__([\dT:.Z-]{10,40})__([\dT:.Z-]{10,40})__(\S{1,80})"
 )
@@ -85,16 +85,16 @@ def _recognises(source: Source) -> bool:
 
 def _read(source: Source, request: Request) -> Record:
     if not _recognises(source):
-        raise begins_otherwise(source, _EXPECTED)
+        raise wrong_beginning_error(source, _EXPECTED)
     check_unit_or_response(source, request)
-    objects = sum(source.data.count(mark) * held for mark, held in _NODES.items())
-    if objects > _MOST_OBJECTS:
+    objects = sum(source.data.count(mark) * per_node for mark, per_node in _NODES.items())
+    if objects > _MAX_OBJECTS:
         found = f"about {objects} groups and arrays"
-        expected = f"at most {_MOST_OBJECTS}; open larger files with pyasdf and use from_trace"
+        expected = f"at most {_MAX_OBJECTS}; open larger files with pyasdf and use from_trace"
         raise source.refuse(found=found, expected=expected)
     import netCDF4
 
-    with _sound(source):
+    with _damaged_file_errors(source):
         # the file stays open, as components are read one by one
         file = netCDF4.Dataset("asdf", memory=source.data)
         file.set_auto_maskandscale(False)
@@ -103,7 +103,7 @@ def _read(source: Source, request: Request) -> Record:
 
 
 @contextmanager
-def _sound(source: Source) -> Generator[None]:
+def _damaged_file_errors(source: Source) -> Generator[None]:
     """Convert exceptions of the library to the error of a damaged file."""
     try:
         with warnings.catch_warnings():
@@ -118,18 +118,18 @@ def _sound(source: Source) -> Generator[None]:
 
 
 def _components(source: Source, request: Request, file: Any) -> list[FileComponent]:
-    held = [
+    waveforms = [
         _Waveform(name, match.group(1), match.group(4), station)
         for station, group in file.groups["Waveforms"].groups.items()
         for name in group.variables
         if (match := _WAVEFORM.fullmatch(name)) is not None
     ]
-    if not held:
+    if not waveforms:
         raise source.refuse(found="no waveforms", expected=_EXPECTED)
-    stations = {one.group for one in held}
-    tags = {one.tag for one in held}
+    stations = {one.group for one in waveforms}
+    tags = {one.tag for one in waveforms}
 
-    pieces = Counter((one.codes, one.tag) for one in held)
+    pieces = Counter((one.codes, one.tag) for one in waveforms)
 
     def component(one: _Waveform) -> FileComponent:
         short = one.channel if len(stations) == 1 else one.codes
@@ -139,7 +139,7 @@ def _components(source: Source, request: Request, file: Any) -> list[FileCompone
             if request.every and count > 1:  # asked for by its whole name a piece is read
                 found = f"{count} pieces of {one.codes} {one.tag}"
                 raise source.refuse(found=found, expected="a channel without gaps")
-            with _sound(source):
+            with _damaged_file_errors(source):
                 return _samples(source, request, file, one)
 
         return FileComponent(
@@ -149,7 +149,7 @@ def _components(source: Source, request: Request, file: Any) -> list[FileCompone
             aliases=(one.name, one.codes, one.channel, f"{one.codes} {one.tag}"),
         )
 
-    return [component(one) for one in held]
+    return [component(one) for one in waveforms]
 
 
 def _samples(source: Source, request: Request, file: Any, one: _Waveform) -> Record:
@@ -160,7 +160,7 @@ def _samples(source: Source, request: Request, file: Any, one: _Waveform) -> Rec
         found = f"a sampling rate of {rate!r} Hz for {one.name}"
         raise source.refuse(found=found, expected="one above zero")
     time_step = float(f"{1.0 / rate:.12g}")
-    settle_time_step(source, request, time_step, None)
+    checked_time_step(source, request, time_step, None)
     start = _EPOCH + timedelta(microseconds=int(variable.getncattr("starttime")) // 1000)
     metadata: Metadata = {
         **metadata_of_codes(one.codes),
@@ -178,7 +178,7 @@ def _samples(source: Source, request: Request, file: Any, one: _Waveform) -> Rec
         "the argument unit, which is 'cm/s^2' for what gmprocess has processed, or StationXML, "
         "for counts",
     )
-    return record_of_counts(source, request, values, time_step, metadata, response, missing)
+    return record_from_counts(source, request, values, time_step, metadata, response, missing)
 
 
 def _values(source: Source, one: _Waveform, variable: Any) -> Array:
@@ -219,9 +219,9 @@ def _response(
     source: Source, request: Request, file: Any, one: _Waveform, start: datetime
 ) -> InstrumentResponse | None:
     if request.response is not None:
-        return InstrumentResponses(source, request).of(one.codes, start)
+        return InstrumentResponses(source, request).find(one.codes, start)
     xml = _text_in(file.groups["Waveforms"].groups[one.group], "StationXML")
-    return None if xml is None else response_in(source_of(source.path, xml), one.codes, start)
+    return None if xml is None else find_response(source_of(source.path, xml), one.codes, start)
 
 
 def _text_in(group: Any, name: str) -> bytes | None:

@@ -26,12 +26,12 @@ USUAL_PEAKS: Final = (1e-4, 1.5)
 
 Few records exceed 1.5 g. A file in m/s^2 that is read in g exceeds it from 0.15 g on.
 """
-USUAL_OFFSET: Final = 1e-3
+MIN_OFFSET: Final = 1e-3
 """Offset up to which there is no warning [g]."""
-OFFSET_SHARE: Final = 0.15
+OFFSET_FRACTION: Final = 0.15
 """Offset over the largest distance from it, up to which there is no warning [1]."""
 
-MISSING: Final = (
+MISSING_VALUES: Final = (
     *(999.0, 9999.0, 99999.0, 999999.0, 12345.0, 32768.0, 1.7e38),
     *(
         float(f"{nines}.{tail}")
@@ -41,18 +41,18 @@ MISSING: Final = (
 )
 """Values, of either sign, by which agencies mark missing samples."""
 
-PEAK_SHARE: Final = 0.015
+PEAK_TOLERANCE: Final = 0.015
 """Tolerance of stated peaks [1]; in 275 published channels they differ by at most 1.1 %."""
-LENGTH_SHARE: Final = 0.01
+LENGTH_TOLERANCE: Final = 0.01
 """Tolerance of stated lengths [1]; two time steps are admitted in any case."""
 
 _NUMBERS_ONLY: Final = re.compile(r"[-+.\dEeDd\s]*\d[-+.\dEeDd\s]*", re.ASCII)
-_LONGEST: Final = 30
-_MOST_ROWS: Final = 200
-_FEWEST_SHARE: Final = 0.9
-_FEWEST_MISSING: Final = 5
+_MAX_TEXT_LENGTH: Final = 30
+_MAX_ROWS: Final = 200
+_MIN_MATCHING_FRACTION: Final = 0.9
+_MIN_MISSING: Final = 5
 _ROUNDING: Final = 1e-6
-_FEWEST_FOR_OFFSET: Final = 50
+_MIN_SAMPLES_FOR_OFFSET: Final = 50
 _ENDS: Final = 10
 
 
@@ -64,7 +64,7 @@ def check_time_step(source: Source, time_step: float, line: int | None) -> None:
         raise source.refuse(found=f"a time step of {time_step!r} s", expected=expected, line=line)
 
 
-def check_asked_time_step(
+def check_requested_time_step(
     source: Source, request: Request, time_step: float, line: int | None
 ) -> None:
     """Refuse a ``time_step=`` argument that the file contradicts."""
@@ -77,16 +77,16 @@ def check_asked_time_step(
         )
 
 
-def settle_time_step(source: Source, request: Request, time_step: float, line: int | None) -> None:
+def checked_time_step(source: Source, request: Request, time_step: float, line: int | None) -> None:
     """Refuse a time step that no record has, or that contradicts the argument ``time_step``."""
     check_time_step(source, time_step, line)
-    check_asked_time_step(source, request, time_step, line)
+    check_requested_time_step(source, request, time_step, line)
 
 
-def check_no_missing_marks(source: Source, samples: Array) -> None:
+def check_missing_values(source: Source, samples: Array) -> None:
     """Refuse samples with marks of missing ones among them."""
     size = np.abs(samples)
-    marked = np.isin(size, MISSING)
+    marked = np.isin(size, MISSING_VALUES)
     if not marked.any():
         return
     places = np.flatnonzero(marked)
@@ -107,7 +107,9 @@ def check_no_missing_marks(source: Source, samples: Array) -> None:
         raise source.refuse(found=found, expected=expected)
 
 
-def plausibility(source: Source, time_step: float, samples: Array, unit: RecordUnit) -> list[str]:
+def plausibility_warnings(
+    source: Source, time_step: float, samples: Array, unit: RecordUnit
+) -> list[str]:
     """Return warnings of a peak, an offset or a time step that is not plausible."""
     warnings: list[str] = []
     low, high = USUAL_PEAKS
@@ -121,7 +123,7 @@ def plausibility(source: Source, time_step: float, samples: Array, unit: RecordU
     offset = _offset(samples)
     with np.errstate(over="ignore"):
         in_g = offset * unit.factor / STANDARD_GRAVITY
-    if abs(in_g) > USUAL_OFFSET:
+    if abs(in_g) > MIN_OFFSET:
         warnings.append(
             f"{source.path}: the samples lie around an offset of {in_g:.4g} g, from the first to "
             "the last; baseline_corrected(order=0) subtracts their mean"
@@ -137,20 +139,20 @@ def plausibility(source: Source, time_step: float, samples: Array, unit: RecordU
 def _offset(samples: Array) -> float:
     # the ground comes to rest, so the mean acceleration is nearly zero, and so are the means
     # before and after the strong motion
-    if samples.size < _FEWEST_FOR_OFFSET:
+    if samples.size < _MIN_SAMPLES_FOR_OFFSET:
         return 0.0
-    part = max(samples.size // _ENDS, _FEWEST_FOR_OFFSET)
+    part = max(samples.size // _ENDS, _MIN_SAMPLES_FOR_OFFSET)
     with np.errstate(over="ignore", invalid="ignore"):
         means = [float(np.mean(piece)) for piece in (samples, samples[:part], samples[-part:])]
         swing = float(np.max(np.abs(samples - means[0])))
     one_sided = min(means) > 0.0 or max(means) < 0.0
-    return means[0] if one_sided and min(map(abs, means)) > OFFSET_SHARE * swing else 0.0
+    return means[0] if one_sided and min(map(abs, means)) > OFFSET_FRACTION * swing else 0.0
 
 
 LENGTH: Final = "a length [s]"
 
 
-class Stated(NamedTuple):
+class StatedValue(NamedTuple):
     """Peak or length of the samples that a header states."""
 
     text: str  # the number as printed
@@ -158,8 +160,12 @@ class Stated(NamedTuple):
     line: int  # line number from 1
 
 
-def doubts_of(
-    source: Source, samples: Array, unit: RecordUnit, time_step: float, stated: Iterable[Stated]
+def header_mismatch_warnings(
+    source: Source,
+    samples: Array,
+    unit: RecordUnit,
+    time_step: float,
+    stated: Iterable[StatedValue],
 ) -> list[str]:
     """Compare the peaks and lengths that a header states with the samples."""
     return [
@@ -173,14 +179,16 @@ def doubts_of(
     ]
 
 
-def _compare_peak(source: Source, samples: Array, unit: RecordUnit, stated: Stated) -> list[str]:
-    printed, digit = _printed(stated.text)
+def _compare_peak(
+    source: Source, samples: Array, unit: RecordUnit, stated: StatedValue
+) -> list[str]:
+    printed, digit = _number_and_rounding(stated.text)
     stated_unit = acceleration_unit(stated.unit)
     if printed is None or stated_unit is None or math.isclose(printed, 0.0):
         return []
     with np.errstate(over="ignore"):
         peak = float(np.max(np.abs(samples))) * (unit.factor / stated_unit.factor)
-    if abs(peak - abs(printed)) <= PEAK_SHARE * abs(printed) + digit:
+    if abs(peak - abs(printed)) <= PEAK_TOLERANCE * abs(printed) + digit:
         return []
     return [
         f"{source.path}, line {stated.line}: the header states a peak of {abs(printed):g} "
@@ -188,13 +196,13 @@ def _compare_peak(source: Source, samples: Array, unit: RecordUnit, stated: Stat
     ]
 
 
-def _compare_length(source: Source, count: int, time_step: float, stated: Stated) -> list[str]:
+def _compare_length(source: Source, count: int, time_step: float, stated: StatedValue) -> list[str]:
     # some agencies state n dt, others (n - 1) dt
-    printed, digit = _printed(stated.text)
+    printed, digit = _number_and_rounding(stated.text)
     if printed is None or printed <= 0.0:
         return []
     length = count * time_step
-    if abs(length - printed) <= max(2.0 * time_step, LENGTH_SHARE * printed) + digit:
+    if abs(length - printed) <= max(2.0 * time_step, LENGTH_TOLERANCE * printed) + digit:
         return []
     return [
         f"{source.path}, line {stated.line}: the header states a length of {printed:g} s, but "
@@ -202,32 +210,34 @@ def _compare_length(source: Source, count: int, time_step: float, stated: Stated
     ]
 
 
-def surplus(source: Source, index: int, what: str, end: int | None = None) -> list[str]:
+def surplus_rows_warning(
+    source: Source, index: int, what: str, end: int | None = None
+) -> list[str]:
     """Warn of rows of numbers after the last sample that a header announces.
 
     The search ends at the first text, or at the line `end`, if nothing else is read before it.
     """
     rows, first = 0, index
     for place, line in enumerate(source.lines[index:end], start=index):
-        if rows == _MOST_ROWS:
+        if rows == _MAX_ROWS:
             break
         if not line.strip():
             continue
-        if _NUMBERS_ONLY.fullmatch(line[:_LONGEST]) is not None:
+        if _NUMBERS_ONLY.fullmatch(line[:_MAX_TEXT_LENGTH]) is not None:
             first = place if rows == 0 else first
             rows += 1
         elif end is None:
             break
     if not rows:
         return []
-    many = f"{rows} or more rows" if rows == _MOST_ROWS else f"{rows} row{'s' * (rows > 1)}"
+    many = f"{rows} or more rows" if rows == _MAX_ROWS else f"{rows} row{'s' * (rows > 1)}"
     return [
         f"{source.path}, line {first + 1}: {many} of numbers after the last sample that "
         f"{what} announces; they are not read"
     ]
 
 
-def ends_inside(source: Source, line: int, rows: int) -> list[str]:
+def truncation_warning(source: Source, line: int, rows: int) -> list[str]:
     """Say of a file that it ends among the rows below a line, so that others may be missing."""
     if line + rows <= source.last_line:
         return []
@@ -237,10 +247,10 @@ def ends_inside(source: Source, line: int, rows: int) -> list[str]:
     ]
 
 
-def _printed(text: str) -> tuple[float | None, float]:
+def _number_and_rounding(text: str) -> tuple[float | None, float]:
     """Return a number and half of its last printed digit."""
     text = text.strip()
-    if len(text) > _LONGEST or ONE_NUMBER.fullmatch(text) is None:
+    if len(text) > _MAX_TEXT_LENGTH or ONE_NUMBER.fullmatch(text) is None:
         return None, 0.0
     mantissa, _, exponent = text.upper().replace("D", "E").partition("E")
     value = float(f"{mantissa}E{exponent or 0}")
@@ -249,12 +259,12 @@ def _printed(text: str) -> tuple[float | None, float]:
     return (value if math.isfinite(value) else None), digit
 
 
-def settle_count(
+def checked_count(
     source: Source, *, declared: int, counted: int, what: str, line: int
 ) -> tuple[Metadata, list[str]]:
     """Compare the announced number of samples with the data, which take precedence."""
     missing = declared - counted
-    if counted < 2 or missing > max(_FEWEST_MISSING, (1.0 - _FEWEST_SHARE) * declared):
+    if counted < 2 or missing > max(_MIN_MISSING, (1.0 - _MIN_MATCHING_FRACTION) * declared):
         raise source.refuse(
             found=f"the end of the file after {counted} samples",
             expected=f"{declared} samples ({what} in line {line})",
@@ -269,7 +279,7 @@ def settle_count(
     return {"declared_samples": declared, "counted_samples": counted}, [words]
 
 
-def record_of(
+def make_record(
     source: Source,
     values: Array,
     time_step: float,
@@ -277,24 +287,30 @@ def record_of(
     metadata: Metadata,
     *,
     count: tuple[int, str, int] | None = None,
-    said: Iterable[str] = (),
-    stated: Iterable[Stated] = (),
-    behind: Iterable[str] = (),
+    warnings_before: Iterable[str] = (),
+    stated: Iterable[StatedValue] = (),
+    warnings_after: Iterable[str] = (),
 ) -> Record:
     """Make a record, after a comparison of the statements of its header with its samples.
 
     `chosen` is the result of :func:`choose_unit`; `count` is the announced number of samples, the
-    name of the field that announces it, and its line; `said` and `behind` are warnings before and
-    after those of `stated` peaks and lengths.
+    name of the field that announces it, and its line; `warnings_before` and `warnings_after` go
+    before and after those of `stated` peaks and lengths.
     """
     unit, as_read, warnings = chosen
     counts: Metadata = {}
     if count is not None:
         declared, what, line = count
-        counts, differing = settle_count(
+        counts, differing = checked_count(
             source, declared=declared, counted=values.size, what=what, line=line
         )
         warnings = [*warnings, *differing]
-    doubts = doubts_of(source, values, unit, time_step, stated)
+    mismatches = header_mismatch_warnings(source, values, unit, time_step, stated)
     described: Metadata = {**metadata, "unit_as_read": as_read, **counts}
-    return Record(time_step, values, unit, described, warnings=(*warnings, *said, *doubts, *behind))
+    return Record(
+        time_step,
+        values,
+        unit,
+        described,
+        warnings=(*warnings, *warnings_before, *mismatches, *warnings_after),
+    )

@@ -30,7 +30,7 @@ _DEGREES: Final = re.compile(r"(\d{1,3}(?:\.\d{0,3})?)\s*(?:deg(?:rees?)?\.?)?",
 _QUADRANT: Final = re.compile(r"([ns])\s*(\d{1,2})\s*([ew])", re.ASCII)
 # band code, N for an accelerometer (or L, G, H: a mass or a seismometer), orientation; in some
 # files the code of the location of the sensor follows
-_SEED: Final = re.compile(r"[fgdceshbml][nlgh]([nez])(?:[. _-]?(?:\d0|0\d|--))?", re.ASCII)
+_SEED_CODE: Final = re.compile(r"[fgdceshbml][nlgh]([nez])(?:[. _-]?(?:\d0|0\d|--))?", re.ASCII)
 _NUMBERED: Final = re.compile(r"([a-z-]+?)[. _-]?\d{1,2}", re.ASCII)
 
 
@@ -107,7 +107,7 @@ def orientation_of(name: str) -> Orientation:
         from_pole, angle, towards = quadrant.groups()
         turn = float(angle) if (from_pole == "n") == (towards == "e") else -float(angle)
         return azimuth_of(((0.0 if from_pole == "n" else 180.0) + turn) % _FULL_CIRCLE)
-    seed = _SEED.fullmatch(text)
+    seed = _SEED_CODE.fullmatch(text)
     if seed is not None:
         return orientation_of(seed.group(1))
     numbered = _NUMBERED.fullmatch(text)
@@ -131,7 +131,7 @@ SENSE: Final = "positive"
 
 _CHANNEL: Final = re.compile(r"(?:channel|chan|ch)?\.?\s*#?(\d{1,4})", re.ASCII)
 _ROUNDING: Final = 1e-6
-_LISTED: Final = 40
+_MAX_LISTED: Final = 40
 
 
 @dataclass(frozen=True)
@@ -184,10 +184,12 @@ class EveryComponentError(RecordError):
 
     def __init__(self, path: str, components: Sequence[FileComponent]) -> None:
         self.components = tuple(components)
-        super().__init__(path, found=_listed(components), expected="one component at a time")
+        super().__init__(
+            path, found=_component_list(components), expected="one component at a time"
+        )
 
 
-def component_names(value: object, *, owner: str) -> tuple[str | None, str | None]:
+def requested_components(value: object, *, owner: str) -> tuple[str | None, str | None]:
     """Check the argument ``component``; give the horizontal and the vertical name."""
     if value is None:
         return None, None
@@ -255,10 +257,10 @@ def choose_component(
             "and join them with with_vertical",
             line=components[0].line,
         )
-    chosen = _across(source, request, components)
+    chosen = _horizontal_components(source, request, components)
     if request.vertical is None:
-        return _alone(source, request, chosen, components)
-    upwards = _named(source, request.vertical, components)
+        return _single_component(source, request, chosen, components)
+    upwards = _find_component(source, request.vertical, components)
     if chosen.orientation.vertical is not None or chosen is upwards:
         raise source.refuse(
             found=f"the component {chosen.label}, asked for as the horizontal one",
@@ -271,33 +273,35 @@ def choose_component(
             expected="a vertical component",
             line=upwards.line,
         )
-    return _pair(source, chosen, upwards)
+    return _with_vertical(source, chosen, upwards)
 
 
-def named(source: Source, component: FileComponent) -> Record:
+def read_component_named(source: Source, component: FileComponent) -> Record:
     """Read a component, a vertical one positive upwards, with its name in the metadata."""
-    record = _upwards(source, component.read(), component)
+    record = _vertical_upwards(source, component.read(), component)
     return replace(record, metadata={**record.metadata, **_metadata_of(component)})
 
 
-def _across(source: Source, request: Request, components: Sequence[FileComponent]) -> FileComponent:
+def _horizontal_components(
+    source: Source, request: Request, components: Sequence[FileComponent]
+) -> FileComponent:
     if request.component is not None:
-        return _named(source, request.component, components)
+        return _find_component(source, request.component, components)
     if len(components) == 1:
         return components[0]
     level = [entry for entry in components if entry.orientation.vertical is None]
     if len(level) == 1:
         return level[0]
-    raise source.refuse(found=_listed(components), expected=_example(components))
+    raise source.refuse(found=_component_list(components), expected=_example_argument(components))
 
 
-def _alone(
+def _single_component(
     source: Source, request: Request, chosen: FileComponent, components: Sequence[FileComponent]
 ) -> Record:
     record = chosen.read()
     metadata: Metadata = {**record.metadata, **_metadata_of(chosen)}
     if len(components) > 1:
-        names = ", ".join(str(entry.name) for entry in components[:_LISTED])
+        names = ", ".join(str(entry.name) for entry in components[:_MAX_LISTED])
         taken = f"component {chosen.name} taken (of {names})"
         record = replace(record, history=(*record.history, taken))
     requested = request.component
@@ -312,13 +316,13 @@ def _alone(
     by_direction = requested is not None and not _has_name(requested, chosen)
     sense = chosen.orientation.vertical
     if by_direction and orientation_of(requested or "").vertical == UPWARDS:
-        record, sense = _upwards(source, record, chosen), UPWARDS
+        record, sense = _vertical_upwards(source, record, chosen), UPWARDS
     if sense is not None:
         metadata[SENSE] = sense
     return replace(record, metadata=metadata)
 
 
-def _pair(source: Source, across: FileComponent, upwards: FileComponent) -> Record:
+def _with_vertical(source: Source, across: FileComponent, upwards: FileComponent) -> Record:
     level, raised = across.read(), upwards.read()
     if not math.isclose(level.time_step, raised.time_step, rel_tol=_ROUNDING):
         found = f"time steps of {level.time_step!r} s and {raised.time_step!r} s"
@@ -331,7 +335,7 @@ def _pair(source: Source, across: FileComponent, upwards: FileComponent) -> Reco
             expected="one start time for both",
             line=upwards.line,
         )
-    turned = _upwards(source, raised, upwards)
+    turned = _vertical_upwards(source, raised, upwards)
     vertical = turned.samples
     if not math.isclose(raised.unit.factor, level.unit.factor):
         vertical = vertical * (raised.unit.factor / level.unit.factor)
@@ -362,7 +366,7 @@ def _pair(source: Source, across: FileComponent, upwards: FileComponent) -> Reco
     )
 
 
-def _upwards(source: Source, record: Record, component: FileComponent) -> Record:
+def _vertical_upwards(source: Source, record: Record, component: FileComponent) -> Record:
     """Reverse a vertical component that is positive downwards, and add this to the history."""
     sense = component.orientation.vertical
     if sense == DOWNWARDS:
@@ -388,7 +392,9 @@ def _metadata_of(component: FileComponent) -> Metadata:
     return metadata
 
 
-def _named(source: Source, requested: str, components: Sequence[FileComponent]) -> FileComponent:
+def _find_component(
+    source: Source, requested: str, components: Sequence[FileComponent]
+) -> FileComponent:
     direction = orientation_of(requested)
     number = _CHANNEL.fullmatch(requested.strip().casefold())
     channel = None if number is None else int(number.group(1))
@@ -406,13 +412,15 @@ def _named(source: Source, requested: str, components: Sequence[FileComponent]) 
                 found=f"{len(found)} components that match {requested!r}: {_labels(found)}",
                 expected="one; give its channel number",
             )
-    raise _missing(source, requested, components)
+    raise _missing_component_error(source, requested, components)
 
 
-def _missing(source: Source, requested: str, components: Sequence[FileComponent]) -> RecordError:
+def _missing_component_error(
+    source: Source, requested: str, components: Sequence[FileComponent]
+) -> RecordError:
     expected = f"the component {requested!r}"
     if len(components) > 1:
-        return source.refuse(found=_listed(components), expected=expected)
+        return source.refuse(found=_component_list(components), expected=expected)
     only = components[0]
     if only.name is None:
         return source.refuse(found="no name of the component", expected=expected)
@@ -421,24 +429,24 @@ def _missing(source: Source, requested: str, components: Sequence[FileComponent]
 
 def _has_name(requested: str, component: FileComponent) -> bool:
     names = [name for name in (component.name, *component.aliases) if name is not None]
-    return _key(requested) in map(_key, names)
+    return _normalised_name(requested) in map(_normalised_name, names)
 
 
-def _key(name: str) -> str:
+def _normalised_name(name: str) -> str:
     key = name.split("(")[0].strip().casefold()
     return key.lstrip("0") or "0" if key.isdigit() else key
 
 
 def _labels(components: Sequence[FileComponent]) -> str:
-    listed = ", ".join(entry.label for entry in components[:_LISTED])
-    return listed if len(components) <= _LISTED else f"{listed}, ..."
+    listed = ", ".join(entry.label for entry in components[:_MAX_LISTED])
+    return listed if len(components) <= _MAX_LISTED else f"{listed}, ..."
 
 
-def _listed(components: Sequence[FileComponent]) -> str:
+def _component_list(components: Sequence[FileComponent]) -> str:
     return f"{len(components)} components: {_labels(components)}"
 
 
-def _example(components: Sequence[FileComponent]) -> str:
+def _example_argument(components: Sequence[FileComponent]) -> str:
     level = [entry for entry in components if entry.orientation.vertical is None]
     upwards = [entry for entry in components if entry.orientation.vertical is not None]
     names = [entry.name for entry in components]

@@ -13,12 +13,12 @@ from dataclasses import dataclass
 from typing import Final
 
 from rockframe.records.checks import (
-    Stated,
-    check_asked_time_step,
+    StatedValue,
+    check_requested_time_step,
     check_time_step,
-    ends_inside,
-    record_of,
-    surplus,
+    make_record,
+    surplus_rows_warning,
+    truncation_warning,
 )
 from rockframe.records.components import (
     DOWNWARDS,
@@ -31,7 +31,7 @@ from rockframe.records.components import (
     orientation_of,
 )
 from rockframe.records.headers import first_match
-from rockframe.records.numbers import Fields, FixedWidth, whole
+from rockframe.records.numbers import Fields, FixedWidth, integer_or_none
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import acceleration_unit, choose_unit
 
@@ -96,7 +96,7 @@ _OF_REALS: Final = (
 _COMMENTS: Final = re.compile(r"(\d{1,6})\s+Comment line", re.IGNORECASE)
 _UNKNOWN: Final = re.compile(r"unspecified:\s*(-?\d{1,8})\s*,?\s*(-?[\d.]{1,12})")
 _USUAL_UNKNOWN: Final = (-999, -999.0)
-_MOST_COMMENTS: Final = 200
+_MAX_COMMENTS: Final = 200
 
 
 @dataclass(frozen=True)
@@ -141,7 +141,7 @@ def _read_header(source: Source, start: int, end: int, text_lines: int) -> _Head
     if match is not None:
         first = comments_line + 1
         data_at = min(first + int(match.group(1)), end)
-        comments = "\n".join(source.top(min(data_at - first, _MOST_COMMENTS), first))
+        comments = "\n".join(source.top(min(data_at - first, _MAX_COMMENTS), first))
     text = source.top(min(text_lines, end - start), start)
     unknown = _unknown(source.top(text_lines, start))
     return _Header(
@@ -199,7 +199,7 @@ _START: Final = re.compile(r"start time:\s*(\S.{0,30}?)\s*(?:\(|RcrdId|$)", re.I
 _DAY: Final = re.compile(r"(?:Mon|Tue|Wed|Thu|Fri|Sat|Sun)\w{0,6}[ ,]+\w{3}", re.IGNORECASE)
 _LENGTH_SHARE: Final = 0.01
 _FIRST_LINE_WIDTH: Final = 120
-_MOST_BLOCKS: Final = 1_500
+_MAX_BLOCKS: Final = 1_500
 
 
 @dataclass(frozen=True)
@@ -240,8 +240,8 @@ def _ends_inside(source: Source, block: _Block) -> list[str]:
         match = _DATA_LINE.match(text) if "pts" in text else None
         if match is not None:
             layout = FixedWidth(int(match.group(5)), max(int(match.group(4) or 1), 1))
-            return ends_inside(source, line, layout.rows(int(match.group(1))))
-    return ends_inside(source, block.index + 1, len(source.lines))
+            return truncation_warning(source, line, layout.rows(int(match.group(1))))
+    return truncation_warning(source, block.index + 1, len(source.lines))
 
 
 def _blocks(source: Source) -> list[_Block]:
@@ -259,8 +259,8 @@ def _blocks(source: Source) -> list[_Block]:
             match = _FIRST_LINE.search(line)
             if match is not None:
                 starts.append((index, match))
-            if len(starts) > _MOST_BLOCKS:
-                expected = f"at most {_MOST_BLOCKS} channels and quantities"
+            if len(starts) > _MAX_BLOCKS:
+                expected = f"at most {_MAX_BLOCKS} channels and quantities"
                 raise source.refuse(found="more of them", expected=expected, line=index + 1)
     ends = [*(index for index, _ in starts), len(source.lines)][1:]
     return [
@@ -292,7 +292,7 @@ def _channel(header: _Header) -> tuple[int | None, str]:
     if match is None:
         return None, ""
     direction = match.group(2).strip()
-    return whole(match.group(1)), "" if direction.casefold() == "other" else direction
+    return integer_or_none(match.group(1)), "" if direction.casefold() == "other" else direction
 
 
 def _orientation(header: _Header, direction: str, code: str) -> Orientation:
@@ -318,17 +318,22 @@ def _samples(source: Source, request: Request, header: _Header, cut: list[str]) 
     chosen = choose_unit(source, request, name, line)
     count = int(match.group(1))
     time_step = _time_step(source, header, count)
-    check_asked_time_step(source, request, time_step, header.reals.line(62))
+    check_requested_time_step(source, request, time_step, header.reals.line(62))
     layout = FixedWidth(int(match.group(5)), int(match.group(4) or 1))
     values = layout.read(source, line, count)
     peak = header.real(64)
-    stated: list[Stated] = []
+    stated: list[StatedValue] = []
     if peak is not None and quantity == ACCELERATION:
         peak_unit = chosen[1] if request.unit is None else name
-        stated.append(Stated(f"{peak:.12g}", peak_unit, header.reals.line(64)))
-    behind = [*surplus(source, line + layout.rows(count), f"line {line}", header.end), *cut]
+        stated.append(StatedValue(f"{peak:.12g}", peak_unit, header.reals.line(64)))
+    surplus = [
+        *surplus_rows_warning(source, line + layout.rows(count), f"line {line}", header.end),
+        *cut,
+    ]
     metadata = _description(header)
-    return record_of(source, values, time_step, chosen, metadata, stated=stated, behind=behind)
+    return make_record(
+        source, values, time_step, chosen, metadata, stated=stated, warnings_after=surplus
+    )
 
 
 def _data_line(source: Source, header: _Header) -> tuple[int, re.Match[str]]:
@@ -344,7 +349,7 @@ def _data_line(source: Source, header: _Header) -> tuple[int, re.Match[str]]:
 def _unit_name(source: Source, request: Request, header: _Header, text: str, line: int) -> str:
     match = _UNIT_CODE.match(text)
     name = (match.group(1) if match else text).strip().rstrip(".")
-    code = whole(match.group(2)) if match else header.integer(3)
+    code = integer_or_none(match.group(2)) if match else header.integer(3)
     known, by_code = acceleration_unit(name), acceleration_unit(UNITS.get(code or 0, ""))
     agree = known is None or by_code is None or math.isclose(known.factor, by_code.factor)
     if request.unit is None and not agree:

@@ -37,13 +37,13 @@ from typing import Final
 from rockframe.errors import RecordError
 from rockframe.records.checks import (
     LENGTH,
-    Stated,
-    check_asked_time_step,
+    StatedValue,
+    check_requested_time_step,
     check_time_step,
-    ends_inside,
-    record_of,
-    settle_time_step,
-    surplus,
+    checked_time_step,
+    make_record,
+    surplus_rows_warning,
+    truncation_warning,
 )
 from rockframe.records.components import (
     FileComponent,
@@ -51,8 +51,8 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
-from rockframe.records.headers import first_match, without_blanks
-from rockframe.records.numbers import FixedWidth, number_or_none, uniform_step, whole
+from rockframe.records.headers import first_match, without_empty_values
+from rockframe.records.numbers import FixedWidth, integer_or_none, number_or_none, uniform_step
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 from rockframe.signals.arrays import Array
@@ -103,31 +103,31 @@ def channel_of(header: list[str], first: int) -> tuple[int | None, str, int]:
             continue
         name = match.group(2).strip()
         degrees = _DEGREES.match(name)
-        found = (whole(match.group(1)), degrees.group(1) if degrees else name, line)
+        found = (integer_or_none(match.group(1)), degrees.group(1) if degrees else name, line)
         if name:
             return found
     component = first_match(_COMPONENT, header, first + 1)
     return found if component is None else (found[0], component[0][1], component[1])
 
 
-def _peak_in_header(header: list[str], first: int) -> Stated | None:
+def _peak_in_header(header: list[str], first: int) -> StatedValue | None:
     corrected = is_corrected(header)
     for line, text in enumerate(header, start=first + 1):
         match = _PEAK.search(f"{text} ")
         if match is not None:
             number, name, per_time = match.groups()
-            return Stated(number, f"{name}{per_time or ''}".casefold(), line)
+            return StatedValue(number, f"{name}{per_time or ''}".casefold(), line)
         match = None if corrected else _UNCORRECTED_PEAK.search(text)
         if match is not None:
-            return Stated(match.group(1), "g", line)
+            return StatedValue(match.group(1), "g", line)
     return None
 
 
-def _stated(header: list[str], first: int) -> list[Stated]:
+def _stated(header: list[str], first: int) -> list[StatedValue]:
     """Return peak and length of a record, if its header states them."""
     peak, length = _peak_in_header(header, first), first_match(_LENGTH, header, first + 1)
     stated = [] if peak is None else [peak]
-    return stated if length is None else [*stated, Stated(length[0][1], LENGTH, length[1])]
+    return stated if length is None else [*stated, StatedValue(length[0][1], LENGTH, length[1])]
 
 
 def is_corrected(header: list[str]) -> bool:
@@ -176,7 +176,9 @@ def _event(lines: list[str], place: int) -> Metadata:
         origin = _ORIGIN.search(text)
         if origin is not None and not time and _DATE.search(origin.group(1)):
             time = origin.group(1).strip()
-    return without_blanks({"event": " ".join(name.split()), "event_time": " ".join(time.split())})
+    return without_empty_values(
+        {"event": " ".join(name.split()), "event_time": " ".join(time.split())}
+    )
 
 
 _POINTS: Final = re.compile(r"\bNO\. OF POINTS\s*=\s*(\d{1,9})", re.IGNORECASE)
@@ -188,7 +190,7 @@ _REAL_NUMBERS: Final = re.compile(r"[-.\d\s]*\.[-.\d\s]*", re.ASCII)
 _FULL: Final = 10
 _REALS: Final = 50
 _PAIR_WIDTHS: Final = range(6, 11)
-_LONGEST_PAIR_HEADER: Final = 80
+_MAX_PAIR_HEADER_LINES: Final = 80
 
 
 @dataclass(frozen=True)
@@ -201,14 +203,14 @@ class Pairs:
     data_at: int  # index of the first line of pairs, from 0
 
     @property
-    def behind(self) -> int:
+    def end_index(self) -> int:
         """Index of the first line after them, from 0."""
         return self.data_at + -(-2 * self.count // _FULL)
 
 
 def find_pairs(source: Source, first: int, end: int) -> Pairs | None:
     """Find pairs between the first line of a channel and that of the next one."""
-    top = [line.rstrip() for line in source.top(min(_LONGEST_PAIR_HEADER, end - first), first)]
+    top = [line.rstrip() for line in source.top(min(_MAX_PAIR_HEADER_LINES, end - first), first)]
     points, units = first_match(_POINTS, top), first_match(_UNITS, top, 0)
     if points is None or units is None:
         return None
@@ -240,7 +242,7 @@ def read_pairs(source: Source, pairs: Pairs) -> tuple[float, Array]:
         )
     layout = FixedWidth(width, _FULL, indent)
     values = layout.read(source, pairs.data_at, 2 * pairs.count).reshape(-1, 2)
-    rows = source.lines[pairs.data_at : pairs.behind]
+    rows = source.lines[pairs.data_at : pairs.end_index]
     printed = [
         row[indent + place : indent + place + width].strip()
         for row in rows
@@ -263,14 +265,14 @@ _DATA_LINE: Final = re.compile(
     re.IGNORECASE,
 )
 _OTHER_SERIES: Final = re.compile(r"^\s*(\d{1,12})\s+POINTS OF (?:VEL|DISP)", re.IGNORECASE)
-_LONGEST_DATA_LINE: Final = 200
+_MAX_DATA_LINE_LENGTH: Final = 200
 _UNIT: Final = re.compile(
     r"(?:\bUNITS?\s*(?:[:=]|\bOF\b)?\s*|,\s*IN\s+)\(?([^\s(),;:=]{1,20})", re.IGNORECASE
 )
 _LAYOUT: Final = re.compile(r"\(\s*(\d{1,3})F(\d{1,3})\.\d{1,2}\s*\)", re.IGNORECASE)
 _INTERVAL: Final = re.compile(r"EQUALLY-SPACED INTERVALS OF\s+([\d.]{1,12})\s+SEC", re.IGNORECASE)
-_LONGEST_HEADER: Final = 200
-_MOST_CHANNELS: Final = 500
+_MAX_HEADER_LINES: Final = 200
+_MAX_CHANNELS: Final = 500
 _SECOND_LINE: Final = 10  # lines in which a first line may be followed by a second of its kind
 _SUCH_AS: Final = "a line such as '1138 points of accel data equally spaced at .020 sec'"
 _PER_LINE: Final = 8
@@ -323,7 +325,7 @@ def _components(source: Source, request: Request) -> list[FileComponent]:
         elif not held:
             components.append(_without_data(source, first, end))
         there = there or bool(held) or pairs is not None
-        if len(components) > _MOST_CHANNELS:
+        if len(components) > _MAX_CHANNELS:
             raise _too_many(source, first + 1)
     return components if there else []
 
@@ -331,12 +333,14 @@ def _components(source: Source, request: Request) -> list[FileComponent]:
 def _ends_inside(source: Source) -> list[str]:
     """Say of a file that it ends inside velocities or displacements, which are not read."""
     for line in range(len(source.lines), 0, -1):
-        text = source.lines[line - 1][:_LONGEST_DATA_LINE]
+        text = source.lines[line - 1][:_MAX_DATA_LINE_LENGTH]
         match = _OTHER_SERIES.match(text) if "points" in text.casefold() else None
         if match is not None:
             layout = _LAYOUT.search(text)
             per_line = _PER_LINE if layout is None else max(int(layout.group(1)), 1)
-            return ends_inside(source, line, FixedWidth(1, per_line).rows(int(match.group(1))))
+            return truncation_warning(
+                source, line, FixedWidth(1, per_line).rows(int(match.group(1)))
+            )
     return []
 
 
@@ -360,7 +364,7 @@ def _without_data(source: Source, first: int, end: int) -> FileComponent:
         found = f"no evenly sampled accelerations below {quoted_first_line(source.lines[first])}"
         raise source.refuse(found=found, expected=_SUCH_AS, line=first + 1)
 
-    return _named(source.top(min(end - first, _LONGEST_HEADER), first), first, samples)
+    return _named(source.top(min(end - first, _MAX_HEADER_LINES), first), first, samples)
 
 
 def _blocks(source: Source) -> list[_Block]:
@@ -372,20 +376,20 @@ def _blocks(source: Source) -> list[_Block]:
             continue
         if "points" not in line[:40].casefold():
             continue  # fast: most lines have only numbers
-        match = _DATA_LINE.match(line[:_LONGEST_DATA_LINE])
+        match = _DATA_LINE.match(line[:_MAX_DATA_LINE_LENGTH])
         if match is not None:
-            start = max(first, index - _LONGEST_HEADER)
+            start = max(first, index - _MAX_HEADER_LINES)
             header = source.top(index - start, start)
             count, interval, rate = match.groups()
             blocks.append(_Block(start, header, index, int(count), interval or "", rate or ""))
             first = index + 1
-        if len(blocks) > _MOST_CHANNELS:
+        if len(blocks) > _MAX_CHANNELS:
             raise _too_many(source, index + 1)
     return blocks
 
 
 def _too_many(source: Source, line: int) -> RecordError:
-    expected = f"at most {_MOST_CHANNELS} channels"
+    expected = f"at most {_MAX_CHANNELS} channels"
     return source.refuse(found="more channels", expected=expected, line=line)
 
 
@@ -410,32 +414,40 @@ def _samples(source: Source, request: Request, block: _Block, cut: list[str]) ->
     chosen = choose_unit(source, request, name, line)
     line = block.line + 1
     time_step = _time_step(source, block)
-    check_asked_time_step(source, request, time_step, line)
+    check_requested_time_step(source, request, time_step, line)
     layout = _layout(source, block, text)
     values = layout.read(source, line, block.count)
-    return record_of(
+    return make_record(
         source,
         values,
         time_step,
         chosen,
         description(block.header),
         stated=_stated(block.header, block.first),
-        behind=[*surplus(source, line + layout.rows(block.count), f"line {line}"), *cut],
+        warnings_after=[
+            *surplus_rows_warning(source, line + layout.rows(block.count), f"line {line}"),
+            *cut,
+        ],
     )
 
 
 def _component_of_pairs(
     source: Source, request: Request, first: int, pairs: Pairs
 ) -> FileComponent:
-    header = source.top(min(pairs.data_at - first, _LONGEST_HEADER), first)
+    header = source.top(min(pairs.data_at - first, _MAX_HEADER_LINES), first)
 
     def samples() -> Record:
         chosen = choose_unit(source, request, pairs.unit, pairs.unit_line)
         time_step, values = read_pairs(source, pairs)
-        settle_time_step(source, request, time_step, pairs.data_at + 1)
-        stated, behind = _stated(header, first), surplus(source, pairs.behind, "'NO. OF POINTS'")
+        checked_time_step(source, request, time_step, pairs.data_at + 1)
+        stated, surplus = (
+            _stated(header, first),
+            surplus_rows_warning(source, pairs.end_index, "'NO. OF POINTS'"),
+        )
         metadata = description(header)
-        return record_of(source, values, time_step, chosen, metadata, stated=stated, behind=behind)
+        return make_record(
+            source, values, time_step, chosen, metadata, stated=stated, warnings_after=surplus
+        )
 
     return _named(header, first, samples)
 

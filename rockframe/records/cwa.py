@@ -20,15 +20,22 @@ from typing import Final
 
 import numpy as np
 
-from rockframe.records.checks import Stated, record_of
+from rockframe.records.checks import StatedValue, make_record
 from rockframe.records.components import (
     FileComponent,
     Orientation,
     choose_component,
     orientation_of,
 )
-from rockframe.records.headers import Keys, needed, needed_rate, renamed, text_of, without_blanks
-from rockframe.records.numbers import FixedWidth, number_or_none, one_number, rows_below
+from rockframe.records.headers import (
+    Keys,
+    renamed_keys,
+    required_rate,
+    required_value,
+    value_or_empty,
+    without_empty_values,
+)
+from rockframe.records.numbers import FixedWidth, number_or_none, required_number, rows_below
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 from rockframe.signals.arrays import Array
@@ -42,8 +49,8 @@ _PEAKS: Final = re.compile(
     r"^#\s*AmplitudeMAX\.?\s*([A-Za-z]{1,8})\s*:\s*([-+.\d]{1,12})\s*~\s*([-+.\d]{1,12})\s*$",
     re.IGNORECASE,
 )
-_LONGEST_HEADER: Final = 60
-_KEPT: Final = {
+_MAX_HEADER_LINES: Final = 60
+_METADATA_KEYS: Final = {
     "stationcode": "station",
     "stationname": "station_name",
     "instrumentkind": "instrument",
@@ -56,8 +63,8 @@ def _recognises(source: Source) -> bool:
 
 def _read(source: Source, request: Request) -> Record:
     header, first = _header(source)
-    rate = needed_rate(source, request, header, "samplerate")
-    unit_text, unit_line = needed(source, header, "amplitudeunit")
+    rate = required_rate(source, request, header, "samplerate")
+    unit_text, unit_line = required_value(source, header, "amplitudeunit")
     named = _UNIT.match(unit_text)
     chosen = choose_unit(source, request, named.group(1) if named else None, unit_line)
     columns, columns_line = _columns(source, header)
@@ -74,7 +81,7 @@ def _read(source: Source, request: Request) -> Record:
         values, count = table()
         column = values[:, place].copy()
         stated = _stated_peak(source, columns[place - 1][0], chosen[1])
-        return record_of(source, column, 1.0 / rate, chosen, metadata, count=count, stated=stated)
+        return make_record(source, column, 1.0 / rate, chosen, metadata, count=count, stated=stated)
 
     components = [
         FileComponent(name, lambda place=place: samples(place), direction, line=columns_line)
@@ -86,7 +93,7 @@ def _read(source: Source, request: Request) -> Record:
 def _table(source: Source, header: Keys, first: int, columns: int, rate: float) -> Array:
     """Read the rows of numbers, times in the first column."""
     rows = rows_below(source, first)
-    text, line = needed(source, header, "data")
+    text, line = required_value(source, header, "data")
     match = _LAYOUT.match(text)
     if match is None or int(match.group(1)) != columns:
         raise source.refuse(
@@ -114,13 +121,13 @@ def _announced(source: Source, header: Keys, rate: float) -> tuple[int, str, int
     if "recordlength" not in header:
         return None
     text, line = header["recordlength"]
-    announced = one_number(text, source, line) * rate
+    announced = required_number(text, source, line) * rate
     return (round(announced), "RecordLength", line) if 0.0 < announced < 1e12 else None
 
 
 def _header(source: Source) -> tuple[Keys, int]:
     header: Keys = {}
-    lines = source.top(_LONGEST_HEADER)
+    lines = source.top(_MAX_HEADER_LINES)
     for line, text in enumerate(lines, start=1):
         if text.strip() and not text.startswith("#"):
             return header, line - 1
@@ -132,7 +139,7 @@ def _header(source: Source) -> tuple[Keys, int]:
 
 
 def _columns(source: Source, header: Keys) -> tuple[list[tuple[str, Orientation]], int]:
-    text, line = needed(source, header, "datasequence")
+    text, line = required_value(source, header, "datasequence")
     names = _COLUMN.findall(text)
     if len(names) < 2 or names[0][0].casefold() != "time":
         found = f"the columns {quoted_first_line(text)}"
@@ -146,24 +153,24 @@ def _columns(source: Source, header: Keys) -> tuple[list[tuple[str, Orientation]
     return columns, line
 
 
-def _stated_peak(source: Source, name: str, unit: str) -> list[Stated]:
+def _stated_peak(source: Source, name: str, unit: str) -> list[StatedValue]:
     """Return the larger of the largest and the smallest value of a column, as printed."""
-    for line, text in enumerate(source.top(_LONGEST_HEADER), start=1):
+    for line, text in enumerate(source.top(_MAX_HEADER_LINES), start=1):
         match = _PEAKS.match(text)
         if match is not None and match.group(1).casefold() == name.lstrip("-").casefold():
             printed = max(match.groups()[1:], key=lambda text: abs(number_or_none(text) or 0.0))
-            return [Stated(printed, unit, line)]
+            return [StatedValue(printed, unit, line)]
     return []
 
 
 def _description(header: Keys) -> Metadata:
-    origin, start = text_of(header, "origintime"), text_of(header, "starttime")
+    origin, start = value_or_empty(header, "origintime"), value_or_empty(header, "starttime")
     times = {
         "event": origin and f"earthquake of {origin} (GMT+08)",
         "event_time": origin and f"{origin} (GMT+08)",
         "record_time": start and f"{start} (GMT+08)",
     }
-    return renamed(header, _KEPT) | without_blanks(times)
+    return renamed_keys(header, _METADATA_KEYS) | without_empty_values(times)
 
 
 CWA: Final = Format(

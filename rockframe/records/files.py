@@ -8,15 +8,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any, Final, TypeAlias, cast
 
-from rockframe.arguments import iterates
-from rockframe.errors import RecordError, shown
+from rockframe.arguments import is_iterable
+from rockframe.errors import RecordError, short_repr
 from rockframe.records.archives import (
     MAXIMUM_BYTES,
     check_unpackable,
     is_archive,
+    is_compressed_tar,
     is_gzip,
-    members,
-    packs_tar,
+    unpack_members,
 )
 from rockframe.records.reader import Source, base_name, check_size, source_of
 
@@ -31,27 +31,27 @@ _OPEN: Final = "open file"
 
 def read_source(given: RecordLike) -> Source:
     """Read the bytes of one record file, and unpack them if needed."""
-    name, data = as_given(given)
+    name, data = name_and_bytes(given)
     check_unpackable(name, data)
-    if is_archive(data) or packs_tar(io.BytesIO(data)):
+    if is_archive(data) or is_compressed_tar(io.BytesIO(data)):
         name, data = _only_member(name, data)
     elif is_gzip(data):
         base = base_name(name)
         inner = base[:-3] if base.casefold().endswith(".gz") and len(base) > 3 else base
-        name, data = f"{name}/{inner}", unzipped(name, data)
+        name, data = f"{name}/{inner}", decompressed(name, data)
     return source_of(name, data)
 
 
-def as_given(value: object) -> tuple[str, bytes]:
+def name_and_bytes(value: object) -> tuple[str, bytes]:
     """Return name and bytes of an argument, without unpacking."""
     if isinstance(value, bytes | bytearray | memoryview):
         data = bytes(value)
         check_size(IN_MEMORY, len(data), MAXIMUM_BYTES)
         return IN_MEMORY, data
     if hasattr(value, "read"):
-        return _from_open(cast("IO[bytes]", value))
+        return _read_open_file(cast("IO[bytes]", value))
     path = path_of(value)
-    return str(path), _from_path(path)
+    return str(path), _read_path(path)
 
 
 def path_of(value: object) -> Path:
@@ -62,7 +62,7 @@ def path_of(value: object) -> Path:
         raise _no_name(value) from problem
 
 
-def unzipped(name: str, data: bytes) -> bytes:
+def decompressed(name: str, data: bytes) -> bytes:
     """Unpack a gzip file."""
     try:
         with gzip.GzipFile(fileobj=io.BytesIO(data)) as file:
@@ -79,7 +79,7 @@ def unzipped(name: str, data: bytes) -> bytes:
 
 def _only_member(name: str, data: bytes) -> tuple[str, bytes]:
     found: list[tuple[str, bytes]] = []
-    for member in members(io.BytesIO(data), name, len(data)):
+    for member in unpack_members(io.BytesIO(data), name, len(data)):
         if member.hidden:
             continue
         if member.data is None:
@@ -97,7 +97,7 @@ def _only_member(name: str, data: bytes) -> tuple[str, bytes]:
     return found[0]
 
 
-def _from_open(file: IO[bytes]) -> tuple[str, bytes]:
+def _read_open_file(file: IO[bytes]) -> tuple[str, bytes]:
     stated_name = getattr(file, "name", None)
     name = stated_name if isinstance(stated_name, str) and stated_name else _OPEN
     try:
@@ -114,7 +114,7 @@ def _from_open(file: IO[bytes]) -> tuple[str, bytes]:
     return name, data
 
 
-def _from_path(path: Path) -> bytes:
+def _read_path(path: Path) -> bytes:
     name = str(path)
     try:
         if path.is_dir():
@@ -140,7 +140,7 @@ def _no_name(value: object) -> RecordError:
     return RecordError(str(value), found=found, expected="the path of a record file")
 
 
-MOST_FILES: Final = 20_000
+MAX_FILES: Final = 20_000
 """Most files in a folder."""
 
 _START: Final = 512
@@ -163,11 +163,13 @@ class Unread:
 def files_of(given: object) -> Iterator[Source | Unread]:
     """Open all files from which a suite is read: a folder, an archive, a file, or several."""
     if isinstance(given, bytes | bytearray | memoryview):
-        yield from _of_open(io.BytesIO(bytes(given)), IN_MEMORY)
+        yield from _files_in_open_file(io.BytesIO(bytes(given)), IN_MEMORY)
     elif hasattr(given, "read"):
         name = getattr(given, "name", None)
-        yield from _of_open(cast("IO[bytes]", given), name if isinstance(name, str) else _OPEN)
-    elif iterates(given) and not isinstance(given, str):
+        yield from _files_in_open_file(
+            cast("IO[bytes]", given), name if isinstance(name, str) else _OPEN
+        )
+    elif is_iterable(given) and not isinstance(given, str):
         for one in given:
             yield from files_of(one)
     else:
@@ -177,32 +179,32 @@ def files_of(given: object) -> Iterator[Source | Unread]:
         except (OSError, ValueError):
             there = folder = False
         if not there:
-            found = f"no such file or folder, {shown(given)}"
+            found = f"no such file or folder, {short_repr(given)}"
             raise RecordError(str(path), found=found, expected="records")
-        yield from _of_folder(path) if folder else _of_path(path)
+        yield from _files_in_folder(path) if folder else _files_at_path(path)
 
 
-def _of_folder(folder: Path) -> Iterator[Source | Unread]:
+def _files_in_folder(folder: Path) -> Iterator[Source | Unread]:
     paths: list[Path] = []
     for path in folder.rglob("*"):
         inside = path.relative_to(folder).parts
         hidden = any(part.startswith(".") or part == "__MACOSX" for part in inside)
         if not hidden and path.is_file():
             paths.append(path)
-        if len(paths) > MOST_FILES:
-            found = f"a folder of more than {MOST_FILES} files"
+        if len(paths) > MAX_FILES:
+            found = f"a folder of more than {MAX_FILES} files"
             raise RecordError(str(folder), found=found, expected="a folder of records")
     for path in sorted(paths):
-        yield from _of_path(path)
+        yield from _files_at_path(path)
 
 
-def _of_path(path: Path) -> Iterator[Source | Unread]:
+def _files_at_path(path: Path) -> Iterator[Source | Unread]:
     try:
         with path.open("rb") as file:
             start = file.read(_START)
             file.seek(0)
-            if is_archive(start) or packs_tar(file):
-                yield from _of_archive(file, str(path), path.stat().st_size)
+            if is_archive(start) or is_compressed_tar(file):
+                yield from _files_in_archive(file, str(path), path.stat().st_size)
                 return
         yield read_source(path)
     except RecordError as problem:
@@ -211,7 +213,7 @@ def _of_path(path: Path) -> Iterator[Source | Unread]:
         yield Unread(str(path), f"a file that cannot be read ({problem.strerror})")
 
 
-def _of_open(file: IO[bytes], name: str) -> Iterator[Source | Unread]:
+def _files_in_open_file(file: IO[bytes], name: str) -> Iterator[Source | Unread]:
     try:
         size = file.seek(0, 2)
         file.seek(0)
@@ -221,16 +223,16 @@ def _of_open(file: IO[bytes], name: str) -> Iterator[Source | Unread]:
         found = f"an open file that cannot be read from its start ({problem})"
         raise RecordError(name, found=found, expected="a file open for reading") from problem
     try:
-        if isinstance(start, bytes) and (is_archive(start) or packs_tar(file)):
-            yield from _of_archive(file, name, size)
+        if isinstance(start, bytes) and (is_archive(start) or is_compressed_tar(file)):
+            yield from _files_in_archive(file, name, size)
         else:
             yield read_source(file)
     except RecordError as problem:
         yield Unread.of(name, problem)
 
 
-def _of_archive(file: IO[bytes], name: str, size: int) -> Iterator[Source | Unread]:
-    for member in members(file, name, size):
+def _files_in_archive(file: IO[bytes], name: str, size: int) -> Iterator[Source | Unread]:
+    for member in unpack_members(file, name, size):
         path = f"{name}/{member.name}"
         if member.hidden:
             continue

@@ -4,14 +4,14 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Final, TypeAlias
 
-from rockframe.records.checks import settle_time_step
-from rockframe.records.numbers import one_number, whole
+from rockframe.records.checks import checked_time_step
+from rockframe.records.numbers import integer_or_none, required_number
 from rockframe.records.reader import Metadata, Request, Source, quoted_first_line
 
 Keys: TypeAlias = dict[str, tuple[str, int]]
 """Value and line number, from 1, of each key."""
 
-NOTHING: Final = ("", 0)
+MISSING_KEY: Final = ("", 0)
 """Value and line of a missing key."""
 
 
@@ -33,17 +33,17 @@ def read_keys(lines: Iterable[str]) -> Keys:
     return keys
 
 
-def needed_count(source: Source, keys: Keys, key: str) -> tuple[int, int]:
+def required_count(source: Source, keys: Keys, key: str) -> tuple[int, int]:
     """Return a required number of samples, above zero, and its line."""
-    text, line = needed(source, keys, key)
-    count = whole(text)
+    text, line = required_value(source, keys, key)
+    count = integer_or_none(text)
     if count is None or count < 1:
         found, expected = f"{key} {quoted_first_line(text)}", "a whole number above zero"
         raise source.refuse(found=found, expected=expected, line=line)
     return count, line
 
 
-def needed(source: Source, keys: Keys, key: str) -> tuple[str, int]:
+def required_value(source: Source, keys: Keys, key: str) -> tuple[str, int]:
     """Return the value of a required key, and its line."""
     value, line = keys.get(key, ("", 1))
     if not value:
@@ -52,36 +52,36 @@ def needed(source: Source, keys: Keys, key: str) -> tuple[str, int]:
     return value, line
 
 
-def needed_rate(source: Source, request: Request, keys: Keys, key: str) -> float:
+def required_rate(source: Source, request: Request, keys: Keys, key: str) -> float:
     """Return a required sampling rate, above zero and consistent with the request [Hz]."""
-    text, line = needed(source, keys, key)
-    rate = one_number(text.casefold().removesuffix("hz").strip(), source, line)
+    text, line = required_value(source, keys, key)
+    rate = required_number(text.casefold().removesuffix("hz").strip(), source, line)
     if not rate > 0.0:
         found = f"a sampling rate of {rate!r} Hz"
         raise source.refuse(found=found, expected="one above zero", line=line)
-    settle_time_step(source, request, 1.0 / rate, line)
+    checked_time_step(source, request, 1.0 / rate, line)
     return rate
 
 
-def needed_step(source: Source, request: Request, keys: Keys, key: str) -> float:
+def required_step(source: Source, request: Request, keys: Keys, key: str) -> float:
     """Return a required time step, consistent with the request [s]."""
-    text, line = needed(source, keys, key)
-    time_step = one_number(text, source, line)
-    settle_time_step(source, request, time_step, line)
+    text, line = required_value(source, keys, key)
+    time_step = required_number(text, source, line)
+    checked_time_step(source, request, time_step, line)
     return time_step
 
 
-def text_of(keys: Keys, key: str) -> str:
+def value_or_empty(keys: Keys, key: str) -> str:
     """Return the value of a key, empty if it is not there."""
-    return keys.get(key, NOTHING)[0]
+    return keys.get(key, MISSING_KEY)[0]
 
 
-def without_blanks(described: Mapping[str, str]) -> Metadata:
+def without_empty_values(described: Mapping[str, str]) -> Metadata:
     """Leave out empty texts."""
     return {name: text for name, text in described.items() if text}
 
 
-def needed_match(
+def required_match(
     source: Source, pattern: re.Pattern[str], lines: list[str], such_as: str, first: int = 1
 ) -> tuple[re.Match[str], int]:
     """Find the first line that contains a required pattern, and its number."""
@@ -92,6 +92,6 @@ def needed_match(
     return found
 
 
-def renamed(keys: Keys, names: Mapping[str, str]) -> Metadata:
+def renamed_keys(keys: Keys, names: Mapping[str, str]) -> Metadata:
     """Return values of a header for the metadata, under their new names."""
-    return without_blanks({name: text_of(keys, key) for key, name in names.items()})
+    return without_empty_values({name: value_or_empty(keys, key) for key, name in names.items()})

@@ -26,15 +26,15 @@ from rockframe.records.unit_names import RecordUnit, acceleration_unit
 from rockframe.signals.arrays import Array
 
 _LARGEST: Final = 8 * 2**20
-_MOST_FILES: Final = 20
-_MOST_LISTED: Final = 2_000
-_MOST_EPOCHS: Final = 1_000
-_LONGEST: Final = 60
+_MAX_FILES: Final = 20
+_MAX_LISTED: Final = 2_000
+_MAX_EPOCHS: Final = 1_000
+_MAX_TEXT_LENGTH: Final = 60
 _ROOT: Final = "FDSNStationXML"
 _SENSITIVITY: Final = "{*}Response/{*}InstrumentSensitivity"
-_UNSAID: Final = ("", "none")
-_LEVEL: Final = 5.0
-_UPRIGHT: Final = 85.0
+_NO_CODE: Final = ("", "none")
+_MAX_HORIZONTAL_DIP: Final = 5.0
+_MIN_VERTICAL_DIP: Final = 85.0
 _MISSING: Final = (
     "counts, and no response of the instrument",
     "StationXML beside the file or as the argument response, or the argument unit if the samples "
@@ -66,7 +66,7 @@ class InstrumentResponses:
         self._left = _LARGEST  # bytes, of all files together
         self._read: dict[Path, _Inventory | None] = {}
 
-    def of(self, name: str, time: datetime) -> InstrumentResponse | None:
+    def find(self, name: str, time: datetime) -> InstrumentResponse | None:
         """Find the response of a channel."""
         if self._stated is not None:
             found = self._stated.response(name, time)
@@ -93,7 +93,7 @@ class InstrumentResponses:
     @cached_property
     def _files(self) -> list[Path]:
         try:
-            listed = list(islice(Path(self._source.path).parent.iterdir(), _MOST_LISTED))
+            listed = list(islice(Path(self._source.path).parent.iterdir(), _MAX_LISTED))
         except OSError:
             return []
         return sorted(path for path in listed if path.suffix.casefold() == ".xml")
@@ -101,7 +101,7 @@ class InstrumentResponses:
     def _inventory(self, path: Path) -> "_Inventory | None":
         if path not in self._read:
             self._read[path] = None
-            if len(self._read) <= _MOST_FILES and path.is_file():
+            if len(self._read) <= _MAX_FILES and path.is_file():
                 size = path.stat().st_size
                 if size <= self._left:
                     self._left -= size
@@ -117,8 +117,8 @@ class _Inventory:
     channels: Mapping[str, list[Any]]
 
     def response(self, name: str, time: datetime) -> InstrumentResponse | None:
-        epochs = self.channels.get(".".join(codes_of(name)), [])[:_MOST_EPOCHS]
-        channel = next((epoch for epoch in epochs if _in_use(epoch, time)), None)
+        epochs = self.channels.get(".".join(codes_of(name)), [])[:_MAX_EPOCHS]
+        channel = next((epoch for epoch in epochs if _is_in_use(epoch, time)), None)
         return None if channel is None else _response(self.file, channel, name)
 
 
@@ -152,7 +152,7 @@ def check_finite(source: Source, samples: Array) -> None:
         raise source.refuse(found="samples that are not finite", expected="finite samples")
 
 
-def response_in(file: Source, name: str, time: datetime) -> InstrumentResponse | None:
+def find_response(file: Source, name: str, time: datetime) -> InstrumentResponse | None:
     """Find the response of a channel in one StationXML file; None if it has none."""
     inventory = _inventory(file) if len(file.data) <= _LARGEST else None
     return None if inventory is None else inventory.response(name, time)
@@ -210,23 +210,25 @@ def _response(file: Source, channel: Any, name: str) -> InstrumentResponse | Non
     value = _number(sensitivity, "{*}Value")
     # some archives omit the unit of the output, or write None; an overall sensitivity is that of
     # the digital output
-    counts = "count" in output or output in _UNSAID
+    counts = "count" in output or output in _NO_CODE
     if not counts or value is None or math.isclose(value, 0.0):
         found = f"{name} with a sensitivity of {_text(sensitivity, '{*}Value')} {output}"
         raise file.refuse(found=found, expected="counts per acceleration, not zero", line=line)
     return InstrumentResponse(value, unit, _orientation(channel), base_name(file.path), file.sha256)
 
 
-def _in_use(channel: Any, time: datetime) -> bool:
+def _is_in_use(channel: Any, time: datetime) -> bool:
     start, end = channel.get("startDate"), channel.get("endDate")
     try:
-        return (start is None or _moment(start) <= time) and (end is None or time <= _moment(end))
+        return (start is None or _parse_time(start) <= time) and (
+            end is None or time <= _parse_time(end)
+        )
     except (ValueError, OverflowError):  # no dates
         return False
 
 
-def _moment(text: str) -> datetime:
-    moment = datetime.fromisoformat(text.strip()[:_LONGEST])
+def _parse_time(text: str) -> datetime:
+    moment = datetime.fromisoformat(text.strip()[:_MAX_TEXT_LENGTH])
     return moment if moment.tzinfo is None else moment.astimezone(UTC).replace(tzinfo=None)
 
 
@@ -234,15 +236,17 @@ def _orientation(channel: Any) -> Orientation:
     azimuth, dip = _number(channel, "{*}Azimuth"), _number(channel, "{*}Dip")
     if dip is None:
         return UNKNOWN
-    if dip <= -_UPRIGHT:
+    if dip <= -_MIN_VERTICAL_DIP:
         return Orientation(vertical=UPWARDS)
-    if dip >= _UPRIGHT:
+    if dip >= _MIN_VERTICAL_DIP:
         return Orientation(vertical=DOWNWARDS)
-    return azimuth_of(azimuth) if azimuth is not None and abs(dip) <= _LEVEL else UNKNOWN
+    return (
+        azimuth_of(azimuth) if azimuth is not None and abs(dip) <= _MAX_HORIZONTAL_DIP else UNKNOWN
+    )
 
 
 def _text(element: Any, path: str) -> str:
-    return str(element.findtext(path) or "").strip()[:_LONGEST]
+    return str(element.findtext(path) or "").strip()[:_MAX_TEXT_LENGTH]
 
 
 def _number(element: Any, path: str) -> float | None:
@@ -253,7 +257,7 @@ def _number(element: Any, path: str) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def record_of_counts(
+def record_from_counts(
     source: Source,
     request: Request,
     values: Array,

@@ -10,19 +10,25 @@ import re
 from functools import cache
 from typing import Final
 
-from rockframe.records.checks import LENGTH, Stated, record_of, settle_time_step, surplus
+from rockframe.records.checks import (
+    LENGTH,
+    StatedValue,
+    checked_time_step,
+    make_record,
+    surplus_rows_warning,
+)
 from rockframe.records.components import UNKNOWN, FileComponent, choose_component, orientation_of
 from rockframe.records.headers import (
-    NOTHING,
+    MISSING_KEY,
     Keys,
     first_match,
-    needed_count,
-    needed_match,
-    needed_step,
     read_keys,
-    renamed,
-    text_of,
-    without_blanks,
+    renamed_keys,
+    required_count,
+    required_match,
+    required_step,
+    value_or_empty,
+    without_empty_values,
 )
 from rockframe.records.numbers import (
     NUMBER,
@@ -31,13 +37,13 @@ from rockframe.records.numbers import (
     check_end,
     free_format,
     last_fields,
-    one_number,
+    required_number,
 )
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 from rockframe.signals.arrays import Array
 
-_LONGEST_HEADER: Final = 40
+_MAX_HEADER_LINES: Final = 40
 
 # ESM and ITACA: lines ``KEY: value``, then one number per line. The header of DYNA 1.0 to 1.2 has
 # at most 64 lines. The earlier header of ITACA 1.1 has ``COMPONENT`` instead of ``STREAM``,
@@ -47,9 +53,9 @@ _ESM_KEY: Final = re.compile(r"^([A-Z][A-Z0-9_/^ ]{2,60}?)\s*:\s*(.*?)\s*$")
 _ESM_MARKS: Final = frozenset(
     ("SAMPLING_INTERVAL_S", "NDATA", "STREAM", "DATABASE_VERSION", "DATA_VERSION")
 )
-_ESM_LONGEST_HEADER: Final = 120
+_ESM_MAX_HEADER_LINES: Final = 120
 _ESM_PEAK_UNIT: Final = "cm/s^2"  # by its key, whatever the unit of the samples
-_ESM_KEPT: Final = {
+_ESM_METADATA: Final = {
     "EVENT_NAME": "event",
     "EVENT_ID": "event_id",
     "NETWORK": "network",
@@ -62,33 +68,38 @@ _ESM_KEPT: Final = {
 
 
 def _is_esm(source: Source) -> bool:
-    top = source.top(_ESM_LONGEST_HEADER)
+    top = source.top(_ESM_MAX_HEADER_LINES)
     return len(_ESM_MARKS & {match[1] for line in top if (match := _ESM_KEY.match(line))}) >= 2
 
 
 def _read_esm(source: Source, request: Request) -> Record:
     header, first = _esm_header(source)
-    kind, kind_line = header.get("DATA_TYPE", NOTHING)
+    kind, kind_line = header.get("DATA_TYPE", MISSING_KEY)
     if kind and kind.casefold().removeprefix("un").removeprefix("processed ") != "acceleration":
         found = f"DATA_TYPE {quoted_first_line(kind)}"
         raise source.refuse(found=found, expected="an acceleration", line=kind_line)
-    time_step = needed_step(source, request, header, "SAMPLING_INTERVAL_S")
-    unit_name, unit_line = header.get("UNITS", NOTHING)
+    time_step = required_step(source, request, header, "SAMPLING_INTERVAL_S")
+    unit_name, unit_line = header.get("UNITS", MISSING_KEY)
     chosen = choose_unit(source, request, unit_name or None, unit_line or None)
-    declared, count_line = needed_count(source, header, "NDATA")
-    metadata = renamed(header, _ESM_KEPT)
-    day, clock = (text_of(header, f"EVENT_{key}") for key in ("DATE_YYYYMMDD", "TIME_HHMMSS"))
+    declared, count_line = required_count(source, header, "NDATA")
+    metadata = renamed_keys(header, _ESM_METADATA)
+    day, clock = (
+        value_or_empty(header, f"EVENT_{key}") for key in ("DATE_YYYYMMDD", "TIME_HHMMSS")
+    )
     if day:
         metadata["event_time"] = f"{day}_{clock}" if clock else day
-    name, name_line = header.get("STREAM", header.get("COMPONENT", NOTHING))
-    peak, peak_line = header.get("PGA_CM/S^2", NOTHING)
-    length, length_line = header.get("DURATION_S", NOTHING)
+    name, name_line = header.get("STREAM", header.get("COMPONENT", MISSING_KEY))
+    peak, peak_line = header.get("PGA_CM/S^2", MISSING_KEY)
+    length, length_line = header.get("DURATION_S", MISSING_KEY)
 
     def samples() -> Record:
         values = all_numbers(source, first, of=declared)
         count = (declared, "NDATA", count_line)
-        stated = (Stated(peak, _ESM_PEAK_UNIT, peak_line), Stated(length, LENGTH, length_line))
-        return record_of(source, values, time_step, chosen, metadata, count=count, stated=stated)
+        stated = (
+            StatedValue(peak, _ESM_PEAK_UNIT, peak_line),
+            StatedValue(length, LENGTH, length_line),
+        )
+        return make_record(source, values, time_step, chosen, metadata, count=count, stated=stated)
 
     component = FileComponent(name or None, samples, orientation_of(name), line=name_line or None)
     return choose_component(source, request, [component])
@@ -96,13 +107,13 @@ def _read_esm(source: Source, request: Request) -> Record:
 
 def _esm_header(source: Source) -> tuple[Keys, int]:
     header: Keys = {}
-    for line, text in enumerate(source.top(_ESM_LONGEST_HEADER), start=1):
+    for line, text in enumerate(source.top(_ESM_MAX_HEADER_LINES), start=1):
         match = _ESM_KEY.match(text)
         if match is not None:
             header.setdefault(match[1], (match[2], line))
         elif text.strip():
             return header, line - 1
-    found = f"no data in the first {_ESM_LONGEST_HEADER} lines"
+    found = f"no data in the first {_ESM_MAX_HEADER_LINES} lines"
     expected = "numbers below a header of 64 lines"
     raise source.refuse(found=found, expected=expected, line=source.last_line)
 
@@ -132,7 +143,7 @@ _RESORCE_COUNT: Final = "Number of Data"
 _SERIES: Final = re.compile(r"^\s*acc?el\w{3,10} time series in (\S{1,20})", re.IGNORECASE)
 _RESORCE_PEAK: Final = re.compile(r"^PGA \((\S{1,20})\)$", re.IGNORECASE)
 _RESORCE_LAYOUT: Final = FixedWidth(14, 5)
-_RESORCE_KEPT: Final = {
+_RESORCE_METADATA: Final = {
     "Event Date & Time": "event_time",
     "Network": "network",
     "Processing Info": "processing",
@@ -140,37 +151,39 @@ _RESORCE_KEPT: Final = {
 
 
 def _is_resorce(source: Source) -> bool:
-    return {_RESORCE_STEP, _RESORCE_COUNT} <= set(read_keys(source.top(_LONGEST_HEADER)))
+    return {_RESORCE_STEP, _RESORCE_COUNT} <= set(read_keys(source.top(_MAX_HEADER_LINES)))
 
 
 def _read_resorce(source: Source, request: Request) -> Record:
-    header = read_keys(source.top(_LONGEST_HEADER))
-    time_step = needed_step(source, request, header, _RESORCE_STEP)
-    count, _ = needed_count(source, header, _RESORCE_COUNT)
-    series = first_match(_SERIES, source.top(_LONGEST_HEADER))
+    header = read_keys(source.top(_MAX_HEADER_LINES))
+    time_step = required_step(source, request, header, _RESORCE_STEP)
+    count, _ = required_count(source, header, _RESORCE_COUNT)
+    series = first_match(_SERIES, source.top(_MAX_HEADER_LINES))
     if series is None:
         found = f"no line with the unit below {quoted_first_line(source.start)}"
         expected = "'Accelaration time series in m/s/s' above the numbers"
         raise source.refuse(found=found, expected=expected, line=1)
     unit_match, line = series
     chosen = choose_unit(source, request, unit_match[1], line)
-    metadata: Metadata = {**renamed(header, _RESORCE_KEPT), "unit_as_read": chosen[1]}
-    code, _, place = text_of(header, "Station Code / Name").partition("/")
-    metadata |= without_blanks({"station": code.strip(), "station_name": place.strip()})
+    metadata: Metadata = {**renamed_keys(header, _RESORCE_METADATA), "unit_as_read": chosen[1]}
+    code, _, place = value_or_empty(header, "Station Code / Name").partition("/")
+    metadata |= without_empty_values({"station": code.strip(), "station_name": place.strip()})
     if "event_time" in metadata:
         metadata["event"] = f"earthquake of {metadata['event_time']}"
-    name, name_line = header.get("Orientation", NOTHING)
+    name, name_line = header.get("Orientation", MISSING_KEY)
     stated = [
-        Stated(printed, match[1], peak_line)
+        StatedValue(printed, match[1], peak_line)
         for key, (printed, peak_line) in header.items()
         if (match := _RESORCE_PEAK.match(key)) is not None
     ]
 
     def samples() -> Record:
         values = _RESORCE_LAYOUT.read(source, line, count)
-        behind = line + _RESORCE_LAYOUT.rows(count)
-        warnings = surplus(source, behind, _RESORCE_COUNT, len(source.lines))
-        return record_of(source, values, time_step, chosen, metadata, said=warnings, stated=stated)
+        end = line + _RESORCE_LAYOUT.rows(count)
+        warnings = surplus_rows_warning(source, end, _RESORCE_COUNT, len(source.lines))
+        return make_record(
+            source, values, time_step, chosen, metadata, warnings_before=warnings, stated=stated
+        )
 
     component = FileComponent(name or None, samples, orientation_of(name), line=name_line or None)
     return choose_component(source, request, [component])
@@ -200,7 +213,7 @@ _AFAD_STEP: Final = "SAMPLING INTERVAL (sec)"
 _AFAD_COUNT: Final = "NUMBER OF DATA"
 _AFAD_PEAKS: Final = re.compile(r"^RAW PGA VALUES? \((\S{1,12})\)$", re.IGNORECASE)
 _AFAD_PEAK: Final = re.compile(rf"\(\s*([A-Z-]{{1,6}})\s*\)\s*({NUMBER})", re.IGNORECASE | re.ASCII)
-_AFAD_KEPT: Final = {
+_AFAD_METADATA: Final = {
     "STATION ID": "station",
     "PLACE": "station_name",
     "EARTHQUAKE DATE": "event_time",
@@ -210,17 +223,17 @@ _AFAD_KEPT: Final = {
 
 
 def _is_afad(source: Source) -> bool:
-    return {_AFAD_STEP, _AFAD_COUNT} <= set(read_keys(source.top(_LONGEST_HEADER)))
+    return {_AFAD_STEP, _AFAD_COUNT} <= set(read_keys(source.top(_MAX_HEADER_LINES)))
 
 
 def _read_afad(source: Source, request: Request) -> Record:
-    header = read_keys(source.top(_LONGEST_HEADER))
-    time_step = needed_step(source, request, header, _AFAD_STEP)
-    declared, count_line = needed_count(source, header, _AFAD_COUNT)
+    header = read_keys(source.top(_MAX_HEADER_LINES))
+    time_step = required_step(source, request, header, _AFAD_STEP)
+    declared, count_line = required_count(source, header, _AFAD_COUNT)
     names, first = _afad_columns(source)
     peaks, unit_name, peaks_line = _afad_peaks(header)
     chosen = choose_unit(source, request, unit_name, peaks_line)
-    metadata: Metadata = {**renamed(header, _AFAD_KEPT), "unit_as_read": chosen[1]}
+    metadata: Metadata = {**renamed_keys(header, _AFAD_METADATA), "unit_as_read": chosen[1]}
     if "event_time" in metadata:
         metadata["event"] = f"earthquake of {metadata['event_time']}"
 
@@ -231,8 +244,8 @@ def _read_afad(source: Source, request: Request) -> Record:
     def samples(place: int) -> Record:
         values = table()[:, place].copy()
         count = (declared, _AFAD_COUNT, count_line)
-        stated = [Stated(peaks.get(names[place], ""), unit_name or "", peaks_line or 1)]
-        return record_of(source, values, time_step, chosen, metadata, count=count, stated=stated)
+        stated = [StatedValue(peaks.get(names[place], ""), unit_name or "", peaks_line or 1)]
+        return make_record(source, values, time_step, chosen, metadata, count=count, stated=stated)
 
     components = [
         FileComponent(name, lambda place=place: samples(place), orientation_of(name), line=first)
@@ -242,7 +255,7 @@ def _read_afad(source: Source, request: Request) -> Record:
 
 
 def _afad_columns(source: Source) -> tuple[list[str], int]:
-    for line, text in enumerate(source.top(_LONGEST_HEADER), start=1):
+    for line, text in enumerate(source.top(_MAX_HEADER_LINES), start=1):
         names = text.split()
         if len(names) > 1 and all(orientation_of(name) != UNKNOWN for name in names):
             return names, line
@@ -309,37 +322,37 @@ _NUMBERS: Final = re.compile(r"[-+.\dEeDd\s]*\d[-+.\dEeDd\s]*", re.ASCII)
 
 
 def _is_csmnc(source: Source) -> bool:
-    top = source.top(_LONGEST_HEADER)
+    top = source.top(_MAX_HEADER_LINES)
     return any(map(_KIND.match, top)) and any(map(_POINTS.match, top))
 
 
 def _read_csmnc(source: Source, request: Request) -> Record:
-    top = source.top(_LONGEST_HEADER)
+    top = source.top(_MAX_HEADER_LINES)
     such_as = "UNCORRECTED ACCELERATION   UNIT: CM/SEC/SEC"
-    kind, kind_line = needed_match(source, _KIND, top, such_as)
+    kind, kind_line = required_match(source, _KIND, top, such_as)
     such_as = "NO. OF POINTS: 12800 EQUALLY SPACED INTERVALS OF: ..."
-    points, line = needed_match(source, _POINTS, top, such_as)
+    points, line = required_match(source, _POINTS, top, such_as)
     if kind[1].upper() != "ACCELERATION":
         found = f"a {kind[1].lower()}"
         raise source.refuse(found=found, expected="an acceleration", line=kind_line)
-    time_step = one_number(points[2], source, line)
-    settle_time_step(source, request, time_step, line)
+    time_step = required_number(points[2], source, line)
+    checked_time_step(source, request, time_step, line)
     chosen = choose_unit(source, request, kind[2], kind_line)
     first = next((k for k in range(line, len(top)) if _NUMBERS.fullmatch(top[k])), len(top))
     metadata = _csmnc_description(top)
     named = first_match(_COMPONENT, top)
-    stated: list[Stated] = []
+    stated: list[StatedValue] = []
     for place, text in enumerate(top, start=1):
         peak, length = _PEAK.match(text), _LENGTH.search(text)
         if peak is not None:
-            stated.append(Stated(peak[1], kind[2], place))
+            stated.append(StatedValue(peak[1], kind[2], place))
         if length is not None:
-            stated.append(Stated(length[1], LENGTH, place))
+            stated.append(StatedValue(length[1], LENGTH, place))
 
     def samples() -> Record:
         values = all_numbers(source, first)
         count = (int(points[1]), "NO. OF POINTS", line)
-        return record_of(source, values, time_step, chosen, metadata, count=count, stated=stated)
+        return make_record(source, values, time_step, chosen, metadata, count=count, stated=stated)
 
     name, name_line = (None, None) if named is None else (named[0][1], named[1])
     component = FileComponent(name, samples, orientation_of(name or ""), line=name_line)

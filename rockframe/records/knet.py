@@ -17,10 +17,22 @@ from typing import Final
 
 import numpy as np
 
-from rockframe.records.checks import settle_count
+from rockframe.records.checks import checked_count
 from rockframe.records.components import FileComponent, choose_component, orientation_of
-from rockframe.records.headers import Keys, needed, needed_rate, text_of, without_blanks
-from rockframe.records.numbers import NUMBER, cut_short, free_format, last_fields, one_number
+from rockframe.records.headers import (
+    Keys,
+    required_rate,
+    required_value,
+    value_or_empty,
+    without_empty_values,
+)
+from rockframe.records.numbers import (
+    NUMBER,
+    cut_off_error,
+    free_format,
+    last_fields,
+    required_number,
+)
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 from rockframe.signals.arrays import Array
@@ -64,11 +76,11 @@ def _recognises(source: Source) -> bool:
 
 def _read(source: Source, request: Request) -> Record:
     header, first = _header(source)
-    rate = needed_rate(source, request, header, "Sampling Freq(Hz)")
+    rate = required_rate(source, request, header, "Sampling Freq(Hz)")
     scale = _scale(source, header)
     unit, as_read, warnings = choose_unit(source, request, UNIT, header["Scale Factor"][1])
     metadata = {**_description(header), "unit_as_read": as_read}
-    direction, line = needed(source, header, "Dir.")
+    direction, line = required_value(source, header, "Dir.")
     name, place = _KIK_NET.get(direction, (direction, ""))
     if place:
         metadata["sensor_location"] = place
@@ -109,10 +121,10 @@ def _header(source: Source) -> tuple[Keys, int]:
 
 
 def _scale(source: Source, header: Keys) -> float:
-    text, line = needed(source, header, "Scale Factor")
+    text, line = required_value(source, header, "Scale Factor")
     match = _SCALE.fullmatch(text)
     if match is not None:
-        over, under = (one_number(part, source, line) for part in match.groups())
+        over, under = (required_number(part, source, line) for part in match.groups())
         if under > 0.0 and over > 0.0 and math.isfinite(over / under):
             return over / under
     found = f"a scale factor of {quoted_first_line(text)}"
@@ -129,13 +141,13 @@ def _counts(
         found = f"{counts[fractions[0]]:.9g} as sample {int(fractions[0]) + 1}"
         line = first + int(fractions[0]) // _PER_LINE + 1
         raise source.refuse(found=found, expected="counts, which are whole numbers", line=line)
-    duration, line = needed(source, header, "Duration Time(s)")
-    announced = one_number(duration, source, line) * rate
+    duration, line = required_value(source, header, "Duration Time(s)")
+    announced = required_number(duration, source, line) * rate
     if not 0.0 < announced < 1e12:
         found = f"a duration of {quoted_first_line(duration)} s"
         raise source.refuse(found=found, expected="a length above zero", line=line)
     declared = round(announced)
-    lengths, differing = settle_count(
+    lengths, differing = checked_count(
         source, declared=declared, counted=int(counts.size), what="Duration Time", line=line
     )
     fields = last_fields(source, first)
@@ -146,7 +158,7 @@ def _counts(
         and counts.size <= declared
         and len(fields[-1]) < min(map(len, fields[:-1]), default=0)
     ):
-        raise cut_short(source, f"{counts.size} of {declared} samples")
+        raise cut_off_error(source, f"{counts.size} of {declared} samples")
     return counts, lengths, differing
 
 
@@ -154,7 +166,7 @@ def _compare_peak(source: Source, header: Keys, values: Array) -> list[str]:
     printed, line = header.get("Max. Acc. (gal)", header.get("Max Acc. (gal)", ("", 1)))
     if not printed:
         return []
-    stated, peak = one_number(printed, source, line), float(np.max(np.abs(values)))
+    stated, peak = required_number(printed, source, line), float(np.max(np.abs(values)))
     if abs(peak - stated) <= _PEAK_TOLERANCE * abs(stated) + _PEAK_DIGIT:
         return []
     return [
@@ -164,14 +176,14 @@ def _compare_peak(source: Source, header: Keys, values: Array) -> list[str]:
 
 
 def _description(header: Keys) -> Metadata:
-    origin, recorded = text_of(header, "Origin Time"), text_of(header, "Record Time")
+    origin, recorded = value_or_empty(header, "Origin Time"), value_or_empty(header, "Record Time")
     described = {
-        "station": text_of(header, "Station Code"),
+        "station": value_or_empty(header, "Station Code"),
         "event": origin and f"earthquake of {origin} JST",
         "event_time": origin and (_iso(origin) or f"{origin} JST"),
         "record_time": recorded and (_iso(recorded, _DELAY) or f"{recorded} JST, less 15 s"),
     }
-    return without_blanks(described)
+    return without_empty_values(described)
 
 
 def _iso(printed: str, delay: timedelta = timedelta(0)) -> str | None:

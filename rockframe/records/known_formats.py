@@ -5,7 +5,7 @@ import re
 from dataclasses import replace
 from typing import Any, Final, cast
 
-from rockframe.errors import ComponentError, RecordError, nearest, shown
+from rockframe.errors import ComponentError, RecordError, did_you_mean, short_repr
 from rockframe.records.asdf import ASDF
 from rockframe.records.cosmos import COSMOS
 from rockframe.records.csmip import CSMIP
@@ -27,7 +27,7 @@ _SUFFIX: Final = re.compile(r"\.[a-z0-9]+")
 _OWNER: Final = "rockframe.motion.register"
 
 # tried in this order; text accepts any column of numbers, so it is last
-_OWN: Final = tuple(
+_BUILT_IN: Final = tuple(
     replace(one, own=True)
     for one in (
         *(PEER_AT2, COSMOS, CSMIP, SMC, ESM, KNET, GEONET, CWA),
@@ -35,7 +35,7 @@ _OWN: Final = tuple(
         *(ASDF, NETCDF, MINISEED, SAC),
     )
 )
-_LAST: Final = replace(TEXT, own=True)
+_PLAIN_TEXT: Final = replace(TEXT, own=True)
 WITH_RESPONSE: Final = (MINISEED.name, SAC.name, ASDF.name)
 """Formats that may have counts, which the response of the instrument converts to accelerations."""
 _registered: list[Format] = []
@@ -55,7 +55,7 @@ def formats() -> tuple[Format, ...]:
     >>> [entry.name for entry in formats()][:3]
     ['peer-at2', 'cosmos', 'csmip']
     """
-    return (*_OWN, *_registered, _LAST)
+    return (*_BUILT_IN, *_registered, _PLAIN_TEXT)
 
 
 def register(reader: Reader) -> None:
@@ -149,19 +149,19 @@ def unregister(name: str) -> None:
     raise ComponentError(msg)
 
 
-def by_name(name: str) -> Format:
+def format_by_name(name: str) -> Format:
     """Find a format by its name; the error lists all names."""
-    wanted = name.casefold().replace("_", "-") if isinstance(cast("Any", name), str) else ""
+    normalised = name.casefold().replace("_", "-") if isinstance(cast("Any", name), str) else ""
     for entry in formats():
-        if entry.name == wanted:
+        if entry.name == normalised:
             return entry
     names = [entry.name for entry in formats()]
-    known, near = ", ".join(map(repr, names)), nearest(name, names)
-    msg = f"GroundMotion.read: format must be one of {known}, got {shown(name)}{near}"
+    known, near = ", ".join(map(repr, names)), did_you_mean(name, names)
+    msg = f"GroundMotion.read: format must be one of {known}, got {short_repr(name)}{near}"
     raise ComponentError(msg)
 
 
-def recognised(source: Source) -> Format:
+def recognised_format(source: Source) -> Format:
     """Find the format of a file from its content."""
     known = formats()
     for entry in known:
@@ -183,10 +183,10 @@ def _looks_like(source: Source, entry: Format) -> bool:
     except RecordError:
         raise
     except Exception as problem:
-        raise added_failed(source, entry, problem) from problem
+        raise added_reader_error(source, entry, problem) from problem
 
 
-def added_failed(source: Source, entry: Format, problem: Exception) -> RecordError:
+def added_reader_error(source: Source, entry: Format, problem: Exception) -> RecordError:
     """Build the error for an exception in an added reader."""
     found = f"a failure of the added reader {entry.name!r} ({type(problem).__name__}: {problem})"
     return source.refuse(found=found, expected=entry.title)
@@ -206,14 +206,14 @@ def _faults(reader: object) -> list[str]:
         faults.append(f"SUFFIXES must be a tuple such as ('.abc',), got {suffixes!r}")
     for method, arguments in (("recognises", ("source",)), ("read", ("source", "request"))):
         call = getattr(reader, method, None)
-        wanted = f"{method} must be a function of {' and '.join(arguments)}"
+        expected = f"{method} must be a function of {' and '.join(arguments)}"
         if not callable(call):
-            faults.append(f"{wanted}, got {call!r}")
+            faults.append(f"{expected}, got {call!r}")
             continue
         try:
             inspect.signature(call).bind(*arguments)
         except TypeError:
-            faults.append(f"{wanted}, got the arguments {inspect.signature(call)}")
+            faults.append(f"{expected}, got the arguments {inspect.signature(call)}")
         except ValueError:  # a built-in without a signature; the call will show
             continue
     if not isinstance(getattr(reader, "BINARY", False), bool):

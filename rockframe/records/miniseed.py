@@ -26,7 +26,7 @@ from typing import Any, Final, NamedTuple, cast
 import numpy as np
 
 from rockframe.errors import RecordError
-from rockframe.records.checks import check_time_step, settle_time_step
+from rockframe.records.checks import check_time_step, checked_time_step
 from rockframe.records.components import (
     UNKNOWN,
     FileComponent,
@@ -39,7 +39,7 @@ from rockframe.records.instruments import (
     check_unit_or_response,
     codes_of,
     metadata_of_codes,
-    record_of_counts,
+    record_from_counts,
 )
 from rockframe.records.reader import (
     MAXIMUM_SAMPLES,
@@ -48,7 +48,7 @@ from rockframe.records.reader import (
     Record,
     Request,
     Source,
-    begins_otherwise,
+    wrong_beginning_error,
 )
 from rockframe.records.unit_names import choose_unit
 from rockframe.signals.arrays import Array
@@ -62,9 +62,9 @@ _APART: Final = 2.0  # samples; the start may be rounded, with a correction in a
 _VERSION_3: Final = b"MS\x03"
 _INSTALL: Final = "ObsPy to read miniSEED; install it with: pip install 'rockframe[records]'"
 _EXPECTED: Final = "miniSEED records that are complete"
-_MOST_SAMPLES_IN_ALL: Final = 4_000_000
-_MOST_TRACES: Final = 2_000
-_MOST_CHANNELS: Final = 1_000
+_MAX_TOTAL_SAMPLES: Final = 4_000_000
+_MAX_TRACES: Final = 2_000
+_MAX_CHANNELS: Final = 1_000
 
 
 def _recognises(source: Source) -> bool:
@@ -74,7 +74,7 @@ def _recognises(source: Source) -> bool:
 
 def _read(source: Source, request: Request) -> Record:
     if not _recognises(source):
-        raise begins_otherwise(source, _EXPECTED)
+        raise wrong_beginning_error(source, _EXPECTED)
     check_unit_or_response(source, request)
     channels, damage = _channels(source)
     responses = None if request.unit is not None else InstrumentResponses(source, request)
@@ -123,12 +123,12 @@ def _check_pieces(source: Source) -> None:
         # the first day of a year is counted as a new piece
         pieces += name not in ends or abs(start - ends[name]) * rate > _APART
         ends[name] = start + (count / rate if rate else 0.0)
-        if len(ends) > _MOST_CHANNELS:
+        if len(ends) > _MAX_CHANNELS:
             expected = "a file of one event or station"
-            raise source.refuse(found=f"more than {_MOST_CHANNELS} channels", expected=expected)
-        if pieces > _MOST_TRACES:
+            raise source.refuse(found=f"more than {_MAX_CHANNELS} channels", expected=expected)
+        if pieces > _MAX_TRACES:
             expected = "channels without gaps and overlaps"
-            raise source.refuse(found=f"more than {_MOST_TRACES} pieces", expected=expected)
+            raise source.refuse(found=f"more than {_MAX_TRACES} pieces", expected=expected)
 
 
 def _rate(factor: int, multiplier: int) -> float:
@@ -140,10 +140,10 @@ def _rate(factor: int, multiplier: int) -> float:
 
 
 @contextmanager
-def _quietly() -> Generator[list[warnings.WarningMessage]]:
+def _collect_obspy_warnings() -> Generator[list[warnings.WarningMessage]]:
     """Collect the warnings of ObsPy about damaged files instead of printing them."""
-    # it raises errors in callbacks of the C library under it, which Python cannot pass on and
-    # prints; what is wrong shows in what comes back
+    # ObsPy raises errors in callbacks of its C library. Python cannot propagate them and prints
+    # them; the returned data show the damage, too
     hook = sys.unraisablehook
     sys.unraisablehook = lambda _: None
     try:
@@ -167,9 +167,9 @@ class _Damage(NamedTuple):
     skipped: int  # number of bytes between and after records
 
     @classmethod
-    def of(cls, said: Iterable[warnings.WarningMessage]) -> "_Damage":
+    def of(cls, messages: Iterable[warnings.WarningMessage]) -> "_Damage":
         """Read the warnings of ObsPy."""
-        texts = [str(one.message) for one in said]
+        texts = [str(one.message) for one in messages]
         misfits = [match for text in texts if (match := _MISFIT.search(text)) is not None]
         skipped = [match for text in texts if (match := _SKIPPED.search(text)) is not None]
         return cls(
@@ -182,12 +182,12 @@ def _channels(source: Source) -> tuple[dict[str, list[Any]], _Damage]:
     obspy = _obspy(source)
     _check_pieces(source)
     try:
-        with _quietly() as warned:
+        with _collect_obspy_warnings() as warned:
             # the headers first: they may announce more than fits in memory
             announced = obspy.read(io.BytesIO(source.data), format="MSEED", headonly=True)
             total = sum(int(trace.stats.npts) for trace in announced)
-            if total > _MOST_SAMPLES_IN_ALL or len(announced) > _MOST_TRACES:
-                expected = f"at most {_MOST_SAMPLES_IN_ALL} in {_MOST_TRACES} pieces"
+            if total > _MAX_TOTAL_SAMPLES or len(announced) > _MAX_TRACES:
+                expected = f"at most {_MAX_TOTAL_SAMPLES} in {_MAX_TRACES} pieces"
                 found = f"{total} samples in {len(announced)} pieces"
                 raise source.refuse(found=found, expected=expected)
             warned.clear()  # the second reading gives the same warnings
@@ -218,7 +218,7 @@ def _component(
     response = problem = None
     if responses is not None:
         try:
-            response = responses.of(name, first.stats.starttime.datetime)
+            response = responses.find(name, first.stats.starttime.datetime)
         except RecordError as refusal:  # of no matter if another channel is read
             problem = refusal
     direction = UNKNOWN if response is None else response.orientation
@@ -233,9 +233,9 @@ def _component(
             found = f"{samples} that end at another value than their record states"
             raise source.refuse(found=found, expected="miniSEED records that are not damaged")
         counts, time_step, start = joined_traces(source, traces)
-        settle_time_step(source, request, time_step, None)
+        checked_time_step(source, request, time_step, None)
         metadata: Metadata = {**metadata_of_codes(name), "record_time": start}
-        record = record_of_counts(source, request, counts, time_step, metadata, response)
+        record = record_from_counts(source, request, counts, time_step, metadata, response)
         if not damage.skipped:
             return record
         words = f"{source.path}: {damage.skipped} bytes that are no miniSEED record are not read"
@@ -292,10 +292,12 @@ def components_of_traces(
     channels = by_channel(traces)
 
     def samples(name: str) -> Record:
-        held = channels[name]
-        values, time_step, start = joined_traces(source, held)
+        traces_of_channel = channels[name]
+        values, time_step, start = joined_traces(source, traces_of_channel)
         check_time_step(source, time_step, None)
-        unit, as_read, messages = choose_unit(source, request, _stated_unit(held[0].stats), None)
+        unit, as_read, messages = choose_unit(
+            source, request, _stated_unit(traces_of_channel[0].stats), None
+        )
         metadata = {**metadata_of_codes(name), "record_time": start, "unit_as_read": as_read}
         return Record(time_step, values, unit, metadata, warnings=tuple(messages))
 

@@ -14,9 +14,16 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import ComponentError, RecordError, SchemaError
-from rockframe.records.checks import check_asked_time_step
+from rockframe.records.checks import check_requested_time_step
 from rockframe.records.components import FileComponent, choose_component, orientation_of
-from rockframe.records.reader import Format, Record, Request, Source, StoredMotion, begins_otherwise
+from rockframe.records.reader import (
+    Format,
+    Record,
+    Request,
+    Source,
+    StoredMotion,
+    wrong_beginning_error,
+)
 from rockframe.records.unit_names import RecordUnit
 from rockframe.signals import Motion, Signal
 from rockframe.signals.arrays import OWNER, Array
@@ -33,8 +40,8 @@ LONG_NAMES: Final = {
 }
 _MAGIC: Final = (b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF\r\n\x1a\n")
 _VARIABLES: Final = ("time", *LONG_NAMES)
-_MOST_NUMBERS: Final = 4_000_000
-_MOST_VARIABLES: Final = 100
+_MAX_NUMBERS: Final = 4_000_000
+_MAX_VARIABLES: Final = 100
 _EXPECTED: Final = "a motion as GroundMotion.to_dataset().to_netcdf(...) writes it"
 _SI: Final = RecordUnit("m/s^2", 1.0)
 _EVEN: Final = 1e-6
@@ -75,7 +82,7 @@ def is_netcdf(source: Source) -> bool:
 
 def _read(source: Source, request: Request) -> StoredMotion:
     if not is_netcdf(source):
-        raise begins_otherwise(source, _EXPECTED)
+        raise wrong_beginning_error(source, _EXPECTED)
     stored = _stored(source)
     _compare(source, request, stored)
     return stored
@@ -116,13 +123,13 @@ def _stored(source: Source) -> StoredMotion:
 
 
 def _check_declared(source: Source, variables: Mapping[str, Any]) -> None:
-    if len(variables) > _MOST_VARIABLES:
+    if len(variables) > _MAX_VARIABLES:
         found = f"{len(variables)} variables"
         raise source.refuse(found=found, expected=_EXPECTED)
     # of all variables: others are axes of those that are read, or not of this package
     total = sum(math.prod(map(int, variable.shape)) for variable in variables.values())
-    if total > _MOST_NUMBERS:
-        expected = f"a motion of at most {_MOST_NUMBERS} numbers in all"
+    if total > _MAX_NUMBERS:
+        expected = f"a motion of at most {_MAX_NUMBERS} numbers in all"
         raise source.refuse(found=f"{total} numbers declared", expected=expected)
     for name in _VARIABLES:
         kind = variables[name].datatype if name in variables else np.dtype(np.float64)
@@ -132,7 +139,7 @@ def _check_declared(source: Source, variables: Mapping[str, Any]) -> None:
 
 
 def _compare(source: Source, request: Request, stored: StoredMotion) -> None:
-    check_asked_time_step(source, request, stored.si.time_step, None)
+    check_requested_time_step(source, request, stored.si.time_step, None)
     if request.unit is not None and not math.isclose(request.unit.factor, 1.0):
         found = "a stored motion in m/s^2"
         expected = f"accelerations in the unit {request.unit_name!r} of the argument unit"

@@ -20,12 +20,12 @@ from rockframe.signals.arrays import Array
 NUMBER: Final = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[EeDd][-+]?\d+)?"
 ONE_NUMBER: Final = re.compile(NUMBER, re.ASCII)
 WHOLE_NUMBER: Final = rf"({NUMBER})(?!\d|\.\d|[EeDd][-+]?\d)"
-"""A number in a pattern that goes on behind it, of which no part is to be taken."""
+"""A number followed by more of a pattern; the lookahead excludes a part of a longer number."""
 _SHAPE: Final = re.compile(r"[-+]?\d*(\.\d*)?(?:[EeDd][-+]?(\d+))?", re.ASCII)
-_SAME_SHAPE: Final = 20
-_FEWEST: Final = 4
+_SHAPE_SAMPLE: Final = 20
+_MIN_FIELDS: Final = 4
 _CHUNK: Final = 2**20
-_LONGEST_COUNT: Final = 12
+_MAX_COUNT_LENGTH: Final = 12
 _WHOLE: Final = re.compile(r"[-+]?\d+", re.ASCII)
 
 _EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
@@ -42,7 +42,7 @@ _ROUNDED_AT_ALL: Final = 0.05
 _PLAIN_DIGITS: Final = 4
 _SMALLEST: Final = 1e-9
 _LARGEST: Final = 1e9
-_LONGEST_EXPONENT: Final = 5
+_MAX_EXPONENT_LENGTH: Final = 5
 
 
 def free_format(source: Source, first: int, end: int | None = None) -> Array:
@@ -53,7 +53,7 @@ def free_format(source: Source, first: int, end: int | None = None) -> Array:
         part = _fields(source, start, stop)
         count += part.size
         if count > MAXIMUM_SAMPLES:
-            raise too_many(source, count, line=stop)
+            raise too_many_samples_error(source, count, line=stop)
         parts.append(part)
     return np.concatenate(parts) if parts else np.empty(0)
 
@@ -67,36 +67,36 @@ def all_numbers(source: Source, first: int, end: int | None = None, *, of: objec
     return values
 
 
-def check_end(source: Source, fields: Sequence[str], held: str, line: int | None = None) -> None:
+def check_end(source: Source, fields: Sequence[str], content: str, line: int | None = None) -> None:
     """Refuse a file that is cut off inside its last number."""
     last_line = source.lines[-1]
     if not last_line or last_line[-1].isspace():
         return
     if len(source.lines) > 1 and len(last_line) == len(source.lines[-2]) and " 0" in last_line[-2:]:
         return
-    shapes = {shape_of(field) for field in fields[-_SAME_SHAPE - 1 : -1]}
-    if len(shapes) != 1 or len(fields) < _FEWEST:
+    shapes = {digit_counts(field) for field in fields[-_SHAPE_SAMPLE - 1 : -1]}
+    if len(shapes) != 1 or len(fields) < _MIN_FIELDS:
         return
-    usual, last = shapes.pop(), shape_of(fields[-1])
+    usual, last = shapes.pop(), digit_counts(fields[-1])
     if usual is not None and (last is None or last < usual):
-        raise cut_short(source, held, line)
+        raise cut_off_error(source, content, line)
 
 
-def cut_short(source: Source, held: str, line: int | None = None) -> RecordError:
+def cut_off_error(source: Source, content: str, line: int | None = None) -> RecordError:
     """Build the error for a file that is cut off inside a number."""
-    found, line = f"the end of the file inside a number ({held})", line or source.last_line
+    found, line = f"the end of the file inside a number ({content})", line or source.last_line
     return source.refuse(found=found, expected="a complete file", line=line)
 
 
-def too_many(source: Source, count: int, line: int | None = None) -> RecordError:
+def too_many_samples_error(source: Source, count: int, line: int | None = None) -> RecordError:
     """Build the error for more samples than a record can have."""
     expected = f"at most {MAXIMUM_SAMPLES} samples"
     return source.refuse(found=f"{count} or more numbers", expected=expected, line=line)
 
 
-def floats(fields: Sequence[str]) -> Array | None:
+def floats_or_none(fields: Sequence[str]) -> Array | None:
     """Convert all fields together; None if one of them is not a finite number."""
-    for attempt in (fields, map(with_e, fields)):
+    for attempt in (fields, map(with_exponent_e, fields)):
         try:
             values = np.fromiter(map(float, attempt), dtype=np.float64, count=len(fields))
         except ValueError:
@@ -107,19 +107,19 @@ def floats(fields: Sequence[str]) -> Array | None:
 
 def number_or_none(text: str) -> float | None:
     """Read a number; None for other text."""
-    return None if ONE_NUMBER.fullmatch(text) is None else float(with_e(text))
+    return None if ONE_NUMBER.fullmatch(text) is None else float(with_exponent_e(text))
 
 
-def is_plain(text: str) -> bool:
+def is_plain_number_text(text: str) -> bool:
     """Tell whether text has no characters that only Python accepts in numbers."""
     return text.isascii() and "_" not in text
 
 
-def one_number(text: str, source: Source, line: int) -> float:
+def required_number(text: str, source: Source, line: int) -> float:
     """Read a field that must be a finite number."""
     if ONE_NUMBER.fullmatch(text) is None:
         raise source.refuse(found=quoted_first_line(text), expected="a number", line=line)
-    value = float(with_e(text))
+    value = float(with_exponent_e(text))
     if not math.isfinite(value):
         raise source.refuse(
             found=f"{quoted_first_line(text)}, which overflows",
@@ -131,7 +131,7 @@ def one_number(text: str, source: Source, line: int) -> float:
 
 def last_fields(source: Source, first: int) -> list[str]:
     """Return the last fields of a file, as printed."""
-    count = _SAME_SHAPE + 1
+    count = _SHAPE_SAMPLE + 1
     fields: list[str] = []
     for line in reversed(source.lines[first:]):
         fields = line.split()[-count:] + fields
@@ -156,27 +156,29 @@ def _fields(source: Source, first: int, end: int) -> Array:
     body = " ".join(source.lines[first:end])
     fields = body.split()
     if len(fields) > MAXIMUM_SAMPLES:
-        raise too_many(source, len(fields), line=end)
-    values = floats(fields) if is_plain(body) else None
+        raise too_many_samples_error(source, len(fields), line=end)
+    values = floats_or_none(fields) if is_plain_number_text(body) else None
     if values is not None:
         return values
     collected: list[Array] = []
     for index in range(first, end):
         fields = source.lines[index].split()
-        values = floats(fields) if is_plain(source.lines[index]) else None
+        values = floats_or_none(fields) if is_plain_number_text(source.lines[index]) else None
         if values is None:
-            pieces = [piece for field in fields for piece in _careful(field, source, index + 1)]
+            pieces = [
+                piece for field in fields for piece in _checked_float(field, source, index + 1)
+            ]
             values = np.array(pieces, dtype=np.float64)
         collected.append(values)
     return np.concatenate(collected)
 
 
-def with_e(field: str) -> str:
+def with_exponent_e(field: str) -> str:
     """Replace the exponent letter D, of Fortran's double precision, by E."""
     return field.replace("D", "E").replace("d", "e")
 
 
-def shape_of(field: str) -> tuple[int, int] | None:
+def digit_counts(field: str) -> tuple[int, int] | None:
     """Count the digits of the exponent and after the point; None if it is not a number."""
     match = _SHAPE.fullmatch(field)
     if match is None:
@@ -185,7 +187,7 @@ def shape_of(field: str) -> tuple[int, int] | None:
     return len(exponent or ""), len(decimals or "")
 
 
-def _careful(field: str, source: Source, line: int) -> list[float]:
+def _checked_float(field: str, source: Source, line: int) -> list[float]:
     # Fortran writes fixed-width numbers without a blank between them if they fill their width.
     # A sign then marks the start of the next one; without a sign or a decimal point the start
     # is ambiguous.
@@ -206,7 +208,7 @@ def _careful(field: str, source: Source, line: int) -> list[float]:
         )
     if together and "." not in pieces[0]:
         raise source.refuse(found=quoted_first_line(field), expected="a finite number", line=line)
-    return [one_number(piece, source, line) for piece in pieces]
+    return [required_number(piece, source, line) for piece in pieces]
 
 
 @dataclass(frozen=True)
@@ -231,12 +233,12 @@ class FixedWidth:
             found = f"{count} samples announced"
             raise source.refuse(found=found, expected="two or more", line=first)
         if count > MAXIMUM_SAMPLES:
-            raise too_many(source, count, line=first)
+            raise too_many_samples_error(source, count, line=first)
         needed = self.rows(count)
         lines = [line.rstrip()[self.indent :] for line in source.lines[first : first + needed]]
         if len(lines) < needed or not lines[-1]:
-            held = min(sum(len(line) // width for line in lines), count - 1)
-            found = f"the end of the file after {held} samples"
+            available = min(sum(len(line) // width for line in lines), count - 1)
+            found = f"the end of the file after {available} samples"
             raise source.refuse(found=found, expected=f"{count} samples", line=source.last_line)
         last = count - per_line * (needed - 1)
         for index, line in enumerate(lines):
@@ -249,11 +251,11 @@ class FixedWidth:
                 )
         body = "".join(lines)
         printed = [body[place : place + width] for place in range(0, len(body), width)]
-        values = floats(printed) if is_plain(body) else None
+        values = floats_or_none(printed) if is_plain_number_text(body) else None
         if values is not None:
             return values
         checked = [
-            one_number(field.strip(), source, first + index // per_line + 1)
+            required_number(field.strip(), source, first + index // per_line + 1)
             for index, field in enumerate(printed)
         ]
         return np.array(checked, dtype=np.float64)
@@ -284,12 +286,12 @@ class Fields:
         text, line = self.cell(place), self.line(place)
         if not text:
             raise self.source.refuse(found=f"no {what}", expected=f"a number ({what})", line=line)
-        return one_number(text, self.source, line)
+        return required_number(text, self.source, line)
 
     def count(self, place: int, what: str) -> int:
         """Read one whole number."""
         text = self.cell(place)
-        value = whole(text)
+        value = integer_or_none(text)
         if value is None:
             found = f"{quoted_first_line(text)} for the {what}"
             raise self.source.refuse(found=found, expected="a whole number", line=self.line(place))
@@ -305,10 +307,10 @@ def rows_below(source: Source, first: int) -> int:
     return rows
 
 
-def whole(text: str) -> int | None:
+def integer_or_none(text: str) -> int | None:
     """Read a whole number; None for other text, or too many digits."""
     text = text.strip()
-    if len(text) > _LONGEST_COUNT or _WHOLE.fullmatch(text) is None:
+    if len(text) > _MAX_COUNT_LENGTH or _WHOLE.fullmatch(text) is None:
         return None
     return int(text)
 
@@ -424,7 +426,7 @@ def _last_digits(times: Array, fields: Sequence[str]) -> Array:
         for field in fields:
             mantissa, _, exponent = field.upper().replace("D", "E").partition("E")
             # a longer exponent is that of a zero, whose digits have no meaning
-            power = int(exponent) if 0 < len(exponent) <= _LONGEST_EXPONENT else 0
+            power = int(exponent) if 0 < len(exponent) <= _MAX_EXPONENT_LENGTH else 0
             decimals = max(decimals, len(mantissa.partition(".")[2]) - power)
             significant = max(significant, len(mantissa.replace(".", "").lstrip("+-0")))
     else:

@@ -18,7 +18,7 @@ import re
 from pathlib import PurePath
 from typing import Final, TypeAlias
 
-from rockframe.records.checks import record_of, settle_time_step
+from rockframe.records.checks import checked_time_step, make_record
 from rockframe.records.components import (
     UNKNOWN,
     FileComponent,
@@ -27,7 +27,13 @@ from rockframe.records.components import (
     orientation_of,
 )
 from rockframe.records.headers import first_match
-from rockframe.records.numbers import NUMBER, WHOLE_NUMBER, all_numbers, whole, with_e
+from rockframe.records.numbers import (
+    NUMBER,
+    WHOLE_NUMBER,
+    all_numbers,
+    integer_or_none,
+    with_exponent_e,
+)
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import SLASHED, STATED_UNIT, choose_unit
 
@@ -56,7 +62,7 @@ def _recognises(source: Source) -> bool:
 def _read(source: Source, request: Request) -> Record:
     index = _points_line(source)
     declared, time_step = _points_and_step(source, index)
-    settle_time_step(source, request, time_step, index + 1)
+    checked_time_step(source, request, time_step, index + 1)
     _check_kind(source, index)
     stated = first_match(_UNIT, source.top(index))
     unit_name, unit_line = (None, None) if stated is None else (stated[0][1].rstrip("."), stated[1])
@@ -68,7 +74,7 @@ def _read(source: Source, request: Request) -> Record:
     def samples() -> Record:
         values = all_numbers(source, index + 1, _end_mark(source), of=declared)
         count = (declared, "NPTS", index + 1)
-        return record_of(source, values, time_step, chosen, metadata, count=count)
+        return make_record(source, values, time_step, chosen, metadata, count=count)
 
     direction = _by_file_name(source) if name is None else orientation_of(name)
     return choose_component(source, request, [FileComponent(name, samples, direction)])
@@ -112,13 +118,13 @@ def _points_and_step(source: Source, index: int) -> tuple[int, float]:
     else:
         expected = "'NPTS= <count>, DT= <seconds> SEC' or '<count> <seconds> NPTS, DT'"
         raise source.refuse(found=quoted_first_line(line), expected=expected, line=index + 1)
-    count = whole(count_text.rstrip("."))
+    count = integer_or_none(count_text.rstrip("."))
     if count is None or count < 1:
         found = f"a number of points of {count_text[:_SHOWN_DIGITS]}"
         raise source.refuse(
             found=found, expected="a whole number of points above zero", line=index + 1
         )
-    return count, float(with_e(step_text))
+    return count, float(with_exponent_e(step_text))
 
 
 def _check_kind(source: Source, index: int) -> None:
@@ -189,7 +195,7 @@ _FILES: Final = {
     "vertical acc. filename": "V",
 }
 _WHOLE: Final = ("record_sequence_number", "year")
-_MOST_ROWS: Final = 10_000
+_MAX_ROWS: Final = 10_000
 _HEAD_UNIT: Final = re.compile(r"\s*\([^)]*\)\s*$")
 
 
@@ -206,7 +212,7 @@ def peer_table(source: Source) -> dict[str, Known] | None:
         )
     end = next((k for k in range(first, len(lines)) if not lines[k].strip()), len(lines))
     try:
-        rows = list(csv.reader(lines[first : min(end, first + _MOST_ROWS)], skipinitialspace=True))
+        rows = list(csv.reader(lines[first : min(end, first + _MAX_ROWS)], skipinitialspace=True))
     except csv.Error as problem:
         found = f"a table that cannot be read ({problem})"
         expected = "fields between commas"
@@ -218,23 +224,23 @@ def peer_table(source: Source) -> dict[str, Known] | None:
         raise source.refuse(found=found, expected=expected, line=first + 1)
     known: dict[str, Known] = {}
     for place, row in enumerate(rows[1:], start=first + 2):
-        # a comma inside a name would shift all that stands behind it
+        # a comma inside a name would shift all fields after it
         if len(row) < len(heads) or any(field.strip() for field in row[len(heads) :]):
             found = f"{len(row)} fields"
             raise source.refuse(found=found, expected=f"{len(heads)}", line=place)
         fields = dict(zip(heads, (field.strip() for field in row), strict=False))
-        metadata = _known_from(fields, source, place)
+        metadata = _metadata_from_row(fields, source, place)
         for head, axis in _FILES.items():
-            name = _filled(fields.get(head, ""))
+            name = _field_or_empty(fields.get(head, ""))
             if name:
                 known[name] = {**metadata, "axis": axis}
     return known
 
 
-def _known_from(fields: dict[str, str], source: Source, line: int) -> Known:
+def _metadata_from_row(fields: dict[str, str], source: Source, line: int) -> Known:
     metadata: Known = {name: fields[head] for head, name in _TEXTS.items() if fields.get(head)}
     for head, (name, factor) in _NUMBERS.items():
-        text = _filled(fields.get(head, ""))
+        text = _field_or_empty(fields.get(head, ""))
         if not text:
             continue
         value = _number(text, source, line, head) * factor
@@ -244,7 +250,7 @@ def _known_from(fields: dict[str, str], source: Source, line: int) -> Known:
     return metadata
 
 
-def _filled(text: str) -> str:
+def _field_or_empty(text: str) -> str:
     """Return a field, empty if it has only hyphens."""
     return text if text.strip("- ") else ""
 

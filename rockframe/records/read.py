@@ -8,16 +8,22 @@ from typing import Any, Final, cast
 import numpy as np
 
 from rockframe.errors import RecordError, RockframeError
-from rockframe.records.checks import check_no_missing_marks, check_time_step, plausibility
+from rockframe.records.checks import check_missing_values, check_time_step, plausibility_warnings
 from rockframe.records.components import (
     EveryComponentError,
     FileComponent,
     choose_component,
-    component_names,
-    named,
+    read_component_named,
+    requested_components,
 )
 from rockframe.records.files import PathLike, RecordLike, read_source
-from rockframe.records.known_formats import WITH_RESPONSE, Format, added_failed, by_name, recognised
+from rockframe.records.known_formats import (
+    WITH_RESPONSE,
+    Format,
+    added_reader_error,
+    format_by_name,
+    recognised_format,
+)
 from rockframe.records.miniseed import components_of_traces
 from rockframe.records.reader import (
     MAXIMUM_SAMPLES,
@@ -59,7 +65,7 @@ def request_of(
     response: PathLike | None = None,
 ) -> Request:
     """Check the arguments of a caller for a reader; messages begin with `owner`."""
-    horizontal, vertical = component_names(component, owner=owner)
+    horizontal, vertical = requested_components(component, owner=owner)
     return Request(
         unit=None if unit is None else argument_unit(unit, owner=owner),
         unit_name=None if unit is None else str(unit),
@@ -76,9 +82,9 @@ def read_record(
     given: RecordLike, format_name: str | None = None, request: Request = _ANYTHING
 ) -> Reading:
     """Read one component of a record file, or a horizontal one with the vertical one."""
-    chosen = None if format_name is None else by_name(str(format_name))
+    chosen = None if format_name is None else format_by_name(str(format_name))
     source = read_source(given)
-    entry = chosen or recognised(source)
+    entry = chosen or recognised_format(source)
     if request.response is not None and entry.own and entry.name not in WITH_RESPONSE:
         kinds = ", ".join(WITH_RESPONSE)
         expected = f"a file of counts ({kinds}), to which the argument response applies"
@@ -90,16 +96,16 @@ def read_components(
     source: Source, format_name: str | None = None, request: Request = _ANYTHING
 ) -> list[Reading | RecordError]:
     """Read all components of a file."""
-    entry = by_name(format_name) if format_name is not None else recognised(source)
+    entry = format_by_name(format_name) if format_name is not None else recognised_format(source)
     try:
         return [_reading(entry, source, _read(entry, source, replace(request, every=True)))]
     except EveryComponentError as found:
         components = found.components
-    held = [_one_of(entry, source, component) for component in components]
-    refused = [one for one in held if isinstance(one, RecordError)]
-    if len(refused) == len(held):
+    results = [_read_or_error(entry, source, component) for component in components]
+    refused = [one for one in results if isinstance(one, RecordError)]
+    if len(refused) == len(results):
         raise refused[0]
-    return held
+    return results
 
 
 def read_traces(traces: list[Any], request: Request, *, owner: str) -> Reading:
@@ -111,10 +117,12 @@ def read_traces(traces: list[Any], request: Request, *, owner: str) -> Reading:
     return Reading(si, record.metadata, (text, *record.history), (*record.warnings, *doubts))
 
 
-def _one_of(entry: Format, source: Source, component: FileComponent) -> Reading | RecordError:
+def _read_or_error(
+    entry: Format, source: Source, component: FileComponent
+) -> Reading | RecordError:
     """Read a component, or give the error."""
     try:
-        reading = _reading(entry, source, named(source, component))
+        reading = _reading(entry, source, read_component_named(source, component))
     except RecordError as problem:
         where = f"{problem.path}, {component.label}"
         return RecordError(where, found=problem.found, expected=problem.expected, line=problem.line)
@@ -145,8 +153,10 @@ def to_motion(source: Source, record: Record) -> tuple[Motion, list[str]]:
     check_time_step(source, record.time_step, None)
     held = [part for part in (record.samples, record.vertical) if part is not None]
     for samples in held:
-        check_no_missing_marks(source, samples)
-    doubts = [plausibility(source, record.time_step, samples, record.unit) for samples in held]
+        check_missing_values(source, samples)
+    doubts = [
+        plausibility_warnings(source, record.time_step, samples, record.unit) for samples in held
+    ]
     si = Motion.of_samples(
         record.time_step,
         _in_si(source, record.samples, record.unit),
@@ -165,7 +175,7 @@ def _read(entry: Format, source: Source, request: Request) -> Record | StoredMot
         raise
     except Exception as problem:
         # a reader that a user added: any exception means a file that it cannot read
-        raise added_failed(source, entry, problem) from problem
+        raise added_reader_error(source, entry, problem) from problem
 
 
 def _checked(record: object) -> Record:

@@ -33,7 +33,7 @@ _MARKUP: Final = ("<!doctype", "<html", "<head", "<?xml", "<body", "<!--")
 _STATION_XML: Final = "<FDSNStationXML"
 _TEXT_CONTROLS: Final = frozenset("\t\n\r\f\v\x1a")
 _START: Final = 4096
-_LONGEST: Final = 600
+_MAX_TEXT_LENGTH: Final = 600
 
 
 @dataclass(frozen=True)
@@ -129,7 +129,7 @@ class Source:
         if line is not None and lines is not None:
             # a header may announce lines beyond the end of the file
             line = min(max(line, 1), len(lines))
-        found = found if len(found) <= _LONGEST else f"{found[:_LONGEST]}..."
+        found = found if len(found) <= _MAX_TEXT_LENGTH else f"{found[:_MAX_TEXT_LENGTH]}..."
         return RecordError(self.path, found=found, expected=expected, line=line)
 
 
@@ -308,7 +308,7 @@ def source_of(name: str, data: bytes) -> Source:
     return Source(path=name, data=data, sha256=hashlib.sha256(data).hexdigest())
 
 
-def begins_otherwise(source: Source, expected: str) -> RecordError:
+def wrong_beginning_error(source: Source, expected: str) -> RecordError:
     """Build the error for a binary file with another beginning."""
     return source.refuse(found=f"a file that begins with {source.data[:8]!r}", expected=expected)
 

@@ -18,7 +18,7 @@ from typing import Final
 
 import numpy as np
 
-from rockframe.records.checks import settle_time_step
+from rockframe.records.checks import checked_time_step
 from rockframe.records.components import (
     DOWNWARDS,
     UPWARDS,
@@ -28,13 +28,13 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
-from rockframe.records.headers import without_blanks
+from rockframe.records.headers import without_empty_values
 from rockframe.records.instruments import (
     InstrumentResponses,
     check_finite,
     check_unit_or_response,
     location_code,
-    record_of_counts,
+    record_from_counts,
 )
 from rockframe.records.reader import (
     MAXIMUM_SAMPLES,
@@ -43,7 +43,7 @@ from rockframe.records.reader import (
     Record,
     Request,
     Source,
-    begins_otherwise,
+    wrong_beginning_error,
 )
 from rockframe.signals.arrays import Array
 
@@ -55,7 +55,7 @@ _SAMPLE: Final = 4
 _UNKNOWN: Final = -12345
 _VERSIONS: Final = (6, 7)
 _FOOTER: Final = 176  # footer of version 7: 22 doubles [byte]
-_LONGEST_STEP: Final = 1e4
+_MAX_TIME_STEP: Final = 1e4
 _TIME_SERIES: Final = 1
 _KINDS: Final = {6: "a displacement", 7: "a velocity", 50: "volts"}
 _LEVEL: Final = 5.0
@@ -101,7 +101,7 @@ def _recognises(source: Source) -> bool:
 def _read(source: Source, request: Request) -> Record:
     header = _header(source)
     if header is None:
-        raise begins_otherwise(source, _EXPECTED)
+        raise wrong_beginning_error(source, _EXPECTED)
     check_unit_or_response(source, request)
     kind, series = int(header.integers[_KIND]), int(header.integers[_TYPE])
     if series not in (_TIME_SERIES, _UNKNOWN) or header.integers[_EVEN] == 0:
@@ -128,7 +128,7 @@ def _header(source: Source) -> _Header | None:
             continue
         with np.errstate(invalid="ignore"):  # the bytes may be arbitrary
             floats = np.frombuffer(data, f"{order}f4", _FLOATS).astype(np.float64)
-        if integers[_POINTS] > 0 and 0.0 < floats[_DELTA] < _LONGEST_STEP:
+        if integers[_POINTS] > 0 and 0.0 < floats[_DELTA] < _MAX_TIME_STEP:
             return _Header(order, floats, integers, data[_TEXT:_HEADER])
     return None
 
@@ -144,7 +144,7 @@ def _samples(source: Source, request: Request, header: _Header, name: str) -> Re
         raise source.refuse(found=found, expected=f"{count} samples")
     # 7 digits recover the decimal step from which the 32-bit float was made
     time_step = float(f"{header.floats[_DELTA]:.7g}")
-    settle_time_step(source, request, time_step, None)
+    checked_time_step(source, request, time_step, None)
     with np.errstate(invalid="ignore"):
         values = np.frombuffer(source.data, f"{header.order}f4", count, _HEADER).astype(np.float64)
     check_finite(source, values)
@@ -152,12 +152,12 @@ def _samples(source: Source, request: Request, header: _Header, name: str) -> Re
     response = None
     if request.unit is None and start is not None:
         codes = (header.word(_NETWORK), header.word(_STATION), header.word(_LOCATION), name)
-        response = InstrumentResponses(source, request).of(".".join(codes), start)
-    record = record_of_counts(source, request, values, time_step, metadata, response, _MISSING)
-    return replace(record, warnings=tuple(_doubts(source, header, values, time_step)))
+        response = InstrumentResponses(source, request).find(".".join(codes), start)
+    record = record_from_counts(source, request, values, time_step, metadata, response, _MISSING)
+    return replace(record, warnings=tuple(_header_warnings(source, header, values, time_step)))
 
 
-def _doubts(source: Source, header: _Header, values: Array, time_step: float) -> list[str]:
+def _header_warnings(source: Source, header: _Header, values: Array, time_step: float) -> list[str]:
     doubts: list[str] = []
     stated = [header.known(place) for place in (_SMALLEST, _LARGEST)]
     size = float(np.max(np.abs(values)))
@@ -169,9 +169,9 @@ def _doubts(source: Source, header: _Header, values: Array, time_step: float) ->
                 f"{source.path}: the header states {printed:.6g} as the {what} sample, but the "
                 f"samples have {is_there:.6g}"
             )
-    behind = len(source.data) - _HEADER - _SAMPLE * values.size
-    if behind not in (0, _FOOTER):
-        doubts.append(f"{source.path}: {behind} bytes after the last sample are not read")
+    surplus = len(source.data) - _HEADER - _SAMPLE * values.size
+    if surplus not in (0, _FOOTER):
+        doubts.append(f"{source.path}: {surplus} bytes after the last sample are not read")
     begin, end = header.known(_BEGIN), header.known(_END)
     if begin is not None and end is not None:
         length = (values.size - 1) * time_step
@@ -201,7 +201,7 @@ def _description(header: _Header) -> tuple[Metadata, datetime | None]:
         "sensor_location": location_code(header.word(_LOCATION)),
         "event": header.word(_EVENT, 2),
     }
-    metadata = without_blanks(words)
+    metadata = without_empty_values(words)
     year, day, hour, minute, second, thousandth = (int(n) for n in header.integers[:6])
     try:
         reference = datetime(year, 1, 1, tzinfo=UTC).replace(tzinfo=None)

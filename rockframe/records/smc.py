@@ -13,7 +13,12 @@ import math
 import re
 from typing import Final
 
-from rockframe.records.checks import Stated, record_of, settle_time_step, surplus
+from rockframe.records.checks import (
+    StatedValue,
+    checked_time_step,
+    make_record,
+    surplus_rows_warning,
+)
 from rockframe.records.components import (
     DOWNWARDS,
     UNKNOWN,
@@ -24,7 +29,13 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
-from rockframe.records.numbers import ONE_NUMBER, Fields, FixedWidth, whole, with_e
+from rockframe.records.numbers import (
+    ONE_NUMBER,
+    Fields,
+    FixedWidth,
+    integer_or_none,
+    with_exponent_e,
+)
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 
@@ -93,7 +104,7 @@ def _component(source: Source, integers: Fields) -> tuple[str | None, Orientatio
     if direction != UNKNOWN:
         return name, direction
     # if not in the text: integer 13 is the angle from the vertical, 14 the azimuth
-    slope, azimuth = (whole(integers.cell(place)) for place in (13, 14))
+    slope, azimuth = (integer_or_none(integers.cell(place)) for place in (13, 14))
     if slope == 0:
         return name or "UP", Orientation(vertical=UPWARDS)
     if slope == _DOWN:
@@ -122,27 +133,36 @@ def _samples(source: Source, request: Request, kind: str, integers: Fields) -> R
     chosen = choose_unit(source, request, UNIT, None)
     values = _DATA_LAYOUT.read(source, first, count)
     messages, what = [], "integer 17 (line 14)"
-    behind = surplus(source, first + _DATA_LAYOUT.rows(count), what, len(source.lines))
+    surplus = surplus_rows_warning(
+        source, first + _DATA_LAYOUT.rows(count), what, len(source.lines)
+    )
     if kind.upper() == UNKNOWN_KIND:
         words = f"{source.path}, line 1: the file does not state its quantity; an accelerogram "
         messages = [f"{words}in {chosen[1]} is assumed"]
-    if whole(integers.cell(18)) == 1:
+    if integer_or_none(integers.cell(18)) == 1:
         words = f"{source.path}, line 14: the file marks a problem (integer 18); see its comments"
-        behind.append(words)
+        surplus.append(words)
     stated, metadata = _stated_peak(reals), _description(source, kind)
-    return record_of(
-        source, values, time_step, chosen, metadata, said=messages, stated=stated, behind=behind
+    return make_record(
+        source,
+        values,
+        time_step,
+        chosen,
+        metadata,
+        warnings_before=messages,
+        stated=stated,
+        warnings_after=surplus,
     )
 
 
-def _stated_peak(reals: Fields) -> list[Stated]:
+def _stated_peak(reals: Fields) -> list[StatedValue]:
     """Return the larger of the peaks in reals 30 and 32."""
     printed = [reals.cell(place) for place in _PEAKS]
-    stated = [abs(float(with_e(text))) for text in printed if ONE_NUMBER.fullmatch(text)]
+    stated = [abs(float(with_exponent_e(text))) for text in printed if ONE_NUMBER.fullmatch(text)]
     known = [value for value in stated if value < _UNKNOWN_REAL / 10.0]
     if len(known) < len(_PEAKS):
         return []
-    return [Stated(f"{max(known):.9g}", UNIT, reals.line(_PEAKS[0]))]
+    return [StatedValue(f"{max(known):.9g}", UNIT, reals.line(_PEAKS[0]))]
 
 
 def _time_step(source: Source, request: Request, reals: Fields) -> float:
@@ -155,7 +175,7 @@ def _time_step(source: Source, request: Request, reals: Fields) -> float:
         found = f"a sampling rate of {rate!r} per second"
         expected = f"a rate above zero, at most {_FASTEST:g} per second"
         raise source.refuse(found=found, expected=expected, line=line)
-    settle_time_step(source, request, 1.0 / rate, line)
+    checked_time_step(source, request, 1.0 / rate, line)
     return 1.0 / rate
 
 

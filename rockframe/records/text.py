@@ -8,19 +8,19 @@ from typing import Final
 import numpy as np
 
 from rockframe.records.checks import (
-    check_asked_time_step,
+    check_requested_time_step,
     check_time_step,
-    doubts_of,
-    record_of,
-    settle_time_step,
+    checked_time_step,
+    header_mismatch_warnings,
+    make_record,
 )
 from rockframe.records.components import FileComponent, choose_component
 from rockframe.records.numbers import (
     all_numbers,
     check_end,
     last_fields,
-    one_number,
-    too_many,
+    required_number,
+    too_many_samples_error,
     uniform_step,
 )
 from rockframe.records.reader import MAXIMUM_SAMPLES, Format, Metadata, Record, Request, Source
@@ -31,9 +31,9 @@ from rockframe.records.text_columns import (
     ROWS,
     FirstLines,
     Table,
-    breaks,
     check_last_row,
     find_first_lines,
+    interruption_warnings,
     looks_like_step,
     read_table,
     reading_order,
@@ -53,7 +53,7 @@ from rockframe.records.text_header import (
 from rockframe.records.unit_names import choose_unit
 from rockframe.signals.arrays import Array
 
-MOST_COLUMNS: Final = 12
+MAX_COLUMNS: Final = 12
 
 _AGREEMENT: Final = 1e-3
 _ROUNDING: Final = 1e-6
@@ -67,7 +67,7 @@ def _read(source: Source, request: Request) -> Record:
     first_lines = find_first_lines(source)
     if first_lines is not None:
         return _counted(source, request, first_lines)
-    table = read_table(source, MOST_COLUMNS)
+    table = read_table(source, MAX_COLUMNS)
     rows, columns = table.values.shape
     if rows < 2:
         found = "one row of numbers"
@@ -83,8 +83,8 @@ def _read(source: Source, request: Request) -> Record:
         requested = (request.component or "").strip().casefold() == BY_ROWS
         if order == ROWS or (requested and order != COLUMNS):
             return _row_by_row(source, request, table, metadata)
-        unsaid = request.every or request.component is None
-        if order is None and unsaid and not names and not timed:
+        no_component_requested = request.every or request.component is None
+        if order is None and no_component_requested and not names and not timed:
             found = f"{columns} columns without names, which may be one record, row by row"
             expected = f"component={BY_ROWS!r}, or a column such as component={held[0].name!r}"
             raise source.refuse(found=found, expected=expected, line=table.lines[0])
@@ -95,7 +95,7 @@ def _read(source: Source, request: Request) -> Record:
     if timed:
         scale = time_scale(source, table, names)
         time_step = _step(source, table, scale)
-        check_asked_time_step(source, request, time_step, table.lines[1])
+        check_requested_time_step(source, request, time_step, table.lines[1])
         warnings += _compare_step(source, table, time_step)
         start = float(table.values[0, 0]) * scale
         if start != 0.0:
@@ -103,7 +103,7 @@ def _read(source: Source, request: Request) -> Record:
     else:
         time_step = _step_without_times(source, request, table)
         first, warnings = _first_sample(source, request, table)
-        warnings += breaks(source, table)
+        warnings += interruption_warnings(source, table)
 
     def samples(column: TextColumn) -> Record:
         values = table.values[first:, column.place].copy()
@@ -128,10 +128,10 @@ def _read(source: Source, request: Request) -> Record:
 def _row_by_row(source: Source, request: Request, table: Table, metadata: Metadata) -> Record:
     """Read a record that has several values in each line."""
     columns = table.values.shape[1]
-    rest = [one_number(field, source, table.lines[-1]) for field in table.rest]
+    rest = [required_number(field, source, table.lines[-1]) for field in table.rest]
     values = np.append(table.values.ravel(), rest)
     if values.size > MAXIMUM_SAMPLES:
-        raise too_many(source, values.size, line=table.lines[-1])
+        raise too_many_samples_error(source, values.size, line=table.lines[-1])
     words = f"{values.size} samples, {columns} to a line"
     if request.component is not None and request.component.strip().casefold() != BY_ROWS:
         found = f"one record of {words}, row by row"
@@ -142,7 +142,7 @@ def _row_by_row(source: Source, request: Request, table: Table, metadata: Metada
     single = replace(table, values=values[:, np.newaxis], rest=[])
 
     def samples() -> Record:
-        only, warnings = TextColumn(0, ""), breaks(source, table)
+        only, warnings = TextColumn(0, ""), interruption_warnings(source, table)
         record = _record(source, request, single, only, time_step, values, metadata, warnings)
         return replace(record, history=(*record.history, f"{words}, read row by row"))
 
@@ -165,19 +165,19 @@ def _record(
     unit, as_read, messages = choose_unit(source, request, name, line)
     peak = stated_peak(table.header) if table.values.shape[1] <= 2 else None
     if peak is not None:
-        messages += doubts_of(source, values, unit, time_step, [peak])
+        messages += header_mismatch_warnings(source, values, unit, time_step, [peak])
     described: Metadata = {"unit_as_read": as_read, **metadata}
     return Record(time_step, values, unit, described, warnings=(*messages, *warnings))
 
 
 def _counted(source: Source, request: Request, head: FirstLines) -> Record:
-    check_asked_time_step(source, request, head.time_step, head.line)
+    check_requested_time_step(source, request, head.time_step, head.line)
 
     def samples() -> Record:
         chosen = choose_unit(source, request, None, None)
         values = all_numbers(source, head.data_at)
         count = (head.count, "the number in front", head.line)
-        record = record_of(source, values, head.time_step, chosen, {}, count=count)
+        record = make_record(source, values, head.time_step, chosen, {}, count=count)
         above = [text.strip() for text in source.top(head.line - 1) if text.strip()]
         metadata = record.metadata
         if above:
@@ -192,7 +192,7 @@ def _step_without_times(source: Source, request: Request, table: Table) -> float
     stated = stated_step(table.header)
     if stated is not None:
         time_step, line = stated
-        settle_time_step(source, request, time_step, line)
+        checked_time_step(source, request, time_step, line)
         return time_step
     if request.time_step is None:
         found = f"{'one column' if table.values.shape[1] == 1 else 'accelerations'} and no times"

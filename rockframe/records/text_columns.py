@@ -25,20 +25,20 @@ from rockframe.records.checks import USUAL_TIME_STEPS
 from rockframe.records.numbers import (
     NUMBER,
     ONE_NUMBER,
-    floats,
-    is_plain,
-    one_number,
-    shape_of,
-    too_many,
-    with_e,
+    digit_counts,
+    floats_or_none,
+    is_plain_number_text,
+    required_number,
+    too_many_samples_error,
+    with_exponent_e,
 )
 from rockframe.records.reader import HEADER_WIDTH, MAXIMUM_SAMPLES, Source, quoted_first_line
 from rockframe.signals.arrays import Array
 
 HEADER_LINES: Final = 20
-_MOST_COMMENTS: Final = 2_000
+_MAX_COMMENTS: Final = 2_000
 _LAST: Final = 50
-_MOST_NUMBERS: Final = 900_000
+_MAX_NUMBERS: Final = 900_000
 COMMENT_MARKS: Final = ("#", "%")
 
 _ANY_NUMBER: Final = re.compile(rf"{NUMBER}|[-+]?\d*,\d+(?:[EeDd][-+]?\d+)?", re.ASCII)
@@ -65,9 +65,9 @@ class Table:
 
 def read_table(source: Source, most_columns: int) -> Table:
     """Read columns of numbers."""
-    header, lines, rows = _divide(source)
+    header, lines, rows = _split_lines(source)
     if len(rows) > MAXIMUM_SAMPLES:
-        raise too_many(source, len(rows), line=lines[MAXIMUM_SAMPLES])
+        raise too_many_samples_error(source, len(rows), line=lines[MAXIMUM_SAMPLES])
     body = "\n".join(rows)
     decimal_comma = _has_decimal_commas(source, lines, rows, body)
     separator = ";" if ";" in body else "," if "," in body and not decimal_comma else None
@@ -76,12 +76,12 @@ def read_table(source: Source, most_columns: int) -> Table:
     if columns > most_columns:
         expected = f"at most {most_columns}: the time, if any, and accelerations"
         raise source.refuse(found=f"{columns} columns", expected=expected, line=lines[0])
-    if columns * len(rows) > _MOST_NUMBERS:
+    if columns * len(rows) > _MAX_NUMBERS:
         found = f"{columns} columns of {len(rows)} rows"
-        raise source.refuse(found=found, expected=f"at most {_MOST_NUMBERS} numbers in all")
+        raise source.refuse(found=found, expected=f"at most {_MAX_NUMBERS} numbers in all")
     if decimal_comma:
         rows = [text.replace(",", ".") for text in rows]
-    plain = is_plain(body)
+    plain = is_plain_number_text(body)
     del body
     rest = _split(rows[-1], separator)
     if len(rest) < columns and len(rows) > 1:
@@ -89,10 +89,10 @@ def read_table(source: Source, most_columns: int) -> Table:
     else:
         rest = []
     fields = _fields(source, rows, lines, separator, columns)
-    values = floats(fields) if plain else None
+    values = floats_or_none(fields) if plain else None
     if values is None:
         checked = [
-            one_number(field.strip(), source, lines[place // columns])
+            required_number(field.strip(), source, lines[place // columns])
             for place, field in enumerate(fields)
         ]
         values = np.array(checked, dtype=np.float64)
@@ -110,10 +110,10 @@ def read_table(source: Source, most_columns: int) -> Table:
 def check_last_row(source: Source, table: Table) -> None:
     """Refuse columns with an incomplete last row."""
     if table.rest:
-        raise _uneven(source, table.rest, table.values.shape[1], table.lines, -1)
+        raise _uneven_row_error(source, table.rest, table.values.shape[1], table.lines, -1)
 
 
-def breaks(source: Source, table: Table) -> list[str]:
+def interruption_warnings(source: Source, table: Table) -> list[str]:
     """Warn of blank or comment lines among numbers without times, which may be two records."""
     apart = np.diff(table.lines)
     places = np.flatnonzero(apart != apart[:1])  # the lines of some files are all two apart
@@ -138,7 +138,7 @@ def split_header(text: str, separator: str | None) -> list[str]:
     return [part.strip().strip("\"'") for part in names.split(separator)]
 
 
-def _divide(source: Source) -> tuple[list[tuple[int, str]], list[int], list[str]]:
+def _split_lines(source: Source) -> tuple[list[tuple[int, str]], list[int], list[str]]:
     header, first = _header(source)
     lines: list[int] = []
     rows: list[str] = []
@@ -161,7 +161,7 @@ def _header(source: Source) -> tuple[list[tuple[int, str]], int]:
         if not comment and _looks_numeric(text):
             return header, index
         words += not comment
-        if words > HEADER_LINES or len(header) >= _MOST_COMMENTS:
+        if words > HEADER_LINES or len(header) >= _MAX_COMMENTS:
             break
         header.append((index + 1, text[:HEADER_WIDTH]))
     found = f"no row of numbers below {quoted_first_line(source.start)}"
@@ -208,12 +208,12 @@ def _fields(
     for place, text in enumerate(rows):
         parts = text.split() if separator is None else text.removesuffix(separator).split(separator)
         if len(parts) != columns:
-            raise _uneven(source, parts, columns, lines, place)
+            raise _uneven_row_error(source, parts, columns, lines, place)
         fields += parts
     return fields
 
 
-def _uneven(
+def _uneven_row_error(
     source: Source, parts: list[str], columns: int, lines: Sequence[int], place: int
 ) -> RecordError:
     """Build the error for a row with another number of fields."""
@@ -255,7 +255,7 @@ ROWS: Final = "rows"
 COLUMNS: Final = "columns"
 
 _PIECES: Final = 32
-_FEWEST_ROWS: Final = 64
+_MIN_ROWS: Final = 64
 """Number of pieces of a table whose means are compared; fewest rows for a decision."""
 
 # These bounds recognise 93 % of 112 recorded components, each written into 2 to 12 columns, and
@@ -273,7 +273,7 @@ _EQUAL: Final = (0.5, 1.5)
 def reading_order(values: Array) -> Literal["rows", "columns"] | None:
     """Tell whether a table is one record, row by row, or has one in each column."""
     rows, columns = values.shape
-    if rows < _FEWEST_ROWS:
+    if rows < _MIN_ROWS:
         return None
     flat = values.ravel() - values.mean()
     count = (rows - 1) * columns
@@ -313,9 +313,9 @@ def _mean(values: Array) -> tuple[Array, Array]:
 
 
 _WHOLE: Final = re.compile(r"\d{1,7}", re.ASCII)
-_FEWEST: Final = 4
-_LOOKED_AT: Final = 20
-_TIDY: Final = re.compile(r"0?\.0{0,4}[1-9]\d?(?:5|25|75)?0*", re.ASCII)
+_MIN_FIELDS: Final = 4
+_INSPECTED_LINES: Final = 20
+_ROUND_STEP: Final = re.compile(r"0?\.0{0,4}[1-9]\d?(?:5|25|75)?0*", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -350,7 +350,7 @@ def find_first_lines(source: Source) -> FirstLines | None:
     head = rows[0][1] if one_line else [rows[0][1][0], rows[1][1][0]]
     below = rows[1 if one_line else 2]
     for first, second in (head, head[::-1]):
-        step = float(with_e(second))
+        step = float(with_exponent_e(second))
         low, high = USUAL_TIME_STEPS
         if _WHOLE.fullmatch(first) is None or int(first) < 2 or not low <= step <= high:
             continue
@@ -366,8 +366,8 @@ def looks_like_step(table: Table) -> bool:
     """Tell whether the first number of one column looks like a time step, not a sample."""
     fields: Sequence[str] = table.first_fields
     low, high = USUAL_TIME_STEPS
-    if len(fields) < _FEWEST or not low <= table.values[0, 0] <= high:
+    if len(fields) < _MIN_FIELDS or not low <= table.values[0, 0] <= high:
         return False
-    shapes = {shape_of(field) for field in fields[1 : _LOOKED_AT + 1]}
-    tidy = _TIDY.fullmatch(fields[0]) is not None
-    return tidy and len(shapes) == 1 and shape_of(fields[0]) not in shapes
+    shapes = {digit_counts(field) for field in fields[1 : _INSPECTED_LINES + 1]}
+    tidy = _ROUND_STEP.fullmatch(fields[0]) is not None
+    return tidy and len(shapes) == 1 and digit_counts(fields[0]) not in shapes

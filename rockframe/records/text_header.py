@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Final
 
-from rockframe.records.checks import Stated
+from rockframe.records.checks import StatedValue
 from rockframe.records.components import UNKNOWN, Orientation, orientation_of
-from rockframe.records.numbers import NUMBER, WHOLE_NUMBER, with_e
+from rockframe.records.numbers import NUMBER, WHOLE_NUMBER, with_exponent_e
 from rockframe.records.reader import Source, quoted_first_line
 from rockframe.records.text_columns import Table, split_header
 from rockframe.records.unit_names import (
@@ -92,7 +92,7 @@ def _names(source: Source, table: Table, columns: int) -> tuple[list[str], int]:
 
 
 def _names_times(name: str) -> bool:
-    """Tell whether a name says nothing but that there are times below it."""
+    """Tell whether a name is only that of a column of times."""
     plain = _BRACKETED.sub("", name).strip().casefold()
     return plain in ("t", "time") or any(
         unit.casefold() in TIME_UNITS for unit in in_brackets(name)
@@ -298,27 +298,27 @@ def stated_step(header: list[tuple[int, str]]) -> tuple[float, int] | None:
     for line, text in header:
         step, rate = _STEP.search(text), _RATE.search(text)
         if step is not None:
-            before, printed, behind = step.groups()
-            named = (before or behind or "s").casefold()
+            before, printed, after = step.groups()
+            named = (before or after or "s").casefold()
             if named in _OTHER_TIME_UNITS:
                 continue
             scale = TIME_UNITS.get(named, 1.0)  # any other word is not a unit of the step
-            value = float(with_e(printed))
+            value = float(with_exponent_e(printed))
             return float(f"{value * scale:.15g}"), line
         if rate is not None:
-            value = float(with_e(rate.group(1)))
+            value = float(with_exponent_e(rate.group(1)))
             if 0.0 < value < math.inf:
                 return 1.0 / value, line
     return None
 
 
-def stated_peak(header: list[tuple[int, str]]) -> Stated | None:
+def stated_peak(header: list[tuple[int, str]]) -> StatedValue | None:
     """Find a peak in the header."""
     for line, text in header:
         match = _PEAK.search(text)
         if match is not None:
-            before, printed, behind = match.groups()
-            unit = (before or behind or "").strip()
+            before, printed, after = match.groups()
+            unit = (before or after or "").strip()
             if unit:
-                return Stated(printed, unit, line)
+                return StatedValue(printed, unit, line)
     return None

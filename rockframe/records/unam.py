@@ -17,7 +17,13 @@ import re
 from functools import cache, partial
 from typing import Final
 
-from rockframe.records.checks import LENGTH, Stated, record_of, settle_count, settle_time_step
+from rockframe.records.checks import (
+    LENGTH,
+    StatedValue,
+    checked_count,
+    checked_time_step,
+    make_record,
+)
 from rockframe.records.components import (
     UPWARDS,
     VERTICAL,
@@ -26,8 +32,15 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
-from rockframe.records.headers import Keys, needed, read_keys, renamed, text_of, without_blanks
-from rockframe.records.numbers import FixedWidth, one_number, rows_below, whole
+from rockframe.records.headers import (
+    Keys,
+    read_keys,
+    renamed_keys,
+    required_value,
+    value_or_empty,
+    without_empty_values,
+)
+from rockframe.records.numbers import FixedWidth, integer_or_none, required_number, rows_below
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 from rockframe.signals.arrays import Array
@@ -44,13 +57,13 @@ _COUNTS: Final = "NUM. TOTAL DE MUESTRAS"
 _PEAKS: Final = "ACEL. MAX.(Gal)"
 _LENGTHS: Final = "DURACION DEL REGISTRO"
 _PEAK_UNIT: Final = "gal"
-_KEPT: Final = {
+_METADATA_KEYS: Final = {
     "CLAVE DE LA ESTACION": "station",
     "NOMBRE DE LA ESTACION": "station_name",
     "MODELO DEL ACELEROGRAFO": "instrument",
 }
-_LONGEST_HEADER: Final = 160
-_MOST_CHANNELS: Final = 12
+_MAX_HEADER_LINES: Final = 160
+_MAX_CHANNELS: Final = 12
 
 
 def _recognises(source: Source) -> bool:
@@ -58,13 +71,13 @@ def _recognises(source: Source) -> bool:
 
 
 def _read(source: Source, request: Request) -> Record:
-    top = source.top(_LONGEST_HEADER)
+    top = source.top(_MAX_HEADER_LINES)
     header = read_keys(top)
     directions = _list(header, _DIRECTIONS)
     layout = _layout(source, header)
     first = _first_row(source, top)
     channels = min(len(directions), layout.per_line)
-    if not 1 <= channels <= _MOST_CHANNELS:
+    if not 1 <= channels <= _MAX_CHANNELS:
         found = f"the orientations of {channels} channels"
         raise source.refuse(found=found, expected="one to twelve, such as '/V/N90E/N00E'", line=1)
 
@@ -88,17 +101,17 @@ def _read(source: Source, request: Request) -> Record:
 
 
 def _samples(source: Source, request: Request, header: Keys, place: int, values: Array) -> Record:
-    text, unit_line = needed(source, header, _UNITS)
+    text, unit_line = required_value(source, header, _UNITS)
     chosen = choose_unit(source, request, text.split()[0], unit_line)
     printed, line = _entry(source, header, _STEPS, place, "sampling interval")
-    time_step = one_number(printed, source, line)
-    settle_time_step(source, request, time_step, line)
+    time_step = required_number(printed, source, line)
+    checked_time_step(source, request, time_step, line)
     announced, count_line = _entry(source, header, _COUNTS, place, "number of samples")
-    declared = whole(announced)
+    declared = integer_or_none(announced)
     if declared is None or declared < 1:
         found, expected = f"{quoted_first_line(announced)} samples", "a whole number above zero"
         raise source.refuse(found=found, expected=expected, line=count_line)
-    counts, warnings = settle_count(
+    counts, warnings = checked_count(
         source,
         declared=declared,
         counted=values.size,
@@ -107,11 +120,13 @@ def _samples(source: Source, request: Request, header: Keys, place: int, values:
     )
     described: Metadata = {**_description(header), **counts}
     stated = [
-        Stated(text, unit, line)
+        StatedValue(text, unit, line)
         for key, unit in ((_PEAKS, _PEAK_UNIT), (_LENGTHS, LENGTH))
         for text, line in _list(header, key)[place : place + 1]
     ]
-    return record_of(source, values, time_step, chosen, described, said=warnings, stated=stated)
+    return make_record(
+        source, values, time_step, chosen, described, warnings_before=warnings, stated=stated
+    )
 
 
 def _list(header: Keys, start: str) -> list[tuple[str, int]]:
@@ -132,7 +147,7 @@ def _entry(source: Source, header: Keys, key: str, place: int, what: str) -> tup
 
 
 def _layout(source: Source, header: Keys) -> FixedWidth:
-    text, line = needed(source, header, _LAYOUT_KEY)
+    text, line = required_value(source, header, _LAYOUT_KEY)
     match = _LAYOUT.match(text)
     if match is None or int(match.group(1)) < 1 or int(match.group(2)) < 1:
         expected = "a layout such as '3F10.3'"
@@ -151,8 +166,8 @@ def _first_row(source: Source, top: list[str]) -> int:
     return rules[1] + 1
 
 
-def _direction(said: str) -> tuple[str, Orientation]:
-    name = said.split(";")[0].strip()
+def _direction(text: str) -> tuple[str, Orientation]:
+    name = text.split(";")[0].strip()
     plain = name.lstrip("+-").strip()
     direction = orientation_of(plain)
     if direction.vertical == VERTICAL and name.startswith("+"):
@@ -161,15 +176,18 @@ def _direction(said: str) -> tuple[str, Orientation]:
 
 
 def _description(header: Keys) -> Metadata:
-    day, clock = text_of(header, "FECHA DEL SISMO [GMT]"), text_of(header, "HORA EPICENTRO (GMT)")
+    day, clock = (
+        value_or_empty(header, "FECHA DEL SISMO [GMT]"),
+        value_or_empty(header, "HORA EPICENTRO (GMT)"),
+    )
     time = f"{day} {clock} GMT" if day and clock else day
-    start = text_of(header, "HORA DE LA PRIMERA MUESTRA (GMT)")
+    start = value_or_empty(header, "HORA DE LA PRIMERA MUESTRA (GMT)")
     times = {
         "event_time": time,
         "event": time and f"earthquake of {time}",
         "record_time": start and f"{start} GMT",
     }
-    return renamed(header, _KEPT) | without_blanks(times)
+    return renamed_keys(header, _METADATA_KEYS) | without_empty_values(times)
 
 
 UNAM: Final = Format(

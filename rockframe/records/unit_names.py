@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from rockframe.constants import STANDARD_GRAVITY
-from rockframe.errors import ComponentError, UnitsError, shown
+from rockframe.errors import ComponentError, UnitsError, short_repr
 from rockframe.units import ACCELERATION, Measure, to_si
 
 if TYPE_CHECKING:  # which imports this module
@@ -80,7 +80,7 @@ OTHER_QUANTITIES: Final[dict[str, str]] = {
 
 STATED_UNIT: Final = r"\bunits?\s*(?:\bof\b|\bare\b|\bis\b|[:=])\s*"
 SLASHED: Final = r"(?:\s{0,3}[/*^]\s{0,3}[^\s()\[\],;]{1,12}){0,4}"
-"""Patterns of what stands before a unit in a header, and of its parts behind slashes and signs
+"""Patterns of the words before a unit in a header, and of its parts after slashes and signs
 of multiplication, with blanks between them."""
 
 
@@ -169,7 +169,7 @@ def argument_unit(unit: object, *, owner: str) -> RecordUnit:
     if known is not None:
         return known
     msg = (
-        f"{owner}: unit needs the unit of an acceleration, got {shown(text)}; "
+        f"{owner}: unit needs the unit of an acceleration, got {short_repr(text)}; "
         "write for example unit='g', unit='cm/s^2' or unit='m/s^2'"
     )
     try:

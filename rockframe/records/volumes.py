@@ -15,12 +15,12 @@ from typing import Final
 
 from rockframe.records.checks import (
     LENGTH,
-    Stated,
-    check_asked_time_step,
+    StatedValue,
+    check_requested_time_step,
     check_time_step,
-    record_of,
-    settle_time_step,
-    surplus,
+    checked_time_step,
+    make_record,
+    surplus_rows_warning,
 )
 from rockframe.records.components import (
     UNKNOWN,
@@ -31,12 +31,18 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
-from rockframe.records.headers import first_match, needed_match
-from rockframe.records.numbers import Fields, FixedWidth, number_or_none, one_number, whole
+from rockframe.records.headers import first_match, required_match
+from rockframe.records.numbers import (
+    Fields,
+    FixedWidth,
+    integer_or_none,
+    number_or_none,
+    required_number,
+)
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 
-_MOST_COMPONENTS: Final = 12
+_MAX_COMPONENTS: Final = 12
 
 # GeoNet (GNS Science), V1A and V2A: 16 lines of text, 40 integers and 60 reals (ten of 8
 # characters in a line), then the accelerations [mm/s^2], and, in a corrected file, the velocities
@@ -109,7 +115,7 @@ def _geonet_blocks(source: Source) -> list[tuple[_Block, int]]:
             index += 1
             continue
         first = _GEONET_FIRST.match(text)
-        if first is None or len(blocks) == _MOST_COMPONENTS:
+        if first is None or len(blocks) == _MAX_COMPONENTS:
             expected = "'Corrected accelerogram' or 'Uncorrected accelerogram'"
             if blocks:
                 expected += (
@@ -156,7 +162,7 @@ def _geonet_component(request: Request, block: _Block, count: int) -> FileCompon
         if direction == UNKNOWN and "vertical" in match.string.casefold():
             direction = Orientation(vertical=VERTICAL)
     if direction == UNKNOWN:
-        azimuth = whole(block.integers.cell(28))
+        azimuth = integer_or_none(block.integers.cell(28))
         direction = UNKNOWN if azimuth is None else azimuth_of(float(azimuth))
         name = name or f"{azimuth}"
     return FileComponent(name, lambda: _geonet_samples(request, block, count), direction, line=line)
@@ -174,17 +180,17 @@ def _geonet_samples(request: Request, block: _Block, count: int) -> Record:
             stated_step = quoted_first_line(interval[0])
             found = f"a time step of {time_step!r} s, and {stated_step} in the text"
             raise source.refuse(found=found, expected="one time step", line=line)
-    check_asked_time_step(source, request, time_step, line)
+    check_requested_time_step(source, request, time_step, line)
     chosen = choose_unit(source, request, _GEONET_UNIT, None)
     values = _GEONET_LAYOUT.read(source, block.data, count)
-    stated: list[Stated] = []
+    stated: list[StatedValue] = []
     for number, row in enumerate(text, start=block.index + 1):
         peak, length = _PEAK.match(row), _DURATION.search(row)
         if peak is not None:
-            stated.append(Stated(peak[1], peak[2], number))
+            stated.append(StatedValue(peak[1], peak[2], number))
         if length is not None:
-            stated.append(Stated(length[1], LENGTH, number))
-    return record_of(source, values, time_step, chosen, _geonet_description(block), stated=stated)
+            stated.append(StatedValue(length[1], LENGTH, number))
+    return make_record(source, values, time_step, chosen, _geonet_description(block), stated=stated)
 
 
 def _geonet_description(block: _Block) -> Metadata:
@@ -254,8 +260,8 @@ def _read_bhrc(source: Source, request: Request) -> Record:
             found = f"{quoted_first_line(line)}, the second below one first line"
             expected = "a line such as '* VOL1DS FILE:  5526/01' above each component"
             raise source.refuse(found=found, expected=expected, line=index + 1)
-        if len(starts) > _MOST_COMPONENTS:
-            expected = f"at most {_MOST_COMPONENTS} components"
+        if len(starts) > _MAX_COMPONENTS:
+            expected = f"at most {_MAX_COMPONENTS} components"
             raise source.refuse(found="more", expected=expected, line=index + 1)
     if not starts:
         expected = "a first line such as '* VOL1DS FILE:  5526/01'"
@@ -269,7 +275,7 @@ def _read_bhrc(source: Source, request: Request) -> Record:
 
 def _bhrc_component(source: Source, request: Request, first: int, end: int) -> FileComponent:
     text = source.top(_BHRC_TEXT, first)
-    found, line = needed_match(source, _BHRC_NAME, text, "COMP L1", first + 1)
+    found, line = required_match(source, _BHRC_NAME, text, "COMP L1", first + 1)
     name = found[1]
     return FileComponent(
         name,
@@ -298,9 +304,9 @@ def _bhrc_samples(
         expected = "uncorrected accelerations (volume 1)"
         raise source.refuse(found=quoted_first_line(text[0]), expected=expected, line=first + 1)
     such_as = "NO. OF POINTS =   9472  DURATION = 47.36"
-    points, line = needed_match(source, _POINTS, text, such_as, first + 1)
+    points, line = required_match(source, _POINTS, text, such_as, first + 1)
     such_as = "UNITS ARE SECONDS AND G/10"
-    units, unit_line = needed_match(source, _UNITS, text, such_as, first + 1)
+    units, unit_line = required_match(source, _UNITS, text, such_as, first + 1)
     chosen = choose_unit(source, request, units[1], unit_line)
     time_step = _bhrc_time_step(source, request, first)
     count, data = int(points[1]), first + _BHRC_DATA_AT
@@ -313,19 +319,21 @@ def _bhrc_samples(
             metadata["event"] = f"earthquake of {metadata['event_time']}"
         if station is not None:
             metadata["station_name"] = station[1]
-    stated = [Stated(points[2], LENGTH, line)]
-    behind = surplus(source, data + _BHRC_LAYOUT.rows(count), f"line {line}", end)
-    return record_of(source, values, time_step, chosen, metadata, stated=stated, behind=behind)
+    stated = [StatedValue(points[2], LENGTH, line)]
+    surplus = surplus_rows_warning(source, data + _BHRC_LAYOUT.rows(count), f"line {line}", end)
+    return make_record(
+        source, values, time_step, chosen, metadata, stated=stated, warnings_after=surplus
+    )
 
 
 def _bhrc_time_step(source: Source, request: Request, first: int) -> float:
     reals = Fields(source, _BHRC_REALS, first + _BHRC_REALS_AT)
     line = reals.line(_RATE)
-    rate = one_number(reals.cell(_RATE) or "no sampling rate (real 7)", source, line)
+    rate = required_number(reals.cell(_RATE) or "no sampling rate (real 7)", source, line)
     if not rate > 0.0:
         found = f"a sampling rate of {rate!r} Hz (real 7)"
         raise source.refuse(found=found, expected="one above zero", line=line)
-    settle_time_step(source, request, 1.0 / rate, line)
+    checked_time_step(source, request, 1.0 / rate, line)
     return 1.0 / rate
 
 

@@ -14,7 +14,7 @@ from rockframe.results.outcome import overturned_from_status
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.variable import TIME
 from rockframe.units import Unit
-from rockframe.units.shown import ReaderUnits, behind, raised
+from rockframe.units.display import DisplayUnits, unit_suffix, with_superscripts
 
 MOST_ROWS: Final = 300
 """Largest number of rows of a table of cases; of more cases it has the worst ones."""
@@ -69,7 +69,7 @@ class _Column:
     values: NDArray[np.float64]  # shape (cases,)
 
 
-def case_tables(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
+def case_tables(dataset: xr.Dataset, units: DisplayUnits) -> Iterator[str]:
     """Return a row for each case, or for the worst ones if there are too many, and the extremes."""
     count = dataset["status"].size
     order = np.arange(count)
@@ -108,7 +108,7 @@ def _table(
     dataset: xr.Dataset,
     order: NDArray[np.intp],
     columns: Sequence[_Column],
-    units: ReaderUnits,
+    units: DisplayUnits,
     *,
     with_verdict: bool,
 ) -> str:
@@ -130,14 +130,14 @@ def _table(
     return page.columns(rows, [*heads, *verdict, *(one.head for one in columns)])
 
 
-def _over_cases(over: Callable[..., Any], column: _Column, units: ReaderUnits) -> str:
+def _over_cases(over: Callable[..., Any], column: _Column, units: DisplayUnits) -> str:
     """Write a number of all cases, and of how many it is where some have none."""
     known = column.values[~np.isnan(column.values)]
     number = number_in(float(over(known)), column.unit, units)
     return number if known.size == column.values.size else f"{number} (of {known.size})"
 
 
-def _columns(dataset: xr.Dataset, names: Sequence[str], units: ReaderUnits) -> Iterator[_Column]:
+def _columns(dataset: xr.Dataset, names: Sequence[str], units: DisplayUnits) -> Iterator[_Column]:
     """Return the columns of the variables that any case has; one for each of several bodies."""
     status = dataset["status"]
     for name in names:
@@ -161,7 +161,7 @@ def _columns(dataset: xr.Dataset, names: Sequence[str], units: ReaderUnits) -> I
                 yield _Column(column_head(f"{words}{whose}", unit, units), unit, flat)
 
 
-def capacity_table(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
+def capacity_table(dataset: xr.Dataset, units: DisplayUnits) -> Iterator[str]:
     """Return a row for each capacity of a dynamic analysis, or for the least if there are many."""
     name = _CAPACITY[0]
     if name not in dataset:
@@ -202,14 +202,14 @@ def labels_at(dataset: xr.Dataset, place: int, of: str = "status") -> dict[str, 
 
 
 def labels_of(
-    dataset: xr.Dataset, place: int, units: ReaderUnits, of: str = "status"
+    dataset: xr.Dataset, place: int, units: DisplayUnits, of: str = "status"
 ) -> dict[str, str]:
     """Write the labels of a value, usually those of a case, numbers with their units."""
     found: dict[str, str] = {}
     for name, value in labels_at(dataset, place, of).items():
         unit = units.of(str(dataset[name].attrs.get("units", Unit.ONE)) if name in dataset else "1")
         shown = value / unit.size if isinstance(value, float) else value
-        found[name] = f"{written(shown)}{behind(raised(unit.words))}"
+        found[name] = f"{written(shown)}{unit_suffix(with_superscripts(unit.words))}"
     return found
 
 

@@ -7,20 +7,26 @@ from os import PathLike
 from pathlib import Path
 from typing import Final, cast
 
-from rockframe.arguments import iterates, one_of_names
-from rockframe.errors import ComponentError, shown
-from rockframe.notebook import card, number_with_unit
-from rockframe.proposals import proposing
+from rockframe.arguments import checked_name, is_iterable
+from rockframe.errors import ComponentError, short_repr
+from rockframe.notebook import html_summary, number_with_unit
 from rockframe.reports import page
 from rockframe.reports.page import KIND
+from rockframe.suggestions import suggests_names
 from rockframe.units import Unit
-from rockframe.units.shown import ReaderUnits, UnitsLike, behind, raised, reader_units
+from rockframe.units.display import (
+    DisplayUnits,
+    UnitsLike,
+    display_units,
+    unit_suffix,
+    with_superscripts,
+)
 from rockframe.writing import write_file
 
 _SAID: Final = {True: ("satisfied", "good"), False: ("not satisfied", "bad")}
 
 
-@proposing
+@suggests_names
 @dataclass(frozen=True)
 class CheckedLine:
     """A number of a check.
@@ -51,7 +57,7 @@ class CheckedLine:
     words: str
     source: str
 
-    def written(self, units: ReaderUnits | None = None) -> str:
+    def written(self, units: DisplayUnits | None = None) -> str:
         """Return the number with its unit.
 
         Parameters
@@ -65,11 +71,11 @@ class CheckedLine:
         """
         chosen = None if units is None else units.chosen.get(str(self.unit))
         if chosen is not None:  # no other prefix of the unit
-            return f"{self.value / chosen.size:.6g}{behind(chosen.words)}"
+            return f"{self.value / chosen.size:.6g}{unit_suffix(chosen.words)}"
         return number_with_unit(self.value, "" if self.unit is Unit.ONE else str(self.unit))
 
 
-@proposing
+@suggests_names
 @dataclass(frozen=True)
 class CheckedVerdict:
     """A verdict of a check.
@@ -97,7 +103,7 @@ class CheckedVerdict:
     source: str
 
 
-@proposing
+@suggests_names
 @dataclass(frozen=True)
 class CodeCheck:
     """A check by a code of practice.
@@ -159,7 +165,7 @@ class CodeCheck:
             No number has this symbol.
         """
         found = {one.symbol: one.value for several in self.lines.values() for one in several}
-        return found[one_of_names(symbol, found, owner="CodeCheck.value", name="symbol")]
+        return found[checked_name(symbol, found, owner="CodeCheck.value", name="symbol")]
 
     @property
     def passed(self) -> dict[str, bool]:
@@ -183,9 +189,9 @@ class CodeCheck:
 
     def _repr_html_(self) -> str:
         rows = {one.title: f"{_SAID[one.passed][0]}; {one.words}" for one in self.verdicts}
-        return card(escape(self.title), rows)
+        return html_summary(escape(self.title), rows)
 
-    def banners(self, units: ReaderUnits) -> Iterator[str]:
+    def banners(self, units: DisplayUnits) -> Iterator[str]:
         """Return each verdict with demand, capacity and clause, as pages show it.
 
         Parameters
@@ -200,10 +206,10 @@ class CodeCheck:
         """
         for one in self.verdicts:
             text, kind = _SAID[one.passed]
-            words = f"{units.of_sentence(one.words)} [{one.source}]. {self.code}."
+            words = f"{units.convert_text(one.words)} [{one.source}]. {self.code}."
             yield page.banner(f"{one.title}: {text}", words, kind)
 
-    def tables(self, units: ReaderUnits) -> Iterator[tuple[str, list[str]]]:
+    def tables(self, units: DisplayUnits) -> Iterator[tuple[str, list[str]]]:
         """Return titles and tables of the numbers, and of what is neglected, as pages show them.
 
         Parameters
@@ -221,15 +227,15 @@ class CodeCheck:
             cells = [
                 (
                     one.symbol,
-                    raised(one.written(units)),
-                    units.of_sentence(one.words),
+                    with_superscripts(one.written(units)),
+                    units.convert_text(one.words),
                     one.source,
                 )
                 for one in several
             ]
             yield title, [page.rows(cells, head=head)]
         if self.notes:
-            yield "Left out", [page.items(map(units.of_sentence, self.notes))]
+            yield "Left out", [page.items(map(units.convert_text, self.notes))]
 
     def report(
         self,
@@ -262,7 +268,7 @@ class CodeCheck:
         ComponentError, UnitsError
             Units that cannot be read, or are of another kind.
         """
-        chosen = reader_units(units, owner="CodeCheck.report")
+        chosen = display_units(units, owner="CodeCheck.report")
         body = [f"<h1>{escape(self.title)}</h1>", page.paragraph(self.code, kind="soft")]
         body += self._checked(chosen)
         body += self.banners(chosen)
@@ -270,11 +276,11 @@ class CodeCheck:
         content = page.page(self.title, body).encode()
         return write_file(path, KIND, content, overwrite=overwrite)
 
-    def _checked(self, units: ReaderUnits) -> list[str]:
-        words = units.of_sentence(self.scene)
+    def _checked(self, units: DisplayUnits) -> list[str]:
+        words = units.convert_text(self.scene)
         return [page.paragraph(f"Checked: {words}.")] if words else []
 
-    def section(self, units: ReaderUnits) -> str:
+    def section(self, units: DisplayUnits) -> str:
         """Return its section of a larger page.
 
         Parameters
@@ -298,12 +304,17 @@ def checks_of(value: object, owner: str) -> list[CodeCheck]:
     several = [value] if isinstance(value, CodeCheck) else value
     if several is None:
         return []
-    if not iterates(several) or isinstance(several, str):
-        msg = f"{owner}: checks must be of rf.codes, one or a list of them, got {shown(several)}"
+    if not is_iterable(several) or isinstance(several, str):
+        msg = (
+            f"{owner}: checks must be of rf.codes, one or a list of them, got {short_repr(several)}"
+        )
         raise ComponentError(msg)
     found = list(cast("Iterable[object]", several))
     for one in found:
         if not isinstance(one, CodeCheck):
-            msg = f"{owner}: checks must be of rf.codes, such as circolare_2019, got {shown(one)}"
+            msg = (
+                f"{owner}: checks must be of rf.codes, such as circolare_2019, got "
+                f"{short_repr(one)}"
+            )
             raise ComponentError(msg)
     return cast("list[CodeCheck]", found)

@@ -10,8 +10,8 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from rockframe import plot
-from rockframe.arguments import iterates
-from rockframe.errors import ComponentError, shown
+from rockframe.arguments import is_iterable
+from rockframe.errors import ComponentError, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.reports import page
 from rockframe.reports.values import column_head, number_in
@@ -22,7 +22,7 @@ from rockframe.suites.candidates import default_periods
 from rockframe.suites.columns import column_value, is_missing
 from rockframe.suites.scaling import compared_target
 from rockframe.units import Unit
-from rockframe.units.shown import ReaderUnits, raised, reader_units
+from rockframe.units.display import DisplayUnits, display_units, with_superscripts
 
 OF_RECORDS: Final = (
     "event",
@@ -35,7 +35,7 @@ OF_RECORDS: Final = (
 )
 """Columns of a suite that the table of records shows if they are known, in this order."""
 Numbers: TypeAlias = NDArray[np.float64]
-_DISTANCES: Final = reader_units({"length": "km"}, owner="report")
+_DISTANCES: Final = display_units({"length": "km"}, owner="report")
 _PERIODS: Final = (np.geomspace(0.05, 5.0, 80), str(Unit.SECOND))
 
 
@@ -66,7 +66,7 @@ def aim_of(value: object, motions: object, owner: str) -> Aim | None:
             return Aim(target, value["period"].to_numpy())
     msg = (
         f"{owner}: target must be a TargetSpectrum, or the result of suite.scaling_to or "
-        f"suite.selection_for for one at several periods, got {shown(value)}"
+        f"suite.selection_for for one at several periods, got {short_repr(value)}"
     )
     raise ComponentError(msg)
 
@@ -91,19 +91,19 @@ def _named(value: object, owner: str) -> dict[str, GroundMotion]:
     if value is None:
         return {}
     several = [value] if isinstance(value, GroundMotion) else value
-    if not iterates(several) or isinstance(several, str):
-        msg = f"{owner}: motions must be a GroundMotion, or several, got {shown(value)}"
+    if not is_iterable(several) or isinstance(several, str):
+        msg = f"{owner}: motions must be a GroundMotion, or several, got {short_repr(value)}"
         raise ComponentError(msg)
     return dict(MotionSuite(cast("Iterable[GroundMotion]", several)))
 
 
 def spectra_section(
-    motions: Mapping[str, GroundMotion], aim: Aim | None, units: ReaderUnits
+    motions: Mapping[str, GroundMotion], aim: Aim | None, units: DisplayUnits
 ) -> Iterator[str]:
     """Return the spectra of motions with a target, and what is known of each motion."""
     damping = 0.05 if aim is None else aim.target.damping_ratio
     if aim is not None:
-        name = raised(units.of_sentence(aim.target.name))
+        name = with_superscripts(units.convert_text(aim.target.name))
         yield page.paragraph(
             f"Target: {name}. Compared at {aim.periods.size} periods from {aim.periods[0]:.4g} s "
             f"to {aim.periods[-1]:.4g} s, {100.0 * damping:g} % damping."
@@ -143,7 +143,7 @@ def _of_the_mean(over: Numbers, periods: Numbers) -> str:
 
 
 def _records(
-    motions: Mapping[str, GroundMotion], misfits: Numbers | None, units: ReaderUnits
+    motions: Mapping[str, GroundMotion], misfits: Numbers | None, units: DisplayUnits
 ) -> str:
     """Return a table with a row for each motion, with what is known of its record."""
     known = {
@@ -159,7 +159,7 @@ def _records(
     return page.columns(rows, ["motion", *(_head(name, units) for name in known)])
 
 
-def record_rows(motion: GroundMotion, units: ReaderUnits) -> list[tuple[str, str]]:
+def record_rows(motion: GroundMotion, units: DisplayUnits) -> list[tuple[str, str]]:
     """Return what is known of the record of a motion, without its peak."""
     found = ((name, column_value(name, motion)) for name in OF_RECORDS[:-1])
     return [
@@ -169,16 +169,16 @@ def record_rows(motion: GroundMotion, units: ReaderUnits) -> list[tuple[str, str
     ]
 
 
-def _head(name: str, units: ReaderUnits) -> str:
+def _head(name: str, units: DisplayUnits) -> str:
     return column_head(name, str(SCHEMA[name].unit or Unit.ONE), _of(name, units))
 
 
-def _of(name: str, units: ReaderUnits) -> ReaderUnits:
+def _of(name: str, units: DisplayUnits) -> DisplayUnits:
     """Return the units of a column: distances are in km, in whichever unit lengths are shown."""
     return _DISTANCES if SCHEMA[name].unit is Unit.METRE else units
 
 
-def _cell(name: str, value: Any, units: ReaderUnits) -> str:
+def _cell(name: str, value: Any, units: DisplayUnits) -> str:
     if is_missing(value):
         return "-"
     unit = SCHEMA[name].unit

@@ -8,12 +8,12 @@ from io import BytesIO
 from typing import TYPE_CHECKING, Any, Final, cast
 
 from rockframe.version import __version__
-from rockframe.writing import FileKind, generator
+from rockframe.writing import FileKind, generator_tag
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-KIND: Final = FileKind.marked("a report", (".html", ".htm"), generator("report"))
+KIND: Final = FileKind.marked("a report", (".html", ".htm"), generator_tag("report"))
 BANNERS: Final = {
     True: ("Overturned", "bad"),
     False: ("Did not overturn", "good"),
@@ -84,7 +84,7 @@ def page(title: str, body: Iterable[str]) -> str:
     """Return the whole page."""
     head = (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        f"{generator('report', __version__)}\n"
+        f"{generator_tag('report', __version__)}\n"
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">\n'
         f"<title>{escape(title)}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n"

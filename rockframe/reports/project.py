@@ -8,7 +8,7 @@ from typing import Any, Final, cast
 
 import xarray as xr
 
-from rockframe.errors import ComponentError, nearest, shown
+from rockframe.errors import ComponentError, did_you_mean, short_repr
 from rockframe.reports import page
 
 ATTRIBUTE: Final = "project_json"
@@ -65,13 +65,14 @@ def read_project(value: object, owner: str) -> Project:
     known = (*LINES, CONCLUSION, ASSUMPTIONS, CHECKS)
     if not isinstance(value, Mapping):
         msg = (
-            f"{owner}: project must be a mapping with any of {', '.join(known)}, got {shown(value)}"
+            f"{owner}: project must be a mapping with any of {', '.join(known)}, got "
+            f"{short_repr(value)}"
         )
         raise ComponentError(msg)
     values = cast("Mapping[Any, Any]", value)
     for name in values:
         if name not in known:
-            called = f"{shown(name)}{nearest(name, known)}"
+            called = f"{short_repr(name)}{did_you_mean(name, known)}"
             msg = f"{owner}: project has no entry {called}; known are {', '.join(known)}"
             raise ComponentError(msg)
     assumptions, checks = (_texts(values.get(one, ()), one, owner) for one in (ASSUMPTIONS, CHECKS))
@@ -92,7 +93,7 @@ def project_json(values: Mapping[str, object], owner: str) -> str:
 
 def _texts(value: object, name: str, owner: str) -> tuple[str, ...]:
     if not isinstance(value, list | tuple):
-        msg = f"{owner}: {name} must be a list of texts, got {shown(value)}"
+        msg = f"{owner}: {name} must be a list of texts, got {short_repr(value)}"
         raise ComponentError(msg)
     return tuple(_text(one, name, owner) for one in value)
 
@@ -102,5 +103,5 @@ def _text(value: object, name: str, owner: str) -> str:
         return value.isoformat()
     if isinstance(value, str | int):
         return str(value)
-    msg = f"{owner}: {name} of the project must be text, got {shown(value)}"
+    msg = f"{owner}: {name} of the project must be text, got {short_repr(value)}"
     raise ComponentError(msg)

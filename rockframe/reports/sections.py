@@ -29,7 +29,7 @@ from rockframe.simulation.run import NONE
 from rockframe.simulation.system import System
 from rockframe.studies.sweeps.words import slips_of_cases
 from rockframe.units import ACCELERATION, Unit, to_si
-from rockframe.units.shown import ReaderUnits, raised
+from rockframe.units.display import DisplayUnits, with_superscripts
 from rockframe.version import __version__
 
 _LIBRARIES: Final = ("numpy", "scipy", "xarray")
@@ -65,10 +65,10 @@ _PROVENANCE: Final = (
 )
 
 
-def outcome_of(dataset: xr.Dataset, units: ReaderUnits) -> str:
+def outcome_of(dataset: xr.Dataset, units: DisplayUnits) -> str:
     """Return the verdict; its title says whether the body slid."""
     title, kind = page.BANNERS[verdict_of(dataset)]
-    words = units.of_sentence(str(dataset.attrs.get("verdict", "")))
+    words = units.convert_text(str(dataset.attrs.get("verdict", "")))
     slid = float(slips_of_cases(dataset)) >= MIN_REPORTED_SLIP
     if "peak_slip" in dataset and words:
         title = _NUMBERS.split(words)[0]
@@ -77,17 +77,17 @@ def outcome_of(dataset: xr.Dataset, units: ReaderUnits) -> str:
     return page.banner(title, words, "doubt" if slid and kind == "good" else kind)
 
 
-def verdict_section(dataset: xr.Dataset, reason: str, units: ReaderUnits) -> Iterator[str]:
+def verdict_section(dataset: xr.Dataset, reason: str, units: DisplayUnits) -> Iterator[str]:
     """Return the verdict, its proof or certificate, and cautions."""
     yield outcome_of(dataset, units)
     if "proof" in dataset.attrs:
         proved = bool(dataset["verdict_proved"])
         title = f"The verdict is {'' if proved else 'not '}proved"
-        words = units.of_sentence(str(dataset.attrs["proof"]))
+        words = units.convert_text(str(dataset.attrs["proof"]))
         yield page.banner(title, words, "good" if proved else "doubt")
     if "certificate" in dataset.attrs:
         sure = all(bool(dataset[name]) for name in _CERTIFICATE[:2] if name in dataset)
-        words = units.of_sentence(str(dataset.attrs["certificate"]))
+        words = units.convert_text(str(dataset.attrs["certificate"]))
         near = words.startswith(NEAR_WORDS)
         text = f"holds{', but near a boundary' * near}" if sure else "is in doubt"
         title = f"Certificate: the verdict {text}"
@@ -96,10 +96,10 @@ def verdict_section(dataset: xr.Dataset, reason: str, units: ReaderUnits) -> Ite
         yield page.banner("No certificate", reason or "none was requested.", "doubt")
     cautions = str(dataset.attrs.get("cautions", NONE))
     if cautions != NONE:
-        yield page.banner("To be used with care", units.of_sentence(cautions), "doubt")
+        yield page.banner("To be used with care", units.convert_text(cautions), "doubt")
 
 
-def scene_section(dataset: xr.Dataset, system: System | None, units: ReaderUnits) -> Iterator[str]:
+def scene_section(dataset: xr.Dataset, system: System | None, units: DisplayUnits) -> Iterator[str]:
     """Return the parts with their parameters, and the model."""
     if system is not None:
         yield from _drawing(system, units)
@@ -114,11 +114,11 @@ def scene_section(dataset: xr.Dataset, system: System | None, units: ReaderUnits
     yield page.subtitle("Model")
     # runs keep the description of their model, analyses do not
     text = "not described" if system is None else system.describe()
-    yield page.verbatim(units.of_sentence(str(dataset.attrs.get("model_description", text))))
+    yield page.verbatim(units.convert_text(str(dataset.attrs.get("model_description", text))))
 
 
 def motion_section(
-    dataset: xr.Dataset, found: GroundMotion | None, units: ReaderUnits, aim: Aim | None = None
+    dataset: xr.Dataset, found: GroundMotion | None, units: DisplayUnits, aim: Aim | None = None
 ) -> Iterator[str]:
     """Return the motion, its measures and its figure, and its spectrum with a target."""
     attributes = dict(dataset.attrs)
@@ -154,7 +154,7 @@ def motion_section(
         yield from spectra_section({found.name: found}, aim, units)
 
 
-def response_section(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
+def response_section(dataset: xr.Dataset, units: DisplayUnits) -> Iterator[str]:
     """Return the scalars of a run, and figures of its histories."""
     if dataset.sizes.get("time", 0) > 1 and {*RUN.known, *RUN.needed} <= {*dataset.variables}:
         angle = units.chosen.get(Unit.RADIAN)
@@ -174,7 +174,7 @@ def response_section(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
         yield page.rows(table_of(dataset, _CERTIFICATE, units))
 
 
-def _histories(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
+def _histories(dataset: xr.Dataset, units: DisplayUnits) -> Iterator[str]:
     """Return figures and extremes of forces, accelerations and other requested histories."""
     beside = [name for name in histories_of(dataset) if name not in _DRAWN]
     below = [name for name in beside if name not in SLIPS or not has_slid(dataset)]
@@ -223,7 +223,7 @@ def provenance_section(dataset: xr.Dataset, file: str) -> Iterator[str]:
             yield page.verbatim(_indented(str(attributes[name])))
 
 
-def _drawing(system: System, units: ReaderUnits) -> Iterator[str]:
+def _drawing(system: System, units: DisplayUnits) -> Iterator[str]:
     """Draw the scene, if it can be drawn."""
     try:
         drawn = plot.scene(system, units=units.words)
@@ -232,7 +232,7 @@ def _drawing(system: System, units: ReaderUnits) -> Iterator[str]:
     yield page.picture(drawn, "The scene, to scale.")
 
 
-def _part(title: str, part: Component, units: ReaderUnits) -> Iterator[str]:
+def _part(title: str, part: Component, units: DisplayUnits) -> Iterator[str]:
     """Return a part with its parameters, and the parts of which it consists."""
     yield page.subtitle(title)
     yield page.rows(_parameters(part, units))
@@ -252,7 +252,7 @@ def _made_of(value: object) -> list[Any]:
     return [one for one in value if isinstance(one, dict)] if isinstance(value, list) else []
 
 
-def _parameters(part: Component, units: ReaderUnits) -> list[tuple[str, str, str]]:
+def _parameters(part: Component, units: DisplayUnits) -> list[tuple[str, str, str]]:
     """Return the parameters of a part as they were given, with their meanings."""
     declared = part.declared()
     return [
@@ -271,15 +271,15 @@ def _meaning(one: Declared[Any, Any]) -> str:
     return words if one.condition is None else words.removesuffix(f"; {one.condition.words}")
 
 
-def _value(value: object, units: ReaderUnits) -> str:
+def _value(value: object, units: DisplayUnits) -> str:
     """Write a number with its unit, in six digits; the numbers of a list with commas."""
     if isinstance(value, list):
         return ", ".join(_value(one, units) for one in value)
-    number, blank, unit = units.of_sentence(str(value)).partition(" ")
+    number, blank, unit = units.convert_text(str(value)).partition(" ")
     try:
-        return f"{float(number):.6g}{blank}{raised(unit)}"
+        return f"{float(number):.6g}{blank}{with_superscripts(unit)}"
     except ValueError:
-        return units.of_sentence(str(value))
+        return units.convert_text(str(value))
 
 
 def _indented(text: str) -> str:

@@ -23,20 +23,20 @@ from rockframe.studies import case, fragility
 from rockframe.studies.sweeps.axes import Changes
 from rockframe.studies.sweeps.case import NOT_GIVEN, system_of_case
 from rockframe.studies.sweeps.words import cases_verdict, slips_of_cases
-from rockframe.units.shown import ReaderUnits, raised
+from rockframe.units.display import DisplayUnits, with_superscripts
 
 
 def verdict_sections(
-    dataset: xr.Dataset, about: Project, units: ReaderUnits, by_codes: Sequence[str] = ()
+    dataset: xr.Dataset, about: Project, units: DisplayUnits, by_codes: Sequence[str] = ()
 ) -> Iterator[str]:
     """Return the verdicts of the cases and of codes, the figure, and the numbers."""
     sentence = cases_verdict(dataset)
     verdict = [*about.conclusions()]
     if sentence:
-        verdict.append(_banner(dataset, units.of_sentence(sentence)))
+        verdict.append(_banner(dataset, units.convert_text(sentence)))
     fit = _fit_of_capacities(dataset)
     if fit:
-        verdict.append(page.banner("Fit", raised(units.of_sentence(fit)), ""))
+        verdict.append(page.banner("Fit", with_superscripts(units.convert_text(fit)), ""))
     yield page.section("Verdict", [*verdict, *by_codes])
     figure = _figure(dataset, units)
     if figure:
@@ -55,7 +55,7 @@ def verdict_sections(
 
 
 def worst_case(
-    dataset: xr.Dataset, motions: Mapping[str, GroundMotion], units: ReaderUnits
+    dataset: xr.Dataset, motions: Mapping[str, GroundMotion], units: DisplayUnits
 ) -> tuple[str, tuple[xr.Dataset, System] | None]:
     """Simulate the case of a sweep that comes nearest to overturning, or overturns first.
 
@@ -138,7 +138,7 @@ def _is_sweep(dataset: xr.Dataset) -> bool:
 
 def _banner(dataset: xr.Dataset, sentence: str) -> str:
     if "status" not in dataset:
-        return page.banner("Result", raised(sentence), "")
+        return page.banner("Result", with_superscripts(sentence), "")
     fallen = overturned_from_status(dataset["status"].to_numpy())
     slid = _slid(dataset)
     if (fallen == 1.0).any():
@@ -156,7 +156,7 @@ def _slid(dataset: xr.Dataset) -> str:
     return ", some would slide" if would is not None and bool((would == 1.0).any()) else ""
 
 
-def _figure(dataset: xr.Dataset, units: ReaderUnits) -> str:
+def _figure(dataset: xr.Dataset, units: DisplayUnits) -> str:
     """Draw a dataset with the function for its kind, if there is one."""
     try:
         drawn = getattr(plot, drawn_by(dataset))(dataset, units=units.words)
@@ -165,7 +165,7 @@ def _figure(dataset: xr.Dataset, units: ReaderUnits) -> str:
     return page.picture(drawn, str(dataset.attrs.get("title", "The study")) + ".")
 
 
-def _of_limit_states(dataset: xr.Dataset, units: ReaderUnits) -> list[str]:
+def _of_limit_states(dataset: xr.Dataset, units: DisplayUnits) -> list[str]:
     """Return all numbers of a fragility: a row for each, with a column for each limit state."""
     dim = "limit_state"
     if dim not in dataset.dims:
@@ -176,5 +176,5 @@ def _of_limit_states(dataset: xr.Dataset, units: ReaderUnits) -> list[str]:
             words = str(values.attrs.get("long_name", name))
             rows.append([words, *(value_of(values.isel({dim: k}), units)
                                   for k in range(dataset.sizes[dim]))])  # fmt: skip
-    heads = [units.of_sentence(str(one)) for one in dataset[dim].to_numpy()]
+    heads = [units.convert_text(str(one)) for one in dataset[dim].to_numpy()]
     return [page.columns(rows, ["", *heads])]

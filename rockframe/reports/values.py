@@ -9,14 +9,14 @@ import xarray as xr
 
 from rockframe.results.variables.variable import flag_words
 from rockframe.units import Unit
-from rockframe.units.shown import ReaderUnits, behind, in_degrees, raised
+from rockframe.units.display import DisplayUnits, degrees_text, unit_suffix, with_superscripts
 
 _TRUTH: Final = {"true": "yes", "false": "no"}
 _GAP: Final = re.compile(r", NaN if .*$")
 """Words on missing numbers in their meanings; reports write "none" for these."""
 
 
-def value_of(variable: xr.DataArray, units: ReaderUnits | None = None) -> str:
+def value_of(variable: xr.DataArray, units: DisplayUnits | None = None) -> str:
     """Write a scalar with its unit, and flags and truth values as words."""
     value: Any = variable.item()
     if words := flag_words(variable.attrs):
@@ -28,26 +28,26 @@ def value_of(variable: xr.DataArray, units: ReaderUnits | None = None) -> str:
         return value
     if isinstance(value, float) and not math.isfinite(value):
         return "none" if math.isnan(value) else "infinite"
-    unit = (units or ReaderUnits()).of(str(variable.attrs.get("units", Unit.ONE)))
+    unit = (units or DisplayUnits()).of(str(variable.attrs.get("units", Unit.ONE)))
     number = f"{value / unit.size + 0.0:.4g}"  # no negative zero
     if unit.words == Unit.RADIAN:
-        return f"{number} rad ({in_degrees(value, 3)})"
-    return f"{number}{behind(raised(unit.words))}"
+        return f"{number} rad ({degrees_text(value, 3)})"
+    return f"{number}{unit_suffix(with_superscripts(unit.words))}"
 
 
-def number_in(value: float, unit: str, units: ReaderUnits) -> str:
+def number_in(value: float, unit: str, units: DisplayUnits) -> str:
     """Write a number of an SI unit in the reader's unit, without the unit."""
     return "-" if math.isnan(value) else f"{value / units.of(unit).size + 0.0:.4g}"
 
 
-def column_head(name: str, unit: str, units: ReaderUnits) -> str:
+def column_head(name: str, unit: str, units: DisplayUnits) -> str:
     """Write the name of a variable with the reader's unit, above a column."""
     words, shown_in = name.replace("_", " "), units.of(unit).words
-    return words if shown_in == Unit.ONE else f"{words} [{raised(shown_in)}]"
+    return words if shown_in == Unit.ONE else f"{words} [{with_superscripts(shown_in)}]"
 
 
 def table_of(
-    dataset: xr.Dataset, names: list[str] | None = None, units: ReaderUnits | None = None
+    dataset: xr.Dataset, names: list[str] | None = None, units: DisplayUnits | None = None
 ) -> list[tuple[str, str]]:
     """Return the meaning and the value of scalars."""
     chosen = [str(name) for name in dataset.data_vars] if names is None else names
@@ -62,7 +62,7 @@ def table_of(
 
 
 def extremes_of(
-    dataset: xr.Dataset, names: Iterable[str], units: ReaderUnits
+    dataset: xr.Dataset, names: Iterable[str], units: DisplayUnits
 ) -> list[tuple[str, str, str, str]]:
     """Return the name, unit, least and largest value of histories, at each of several points."""
     found = list[tuple[str, str, str, str]]()
@@ -74,6 +74,6 @@ def extremes_of(
             whose = f" ({row[first].item()})" if values.ndim > 1 and first in row.coords else ""
             ends = unit.of([float(row.min()), float(row.max())])
             least, most = (f"{one + 0.0:.4g}" for one in ends)
-            words = "" if unit.words == Unit.ONE else raised(unit.words)
+            words = "" if unit.words == Unit.ONE else with_superscripts(unit.words)
             found.append((name.replace("_", " ") + whose, words, least, most))
     return found

@@ -9,33 +9,33 @@ from typing import Final, cast
 
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, text, truth
+from rockframe.arguments import checked_bool, checked_dataset, checked_text
 from rockframe.errors import (
     ComponentError,
     RecordWarning,
     RockframeWarning,
     SchemaError,
-    shown,
+    short_repr,
     warn,
 )
 from rockframe.motion import GroundMotion
 from rockframe.plot._fonts import warning_once
-from rockframe.proposals import hinted
 from rockframe.reports import page, sections, studies
 from rockframe.reports.certifying import certified
 from rockframe.reports.checks import CodeCheck, checks_of
 from rockframe.reports.motions import Aim, aim_of, motions_of, spectra_section
 from rockframe.reports.project import Project, project_of
 from rockframe.simulation.system import System
+from rockframe.suggestions import with_hints
 from rockframe.suites import TargetSpectrum
-from rockframe.units.shown import ReaderUnits, reader_units
+from rockframe.units.display import DisplayUnits, display_units
 from rockframe.writing import checked_path, write_file
 
 _OWNER: Final = "report"
 
 
 @warning_once
-@hinted()
+@with_hints()
 def report(
     response: xr.Dataset,
     path: "str | PathLike[str]",
@@ -137,13 +137,13 @@ def report(
         dim for dim, index in dataset.indexes.items() if dim in dataset.dims and index.nlevels > 1
     ]
     dataset = dataset.reset_index(stacked)
-    truth(certify, owner=_OWNER, name="certify")
-    value = "" if title is None else text(title, owner=_OWNER, name="title")
+    checked_bool(certify, owner=_OWNER, name="certify")
+    value = "" if title is None else checked_text(title, owner=_OWNER, name="title")
     if motion is not None and not isinstance(cast("object", motion), GroundMotion):
-        msg = f"{_OWNER}: motion must be a GroundMotion, got {shown(motion)}"
+        msg = f"{_OWNER}: motion must be a GroundMotion, got {short_repr(motion)}"
         raise ComponentError(msg)
     about = project_of(project, dataset, _OWNER)
-    chosen = reader_units(units, owner=_OWNER)
+    chosen = display_units(units, owner=_OWNER)
     aim = aim_of(target, motions, _OWNER)
     checked = checks_of(checks, _OWNER)
     by_codes = [banner for one in checked for banner in one.banners(chosen)]
@@ -205,7 +205,7 @@ def _of_run(
     dataset: xr.Dataset,
     system: System | None,
     about: Project,
-    units: ReaderUnits,
+    units: DisplayUnits,
     aim: Aim | None = None,
     *,
     study: bool = False,
@@ -222,7 +222,7 @@ def _of_run(
 
 
 def _of_study(
-    dataset: xr.Dataset, motions: Mapping[str, GroundMotion], about: Project, units: ReaderUnits
+    dataset: xr.Dataset, motions: Mapping[str, GroundMotion], about: Project, units: DisplayUnits
 ) -> list[str]:
     """Return the sections on a study that follow its motions: its worst case, or its scene."""
     words, worst = studies.worst_case(dataset, motions, units)

@@ -7,18 +7,18 @@ from typing import Any, Final
 import numpy as np
 
 from rockframe.errors import SchemaError
-from rockframe.proposals import proposing
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.variable import TIME, Variable
 from rockframe.signals.arrays import Array
+from rockframe.suggestions import suggests_names
 from rockframe.units import Unit
 
 State = Mapping[str, Generic]
 """Arrays over instants, by their names in the schema, in SI units."""
 
 
-@proposing
+@suggests_names
 @dataclass(frozen=True)
 class Diagnostic:
     """A function of the state, which any scene can give as an output, by its name.

@@ -8,14 +8,14 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, iterates, truth
-from rockframe.errors import SchemaError, shown
-from rockframe.proposals import hinted
+from rockframe.arguments import checked_bool, checked_dataset, is_iterable
+from rockframe.errors import SchemaError, short_repr
 from rockframe.results.schema import SCHEMA, history_line, without_fill_values
 from rockframe.results.variables.bodies import BODY, RESTRAINER
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import AFTER_END, EVENT, TIME
-from rockframe.units import own_unit
+from rockframe.suggestions import with_hints
+from rockframe.units import attached_unit
 
 RUN_ATTRIBUTES: Final = frozenset(
     {
@@ -49,7 +49,7 @@ MOTION_ATTRIBUTES: Final = ("motion_names", "motions_json")
 _OWNER: Final = "concat"
 
 
-@hinted()
+@with_hints()
 def concat(
     runs: Iterable[xr.Dataset],
     dim: str = "run",
@@ -117,7 +117,7 @@ def concat(
         msg = f"{_OWNER}: found no runs; expected one at least"
         raise SchemaError(msg)
     _check_dimension(data, dim)
-    truth(histories, owner=_OWNER, name="histories")
+    checked_bool(histories, owner=_OWNER, name="histories")
     left_out = (*EVENT, *AFTER_END) if histories else (*EVENT, *AFTER_END, *TIME)
     parts = [run.drop_dims(left_out, errors="ignore") for run in data]
     common = set[Any].intersection(*(set(part.data_vars) for part in parts))
@@ -153,9 +153,9 @@ def concat(
 
 
 def _each(runs: object) -> Iterable[Any]:
-    if iterates(runs) and not isinstance(runs, str | xr.Dataset | xr.DataArray):
+    if is_iterable(runs) and not isinstance(runs, str | xr.Dataset | xr.DataArray):
         return runs
-    msg = f"{_OWNER}: found {shown(runs)}; expected a list of datasets"
+    msg = f"{_OWNER}: found {short_repr(runs)}; expected a list of datasets"
     raise SchemaError(msg)
 
 
@@ -163,7 +163,7 @@ def _check_dimension(runs: Sequence[xr.Dataset], dim: object) -> None:
     if not isinstance(dim, str) or dim in (*TIME, *EVENT, *AFTER_END):
         msg = (
             f"{_OWNER}: dim must be the name of a dimension of many runs, such as 'run' or "
-            f"'scale', got {shown(dim)}"
+            f"'scale', got {short_repr(dim)}"
         )
         raise SchemaError(msg)
     having = sum(dim in run.dims for run in runs)
@@ -274,13 +274,15 @@ def _same(one: object, other: object) -> bool:
 def _labelled(
     joined: xr.Dataset, dim: str, labels: Sequence[Any] | np.ndarray | xr.DataArray
 ) -> xr.Dataset:
-    if isinstance(labels, str) or not iterates(labels):
-        msg = f"{_OWNER}: labels must be a list of values, one for each run, got {shown(labels)}"
+    if isinstance(labels, str) or not is_iterable(labels):
+        msg = (
+            f"{_OWNER}: labels must be a list of values, one for each run, got {short_repr(labels)}"
+        )
         raise SchemaError(msg)
     each = labels.to_numpy() if isinstance(labels, xr.DataArray) else list(labels)
-    if any(own_unit(one) for one in each):
+    if any(attached_unit(one) for one in each):
         example = "xr.DataArray([1, 2], attrs={'units': 'm s^-2'})"
-        msg = f"{_OWNER}: labels with a unit come as {example}, got {shown(labels)}"
+        msg = f"{_OWNER}: labels with a unit come as {example}, got {short_repr(labels)}"
         raise SchemaError(msg)
     values = np.asarray(each)
     if values.shape != (joined.sizes[dim],):

@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from rockframe.case_arrays import maximum
 from rockframe.dynamics.events import OVERTURNING, SILENT, TOPPLED, LinkState
 from rockframe.dynamics.protocol import (
     IMPACT_LOSS,
@@ -21,7 +22,6 @@ from rockframe.dynamics.protocol import (
     Ending,
     column_of,
 )
-from rockframe.many import largest
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.bodies import OF_EACH_BODY, OF_EACH_LINK
 from rockframe.results.variables.runs import Direction
@@ -51,8 +51,8 @@ Values = Mapping[str, "Generic | float | int | bool"]
 
 def peak_share(run: Summary, angles: OverturningAngles) -> float:
     """Return the largest ratio of a peak rotation to the overturning angle of its side and body."""
-    own = largest(run.peak_right / angles.right, run.peak_left / angles.left)
-    return largest(own, run.other_rotation_ratio)
+    own = maximum(run.peak_right / angles.right, run.peak_left / angles.left)
+    return maximum(own, run.other_rotation_ratio)
 
 
 def numbered_columns(name: str, count: int) -> tuple[str, ...]:

@@ -8,16 +8,16 @@ from typing import Any, Final
 import pandas as pd
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, iterates, one_of_words
+from rockframe.arguments import checked_choice, checked_dataset, is_iterable
 from rockframe.errors import SchemaError
-from rockframe.proposals import hinted
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.bodies import BODY, RESTRAINER
 from rockframe.results.variables.requests import POINT
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import EVENT, TIME, TRUTH, flag_words
+from rockframe.suggestions import with_hints
 from rockframe.units import Unit
-from rockframe.units.shown import UnitsLike, reader_units
+from rockframe.units.display import UnitsLike, display_units
 
 _OWNER: Final = "table"
 _RUN: Final = "run"
@@ -40,7 +40,7 @@ _MISSING: Final = {
 }
 
 
-@hinted()
+@with_hints()
 def table(
     runs: xr.Dataset | Iterable[xr.Dataset] | Mapping[Any, xr.Dataset],
     contents: str = Contents.SCALARS,
@@ -98,10 +98,10 @@ def table(
     >>> rf.table(response, units={"angle": "deg"})["peak_rotation [°]"].round(2).item()
     3.21
     """
-    kind = one_of_words(Contents, contents, owner=_OWNER, name="contents")
-    chosen = reader_units(units, owner=_OWNER)
+    kind = checked_choice(Contents, contents, owner=_OWNER, name="contents")
+    chosen = display_units(units, owner=_OWNER)
     if isinstance(runs, xr.Dataset):
-        run = _split_places(chosen.of_all(runs), kind)
+        run = _split_places(chosen.convert_dataset(runs), kind)
         if kind is Contents.SCALARS and not _dimensions(run, _names(run, kind)):
             return _stacked_rows([run], kind, _labels([run]))
         return _rows(run, kind)
@@ -109,10 +109,11 @@ def table(
     several: Any = runs
     if isinstance(runs, Mapping):
         labels, several = _keys(runs), runs.values()
-    elif not iterates(several) or isinstance(several, str | xr.DataArray):
+    elif not is_iterable(several) or isinstance(several, str | xr.DataArray):
         several = [several]
     items = [
-        _split_places(chosen.of_all(checked_dataset(run, owner=_OWNER)), kind) for run in several
+        _split_places(chosen.convert_dataset(checked_dataset(run, owner=_OWNER)), kind)
+        for run in several
     ]
     if not items:
         msg = f"{_OWNER}: found no runs; expected one at least"

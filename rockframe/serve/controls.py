@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from rockframe.components import Block, Component, TwoSpringSupport, WinklerSoil
-from rockframe.errors import nearest, shown
+from rockframe.errors import did_you_mean, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.simulation.system import System
 
@@ -141,9 +141,9 @@ def read_choice(values: Mapping[str, str], record: NamedRecord | None) -> tuple[
     for name, known in (("base", BASES), ("motion", motions_with(record))):
         words[name] = values.get(name, next(iter(known)))
         if words[name] not in known:
-            near = nearest(words[name], known)
+            near = did_you_mean(words[name], known)
             faults.append(
-                f"{name}: found {shown(words[name])}; expected one of {', '.join(known)}{near}"
+                f"{name}: found {short_repr(words[name])}; expected one of {', '.join(known)}{near}"
             )
             words[name] = next(iter(known))
     return Tried(numbers, words["base"], words["motion"]), faults
@@ -153,8 +153,8 @@ def _unknown(values: Mapping[str, str]) -> Iterator[str]:
     known = [*(one.name for one in CONTROLS), "base", "motion"]
     for name in values:
         if name not in known:
-            words = nearest(name, known) or f"; there are {', '.join(known)}"
-            yield f"there is no {shown(name)}{words}"
+            words = did_you_mean(name, known) or f"; there are {', '.join(known)}"
+            yield f"there is no {short_repr(name)}{words}"
 
 
 def _number(control: Control, text: str) -> float:
@@ -165,7 +165,7 @@ def _number(control: Control, text: str) -> float:
         value = math.nan
     if not control.low <= value <= control.high:
         msg = (
-            f"{control.words}: found {shown(text)}; expected a number from {control.low:g} to "
+            f"{control.words}: found {short_repr(text)}; expected a number from {control.low:g} to "
             f"{control.high:g}{unit}"
         )
         raise ValueError(msg)

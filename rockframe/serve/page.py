@@ -8,7 +8,7 @@ from urllib.parse import urlencode
 
 from rockframe.reports.page import banner
 from rockframe.serve.controls import BASES, CONTROLS, PULSES, Control, Tried
-from rockframe.units.shown import raised
+from rockframe.units.display import with_superscripts
 
 STYLE: Final = "/page.css"
 SCRIPT: Final = "/page.js"
@@ -97,7 +97,7 @@ def _numbers(choice: Tried, of: str, *, only: str = "", without: Sequence[str] =
 
 
 def _number(one: Control, value: float) -> str:
-    unit = f" [{escape(raised(one.unit))}]" if one.unit else ""
+    unit = f" [{escape(with_superscripts(one.unit))}]" if one.unit else ""
     ends = f'min="{one.low:g}" max="{one.high:g}"'
     return (
         f'<div class="number"><label for="{one.name}">{one.words}{unit}</label>'

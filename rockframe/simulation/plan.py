@@ -14,10 +14,10 @@ from typing import Any, Final, Literal, TypeAlias, Unpack, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import iterates
+from rockframe.arguments import is_iterable
 from rockframe.components import InitialState
 from rockframe.dynamics.protocol import Ending, Start
-from rockframe.errors import AssemblyError, ComponentError, RockframeError, nearest, shown
+from rockframe.errors import AssemblyError, ComponentError, RockframeError, did_you_mean, short_repr
 from rockframe.motion import GroundMotion, HorizontalPair
 from rockframe.results.diagnostics import DIAGNOSTICS, Diagnostic
 from rockframe.results.forces import SOIL_FRICTION_COLUMNS
@@ -41,7 +41,7 @@ def as_list(outputs: object) -> list[object]:
     """Return the argument ``outputs`` as a list."""
     if outputs is None:
         return []
-    if iterates(outputs) and not isinstance(outputs, str | Mapping):
+    if is_iterable(outputs) and not isinstance(outputs, str | Mapping):
         return list(outputs)
     return [outputs]
 
@@ -71,8 +71,8 @@ def read_outputs(
             known = (*GROUPS, *ON_REQUEST, *DIAGNOSTICS)
             words = ", ".join(map(repr, known))
             found = (
-                f"outputs has no {shown(value)}; every run has its response, and on request "
-                f"{words}{nearest(value, known)}"
+                f"outputs has no {short_repr(value)}; every run has its response, and on request "
+                f"{words}{did_you_mean(value, known)}"
             )
             if "time" in dims:
                 found = (
@@ -113,16 +113,16 @@ def read_body_points(
     if value is None:
         return ()
     if not isinstance(value, Mapping):
-        faults.append(f"points must name places, such as {POINTS_EXAMPLE}, got {shown(value)}")
+        faults.append(f"points must name places, such as {POINTS_EXAMPLE}, got {short_repr(value)}")
         return ()
     points: list[BodyPoint] = []
     for name, place in value.items():
         if not (isinstance(name, str) and name.strip()):
-            faults.append(f"points needs names, such as {POINTS_EXAMPLE}, got {shown(name)}")
+            faults.append(f"points needs names, such as {POINTS_EXAMPLE}, got {short_repr(name)}")
         elif not (isinstance(place, tuple | list) and len(place) == 2):
             faults.append(
                 f"point {name!r} needs two lengths, to the right of the middle of the base and "
-                f"above it, such as {POINTS_EXAMPLE}, got {shown(place)}"
+                f"above it, such as {POINTS_EXAMPLE}, got {short_repr(place)}"
             )
         else:
             try:
@@ -198,11 +198,7 @@ def _returned_within_limit(dataset: xr.Dataset, system: Assembly, ending: Ending
 
 def ending_as_json(ending: Ending) -> dict[str, Any]:
     """Return the end of a run as plain values."""
-    return {
-        "mode": ending.mode,
-        "state": ending.state.tolist(),
-        "memory": ending.memory.tolist(),
-    }
+    return {"mode": ending.mode, "state": ending.state.tolist(), "memory": ending.memory.tolist()}
 
 
 MAX_SAMPLES = 1e8
@@ -314,7 +310,7 @@ def plan_run(
     faults: list[str] = []
     motion = system.parts.motion if motion is None else motion
     if not isinstance(motion, GroundMotion | None):  # pyright: ignore[reportUnnecessaryIsInstance]
-        fault = f"motion must be a GroundMotion, got {shown(motion)}{_motion_hint(motion)}"
+        fault = f"motion must be a GroundMotion, got {short_repr(motion)}{_motion_hint(motion)}"
         raise AssemblyError([fault])
     arguments = read_arguments(faults, **requested)
     plan = resolve_plan(arguments, system, motion, faults)
@@ -389,7 +385,7 @@ def _read_initial(value: object, faults: list[str]) -> "InitialState | xr.Datase
     if isinstance(value, str | tuple):
         hint = f"; write InitialState(rotation={value!r}), if that is its rotation"
     faults.append(
-        f"initial must be an InitialState or the result of a run, got {shown(value)}{hint}"
+        f"initial must be an InitialState or the result of a run, got {short_repr(value)}{hint}"
     )
     return _REST
 
@@ -448,5 +444,5 @@ def read_certification(value: object) -> Certification | Literal["proved"] | Non
     if isinstance(value, Certification):
         return value
     wanted = f"True, False, {PROVED!r} or a Certification(...)"
-    msg = f"simulate: certify must be {wanted}, got {shown(value)}"
+    msg = f"simulate: certify must be {wanted}, got {short_repr(value)}"
     raise ComponentError(msg)

@@ -9,11 +9,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from rockframe.arguments import by_names
+from rockframe.arguments import checked_mapping
 from rockframe.components import Component, InitialState, component_from_dict
-from rockframe.errors import RecordWarning, SchemaError, nearest, shown, warn
+from rockframe.errors import RecordWarning, SchemaError, did_you_mean, short_repr, warn
 from rockframe.motion import GroundMotion
-from rockframe.motion.description import shown_name
+from rockframe.motion.description import display_name
 from rockframe.solve.accuracy import Accuracy
 from rockframe.units import TIME, Unit
 
@@ -54,7 +54,7 @@ def motion_attributes(motion: GroundMotion | None) -> dict[str, str | float | in
 def motion_words(attributes: Mapping[str, Any]) -> str:
     """Return the name of a result's motion, and the factor by which it was scaled."""
     history = str(attributes.get("motion_history", "")).split(_HISTORY_SEPARATOR)
-    return shown_name(str(attributes["motion"]), history)
+    return display_name(str(attributes["motion"]), history)
 
 
 def check_unswept_system(dataset: xr.Dataset) -> None:
@@ -160,7 +160,7 @@ def _joined(dataset: xr.Dataset, name: str, count: int) -> NDArray[Any]:
 
 def description_by_names(value: object) -> Mapping[str, Any]:
     """Return the description of a system as a mapping; refuse anything else."""
-    return by_names(value, owner="System", name="description", example="that of to_dict()")
+    return checked_mapping(value, owner="System", name="description", example="that of to_dict()")
 
 
 def parts_and_options(
@@ -173,7 +173,9 @@ def parts_and_options(
     known = [name for name in arguments if name != "parts"]
     allowed = (*known, "parts", "motion")
     strange = [
-        f"{shown(name)}{nearest(name, allowed)}" for name in description if name not in allowed
+        f"{short_repr(name)}{did_you_mean(name, allowed)}"
+        for name in description
+        if name not in allowed
     ]
     if strange:
         msg = f"found {', '.join(strange)}; expected parts, motion, {', '.join(known)}"

@@ -4,19 +4,19 @@ from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from typing import Any, Final
 
-from rockframe.arguments import whole_number
+from rockframe.arguments import checked_integer
 from rockframe.components import InitialState
 from rockframe.dynamics.body import LEADING_CORNER
 from rockframe.dynamics.pads import ElasticPads
 from rockframe.dynamics.protocol import Ending
 from rockframe.dynamics.rigid_ground import BlockOnRigidGround
 from rockframe.dynamics.single_body import SingleBody
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.proof.verdict import EXACT, Proof, Tolerances
-from rockframe.proposals import hinted
 from rockframe.simulation.plan import InitialCondition, Plan, plan_run, start_of
 from rockframe.simulation.system import System
+from rockframe.suggestions import with_hints
 from rockframe.system.assembly import Assembly
 from rockframe.units import ANGLE, POSITIVE, Condition, QuantityLike, RatioLike, to_ratio, to_si
 
@@ -30,7 +30,7 @@ _MAX_SEARCH_STEPS: Final = 100
 _TOLERANCE: Final = Condition("from 0 to 0.1", lambda value: 0.0 <= value <= 0.1)
 
 
-@hinted()
+@with_hints()
 def prove(
     system: System,
     motion: GroundMotion | None = None,
@@ -113,7 +113,7 @@ def prove(
     angle = to_si(
         angle_tolerance, ANGLE, owner=_OWNER, name="angle_tolerance", condition=_TOLERANCE
     )
-    max_parts = whole_number(parts, owner=_OWNER, name="parts", lowest=1)
+    max_parts = checked_integer(parts, owner=_OWNER, name="parts", lowest=1)
     within = Tolerances(restitution, factors, angle, max_parts)
     assembly, plan = _plan_proof(system, motion, initial, _OWNER)
     return prove_run(assembly, plan, scale=factor, within=within)
@@ -141,7 +141,7 @@ class ProvedBracket:
         return abs(self.overturns - self.safe) / max(self.overturns, self.safe)
 
 
-@hinted()
+@with_hints()
 def prove_critical_scale(
     system: System,
     motion: GroundMotion | None = None,
@@ -233,7 +233,7 @@ def _plan_proof(
     """Plan the run about which something is to be proved."""
     assembly = getattr(system, "assembly", None)
     if not isinstance(assembly, Assembly):
-        msg = f"{owner}: system must be a System, got {shown(system)}"
+        msg = f"{owner}: system must be a System, got {short_repr(system)}"
         raise ComponentError(msg)
     still = motion is None and assembly.parts.motion is None
     length = "1 s" if still else None

@@ -5,13 +5,13 @@ from typing import Any, Final, cast
 
 import pint
 
-from rockframe.arguments import several
+from rockframe.arguments import checked_list
 from rockframe.components import Block, Component
-from rockframe.errors import ComponentError, shown
-from rockframe.proposals import hinted
+from rockframe.errors import ComponentError, short_repr
 from rockframe.results.diagnostics import DIAGNOSTICS, Diagnostic, add_diagnostic
 from rockframe.results.schema import GROUPS, SCHEMA
 from rockframe.results.variables.variable import EVENT, TIME, Variable
+from rockframe.suggestions import with_hints
 from rockframe.system.assembly import add_scene, scene_of_same_parts
 from rockframe.system.links import OwnLink
 from rockframe.system.own_base import OwnAnswers, OwnBase
@@ -32,7 +32,7 @@ _RUN_DIMENSIONS: Final = (*TIME, *EVENT)
 """Dimensions that every run has."""
 
 
-@hinted()
+@with_hints()
 def register(
     kind: "type[OwnBase] | type[OwnScene] | type[OwnLink] | Diagnostic | Callable[..., Any]",
     *,
@@ -77,7 +77,7 @@ def register(
     >>> round(float(system.simulate(pulse, outputs=["roof_drift"]).peak_roof_drift), 3)
     0.184
     """
-    columns = several(columns, owner=_OWNER, name="columns", of="Variables")
+    columns = checked_list(columns, owner=_OWNER, name="columns", of="Variables")
     if isinstance(kind, Diagnostic) or (callable(kind) and not isinstance(kind, type)):
         _register_diagnostic(kind, columns, name, unit, long_name)
         return
@@ -149,7 +149,7 @@ def _class_faults(kind: Any) -> list[str]:
         return [] if kind.law is not OwnLink.law else [f"{kind.__name__} has no method law(mass)"]
     return [
         "expected a class derived from OwnBase or OwnScene, or from OwnLink, a Diagnostic or a "
-        f"function, got {shown(kind)}"
+        f"function, got {short_repr(kind)}"
     ]
 
 
@@ -157,7 +157,7 @@ def _base_faults(kind: type[OwnBase]) -> list[str]:
     faults: list[str] = []
     if kind.slot not in USER_BASE_SLOTS:
         known = " or ".join(repr(slot) for slot in USER_BASE_SLOTS)
-        faults.append(f"{kind.__name__}.slot must be {known}, got {shown(kind.slot)}")
+        faults.append(f"{kind.__name__}.slot must be {known}, got {short_repr(kind.slot)}")
     if kind.support is OwnBase.support:
         faults.append(f"{kind.__name__} has no method support(load)")
     return faults
@@ -175,7 +175,7 @@ def _scene_faults(kind: type[OwnScene]) -> list[str]:
         return [
             *faults,
             f"{kind.__name__}.made_of must name slots and classes of parts, such as "
-            f"{{'block': Block, 'floor': Floor}}, got {shown(made_of)}",
+            f"{{'block': Block, 'floor': Floor}}, got {short_repr(made_of)}",
         ]
     of_parts = [fault for row in made_of.items() for fault in _part_faults(kind.__name__, *row)]
     if of_parts:
@@ -207,7 +207,7 @@ def _part_faults(owner: str, slot: Any, part: Any) -> list[str]:
     if not (isinstance(slot, str) and slot.isidentifier()):
         return [f"{where}: a slot is called by a name such as 'floor'"]
     if not (isinstance(part, type) and issubclass(part, Component)):
-        return [f"{where} must be a class of components, got {shown(part)}"]
+        return [f"{where} must be a class of components, got {short_repr(part)}"]
     fills = slot_of_class(part)
     if fills is not None and fills != slot:
         return [f"{where}: {part.__name__} fills the slot {fills!r}"]
@@ -218,7 +218,7 @@ def _part_faults(owner: str, slot: Any, part: Any) -> list[str]:
 
 def _column_faults(row: Any, columns: Sequence[Any]) -> list[str]:
     if not isinstance(row, Variable):
-        return [f"columns must be Variables, got {shown(row)}"]
+        return [f"columns must be Variables, got {short_repr(row)}"]
     faults = _name_faults(row.name, "a column")
     labels = {one.name for one in columns if isinstance(one, Variable) and one.dims == (one.name,)}
     faults += [
@@ -235,10 +235,10 @@ def _column_faults(row: Any, columns: Sequence[Any]) -> list[str]:
 def _diagnostic_faults(value: Diagnostic) -> list[str]:
     name = cast("Any", value.name)
     if not isinstance(name, str):
-        return [f"the name of a diagnostic must be a word, got {shown(name)}"]
+        return [f"the name of a diagnostic must be a word, got {short_repr(name)}"]
     faults = _name_faults(name, "a diagnostic")
     if not callable(value.function):
-        faults.append(f"diagnostic {name!r} needs a function, got {shown(value.function)}")
+        faults.append(f"diagnostic {name!r} needs a function, got {short_repr(value.function)}")
     if not isinstance(cast("Any", value.long_name), str) or not value.long_name:
         faults.append(f"diagnostic {name!r} needs a long_name, or a docstring")
     if cast("Any", value.unit) is None:

@@ -6,11 +6,11 @@ from typing import Annotated, Final, TypeAlias, TypedDict
 
 import xarray as xr
 
-from rockframe.arguments import whole_number
+from rockframe.arguments import checked_integer
 from rockframe.components import InitialState
-from rockframe.proposals import proposing
 from rockframe.shared_arguments import Argument
 from rockframe.solve.accuracy import AccuracyLevel
+from rockframe.suggestions import suggests_names
 from rockframe.system.options import AccuracyLike, Overturning, OverturningLike, PointsLike
 from rockframe.units import Condition, QuantityLike, to_ratio
 
@@ -119,7 +119,7 @@ MIN_RUNS: Final = 60
 MAX_RUNS: Final = 100_000
 
 
-@proposing
+@suggests_names
 @dataclass(frozen=True, init=False)
 class Certification:
     """The further runs that a certificate makes.
@@ -160,7 +160,7 @@ class Certification:
         for name, (value, condition) in values.items():
             ratio = to_ratio(value, owner=owner, name=name, condition=condition)
             object.__setattr__(self, name, ratio)
-        most = whole_number(runs, owner=owner, name="runs", lowest=MIN_RUNS, highest=MAX_RUNS)
+        most = checked_integer(runs, owner=owner, name="runs", lowest=MIN_RUNS, highest=MAX_RUNS)
         object.__setattr__(self, "runs", most)
 
 

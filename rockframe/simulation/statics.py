@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.dynamics.events import ContactState
-from rockframe.errors import AssemblyError, ComponentError, shown
+from rockframe.errors import AssemblyError, ComponentError, short_repr
 from rockframe.results.outcome import Generic, slope_attributes
 from rockframe.results.schema import SCHEMA, build_dataset
 from rockframe.system.assembly import Assembly
@@ -39,7 +39,7 @@ def moment_rotation(system: Assembly, angles: object) -> xr.Dataset:
     """Return the quasi-static moments at given rotations."""
     held_at = to_si_values(angles, ANGLE, owner="moment_rotation", name="angles")
     if not len(held_at):
-        msg = f"moment_rotation: angles must be one or more, got {shown(angles)}"
+        msg = f"moment_rotation: angles must be one or more, got {short_repr(angles)}"
         raise ComponentError(msg)
     states = system.setting.held_at(held_at)
     values: dict[str, Generic] = {

@@ -9,11 +9,10 @@ from typing import Any, Final, Literal, Self
 
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, truth
+from rockframe.arguments import checked_bool, checked_dataset
 from rockframe.components import InitialState
 from rockframe.errors import ComponentError, ModelWarning, SchemaError, warn
 from rockframe.motion import GroundMotion
-from rockframe.proposals import hinted, proposing
 from rockframe.simulation.provenance import (
     check_unswept_system,
     description_by_names,
@@ -23,6 +22,7 @@ from rockframe.simulation.provenance import (
 from rockframe.simulation.run_arguments import FOREIGN_ARGUMENTS, Certification
 from rockframe.simulation.value import SystemValue
 from rockframe.solve.accuracy import AccuracyLevel
+from rockframe.suggestions import suggests_names, with_hints
 from rockframe.system.assembly import assemble
 from rockframe.system.options import (
     AccuracyLike,
@@ -44,7 +44,7 @@ _DAMAGED: Final = (ValueError, KeyError, TypeError, AttributeError)
 """Exceptions that a damaged description of a system may raise."""
 
 
-@proposing
+@suggests_names
 class System(SystemValue):
     """An assembled scene: parts in any order, checked together, ready to simulate.
 
@@ -126,7 +126,7 @@ class System(SystemValue):
         """
         return self._assembly.description
 
-    @hinted(**FOREIGN_ARGUMENTS)
+    @with_hints(**FOREIGN_ARGUMENTS)
     def simulate(
         self,
         motion: GroundMotion | None = None,
@@ -224,7 +224,7 @@ class System(SystemValue):
             points=points,
             overturning=overturning,
         )
-        again = truth(second_look, owner="simulate", name="second_look")
+        again = checked_bool(second_look, owner="simulate", name="second_look")
         return run(self._assembly, plan, read_certification(certify), repeat_run=again)
 
     def to_opensees(self, motion: GroundMotion, path: str | Path, **options: Any) -> Path:

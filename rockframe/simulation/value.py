@@ -1,7 +1,7 @@
 """The immutable value behind a system: parts and options, checked together."""
 
 from rockframe.motion import GroundMotion
-from rockframe.proposals import Proposing, proposing
+from rockframe.suggestions import SuggestingMeta, suggests_names
 from rockframe.system.assembly import Assembly, Scene
 from rockframe.system.options import Coupling, Options, Restraint, Rotation, Sliding
 from rockframe.system.parts import Parts
@@ -9,8 +9,8 @@ from rockframe.system.setting import Setting
 from rockframe.units import ACCELERATION, ANGLE, Quantity, quantity
 
 
-@proposing
-class SystemValue(metaclass=Proposing):
+@suggests_names
+class SystemValue(metaclass=SuggestingMeta):
     """The parts and options of a system, without its methods that simulate."""
 
     __slots__ = ("_assembly",)

@@ -9,10 +9,10 @@ from enum import StrEnum
 from numbers import Integral, Real
 from typing import Any, Final, Literal
 
+from rockframe.case_arrays import ceil, hypot
 from rockframe.dynamics.protocol import ContactModel
-from rockframe.errors import SolverError, nearest, shown
-from rockframe.many import ceil, hypot
-from rockframe.proposals import proposing
+from rockframe.errors import SolverError, did_you_mean, short_repr
+from rockframe.suggestions import suggests_names
 
 FEWEST: Final = "fewest"
 """Stands for the least number of sub-steps that `steps_per_period` allows."""
@@ -26,7 +26,7 @@ class AccuracyLevel(StrEnum):
     REFERENCE = "reference"
 
 
-@proposing
+@suggests_names
 @dataclass(frozen=True, kw_only=True)
 class Accuracy:
     """Settings of the integration: an error tolerance, or fixed sub-steps.
@@ -92,15 +92,16 @@ class Accuracy:
                 expected = (
                     f"a whole number or {FEWEST!r}" if field.name == "substeps" else "a number"
                 )
-                msg = f"Accuracy: {field.name} must be {expected}, got {shown(value)}"
+                msg = f"Accuracy: {field.name} must be {expected}, got {short_repr(value)}"
                 raise SolverError(msg)
             if whole and not isinstance(value, Integral):
-                msg = f"Accuracy: {field.name} must be a whole number, got {shown(value)}"
+                msg = f"Accuracy: {field.name} must be a whole number, got {short_repr(value)}"
                 raise SolverError(msg)
             number: Any = value  # integers have any size, unlike floats
             if not low <= number <= high:
                 msg = (
-                    f"Accuracy: {field.name} must lie from {low:g} to {high:g}, got {shown(value)}"
+                    f"Accuracy: {field.name} must lie from {low:g} to {high:g}, got "
+                    f"{short_repr(value)}"
                 )
                 raise SolverError(msg)
 
@@ -123,8 +124,8 @@ def accuracy_of(choice: "str | float | Accuracy", *, owner: str = "simulate") ->
     except ValueError:
         names = ", ".join(repr(str(level)) for level in AccuracyLevel)
         known = f"one of {names}, a tolerance such as 1e-6 or an Accuracy(...)"
-        near = nearest(choice, map(str, AccuracyLevel))
-        msg = f"{owner}: accuracy must be {known}, got {shown(choice)}{near}"
+        near = did_you_mean(choice, map(str, AccuracyLevel))
+        msg = f"{owner}: accuracy must be {known}, got {short_repr(choice)}{near}"
         if isinstance(choice, str) and choice == "screen":
             msg += (
                 "; sweeps, and analyses made of them, screen, such as "

@@ -11,9 +11,9 @@ from typing import Any, Final, cast
 
 import numpy as np
 
+from rockframe.case_arrays import isnan, maximum
 from rockframe.compiled import Integers, Matrix, Vector
 from rockframe.dynamics.protocol import ContactModel, Ending
-from rockframe.many import isnan, largest
 from rockframe.solve import workspace as at
 from rockframe.solve.crossings import cubic_value_and_rate, quintic_coefficients
 from rockframe.solve.workspace import ROW_CODES, ROW_HEADER, Status, StepTable
@@ -134,7 +134,7 @@ class Summary:
     @property
     def peak_rotation(self) -> float:
         """Largest rotation to either side [rad]."""
-        return largest(self.peak_left, self.peak_right)
+        return maximum(self.peak_left, self.peak_right)
 
     @property
     def reached_limit(self) -> bool:

@@ -8,9 +8,8 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import several, whole_number
+from rockframe.arguments import checked_integer, checked_list
 from rockframe.errors import StudyError
-from rockframe.proposals import hinted
 from rockframe.results.outcome import Generic, overturns
 from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
@@ -43,6 +42,7 @@ from rockframe.studies.limit_states import (
 )
 from rockframe.studies.logistic import Logistic, fit_logistic
 from rockframe.studies.sweeps.motions import MotionsLike
+from rockframe.suggestions import with_hints
 from rockframe.units import POSITIVE, RatioLike
 
 _OWNER: Final = "cloud_analysis"
@@ -189,7 +189,7 @@ def _exceedance_probability(
     return overturning + (1.0 - overturning) * moving * regressed
 
 
-@hinted()
+@with_hints()
 def cloud_analysis(
     runs: xr.Dataset,
     intensity: str | xr.DataArray = "PGA",
@@ -280,8 +280,8 @@ def cloud_analysis(
     """
     runs = check_runs(runs, owner=_OWNER)
     level = read_level(confidence, owner=_OWNER)
-    seed = whole_number(seed, owner=_OWNER, name="seed", lowest=0)
-    pooled_axes = several(pooled, owner=_OWNER, name="pooled", of="names")
+    seed = checked_integer(seed, owner=_OWNER, name="seed", lowest=0)
+    pooled_axes = checked_list(pooled, owner=_OWNER, name="pooled", of="names")
     check_one_structure(runs, pooled_axes, [column_of_runs(runs, intensity)], owner=_OWNER)
     measure = measure_of_runs(runs, intensity, period, motions, owner=_OWNER)
     values = scalar_of(runs, response, label, owner=_OWNER)

@@ -4,7 +4,7 @@ from typing import Final
 
 import numpy as np
 
-from rockframe.arguments import several
+from rockframe.arguments import checked_list
 from rockframe.results.outcome import Generic
 from rockframe.signals.arrays import Array
 from rockframe.units import Condition, to_ratio
@@ -20,7 +20,7 @@ def read_level(value: object, *, owner: str) -> float:
 
 def read_shares(value: object, name: str, *, owner: str) -> Array:
     """Read an argument that is several shares."""
-    listed = several(value, owner=owner, name=name, of="numbers")
+    listed = checked_list(value, owner=owner, name=name, of="numbers")
     return np.array(
         [to_ratio(one, owner=owner, name=name, condition=SHARE, example="0.5") for one in listed]
     )

@@ -9,13 +9,13 @@ from typing import Final, Unpack
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import whole_number
+from rockframe.arguments import checked_integer
 from rockframe.components import InitialState
 from rockframe.errors import ComponentError, SolverWarning, warn
 from rockframe.motion import GroundMotion
 from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.studies import Outcome
-from rockframe.shared_arguments import takes
+from rockframe.shared_arguments import with_shared_arguments
 from rockframe.signals.motion import extrema_of
 from rockframe.simulation.certify.run_summary import RunSummary
 from rockframe.simulation.plan import Plan, plan_run
@@ -44,7 +44,7 @@ _OUTCOMES: Final = {
 }  # fmt: skip
 
 
-@takes(ScaleArguments)
+@with_shared_arguments(ScaleArguments)
 def critical_scale(
     system: System,
     motion: GroundMotion | None = None,
@@ -155,8 +155,8 @@ def critical_scale(
     )
     width = read_width(bracket_width, owner=_OWNER)
     finest = read_resolution(resolution, owner=_OWNER)
-    count = whole_number(scales, owner=_OWNER, name="scales", lowest=2, highest=MOST_RUNS)
-    max_runs = whole_number(runs, owner=_OWNER, name="runs", lowest=count, highest=MOST_RUNS)
+    count = checked_integer(scales, owner=_OWNER, name="scales", lowest=2, highest=MOST_RUNS)
+    max_runs = checked_integer(runs, owner=_OWNER, name="runs", lowest=count, highest=MOST_RUNS)
     plan = plan_run(system.assembly, motion, outputs=None, **requested)
     measure = None
     if intensity is not None:

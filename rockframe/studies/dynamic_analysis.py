@@ -12,7 +12,7 @@ from rockframe.errors import ModelWarning, warn
 from rockframe.results.outcome import overturns
 from rockframe.results.schema import with_variables
 from rockframe.results.variables.studies import MOTION
-from rockframe.shared_arguments import takes
+from rockframe.shared_arguments import with_shared_arguments
 from rockframe.signals.arrays import Array
 from rockframe.simulation.soundness import share_words, slip_words
 from rockframe.simulation.system import System
@@ -48,7 +48,7 @@ _OWNER: Final = "incremental_dynamic_analysis"
 _SCALES: Final = tuple(0.1 * k for k in range(1, 41))
 
 
-@takes(SweepArguments, further="axes")
+@with_shared_arguments(SweepArguments, extra_into="axes")
 def incremental_dynamic_analysis(
     system: System | Callable[..., System],
     motions: MotionsLike | None = None,

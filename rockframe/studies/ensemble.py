@@ -6,20 +6,20 @@ from typing import Any, Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, several
-from rockframe.errors import ComponentError, SchemaError, nearest, shown
-from rockframe.proposals import hinted
+from rockframe.arguments import checked_dataset, checked_list
+from rockframe.errors import ComponentError, SchemaError, did_you_mean, short_repr
 from rockframe.results.schema import build_dataset
 from rockframe.results.variables.studies import MOTION
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import clopper_pearson, read_level, read_shares
 from rockframe.studies.probability import SAMPLING_ATTRIBUTE
+from rockframe.suggestions import with_hints
 from rockframe.units import RatioLike
 
 _OWNER: Final = "ensemble_statistics"
 
 
-@hinted()
+@with_hints()
 def ensemble_statistics(
     runs: xr.Dataset | xr.DataArray,
     name: str = "peak_relative_rotation",
@@ -86,7 +86,7 @@ def ensemble_statistics(
     if values.dtype.kind not in "biuf":
         msg = f"{_OWNER}: {values.name!r} has no numbers, but words or objects"
         raise ComponentError(msg)
-    pooled_axes = several(pooled, owner=_OWNER, name="pooled", of="names")
+    pooled_axes = checked_list(pooled, owner=_OWNER, name="pooled", of="names")
     level = np.nan if _members_depend(values, runs.attrs, pooled_axes) else requested
     ordered = np.sort(values.to_numpy().ravel().astype(np.float64))
     ordered = ordered[~np.isnan(ordered)]
@@ -124,7 +124,7 @@ def _values_of(runs: Any, name: str) -> xr.DataArray:
     dataset = checked_dataset(runs, owner=_OWNER)
     if not isinstance(cast("Any", name), str) or name not in dataset:
         known = [str(one) for one in dataset]
-        found = f"{shown(name)}{nearest(name, known)}"
+        found = f"{short_repr(name)}{did_you_mean(name, known)}"
         msg = f"{_OWNER}: found no {found}; expected one of {', '.join(known)}"
         raise SchemaError(msg)
     return dataset[name]

@@ -7,10 +7,9 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import several
-from rockframe.errors import ComponentError, StudyError, shown
+from rockframe.arguments import checked_list
+from rockframe.errors import ComponentError, StudyError, short_repr
 from rockframe.motion.quantities import ArrayLike
-from rockframe.proposals import hinted
 from rockframe.results.outcome import Generic, overturns
 from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.studies import MOTION
@@ -22,6 +21,7 @@ from rockframe.studies.intensities import PeriodLike, measure_of_runs, period_at
 from rockframe.studies.limit_states import check_runs, scalar_of
 from rockframe.studies.line_scan import SCALE
 from rockframe.studies.sweeps.motions import MotionsLike
+from rockframe.suggestions import with_hints
 from rockframe.units import Measure, RatioLike, Unit, to_ratio, to_si_values
 
 _OWNER: Final = "fractile_curves"
@@ -31,7 +31,7 @@ _LEVEL_DIM: Final = "response_level"
 _TITLE: Final = "Fractile curves of scaled motions"
 
 
-@hinted()
+@with_hints()
 def fractile_curves(
     runs: xr.Dataset,
     intensity: str | xr.DataArray = SCALE,
@@ -301,13 +301,13 @@ def _read_levels(value: Any, values: xr.DataArray, curves: Sequence[_ResponseCur
         return np.linspace(*ends, _CURVE_POINTS + 1)[1:]  # every motion has reached the least
     unit = str(values.attrs.get("units", "1"))
     if unit == Unit.ONE:
-        listed = several(value, owner=_OWNER, name="levels", of="numbers")
+        listed = checked_list(value, owner=_OWNER, name="levels", of="numbers")
         found = np.array([to_ratio(one, owner=_OWNER, name="levels") for one in listed])
     else:
         measure = Measure("a response", Unit(unit), f"1 {unit}")
         found = np.array(to_si_values(value, measure, owner=_OWNER, name="levels"))
     if not len(found) or not (np.diff(found) > 0.0).all():
-        msg = f"{_OWNER}: levels must be one or more, and increase, got {shown(value)}"
+        msg = f"{_OWNER}: levels must be one or more, and increase, got {short_repr(value)}"
         raise ComponentError(msg)
     return found
 

@@ -9,9 +9,8 @@ import numpy as np
 import xarray as xr
 from numpy.polynomial.legendre import leggauss
 
-from rockframe.arguments import checked_dataset, function_of
-from rockframe.errors import ComponentError, ModelWarning, SchemaError, UnitsError, shown, warn
-from rockframe.proposals import hinted
+from rockframe.arguments import checked_dataset, checked_function
+from rockframe.errors import ComponentError, ModelWarning, SchemaError, UnitsError, short_repr, warn
 from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.variable import unit_suffix
@@ -20,7 +19,8 @@ from rockframe.studies.fragility.likelihood import log_interval_probability
 from rockframe.studies.fragility.words import in_own_units, measures_of
 from rockframe.studies.intensities import PERIOD_ATTRIBUTE, measure_words
 from rockframe.studies.sweeps.axes import read_free_values
-from rockframe.units import POSITIVE, Unit, check_own_unit, to_ratio
+from rockframe.suggestions import with_hints
+from rockframe.units import POSITIVE, Unit, check_attached_unit, to_ratio
 
 _OWNER: Final = "annual_rate"
 _RATE_COLUMNS, _PROBABILITY_COLUMNS = ("intensity", "rate"), ("intensity", "probability", "years")
@@ -67,7 +67,7 @@ class HazardCurve:
         )
 
 
-@hinted()
+@with_hints()
 def annual_rate(
     fragility: xr.Dataset,
     hazard: Mapping[str, Any] | xr.DataArray | Callable[[Array], Any],
@@ -172,10 +172,10 @@ def read_hazard(value: object, measure: xr.DataArray, between: object) -> Hazard
             raise ComponentError(msg)
         ends = _read_intensities(between, name, unit)
         if len(ends) != 2 or not 0.0 < ends[0] < ends[1]:
-            msg = f"{_OWNER}: between must be two intensities that rise, got {shown(between)}"
+            msg = f"{_OWNER}: between must be two intensities that rise, got {short_repr(between)}"
             raise ComponentError(msg)
         values = np.geomspace(float(ends[0]), float(ends[1]), _FUNCTION_POINTS)
-        rate = function_of(value, "intensities", owner=_OWNER, name="hazard")
+        rate = checked_function(value, "intensities", owner=_OWNER, name="hazard")
         rates = np.broadcast_to(np.asarray(rate(values), dtype=np.float64), values.shape)
     elif isinstance(value, xr.DataArray) and value.ndim == 1:
         (dim,) = value.dims
@@ -189,13 +189,16 @@ def read_hazard(value: object, measure: xr.DataArray, between: object) -> Hazard
                 ", ".join(map(repr, names)) for names in (_RATE_COLUMNS, _PROBABILITY_COLUMNS)
             )
             msg = (
-                f"{_OWNER}: a table of hazard has {expected}; found {', '.join(map(shown, table))}"
+                f"{_OWNER}: a table of hazard has {expected}; found "
+                f"{', '.join(map(short_repr, table))}"
             )
             raise ComponentError(msg)
         values = _read_intensities(table["intensity"], name, unit)
         rates = _read_rates(table)
     else:
-        msg = f"{_OWNER}: hazard must be a table, a DataArray or a function, got {shown(value)}"
+        msg = (
+            f"{_OWNER}: hazard must be a table, a DataArray or a function, got {short_repr(value)}"
+        )
         raise ComponentError(msg)
     if rates.shape != values.shape or len(values) < 2:
         msg = (
@@ -207,7 +210,7 @@ def read_hazard(value: object, measure: xr.DataArray, between: object) -> Hazard
     if not (is_valid and values[0] > 0.0 and rates[-1] > 0.0 and math.isfinite(rates[0])):
         msg = (
             f"{_OWNER}: in a hazard curve intensities above zero rise, and rates above zero fall; "
-            f"found {shown(values.tolist())} and {shown(rates.tolist())}"
+            f"found {short_repr(values.tolist())} and {short_repr(rates.tolist())}"
         )
         raise ComponentError(msg)
     return HazardCurve(values, rates)
@@ -217,11 +220,11 @@ def _read_intensities(value: object, name: str, unit: str) -> Array:
     pair = cast("tuple[Any, ...]", value) if isinstance(value, tuple) else ()
     own_measure = unit == Unit.ONE or unit not in map(str, Unit)
     if len(pair) == 2 and pair[1] == unit and own_measure:
-        check_own_unit(pair[0], unit, owner=_OWNER, name="intensity")
+        check_attached_unit(pair[0], unit, owner=_OWNER, name="intensity")
         return np.asarray(read_free_values(list(pair[0]), "intensity", owner=_OWNER)[0], float)
     values, own = read_free_values(value, "intensity", owner=_OWNER, expected=unit)
     if own != unit:
-        msg = f"{_OWNER}: {name} is in {unit}, got {shown(value)}"
+        msg = f"{_OWNER}: {name} is in {unit}, got {short_repr(value)}"
         raise UnitsError(msg)
     return np.asarray(values, dtype=np.float64)
 
@@ -233,7 +236,10 @@ def _read_rates(table: Mapping[str, Any]) -> Array:
     years = to_ratio(table["years"], owner=_OWNER, name="years", condition=POSITIVE, example="50")
     chance = np.asarray(table["probability"], dtype=np.float64)
     if np.any(chance <= 0.0) or np.any(chance >= 1.0):
-        msg = f"{_OWNER}: probabilities must be above 0 and below 1, got {shown(chance.tolist())}"
+        msg = (
+            f"{_OWNER}: probabilities must be above 0 and below 1, got "
+            f"{short_repr(chance.tolist())}"
+        )
         raise ComponentError(msg)
     return -np.log1p(-chance) / years
 

@@ -8,8 +8,8 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import one_of_names, text
-from rockframe.errors import ComponentError, SchemaError, StudyError, nearest, shown
+from rockframe.arguments import checked_name, checked_text
+from rockframe.errors import ComponentError, SchemaError, StudyError, did_you_mean, short_repr
 from rockframe.measures import average_spectral_acceleration, intensity_measures, response_spectrum
 from rockframe.measures.intensity import measure_of_ground
 from rockframe.measures.response import checked_periods
@@ -123,7 +123,7 @@ class Intensity:
     def read(cls, value: object, period: PeriodLike | None, *, owner: str) -> "Intensity":
         """Read the arguments ``intensity`` and ``period``."""
         value = measure_name(value)
-        name = one_of_names(
+        name = checked_name(
             value, [*SCALE_EXPONENTS, *MEASURE_ABBREVIATIONS], owner=owner, name="intensity"
         )
         if name not in _PERIOD_DEPENDENT:
@@ -329,18 +329,21 @@ class ScaledIntensity:
         owner: str,
     ) -> None:
         self._motion, self._system = motion, system
-        name = measure_name(text(name, owner=owner, name="intensity"))
+        name = measure_name(checked_text(name, owner=owner, name="intensity"))
         self._damping = to_ratio(damping_ratio, owner=owner, name="damping_ratio")
         spectral = name in OSCILLATORS
         if spectral != (period is not None):
             needed = "needs a period, for example period='0.5 s'" if spectral else "has no period"
-            msg = f"{owner}: intensity {shown(name)} {needed}"
+            msg = f"{owner}: intensity {short_repr(name)} {needed}"
             raise ComponentError(msg)
         self.period = None if period is None else to_si(period, PERIOD, owner=owner, name="period")
         known = sorted({*map(str, self._measures(motion)), *OSCILLATORS} - {*_BLOCK_VARIABLES})
         if name not in known:
-            near = nearest(name, [*MEASURE_ABBREVIATIONS, *known])
-            msg = f"{owner}: intensity must be one of {', '.join(known)}, got {shown(name)}{near}"
+            near = did_you_mean(name, [*MEASURE_ABBREVIATIONS, *known])
+            msg = (
+                f"{owner}: intensity must be one of {', '.join(known)}, got "
+                f"{short_repr(name)}{near}"
+            )
             raise ComponentError(msg)
         self.name = str(name)
 

@@ -9,8 +9,8 @@ from typing import Any, Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, several
-from rockframe.errors import ComponentError, SchemaError, nearest, shown
+from rockframe.arguments import checked_dataset, checked_list
+from rockframe.errors import ComponentError, SchemaError, did_you_mean, short_repr
 from rockframe.results.outcome import Generic, overturns
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.bodies import BODIES, RESTRAINERS
@@ -83,7 +83,7 @@ def listed_limits(value: object, *, owner: str, name: str = "limits") -> list[An
     """Return the given limit states as a list, also a single one."""
     if isinstance(value, str | int | float):
         return [value]
-    return several(value, owner=owner, name=name, of="limit states")
+    return checked_list(value, owner=owner, name=name, of="limit states")
 
 
 def _rotation_limit(value: Any, owner: str, name: str) -> float:
@@ -93,7 +93,7 @@ def _rotation_limit(value: Any, owner: str, name: str) -> float:
             f"{owner}: {name} must be {UPLIFT!r}, {OVERTURNING!r}, a rotation over the overturning "
             "angle such as 0.5, or a variable of runs and a value such as ('peak_slip', '5 cm')"
         )
-        msg = f"{words}, got {shown(value)}{nearest(value, (UPLIFT, OVERTURNING))}"
+        msg = f"{words}, got {short_repr(value)}{did_you_mean(value, (UPLIFT, OVERTURNING))}"
         raise ComponentError(msg)
     return to_ratio(value, owner=owner, name=name, condition=SHARE, example="0.5")
 
@@ -103,7 +103,7 @@ def _variable_limit(items: tuple[Any, ...], owner: str) -> LimitState:
     name, value, label = (*items, None, None)[:3] if len(items) in (2, 3) else ("", None, None)
     if isinstance(name, str) and name and name not in SCHEMA:
         scalars = [row.name for row in SCHEMA.values() if TIME[0] not in row.dims]
-        near = nearest(name, scalars)
+        near = did_you_mean(name, scalars)
         msg = (
             f"{owner}: limits: no variable of runs is called {name!r}{near}; a limit state is for "
             "example ('peak_slip', '5 cm')"
@@ -113,7 +113,7 @@ def _variable_limit(items: tuple[Any, ...], owner: str) -> LimitState:
         msg = (
             f"{owner}: a limit state on a variable of runs is its name, a value with a unit or "
             "None, and of several points, bodies or restrainers which one, for example "
-            f"('peak_slip', '5 cm'); got {shown(items)}"
+            f"('peak_slip', '5 cm'); got {short_repr(items)}"
         )
         raise ComponentError(msg)
     row, least = SCHEMA[name], math.nan
@@ -222,7 +222,7 @@ def scalar_of(runs: xr.Dataset, name: str, label: object = None, *, owner: str) 
     """Return a scalar of runs, for one point, body or restrainer if it has several."""
     known = isinstance(cast("Any", name), str)
     if not known or name not in runs or runs[name].dtype.kind not in "biuf":
-        msg = f"{owner}: the runs have no {shown(name)}{_scalar_hint(runs, name) if known else ''}"
+        msg = f"{owner}: the runs have no {short_repr(name)}{_scalar_hint(runs, name) if known else ''}"
         raise SchemaError(msg)
     values = runs[name]
     extra_dims = [dim for dim in values.dims if dim not in runs["status"].dims]
@@ -250,5 +250,5 @@ def _scalar_hint(runs: xr.Dataset, name: str) -> str:
             "outputs=[], and then the histories of all cases, too"
         )
     numbers = [str(one) for one, values in runs.items() if values.dtype.kind in "fiu"]
-    near = nearest(name, numbers)
+    near = did_you_mean(name, numbers)
     return f"{near}; they have {', '.join(numbers)}"

@@ -9,7 +9,7 @@ from typing import Any, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import RockframeError, StudyError, nearest, shown
+from rockframe.errors import RockframeError, StudyError, did_you_mean, short_repr
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import with_labels
 from rockframe.results.variables.studies import CASE
@@ -83,7 +83,7 @@ def read_line_axes(
     if value is None:
         return LineAxes()
     if not isinstance(value, Mapping):
-        msg = f"{owner}: axes must be a mapping of names to values, got {shown(value)}"
+        msg = f"{owner}: axes must be a mapping of names to values, got {short_repr(value)}"
         raise StudyError(msg)
     found, faults = list[Axis](), list[str]()
     for name, values in cast("Mapping[Any, Any]", value).items():
@@ -94,7 +94,7 @@ def read_line_axes(
             found.append(scene.axis(str(name), values))
         except RockframeError as problem:
             reasons = problem.faults if isinstance(problem, StudyError) else (str(problem),)
-            argument = nearest(name, argument_names)
+            argument = did_you_mean(name, argument_names)
             faults += [one if argument in one else f"{one}{argument}" for one in reasons]
     for axis in found:
         if axis.changes is Changes.MOTION:

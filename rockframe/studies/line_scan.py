@@ -20,7 +20,7 @@ from rockframe.errors import (
     SolverWarning,
     StudyError,
     collected_warnings,
-    shown,
+    short_repr,
     warn,
 )
 from rockframe.motion import GroundMotion
@@ -417,7 +417,7 @@ def read_sorted(value: object, measure: Measure, name: str, *, owner: str) -> Ar
     """Read values above zero, sorted, equal ones once."""
     values = np.unique(read_numbers(value, measure, name))
     if not len(values) or values[0] <= 0.0:
-        msg = f"{owner}: {name} must be above zero, got {shown(value)}"
+        msg = f"{owner}: {name} must be above zero, got {short_repr(value)}"
         raise ComponentError(msg)
     return values
 
@@ -427,7 +427,7 @@ def read_scales(value: object, *, owner: str) -> Array:
     values = np.unique(read_numbers(value, MOTION_AXES[SCALE].measure, SCALE))
     if not 2 <= len(values) <= _MAX_SCALES or values[0] <= 0.0:
         expected = f"2 to {_MAX_SCALES} different numbers above zero"
-        msg = f"{owner}: scale needs {expected}, got {shown(value)}"
+        msg = f"{owner}: scale needs {expected}, got {short_repr(value)}"
         raise ComponentError(msg)
     return values
 

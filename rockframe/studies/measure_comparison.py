@@ -8,9 +8,8 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from rockframe.arguments import several
-from rockframe.errors import ComponentError, StudyError, shown
-from rockframe.proposals import hinted
+from rockframe.arguments import checked_list
+from rockframe.errors import ComponentError, StudyError, short_repr
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.studies import MOTION
@@ -27,6 +26,7 @@ from rockframe.studies.intensities import (
 )
 from rockframe.studies.limit_states import check_runs, scalar_of
 from rockframe.studies.sweeps.motions import MotionsLike
+from rockframe.suggestions import with_hints
 
 _OWNER: Final = "compare_intensities"
 _SIGNIFICANCE: Final = 0.05
@@ -35,7 +35,7 @@ Covariates = Mapping[str, Any]
 """Numbers of the motions by name: in order of motions, by their labels, or over ``motion``."""
 
 
-@hinted()
+@with_hints()
 def compare_intensities(
     runs: xr.Dataset,
     measures: Iterable[str | tuple[str, PeriodLike] | xr.DataArray],
@@ -122,9 +122,9 @@ def compare_intensities(
         measures = [measures]
     listed = [
         _measure_and_period(one)
-        for one in several(measures, owner=_OWNER, name="measures", of="measures")
+        for one in checked_list(measures, owner=_OWNER, name="measures", of="measures")
     ]
-    pooled_axes = several(pooled, owner=_OWNER, name="pooled", of="names")
+    pooled_axes = checked_list(pooled, owner=_OWNER, name="pooled", of="names")
     check_one_structure(
         runs, pooled_axes, [column_of_runs(runs, one) for one, _ in listed], owner=_OWNER
     )
@@ -162,7 +162,7 @@ def _measure_and_period(value: object) -> tuple[Any, Any]:
         pair = cast("tuple[Any, ...]", value)
         if len(pair) == 2 and isinstance(pair[0], str):
             return pair[0], pair[1]
-        msg = f"{_OWNER}: a measure with a period is ('SA', '1 s'), got {shown(value)}"
+        msg = f"{_OWNER}: a measure with a period is ('SA', '1 s'), got {short_repr(value)}"
         raise ComponentError(msg)
     return value, None
 
@@ -175,10 +175,10 @@ def _read_covariates(
         table = values
         return {str(name): _covariate_of_runs(runs, str(name), one) for name, one in table.items()}
     found: dict[str, xr.DataArray] = {}
-    for name in several(values, owner=_OWNER, name="against", of="names"):
+    for name in checked_list(values, owner=_OWNER, name="against", of="names"):
         one = column_of_runs(runs, name)
         if not isinstance(one, xr.DataArray) or not set(one.dims) <= set(runs["status"].dims):
-            msg = f"{_OWNER}: against names {shown(name)}, which is no coordinate of the runs"
+            msg = f"{_OWNER}: against names {short_repr(name)}, which is no coordinate of the runs"
             raise ComponentError(msg)
         found[str(name)] = one
     return found
@@ -197,7 +197,7 @@ def _covariate_of_runs(runs: xr.Dataset, name: str, value: Any) -> xr.DataArray:
             raise ComponentError(msg)
         values = [table[str(one)] for one in labels.ravel()]
     else:
-        values = several(value, owner=_OWNER, name=f"against[{name!r}]", of="numbers")
+        values = checked_list(value, owner=_OWNER, name=f"against[{name!r}]", of="numbers")
         if runs[MOTION].dims != (MOTION,) or len(values) != labels.size:
             msg = (
                 f"{_OWNER}: against has {len(values)} numbers of {name} for {labels.size} motions; "

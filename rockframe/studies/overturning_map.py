@@ -7,12 +7,12 @@ from typing import Any, Final, Unpack
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import function_of, whole_number
-from rockframe.errors import ComponentError, shown
+from rockframe.arguments import checked_function, checked_integer
+from rockframe.errors import ComponentError, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.results.schema import SCHEMA, with_labels, with_variables
 from rockframe.results.variables.studies import MOTION
-from rockframe.shared_arguments import takes
+from rockframe.shared_arguments import with_shared_arguments
 from rockframe.signals.arrays import Array
 from rockframe.signals.motion import absolute_peak
 from rockframe.simulation.system import System, check_system
@@ -37,7 +37,7 @@ _PEAK_TOLERANCE: Final = 1e-6
 """Relative difference up to which peaks of pulses of one amplitude count as equal [1]."""
 
 
-@takes(SweepArguments, overturning=Overturning.CONTINUE)
+@with_shared_arguments(SweepArguments, overturning=Overturning.CONTINUE)
 def overturning_map(
     system: System,
     pulse: GroundMotion | Callable[..., GroundMotion],
@@ -111,7 +111,7 @@ def overturning_map(
     check_system(system, _OWNER)
     amplitudes = read_sorted(amplitude, ACCELERATION, "amplitude", owner=_OWNER)
     frequencies = read_sorted(frequency, FREQUENCY, "frequency", owner=_OWNER)
-    impact_count = whole_number(
+    impact_count = checked_integer(
         impacts, owner=_OWNER, name="impacts", lowest=1, highest=_MAX_IMPACTS
     )
     width = read_width(bracket_width, owner=_OWNER)
@@ -171,13 +171,13 @@ def _unit_pulse(pulse: object, frequency: float) -> GroundMotion:
     if not callable(pulse):
         msg = (
             f"{_OWNER}: pulse must be a GroundMotion or a function such as "
-            f"rf.GroundMotion.sine_pulse, got {shown(pulse)}"
+            f"rf.GroundMotion.sine_pulse, got {short_repr(pulse)}"
         )
         raise ComponentError(msg)
-    pulse = function_of(pulse, "amplitude", "frequency", owner=_OWNER, name="pulse")
+    pulse = checked_function(pulse, "amplitude", "frequency", owner=_OWNER, name="pulse")
     motion = pulse(quantity(1.0, ACCELERATION), quantity(frequency, FREQUENCY))
     if not isinstance(motion, GroundMotion):
-        msg = f"{_OWNER}: pulse must return a GroundMotion, got {shown(motion)}"
+        msg = f"{_OWNER}: pulse must return a GroundMotion, got {short_repr(motion)}"
         raise ComponentError(msg)
     return motion
 

@@ -8,13 +8,19 @@ from typing import Any, Final, NamedTuple, Unpack, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import one_of_words, whole_number
-from rockframe.errors import ComponentError, RockframeError, StudyError, collected_warnings, shown
+from rockframe.arguments import checked_choice, checked_integer
+from rockframe.errors import (
+    ComponentError,
+    RockframeError,
+    StudyError,
+    collected_warnings,
+    short_repr,
+)
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import with_variables
 from rockframe.results.table import head
 from rockframe.results.variables.studies import MOTION
-from rockframe.shared_arguments import takes
+from rockframe.shared_arguments import with_shared_arguments
 from rockframe.signals.arrays import Array
 from rockframe.simulation.system import System
 from rockframe.studies.confidence import clopper_pearson, read_level
@@ -56,7 +62,10 @@ class RandomParameter:
 def read_spread(value: object, scene: SweptScene, *, owner: str) -> tuple[RandomParameter, ...]:
     """Read the argument ``spread``."""
     if not isinstance(value, Mapping) or not value:
-        msg = f"{owner}: spread must give distributions by names of parameters, got {shown(value)}"
+        msg = (
+            f"{owner}: spread must give distributions by names of parameters, got "
+            f"{short_repr(value)}"
+        )
         raise ComponentError(msg)
     found: list[RandomParameter] = []
     faults: list[str] = []
@@ -83,7 +92,7 @@ def read_correlation(argument: object, names: Sequence[str], *, owner: str) -> A
             if len(two) != 2 or two[0] == two[1] or not set(two) <= set(names):
                 msg = (
                     f"{owner}: correlation needs pairs of two of {', '.join(names)}, "
-                    f"got {shown(pair)}"
+                    f"got {short_repr(pair)}"
                 )
                 raise ComponentError(msg)
             i, j = (names.index(one) for one in two)
@@ -99,7 +108,7 @@ def read_correlation(argument: object, names: Sequence[str], *, owner: str) -> A
     if not alike or not np.allclose(np.diag(matrix), 1.0, rtol=0.0, atol=1e-12):
         msg = (
             f"{owner}: correlation must be a symmetric matrix of {size} rows with ones on its "
-            f"diagonal, in the order of {', '.join(names)}, got {shown(argument)}"
+            f"diagonal, in the order of {', '.join(names)}, got {short_repr(argument)}"
         )
         raise ComponentError(msg)
     if float(np.linalg.eigvalsh(matrix)[0]) <= 0.0:
@@ -147,7 +156,7 @@ def _read_parameter(name: str, value: Any, scene: SweptScene, owner: str) -> Ran
         known = ", ".join(_DISTRIBUTIONS.values())
         msg = (
             f"{owner}: {name} needs {known}, or a distribution of scipy.stats and its unit, "
-            f"got {shown(value)}"
+            f"got {short_repr(value)}"
         )
         raise ComponentError(msg)
     kind, first, second = parts
@@ -156,7 +165,7 @@ def _read_parameter(name: str, value: Any, scene: SweptScene, owner: str) -> Ran
     if kind == "lognormal":
         log = to_ratio(second, owner=owner, name=name, condition=POSITIVE, example="0.2")
         if start <= 0.0:
-            msg = f"{owner}: {name} needs a median above zero, got {shown(first)}"
+            msg = f"{owner}: {name} needs a median above zero, got {short_repr(first)}"
             raise ComponentError(msg)
         return RandomParameter(axis.name, str(axis.unit), stats.lognorm(s=log, scale=start))
     width = float(_axis_of(scene, name, second, owner).values[0])
@@ -167,7 +176,7 @@ def _read_parameter(name: str, value: Any, scene: SweptScene, owner: str) -> Ran
             axis.name, str(axis.unit), stats.uniform(loc=start, scale=width - start)
         )
     wrong = "standard deviation above zero" if kind == "normal" else "greatest above the least"
-    msg = f"{owner}: {name} needs a {wrong}, got {shown(second)}"
+    msg = f"{owner}: {name} needs a {wrong}, got {short_repr(second)}"
     raise ComponentError(msg)
 
 
@@ -259,7 +268,7 @@ SAMPLING_ATTRIBUTE: Final = "sampling"
 _MAX_CASES: Final = 1_000_000_000
 
 
-@takes(SweepArguments)
+@with_shared_arguments(SweepArguments)
 def probability_of_overturning(
     system: System | Callable[..., System],
     motions: MotionsLike | None = None,
@@ -343,9 +352,9 @@ def probability_of_overturning(
     scene = scene_of(system)
     spreads = read_spread(spread, scene, owner=_OWNER)
     matrix = read_correlation(correlation, [one.name for one in spreads], owner=_OWNER)
-    count = whole_number(cases, owner=_OWNER, name="cases", lowest=2, highest=_MAX_CASES)
-    method = one_of_words(Sampling, sampling, owner=_OWNER, name="sampling")
-    start_seed = whole_number(seed, owner=_OWNER, name="seed", lowest=0)
+    count = checked_integer(cases, owner=_OWNER, name="cases", lowest=2, highest=_MAX_CASES)
+    method = checked_choice(Sampling, sampling, owner=_OWNER, name="sampling")
+    start_seed = checked_integer(seed, owner=_OWNER, name="seed", lowest=0)
     level = read_level(confidence, owner=_OWNER)
     named = motions_of_study(motions, scene)
     faults = check_memory(

@@ -10,14 +10,14 @@ from typing import Any, Final, Unpack, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import by_words, iterates, several
-from rockframe.errors import ComponentError, shown
+from rockframe.arguments import checked_list, is_iterable, with_string_keys
+from rockframe.errors import ComponentError, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.results.joining import CASE_COUNT
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import with_variables
 from rockframe.results.variables.studies import MESSAGE, MOTION
-from rockframe.shared_arguments import takes
+from rockframe.shared_arguments import with_shared_arguments
 from rockframe.signals import Motion, Signal
 from rockframe.signals.arrays import Array
 from rockframe.signals.motion import COEFFICIENTS
@@ -37,7 +37,7 @@ _MAX_SUBDIVISIONS: Final = 64
 EARTHQUAKE: Final = "earthquake"
 
 
-@takes(SequenceArguments)
+@with_shared_arguments(SequenceArguments)
 def earthquake_sequences(
     system: System,
     sequences: Mapping[str, Sequence[GroundMotion]] | Sequence[Sequence[GroundMotion]],
@@ -123,8 +123,8 @@ def earthquake_sequences(
 def _read_sequences(value: object) -> dict[str, list[GroundMotion]]:
     """Read the sequences, and check that their motions fit."""
     if isinstance(value, Mapping):
-        named = by_words(cast("Mapping[Any, Any]", value), owner=_OWNER)
-    elif iterates(value) and not isinstance(value, str):
+        named = with_string_keys(cast("Mapping[Any, Any]", value), owner=_OWNER)
+    elif is_iterable(value) and not isinstance(value, str):
         listed = list(value)
         if len(listed) > 1 and all(isinstance(one, GroundMotion) for one in listed):
             msg = (
@@ -137,15 +137,15 @@ def _read_sequences(value: object) -> dict[str, list[GroundMotion]]:
         named = {}
     found: dict[str, list[GroundMotion]] = {}
     for name, each in named.items():
-        motions = [each] if isinstance(each, GroundMotion) else several(
+        motions = [each] if isinstance(each, GroundMotion) else checked_list(
             each, owner=_OWNER, name=repr(name), of="GroundMotions"
         )  # fmt: skip
         if not motions or not all(isinstance(one, GroundMotion) for one in motions):
-            msg = f"{_OWNER}: {name!r} needs GroundMotions in their order, got {shown(each)}"
+            msg = f"{_OWNER}: {name!r} needs GroundMotions in their order, got {short_repr(each)}"
             raise ComponentError(msg)
         found[name] = motions
     if not found:
-        msg = f"{_OWNER}: found {shown(value)}; expected sequences of GroundMotions"
+        msg = f"{_OWNER}: found {short_repr(value)}; expected sequences of GroundMotions"
         raise ComponentError(msg)
     return {name: _with_common_step(each) for name, each in found.items()}
 

@@ -13,7 +13,7 @@ from rockframe.errors import ComponentError, collected_warnings
 from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.table import head
 from rockframe.results.variables.studies import CASE, MOTION
-from rockframe.shared_arguments import takes
+from rockframe.shared_arguments import with_shared_arguments
 from rockframe.simulation.system import System, check_system
 from rockframe.studies.intensities import (
     SCALE_EXPONENTS,
@@ -127,7 +127,7 @@ _ROCKING: Final = "rocking_spectrum"
 _OVERTURNING: Final = "overturning_spectrum"
 
 
-@takes(SweepArguments, further="axes")
+@with_shared_arguments(SweepArguments, extra_into="axes")
 def rocking_spectrum(
     system: System,
     motions: MotionsLike | None = None,
@@ -192,7 +192,7 @@ def rocking_spectrum(
     return sizes.unstack(runs).assign_attrs(title="Rocking spectrum")
 
 
-@takes(SweepArguments, further="axes")
+@with_shared_arguments(SweepArguments, extra_into="axes")
 def overturning_spectrum(
     system: System,
     motions: MotionsLike | None = None,

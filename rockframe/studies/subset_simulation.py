@@ -7,14 +7,14 @@ from typing import Any, Final, Unpack
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import whole_number
+from rockframe.arguments import checked_integer
 from rockframe.errors import (
     ComponentError,
     ModelWarning,
     SolverWarning,
     StudyError,
     collected_warnings,
-    shown,
+    short_repr,
     warn,
 )
 from rockframe.motion import GroundMotion
@@ -22,7 +22,7 @@ from rockframe.results.joining import concat
 from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.table import head
 from rockframe.results.variables.studies import CASE, MOTION
-from rockframe.shared_arguments import takes
+from rockframe.shared_arguments import with_shared_arguments
 from rockframe.signals.arrays import Array
 from rockframe.simulation.system import System
 from rockframe.studies.conditional_sampling import (
@@ -68,7 +68,7 @@ _TABLE_ATTRIBUTES: Final = ("axes_json", "study_sha256")
 """Attributes with the columns of a table, and the name by which this process knows it."""
 
 
-@takes(SweepArguments)
+@with_shared_arguments(SweepArguments)
 def subset_simulation(
     system: System | Callable[..., System],
     motions: GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None = None,
@@ -173,7 +173,7 @@ def subset_simulation(
     spreads = read_spread(spread, scene, owner=_OWNER)
     matrix = read_correlation(correlation, [one.name for one in spreads], owner=_OWNER)
     state = _read_limit(limit)
-    count = whole_number(cases, owner=_OWNER, name="cases", lowest=10, highest=_MAX_CASES)
+    count = checked_integer(cases, owner=_OWNER, name="cases", lowest=10, highest=_MAX_CASES)
     fraction = to_ratio(share, owner=_OWNER, name="share", condition=_SHARE, example="0.1")
     if round(fraction * count) < _MIN_CHAINS:
         msg = (
@@ -181,8 +181,8 @@ def subset_simulation(
             f"expected {_MIN_CHAINS} at least: draw more cases"
         )
         raise ComponentError(msg)
-    max_levels = whole_number(levels, owner=_OWNER, name="levels", lowest=1, highest=_MAX_LEVELS)
-    first = whole_number(seed, owner=_OWNER, name="seed", lowest=0)
+    max_levels = checked_integer(levels, owner=_OWNER, name="levels", lowest=1, highest=_MAX_LEVELS)
+    first = checked_integer(seed, owner=_OWNER, name="seed", lowest=0)
     level = read_level(confidence, owner=_OWNER)
     named = motions_of_study(motions, scene)
     wrong = check_memory(
@@ -225,7 +225,7 @@ def _read_limit(argument: object) -> LimitState:
     if not isinstance(argument, str | int | float | tuple):
         msg = (
             f"{_OWNER}: limit must be one limit state: 'overturning', a peak rotation over the "
-            f"overturning angle, or ('peak_slip', '5 cm') and the like, got {shown(argument)}"
+            f"overturning angle, or ('peak_slip', '5 cm') and the like, got {short_repr(argument)}"
         )
         raise ComponentError(msg)
     state = limit_states([argument], owner=_OWNER, name="limit")[0]

@@ -8,8 +8,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from rockframe.arguments import one_of_words, several
-from rockframe.errors import ComponentError, shown
+from rockframe.arguments import checked_choice, checked_list
+from rockframe.errors import ComponentError, short_repr
 from rockframe.measures import rotated_spectrum
 from rockframe.measures.common import read_inputs
 from rockframe.measures.response import checked_periods, shortest_positive_period, spectra_of
@@ -78,7 +78,7 @@ def candidates_of(
 ) -> Candidates:
     """Check the arguments of a selection, and compute the spectra that it needs."""
     target = check_target(target, owner=owner)
-    kind = one_of_words(Combination, combination, owner=owner, name="combination")
+    kind = checked_choice(Combination, combination, owner=owner, name="combination")
     seconds = default_periods(target) if periods is None else checked_periods(periods, owner=owner)
     fixed = seconds if conditioned_on is None else checked_periods(conditioned_on, owner=owner)
     every = np.unique(np.concatenate([seconds, fixed]))
@@ -124,7 +124,7 @@ def default_periods(target: TargetSpectrum) -> Array:
 def _read_bounds(items: tuple[RatioLike, RatioLike] | None, owner: str) -> tuple[float, float]:
     if items is None:
         return 0.0, np.inf
-    values = several(items, owner=owner, name="bounds", of="factors")
+    values = checked_list(items, owner=owner, name="bounds", of="factors")
     if len(values) == 2:
         low, high = (
             to_ratio(one, owner=owner, name="bounds", condition=POSITIVE, example="(0.25, 4)")
@@ -132,7 +132,7 @@ def _read_bounds(items: tuple[RatioLike, RatioLike] | None, owner: str) -> tuple
         )
         if low <= high:
             return low, high
-    msg = f"{owner}: bounds must be the least and the greatest factor, got {shown(items)}"
+    msg = f"{owner}: bounds must be the least and the greatest factor, got {short_repr(items)}"
     raise ComponentError(msg)
 
 

@@ -8,7 +8,7 @@ from typing import Final, TypeAlias
 
 import numpy as np
 
-from rockframe.arguments import one_of_words, whole_number
+from rockframe.arguments import checked_choice, checked_integer
 from rockframe.errors import ComponentError
 from rockframe.signals.arrays import Array
 from rockframe.signals.spectra import DAMPING_RATIO
@@ -118,8 +118,8 @@ def eurocode_8(
         name="ground_acceleration",
         condition=POSITIVE,
     )
-    kind = one_of_words(GroundType, ground_type, owner=owner, name="ground_type")
-    number = whole_number(spectrum_type, owner=owner, name="spectrum_type", lowest=1, highest=2)
+    kind = checked_choice(GroundType, ground_type, owner=owner, name="ground_type")
+    number = checked_integer(spectrum_type, owner=owner, name="spectrum_type", lowest=1, highest=2)
     soil, *corners = _EUROCODE[number][kind]
     if soil_factor is not None:
         soil = to_ratio(soil_factor, owner=owner, name="soil_factor", condition=POSITIVE)

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
-from rockframe.arguments import function_of
-from rockframe.errors import ComponentError, nearest, shown
+from rockframe.arguments import checked_function
+from rockframe.errors import ComponentError, did_you_mean, short_repr
 from rockframe.motion import GroundMotion
-from rockframe.motion.description import peak_words
-from rockframe.notebook import CELL, TABLE, card, curve
+from rockframe.motion.description import peak_text
+from rockframe.notebook import CELL_STYLE, TABLE_STYLE, html_summary, sparkline
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.motions import RECORDS
 from rockframe.units import Measure, Unit, to_ratio, to_si
@@ -106,7 +106,7 @@ def check_column(motions: Mapping[str, GroundMotion], name: object, *, owner: st
     """Refuse a column for which no motion has a value."""
     known = dict.fromkeys([*COLUMNS, *(key for one in motions.values() for key in one.metadata)])
     if not isinstance(name, str) or name not in known:
-        requested = f"{shown(name)}{nearest(name, known)}"
+        requested = f"{short_repr(name)}{did_you_mean(name, known)}"
         msg = f"{owner}: there is no column {requested}; known are {', '.join(known)}"
         raise ComponentError(msg)
 
@@ -133,11 +133,11 @@ def is_missing(value: Any) -> bool:
 
 def _criterion(name: str, argument: Any) -> Test:
     if callable(argument):
-        return function_of(argument, "value", owner=_OWNER, name=name)
+        return checked_function(argument, "value", owner=_OWNER, name=name)
     if isinstance(argument, tuple):
         bounds = cast("tuple[Any, ...]", argument)
         if len(bounds) != 2:
-            msg = f"{_OWNER}: {name} needs a range of two values, got {shown(argument)}"
+            msg = f"{_OWNER}: {name} needs a range of two values, got {short_repr(argument)}"
             raise ComponentError(msg)
         low, high = (None if bound is None else _read_value(name, bound) for bound in bounds)
         return lambda value: (low is None or low <= value) and (high is None or value <= high)
@@ -178,12 +178,12 @@ def suite_html(suite: "LabelledMotions") -> str:
     if suite.unread:
         rows["files that could not be read"] = str(len(suite.unread))
     lines = "".join(
-        f'<tr style="background:transparent"><td style="{CELL}">{escape(label)}</td>'
-        f'<td style="{CELL}">{escape(peak_words(motion))}</td><td style="{CELL}">'
-        f"{curve(motion.si.horizontal.samples.tolist(), width=160.0, height=24.0)}</td></tr>"
+        f'<tr style="background:transparent"><td style="{CELL_STYLE}">{escape(label)}</td>'
+        f'<td style="{CELL_STYLE}">{escape(peak_text(motion))}</td><td style="{CELL_STYLE}">'
+        f"{sparkline(motion.si.horizontal.samples.tolist(), width=160.0, height=24.0)}</td></tr>"
         for label, motion in list(suite.items())[:_MAX_ROWS]
     )
     omitted = len(suite) - _MAX_ROWS
     more = f"<div>and {omitted} more; <code>suite.table</code> has all</div>" if omitted > 0 else ""
-    table = f'<table style="{TABLE}">{lines}</table>{more}'
-    return card(type(suite).__name__, rows, more=table)
+    table = f'<table style="{TABLE_STYLE}">{lines}</table>{more}'
+    return html_summary(type(suite).__name__, rows, extra=table)

@@ -6,14 +6,28 @@ from typing import Any, Final, Self, cast
 
 import pandas as pd
 
-from rockframe.arguments import by_names, by_words, function_of, iterates, several, truth
-from rockframe.errors import ComponentError, LabelError, RecordWarning, nearest, shown, warn
+from rockframe.arguments import (
+    checked_bool,
+    checked_function,
+    checked_list,
+    checked_mapping,
+    is_iterable,
+    with_string_keys,
+)
+from rockframe.errors import (
+    ComponentError,
+    LabelError,
+    RecordWarning,
+    did_you_mean,
+    short_repr,
+    warn,
+)
 from rockframe.motion import GroundMotion
 from rockframe.motion.pair import HorizontalPair
-from rockframe.proposals import Proposing, proposing
 from rockframe.results.joining import MOTION
 from rockframe.results.schema import build_dataset
 from rockframe.results.table import table as table_of
+from rockframe.suggestions import SuggestingMeta, suggests_names
 from rockframe.suites.columns import (
     check_column,
     known_columns,
@@ -28,8 +42,8 @@ from rockframe.suites.target import TargetSpectrum
 _EXAMPLE: Final = "rf.read_suite(path) reads files"
 
 
-@proposing
-class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
+@suggests_names
+class LabelledMotions(Mapping[str, GroundMotion], metaclass=SuggestingMeta):
     """Labelled motions in an order; immutable. A suite without its measures and targets."""
 
     __slots__ = ("_motions", "_remarks", "_target", "_unread", "_verticals")
@@ -48,8 +62,8 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         self._verticals = {} if verticals is None else _read_motions(verticals, owner)
         files = {} if unread is None else unread
         example = "{'a.AT2': 'an empty file'}"
-        self._unread = {**by_names(files, owner=owner, name="unread", example=example)}
-        self._remarks = tuple(several(remarks, owner=owner, name="remarks", of="texts"))
+        self._unread = {**checked_mapping(files, owner=owner, name="unread", example=example)}
+        self._remarks = tuple(checked_list(remarks, owner=owner, name="remarks", of="texts"))
         self._target = target
         if not self._motions:
             msg = f"{owner}: found no motions; expected one at least"
@@ -65,7 +79,10 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         try:
             return self._motions[label]
         except KeyError:  # as mappings have it
-            msg = f"no motion of the suite is called {shown(label)}{nearest(label, self._motions)}"
+            msg = (
+                "no motion of the suite is called "
+                f"{short_repr(label)}{did_you_mean(label, self._motions)}"
+            )
             raise LabelError(msg) from None
 
     def __iter__(self) -> Iterator[str]:
@@ -192,10 +209,10 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         <MotionSuite of 1 motion: '2 Hz'>
         """
         owner = f"{type(self).__name__}.only"
-        requested = several(labels, owner=owner, name="labels", of="labels")
+        requested = checked_list(labels, owner=owner, name="labels", of="labels")
         unknown = [one for one in requested if not isinstance(one, str) or one not in self._motions]
         if unknown:
-            found = f"{shown(unknown[0])}{nearest(unknown[0], self._motions)}"
+            found = f"{short_repr(unknown[0])}{did_you_mean(unknown[0], self._motions)}"
             msg = f"{owner}: there is no motion {found}"
             raise ComponentError(msg)
         return self._with_motions({label: self._motions[label] for label in requested})
@@ -228,7 +245,7 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         >>> [*suite.sort("duration")]
         ['2 Hz', '1 Hz']
         """
-        truth(descending, owner=f"{type(self).__name__}.sort", name="descending")
+        checked_bool(descending, owner=f"{type(self).__name__}.sort", name="descending")
         check_column(self, by, owner=f"{type(self).__name__}.sort")
         return self.only(sorted_labels(self, by, descending=descending))
 
@@ -261,7 +278,7 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         >>> suite.changed(lambda motion: motion.scaled(2))["1 Hz"].peak_acceleration
         <Quantity(4.0, 'meter / second ** 2')>
         """
-        step = function_of(step, "motion", owner=f"{type(self).__name__}.changed", name="step")
+        step = checked_function(step, "motion", owner=f"{type(self).__name__}.changed", name="step")
         motions = {label: step(motion) for label, motion in self._motions.items()}
         verticals = {label: step(motion) for label, motion in self._verticals.items()}
         return type(self)(motions, verticals=verticals, unread=self._unread, remarks=self._remarks)
@@ -327,8 +344,8 @@ def _read_motions(value: object, owner: str) -> dict[str, GroundMotion]:
     """Read motions with their labels."""
     motions: dict[str, Any] = {}
     if isinstance(value, Mapping):
-        motions = by_words(cast("Mapping[Any, Any]", value), owner=owner)
-    elif iterates(value) and not isinstance(value, str):
+        motions = with_string_keys(cast("Mapping[Any, Any]", value), owner=owner)
+    elif is_iterable(value) and not isinstance(value, str):
         for one in value:
             name = str(getattr(one, "name", len(motions)))
             if name in motions:
@@ -336,10 +353,10 @@ def _read_motions(value: object, owner: str) -> dict[str, GroundMotion]:
                 raise ComponentError(msg)
             motions[name] = one
     else:
-        msg = f"{owner}: motions must be several motions, got {shown(value)}; {_EXAMPLE}"
+        msg = f"{owner}: motions must be several motions, got {short_repr(value)}; {_EXAMPLE}"
         raise ComponentError(msg)
     for label, one in motions.items():
         if not isinstance(one, GroundMotion):
-            msg = f"{owner}: {label!r} needs a GroundMotion, got {shown(one)}; {_EXAMPLE}"
+            msg = f"{owner}: {label!r} needs a GroundMotion, got {short_repr(one)}; {_EXAMPLE}"
             raise ComponentError(msg)
     return motions

@@ -6,7 +6,6 @@ from typing import Final
 
 from rockframe.errors import PLEASE_REPORT, ComponentError, RecordError, RecordWarning, warn
 from rockframe.motion import GroundMotion
-from rockframe.proposals import hinted
 from rockframe.records import (
     Known,
     Reading,
@@ -19,6 +18,7 @@ from rockframe.records import (
     read_components,
     request_of,
 )
+from rockframe.suggestions import with_hints
 from rockframe.suites.records import RecordedComponent, assign_records, sequence_number_of
 from rockframe.suites.stored import is_stored_suite, stored_suite
 from rockframe.suites.suite import MotionSuite
@@ -31,7 +31,7 @@ _COMPANIONS: Final = (*_OTHER_MOTIONS, ".pdf", ".xml")
 _MAX_LISTED: Final = 3
 
 
-@hinted()
+@with_hints()
 def read_suite(
     path: RecordLike | Iterable[RecordLike],
     *,

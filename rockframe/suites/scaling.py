@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from rockframe.errors import ComponentError, SchemaError
 from rockframe.motion import GroundMotion
 from rockframe.motion.quantities import ArrayLike
-from rockframe.proposals import hinted
 from rockframe.results.joining import MOTION
 from rockframe.results.schema import SCHEMA, build_dataset, with_variables, without_fill_values
 from rockframe.signals.arrays import Array
+from rockframe.suggestions import with_hints
 from rockframe.suites.candidates import Candidates, Combination, candidates_of
 from rockframe.suites.labelled_motions import LabelledMotions
 from rockframe.suites.target import TargetSpectrum
@@ -24,7 +24,7 @@ DEFAULT_BOUNDS: Final = (0.25, 4.0)
 _ROUNDING: Final = 1e-9
 
 
-@hinted()
+@with_hints()
 def scaling_to(
     suite: LabelledMotions,
     target: TargetSpectrum,

@@ -8,12 +8,12 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from rockframe.arguments import whole_number
+from rockframe.arguments import checked_integer
 from rockframe.errors import ComponentError
 from rockframe.motion.quantities import ArrayLike
-from rockframe.proposals import hinted
 from rockframe.results.schema import with_variables
 from rockframe.signals.arrays import Array
+from rockframe.suggestions import with_hints
 from rockframe.suites.candidates import Combination, candidates_of
 from rockframe.suites.labelled_motions import LabelledMotions
 from rockframe.suites.scaling import DEFAULT_BOUNDS, scaled_set
@@ -29,7 +29,7 @@ _REFERENCES: Final = (
 )
 
 
-@hinted()
+@with_hints()
 def selection_for(
     suite: LabelledMotions,
     target: TargetSpectrum,
@@ -99,10 +99,10 @@ def selection_for(
         combination=combination,
         owner=owner,
     )
-    size = whole_number(count, owner=owner, name="count", lowest=1)
+    size = checked_integer(count, owner=owner, name="count", lowest=1)
     max_per_event = size
     if per_event is not None:
-        max_per_event = whole_number(per_event, owner=owner, name="per_event", lowest=1)
+        max_per_event = checked_integer(per_event, owner=owner, name="per_event", lowest=1)
     deviates = bool(candidates.deviations.any())
     weight = float(deviates)
     if spread_weight is not None:

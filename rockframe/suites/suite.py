@@ -13,7 +13,7 @@ from rockframe.measures import (
     rotated_spectrum,
 )
 from rockframe.motion.quantities import ArrayLike
-from rockframe.proposals import proposing
+from rockframe.suggestions import suggests_names
 from rockframe.suites.labelled_motions import LabelledMotions
 from rockframe.suites.matching import matched
 from rockframe.suites.scaling import compared_target, scaled_motions, scaling_to
@@ -23,7 +23,7 @@ from rockframe.suites.target import TargetSpectrum
 from rockframe.units import QuantityLike, RatioLike
 
 
-@proposing
+@suggests_names
 class MotionSuite(LabelledMotions):
     """An immutable ordered collection of labelled ground motions.
 

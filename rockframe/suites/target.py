@@ -9,12 +9,12 @@ from typing import Any, Final, Self
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, function_of, several, text
-from rockframe.errors import ComponentError, SchemaError, shown
+from rockframe.arguments import checked_dataset, checked_function, checked_list, checked_text
+from rockframe.errors import ComponentError, SchemaError, short_repr
 from rockframe.motion.quantities import ArrayLike
-from rockframe.proposals import Proposing, proposing
 from rockframe.signals.arrays import Array
 from rockframe.signals.spectra import DAMPING_RATIO
+from rockframe.suggestions import SuggestingMeta, suggests_names
 from rockframe.suites.codes import GroundType, Shape, asce_7, eurocode_8
 from rockframe.units import (
     ACCELERATION,
@@ -33,9 +33,9 @@ _DEFAULT_DAMPING: Final = 0.05
 _ROUNDING: Final = 1e-9
 
 
-@proposing
+@suggests_names
 @dataclass(frozen=True)
-class TargetSpectrum(metaclass=Proposing):
+class TargetSpectrum(metaclass=SuggestingMeta):
     """A target pseudo-spectral acceleration for motions, optionally with its spread.
 
     Created by :meth:`from_table`, :meth:`from_spectrum`, :meth:`eurocode_8` or :meth:`asce_7`.
@@ -71,15 +71,18 @@ class TargetSpectrum(metaclass=Proposing):
 
     def __post_init__(self) -> None:
         owner = type(self).__name__
-        text(self.name, owner=owner, name="name")
-        function_of(self.shape, "periods", owner=owner, name="shape")
+        checked_text(self.name, owner=owner, name="name")
+        checked_function(self.shape, "periods", owner=owner, name="shape")
         if self.deviation is not None:
-            function_of(self.deviation, "periods", owner=owner, name="deviation")
+            checked_function(self.deviation, "periods", owner=owner, name="deviation")
         to_ratio(self.damping_ratio, owner=owner, name="damping_ratio", condition=NOT_NEGATIVE)
-        limits = several(self.limits, owner=owner, name="limits", of="periods")
+        limits = checked_list(self.limits, owner=owner, name="limits", of="periods")
         rising = len(limits) == 2 and all(isinstance(one, Real) for one in limits)
         if not rising or not 0.0 <= limits[0] <= limits[1]:
-            msg = f"{owner}: limits must be two periods in seconds that rise, got {shown(limits)}"
+            msg = (
+                f"{owner}: limits must be two periods in seconds that rise, got "
+                f"{short_repr(limits)}"
+            )
             raise ComponentError(msg)
 
     @classmethod
@@ -142,7 +145,7 @@ class TargetSpectrum(metaclass=Proposing):
             deviations = np.array(
                 [
                     to_ratio(one, owner=owner, name="standard_deviations", condition=_DEVIATION)
-                    for one in several(
+                    for one in checked_list(
                         standard_deviations, owner=owner, name="standard_deviations", of="numbers"
                     )
                 ]
@@ -483,7 +486,9 @@ def _interpolation(seconds: Array, values: Array) -> _Interpolated:
 
 def _check_array(seconds: object, owner: str) -> None:
     if not isinstance(seconds, np.ndarray) or seconds.size == 0 or seconds.dtype.kind not in "fiu":
-        msg = f"{owner}: seconds must be an array of periods, one or more, got {shown(seconds)}"
+        msg = (
+            f"{owner}: seconds must be an array of periods, one or more, got {short_repr(seconds)}"
+        )
         raise ComponentError(msg)
 
 
@@ -492,7 +497,7 @@ def check_target(value: object, *, owner: str) -> TargetSpectrum:
     if isinstance(value, TargetSpectrum):
         return value
     msg = (
-        f"{owner}: target needs a TargetSpectrum, got {shown(value)}; write for example "
+        f"{owner}: target needs a TargetSpectrum, got {short_repr(value)}; write for example "
         "rf.TargetSpectrum.eurocode_8('0.2 g_0', 'B')"
     )
     raise ComponentError(msg)

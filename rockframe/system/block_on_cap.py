@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from rockframe.case_arrays import atan2, isnan
 from rockframe.dynamics.body_statics import Pose, standing_body
 from rockframe.dynamics.on_base import BodyOnBase
 from rockframe.dynamics.protocol import ContactModel, Ending
@@ -15,7 +16,6 @@ from rockframe.dynamics.single_body import eccentricity_of
 from rockframe.dynamics.statics import StandingChain
 from rockframe.dynamics.vibrations import ChainBody
 from rockframe.errors import AssemblyError
-from rockframe.many import atan2, isnan
 from rockframe.system.bodies import Cap
 from rockframe.system.compatibility import NO_SLIP, BaseFriction
 from rockframe.system.options import restraint_words

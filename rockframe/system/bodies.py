@@ -7,13 +7,13 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from rockframe.case_arrays import CaseArray, atan2, tan
 from rockframe.components import Component
 from rockframe.components.bases import CushionCapSI
-from rockframe.components.block_numbers import BlockSI, BodyGeometry, greatest_restitutions
+from rockframe.components.block_numbers import BlockSI, BodyGeometry, maximum_restitutions
 from rockframe.dynamics.body import Body
 from rockframe.dynamics.chain.link_rows import LINK_MOMENT
 from rockframe.dynamics.single_body import rigid_body
-from rockframe.many import Many, atan2, tan
 from rockframe.signals.arrays import Array
 from rockframe.system.options import RESTRAINT_CODES, Options
 
@@ -74,7 +74,7 @@ class SupportedBody(BodyGeometry):
     @cached_property
     def maximum_restitution(self) -> Restitutions:
         """eps_max of impacts on either end, Eq. (4) or :eq:`eq-eccentric-impact`."""
-        return Restitutions(*greatest_restitutions(self))
+        return Restitutions(*maximum_restitutions(self))
 
     @property
     def base_ratio(self) -> float:
@@ -280,7 +280,7 @@ class BaseLoad:
 def load_of(block: BlockSI, options: Options) -> BaseLoad:
     """Return a block as a load; one object for all scenes that differ only in their bases."""
     numbers = (*vars(block).values(), options.gravity, options.inclination)
-    if any(isinstance(number, Many) for number in numbers):
+    if any(isinstance(number, CaseArray) for number in numbers):
         return BaseLoad(block_body(block), options)
     return _cached_load(block, options)
 

@@ -4,6 +4,7 @@ import math
 from inspect import getattr_static
 from typing import Final, NamedTuple
 
+from rockframe.case_arrays import isfinite
 from rockframe.components import (
     Component,
     Load,
@@ -15,8 +16,7 @@ from rockframe.components import (
     Tendon,
 )
 from rockframe.components.bases import Impact
-from rockframe.components.block_numbers import BlockSI, squat
-from rockframe.many import isfinite
+from rockframe.components.block_numbers import BlockSI, squat_body_warnings
 from rockframe.system.links import link_labels
 from rockframe.system.options import Coupling, Options, Restraint, Sliding
 from rockframe.system.own_base import OwnBase
@@ -341,7 +341,7 @@ def size_faults(parts: Parts, options: Options) -> list[str]:
     faults: list[str] = []
     # a squat body may land flat if it slides, or stands in a stack
     if block is not None and not parts.own and not _block_slides(parts, options):
-        faults += squat(block.si, type(block).__name__)
+        faults += squat_body_warnings(block.si, type(block).__name__)
     if parts.links:
         faults += _tendon_and_wall_faults(parts)
     if block is not None and cap is not None:

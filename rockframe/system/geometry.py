@@ -7,14 +7,14 @@ import numpy as np
 
 from rockframe.components import Component, FrameEquivalent, RearWall, RockingFrame, Stack, Tendon
 from rockframe.components.block_numbers import BlockSI
-from rockframe.components.rocking_frame import column_places, frame_outlines
-from rockframe.notebook import Polygon, arguments_in_words, card, drawing
+from rockframe.components.rocking_frame import column_positions, frame_outlines
+from rockframe.notebook import Polygon, html_summary, readable_arguments, shapes_svg
 from rockframe.signals.arrays import Array
 from rockframe.system.assembly import Assembly
 from rockframe.system.rocking_frame import TendonFrameSetting
 from rockframe.system.setting import Setting
 from rockframe.system.stack import StackSetting
-from rockframe.units.shown import in_degrees
+from rockframe.units.display import degrees_text
 
 
 class LowerBody(NamedTuple):
@@ -128,7 +128,7 @@ def geometry_of(scene: Assembly) -> Geometry:
         inclination=scene.options.inclination,
         small_rotation=scene.options.small,
         links=_linked_points(setting),
-        columns=() if frame is None else tuple(column_places(frame)),
+        columns=() if frame is None else tuple(column_positions(frame)),
         beam=None if frame is None else np.array(frame_outlines(frame)[-1]),
         wall=_wall_outline(parts.wall, block),
     )
@@ -151,7 +151,7 @@ def _linked_points(setting: Setting) -> tuple[LinkedPoints, ...]:
     """Return the points that restrainers link."""
     if isinstance(setting, TendonFrameSetting):  # along the axis of each column
         top = setting.frame.column.height + setting.frame.beam_height
-        axes = column_places(setting.frame)
+        axes = column_positions(setting.frame)
         return tuple(LinkedPoints(np.array([(x, top), (x, 0.0)]), (0, -1)) for x in axes)
     if not isinstance(setting, StackSetting):
         return ()
@@ -214,20 +214,20 @@ def system_html(scene: Assembly, name: str) -> str:
     pieces = [one for part in scene.parts.structural() for one in _named_parts(part)]
     for number, (words, part) in enumerate(pieces):
         alike = [other for other, _ in pieces[: number + 1]].count(words)
-        numbers = arguments_in_words(part.to_dict())
+        numbers = readable_arguments(part.to_dict())
         text = ", ".join(f"{one} {value}" for one, value in numbers.items())
         rows[words if alike == 1 else f"{words} {alike}"] = text
     left, right = setting.overturning_angles
-    to_left, to_right = (in_degrees(side) for side in (left, right))
+    to_left, to_right = (degrees_text(side) for side in (left, right))
     both = f"{to_left} to the left, {to_right} to the right"
     rows["overturning angle"] = to_left if left == right else both
     if np.isfinite(setting.uplift_angle):
-        rows["uplift angle"] = in_degrees(setting.uplift_angle)
+        rows["uplift angle"] = degrees_text(setting.uplift_angle)
     if options.inclination:
-        rows["inclination"] = in_degrees(options.inclination)
+        rows["inclination"] = degrees_text(options.inclination)
     if scene.parts.motion is not None:
         rows["motion"] = scene.parts.motion.name
-    return card(name, rows, drawing(scene_polygons(geometry_of(scene))))
+    return html_summary(name, rows, shapes_svg(scene_polygons(geometry_of(scene))))
 
 
 def _named_parts(part: Component) -> list[tuple[str, Component]]:

@@ -8,7 +8,7 @@ from typing import Final, Literal, TypeAlias, TypeVar
 
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.dynamics.body import BY_CONTACT, CENTRE, LEADING_CORNER
-from rockframe.errors import RockframeError, nearest, shown
+from rockframe.errors import RockframeError, did_you_mean, short_repr
 from rockframe.signals.motion import Incline
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel
 from rockframe.units import ACCELERATION, ANGLE, POSITIVE, Condition, Measure, QuantityLike, to_si
@@ -129,8 +129,8 @@ def read_option(kind: type[Option], value: object, name: str, faults: list[str])
         return kind(value)  # type: ignore[arg-type]
     except ValueError:
         known = ", ".join(repr(str(option)) for option in kind)
-        near = nearest(value, map(str, kind))
-        faults.append(f"{name} must be one of {known}, got {shown(value)}{near}")
+        near = did_you_mean(value, map(str, kind))
+        faults.append(f"{name} must be one of {known}, got {short_repr(value)}{near}")
         return next(iter(kind))
 
 

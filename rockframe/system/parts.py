@@ -23,7 +23,7 @@ from rockframe.components import (
 )
 from rockframe.components.block_numbers import BlockSI
 from rockframe.components.parameters import Declared
-from rockframe.errors import LabelError, nearest, shown
+from rockframe.errors import LabelError, did_you_mean, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.system.bodies import BaseLoad, Cap, block_cap
 from rockframe.system.own_base import OwnBase
@@ -207,8 +207,8 @@ class Parts:
         found = dict(self.filled)
         if slot not in found:
             known = ", ".join(map(repr, found))
-            near = nearest(slot, found) or ";"
-            msg = f"the scene has no part {shown(slot)}{near} It has {known}"
+            near = did_you_mean(slot, found) or ";"
+            msg = f"the scene has no part {short_repr(slot)}{near} It has {known}"
             raise LabelError(msg)
         return cast("Component", found[slot])
 
@@ -257,7 +257,7 @@ def sort_parts(values: Sequence[object], faults: list[str]) -> Parts:
     for part in values:
         kind = registered_class(type(part))
         if kind is None:
-            faults.append(f"{shown(part)} is not a part of a system{part_hint(part)}")
+            faults.append(f"{short_repr(part)} is not a part of a system{part_hint(part)}")
             continue
         slot = _KINDS[kind].slot
         if slot == RESTRAINER:
@@ -265,7 +265,9 @@ def sort_parts(values: Sequence[object], faults: list[str]) -> Parts:
             slot = numbered_slot(slot, count + 1)
         elif slot in found:
             name = type(part).__name__
-            faults.append(f"{name} is given twice: {shown(found[slot])} and {shown(part)}")
+            faults.append(
+                f"{name} is given twice: {short_repr(found[slot])} and {short_repr(part)}"
+            )
             continue
         found[slot] = part
         if kind is not type(part) and isinstance(part, Component):

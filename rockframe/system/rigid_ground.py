@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
+from rockframe.case_arrays import atan, cos, hypot, sin, sqrt, tan
 from rockframe.dynamics.protocol import ContactModel
 from rockframe.dynamics.rigid_ground import rigid_ground, rocking_corner
 from rockframe.errors import AssemblyError
-from rockframe.many import atan, cos, hypot, sin, sqrt, tan
 from rockframe.system.bodies import ROUNDING, Restitutions, restitution_cautions
 from rockframe.system.rigid_base import REACTIONS
 from rockframe.system.setting import Setting

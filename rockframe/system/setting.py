@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, NamedTuple, cast
 
+from rockframe.case_arrays import maximum
 from rockframe.dynamics.protocol import ContactModel, Ending
-from rockframe.many import largest
 from rockframe.signals.motion import Incline
 from rockframe.system.bodies import BaseLoad, OverturningAngles, SupportedBody
 from rockframe.system.options import Options
@@ -33,7 +33,7 @@ class SlipRange(NamedTuple):
     @property
     def peak(self) -> float:
         """Largest slip to either side [m]."""
-        return largest(self.left, self.right)
+        return maximum(self.left, self.right)
 
 
 def chain_slips(setting: "Setting", count: int, ending: Ending) -> tuple[SlipRange, ...]:

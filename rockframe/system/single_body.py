@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+from rockframe.case_arrays import isnan
 from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.dynamics.single_body import single_body
 from rockframe.errors import AssemblyError
-from rockframe.many import isnan
 from rockframe.system.compatibility import BaseFriction
 from rockframe.system.options import restraint_words
 from rockframe.system.setting import Setting, SlipRange, chain_slips

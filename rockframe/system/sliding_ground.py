@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rockframe.case_arrays import maximum, python_number
 from rockframe.components.bases import Impact
 from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.errors import AssemblyError
-from rockframe.many import largest, python_number
 from rockframe.system.bodies import SupportedBody, base_restitution, load_of
 from rockframe.system.compatibility import SLIDING_AT_SMALL_ROTATION, BaseFriction, base_friction
 from rockframe.system.options import Options
@@ -161,7 +161,7 @@ def slips_on_ground(ending: Ending) -> SlipRange:
     residual = python_number(ending.state[SLIP])
     left, right = python_number(ending.memory[PEAK_LEFT]), python_number(ending.memory[PEAK_RIGHT])
     if ending.mode // SLIP_STATES % BEARINGS < FLIGHT_RIGHT:
-        left, right = largest(left, -residual), largest(right, residual)
+        left, right = maximum(left, -residual), maximum(right, residual)
     return SlipRange(residual, left, right)
 
 

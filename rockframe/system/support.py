@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar, Final
 
+from rockframe.case_arrays import sqrt
 from rockframe.components import TwoSpringSupport, WinklerSoil
 from rockframe.components.bases import Separation
 from rockframe.dynamics.base_numbers import BaseNumbers, bed_numbers, pads_numbers
@@ -18,7 +19,6 @@ from rockframe.dynamics.body_statics import Pose, base_derivatives, standing_bod
 from rockframe.dynamics.on_base import BodyOnBase
 from rockframe.dynamics.single_body import eccentricity_of
 from rockframe.dynamics.statics import StandingChain
-from rockframe.many import sqrt
 from rockframe.signals.arrays import Array
 from rockframe.system.bodies import BaseLoad, Restitutions, base_restitution, restitution_cautions
 from rockframe.system.statics import Statics, required_states, static_values

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from textwrap import wrap
 from typing import TYPE_CHECKING, Final
 
-from rockframe.units.shown import in_degrees
+from rockframe.units.display import degrees_text
 
 if TYPE_CHECKING:
     from rockframe.system.parts import Parts
@@ -59,7 +59,7 @@ def sliding_words(held: Words, *frictions: tuple[str, str], restraint: str | Non
 
 def angle_words(radians: float) -> str:
     """Write an angle in radians and degrees."""
-    return f"{radians:.6g} rad ({in_degrees(radians)})"
+    return f"{radians:.6g} rad ({degrees_text(radians)})"
 
 
 def uplift_words(radians: float) -> str:

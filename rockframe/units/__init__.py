@@ -31,15 +31,15 @@ from rockframe.units.reading import (
     Quantity,
     QuantityLike,
     RatioLike,
-    check_own_unit,
-    own_unit,
-    products,
+    attached_unit,
+    check_attached_unit,
+    decimal_products,
     quantity,
     to_ratio,
     to_si,
     to_si_values,
 )
-from rockframe.units.spelling import foreign_quantity
+from rockframe.units.spelling import foreign_quantity_hint
 
 __all__ = [
     "ACCELERATION",
@@ -70,10 +70,10 @@ __all__ = [
     "QuantityLike",
     "RatioLike",
     "Unit",
-    "check_own_unit",
-    "foreign_quantity",
-    "own_unit",
-    "products",
+    "attached_unit",
+    "check_attached_unit",
+    "decimal_products",
+    "foreign_quantity_hint",
     "quantity",
     "to_ratio",
     "to_si",

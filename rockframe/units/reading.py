@@ -15,15 +15,15 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 import pint
 from pint.facets.plain import PlainQuantity
 
-from rockframe.errors import ComponentError, UnitsError, shown
+from rockframe.errors import ComponentError, UnitsError, short_repr
 from rockframe.units.kinds import Condition, Measure, Unit
 from rockframe.units.spelling import (
     AMBIGUOUS,
-    foreign_quantity,
-    misread,
+    foreign_quantity_hint,
+    misread_unit_hint,
     number_and_unit,
-    of_related_kind,
-    plain_spelling,
+    pint_spelling,
+    related_kind_hint,
 )
 
 if TYPE_CHECKING:
@@ -36,11 +36,11 @@ QuantityLike: TypeAlias = str | Quantity | tuple[float, str]
 """A number with its unit: ``"0.3 m"``, ``(0.3, "m")``, or a Quantity of pint."""
 RatioLike: TypeAlias = float | str | Quantity
 
-_SHARE: Final = (Unit.NEWTON_SECOND_PER_METRE, Unit.PASCAL_SECOND)
-_GRAVITY: Final = ("g", "G", "g0")
+_DAMPING_UNITS: Final = (Unit.NEWTON_SECOND_PER_METRE, Unit.PASCAL_SECOND)
+_GRAVITY_SYMBOLS: Final = ("g", "G", "g0")
 """Usual symbols of the acceleration of gravity, which pint calls ``g_0``."""
-_EXACT: Final = Context(prec=64)
-_LONGEST_FACTOR: Final = 12
+_DECIMAL_CONTEXT: Final = Context(prec=64)
+_MAX_FACTOR_LENGTH: Final = 12
 """Characters of a conversion factor that is exact with few digits: 0.45359237 kg, 1e-06 m."""
 
 
@@ -58,15 +58,15 @@ def to_si(
     condition: "Condition | None" = None,
 ) -> float:
     """Convert an argument to a float in SI units; raise an error if that is not possible."""
-    number = _in_si(value, measure)
+    number = _parse_si(value, measure)
     if number is not None:
         return _check_value(number, value, condition, owner=owner, name=name)
     argument = _parse(value, measure, owner=owner, name=name)
     _check_kind(argument, value, measure, owner=owner, name=name)
-    magnitude = _converted(argument, measure)
+    magnitude = _si_magnitude(argument, measure)
     if not isinstance(magnitude, Real) and getattr(magnitude, "ndim", 1) != 0:
         msg = (
-            f"{owner}: {name} needs {measure.name}, one value only, got {shown(value)}; "
+            f"{owner}: {name} needs {measure.name}, one value only, got {short_repr(value)}; "
             f"{measure.example_of(name)}"
         )
         raise UnitsError(msg)
@@ -85,7 +85,7 @@ def to_si_values(value: object, measure: Measure, *, owner: str, name: str) -> l
         items: list[Any] = list(value)
         alone = isinstance(items[0], str | pint.Quantity | None) if items else True
         if len(items) == 2 and isinstance(items[1], str) and not alone:
-            check_own_unit(items[0], items[1], owner=owner, name=name)
+            check_attached_unit(items[0], items[1], owner=owner, name=name)
             factor = to_si(f"1 {items[1]}", measure, owner=owner, name=name)
             numbers: Any = items[0]
             single = getattr(numbers, "ndim", 1) == 0 or not isinstance(items[0], Iterable)
@@ -93,17 +93,18 @@ def to_si_values(value: object, measure: Measure, *, owner: str, name: str) -> l
                 numbers = [numbers] if single else list(numbers)
             floats: list[Any] = numbers if isinstance(numbers, list) else numbers.tolist()
             if all(type(number) is float for number in floats):
-                read = products(floats, factor)
+                read = decimal_products(floats, factor)
                 if all(map(math.isfinite, read)):
                     return read
             return [  # one by one, with checks
-                _times(number, factor, items[1], owner=owner, name=name) for number in numbers
+                _scaled_number(number, factor, items[1], owner=owner, name=name)
+                for number in numbers
             ]
         return [to_si(item, measure, owner=owner, name=name) for item in items]
     return [to_si(value, measure, owner=owner, name=name)]
 
 
-def own_unit(values: object) -> str | None:
+def attached_unit(values: object) -> str | None:
     """Return the unit that an array carries: as a Quantity, or in an attribute ``units``."""
     held: Any = values
     attributes = getattr(held, "attrs", None)
@@ -115,26 +116,28 @@ def own_unit(values: object) -> str | None:
     return unit if isinstance(unit, str) else None
 
 
-def check_own_unit(values: object, unit: str, *, owner: str, name: str) -> None:
+def check_attached_unit(values: object, unit: str, *, owner: str, name: str) -> None:
     """Refuse an array that carries another unit than the one given with it."""
-    own = own_unit(values)
-    if own is None or own == unit:
+    attached = attached_unit(values)
+    if attached is None or attached == unit:
         return
     units: Any = pint.get_application_registry()
     try:  # powers as UDUNITS writes them
-        both = [units.Quantity(1.0, re.sub(r"(?<=[A-Za-z])(?=-?\d)", "^", u)) for u in (own, unit)]
+        both = [
+            units.Quantity(1.0, re.sub(r"(?<=[A-Za-z])(?=-?\d)", "^", u)) for u in (attached, unit)
+        ]
         same = bool(both[0].is_compatible_with(both[1]) and both[0] == both[1])
     except Exception:  # pint raises many unrelated types
         same = False
     if not same:
         msg = (
-            f"{owner}: {name} has the unit {own!r}, but {unit!r} is given with it; give values "
-            "without a unit of their own"
+            f"{owner}: {name} has the unit {attached!r}, but {unit!r} is given with it; give "
+            "values without a unit of their own"
         )
         raise UnitsError(msg)
 
 
-def _times(number: Any, factor: float, unit: str, *, owner: str, name: str) -> float:
+def _scaled_number(number: Any, factor: float, unit: str, *, owner: str, name: str) -> float:
     """Convert one of several values that have a common unit."""
     _check_mask(number, owner=owner, name=name)
     if getattr(number, "ndim", None) == 0:
@@ -145,14 +148,16 @@ def _times(number: Any, factor: float, unit: str, *, owner: str, name: str) -> f
     if isinstance(number, bool) or not isinstance(number, Real):
         msg = (
             f"{owner}: {name} needs numbers only, as their common unit {unit!r} is given; "
-            f"got {shown(number)}"
+            f"got {short_repr(number)}"
         )
         raise UnitsError(msg)
-    return _check_value(_product(_float(number), factor), number, None, owner=owner, name=name)
+    return _check_value(
+        _decimal_product(_float(number), factor), number, None, owner=owner, name=name
+    )
 
 
 def _check_mask(number: Any, *, owner: str, name: str) -> None:
-    """Refuse a masked number, which is zero where it is read."""
+    """Refuse a masked number, whose value would be read as zero."""
     if getattr(number, "ndim", None) == 0 and bool(getattr(number, "mask", False)):
         msg = f"{owner}: {name} has masked values; fill them in first"
         raise ComponentError(msg)
@@ -166,7 +171,7 @@ def _float(number: Real) -> float:
         return math.inf
 
 
-def _converted(value: Any, measure: Measure) -> Any:
+def _si_magnitude(value: Any, measure: Measure) -> Any:
     """Convert a magnitude to SI units; a single number without rounding by the factor."""
     unit, number = str(measure.unit), value.magnitude
     if getattr(number, "ndim", None) == 0:  # other registries may make arrays of single numbers
@@ -175,35 +180,35 @@ def _converted(value: Any, measure: Measure) -> Any:
         return value.m_as(unit)
     size = float(type(value)(1.0, value.units).m_as(unit))
     rounded = float(f"{size:.15g}")  # a foot of 0.30479999999999996 m is 0.3048 m
-    short = len(repr(rounded)) <= _LONGEST_FACTOR
-    return _product(float(number), rounded if short else size)
+    short = len(repr(rounded)) <= _MAX_FACTOR_LENGTH
+    return _decimal_product(float(number), rounded if short else size)
 
 
-def _product(number: float, factor: float) -> float:
+def _decimal_product(number: float, factor: float) -> float:
     """Multiply a number by a conversion factor in decimal arithmetic: 70 cm are 0.7 m.
 
     The product of the floats would be 0.7000000000000001 m.
     """
     written = repr(factor)
-    if not math.isfinite(number) or len(written) > _LONGEST_FACTOR:
+    if not math.isfinite(number) or len(written) > _MAX_FACTOR_LENGTH:
         return number * factor
-    return float(_EXACT.multiply(Decimal(repr(number)), Decimal(written))) + 0.0
+    return float(_DECIMAL_CONTEXT.multiply(Decimal(repr(number)), Decimal(written))) + 0.0
 
 
-def products(numbers: Sequence[float], factor: float) -> list[float]:
+def decimal_products(numbers: Sequence[float], factor: float) -> list[float]:
     """Multiply many numbers by a factor; for a power of ten only the exponents change."""
     if factor == 1.0:
         return [number + 0.0 for number in numbers]
     written = repr(factor)
     _, digits, power = Decimal(written).as_tuple()
-    ten = "".join(map(str, digits)).rstrip("0") == "1"
-    if not ten or len(written) > _LONGEST_FACTOR or not isinstance(power, int):
-        return [_product(number, factor) for number in numbers]
-    tail = f"e{power + len(digits) - 1}"
+    is_power_of_ten = "".join(map(str, digits)).rstrip("0") == "1"
+    if not is_power_of_ten or len(written) > _MAX_FACTOR_LENGTH or not isinstance(power, int):
+        return [_decimal_product(number, factor) for number in numbers]
+    exponent = f"e{power + len(digits) - 1}"
     return [
-        float(text + tail) + 0.0
+        float(text + exponent) + 0.0
         if text[-1].isdigit() and "e" not in text
-        else _product(float(text), factor)
+        else _decimal_product(float(text), factor)
         for text in map(repr, numbers)
     ]
 
@@ -226,14 +231,14 @@ def to_ratio(
         number = magnitude.item() if getattr(magnitude, "ndim", 1) == 0 else magnitude
     if isinstance(number, bool) or not isinstance(number, Real):
         msg = (
-            f"{owner}: {name} needs a pure ratio (a bare number), got {shown(value)}; "
+            f"{owner}: {name} needs a pure ratio (a bare number), got {short_repr(value)}; "
             f"{ratio.example_of(name)}"
         )
         raise UnitsError(msg)
     return _check_value(_float(number), value, condition, owner=owner, name=name)
 
 
-def _in_si(value: object, measure: Measure) -> float | None:
+def _parse_si(value: object, measure: Measure) -> float | None:
     """Read a text in the SI unit, which needs no conversion; None for any other."""
     if not isinstance(value, str) or not value.endswith(measure.unit):
         return None
@@ -247,44 +252,50 @@ def _parse(value: object, measure: Measure, *, owner: str, name: str) -> Quantit
     if isinstance(value, pint.Quantity):
         _check_mask(value.magnitude, owner=owner, name=name)
         return value
-    value = _joined(value)
+    value = _pair_as_text(value)
     needed = f"{owner}: {name} needs {measure.needed}"
     example = measure.example_of(name)
     if not isinstance(value, str):
         kind = "a bare number" if isinstance(value, Real) else f"a {type(value).__name__}"
-        share = "; a ratio to critical damping is damping_ratio" if measure.unit in _SHARE else ""
-        why = foreign_quantity(value) or f"{kind} has no unit{share}"
+        share = (
+            "; a ratio to critical damping is damping_ratio"
+            if measure.unit in _DAMPING_UNITS
+            else ""
+        )
+        why = foreign_quantity_hint(value) or f"{kind} has no unit{share}"
         if isinstance(value, tuple):
             why = "one number and its unit are needed"
-        msg = f"{needed}, got {shown(value)} ({why}); {example}"
+        msg = f"{needed}, got {short_repr(value)} ({why}); {example}"
         raise UnitsError(msg)
-    value = _gravity(value, measure)
+    value = _with_gravity_unit(value, measure)
     for pattern, words in AMBIGUOUS:
         if re.search(pattern, value):
-            msg = f"{needed}, got {shown(value)} ({words}); {example}"
+            msg = f"{needed}, got {short_repr(value)} ({words}); {example}"
             raise UnitsError(msg)
-    written = plain_spelling(value)
+    written = pint_spelling(value)
     if written is None:
-        hint = misread(value, measure)
-        wanted = "a number" if measure.unit == Unit.ONE else "one number and a unit"
-        msg = f"{needed}, got {shown(value)}, which is not {wanted}{hint}; {example}"
+        hint = misread_unit_hint(value, measure)
+        expected = "a number" if measure.unit == Unit.ONE else "one number and a unit"
+        msg = f"{needed}, got {short_repr(value)}, which is not {expected}{hint}; {example}"
         raise UnitsError(msg)
     try:
         return pint.get_application_registry().Quantity(written)
     except Exception as problem:  # pint's parser raises many unrelated types
-        hint = misread(value, measure)
-        msg = f"{needed}, got {shown(value)}, whose unit cannot be read{hint}; {example}"
+        hint = misread_unit_hint(value, measure)
+        msg = f"{needed}, got {short_repr(value)}, whose unit cannot be read{hint}; {example}"
         raise UnitsError(msg) from problem
 
 
-def _gravity(text: str, measure: Measure) -> str:
+def _with_gravity_unit(text: str, measure: Measure) -> str:
     """Read ``g``, otherwise the gram, as the acceleration of gravity in accelerations."""
     parts = number_and_unit(text)
-    gravity = measure.unit == Unit.METRE_PER_SECOND_SQUARED and parts and parts[1] in _GRAVITY
+    gravity = (
+        measure.unit == Unit.METRE_PER_SECOND_SQUARED and parts and parts[1] in _GRAVITY_SYMBOLS
+    )
     return f"{parts[0]} g_0" if parts and gravity else text
 
 
-def _joined(value: object) -> object:
+def _pair_as_text(value: object) -> object:
     """Join a pair of number and unit, ``(0.3, "m")``, to one text; keep any other value."""
     if not isinstance(value, tuple):
         return value
@@ -301,9 +312,11 @@ def _joined(value: object) -> object:
 def _check_kind(
     argument: Quantity, value: object, measure: Measure, *, owner: str, name: str
 ) -> None:
-    wanted = type(argument)(1.0, "" if measure.unit == Unit.ONE else str(measure.unit))
+    reference = type(argument)(1.0, "" if measure.unit == Unit.ONE else str(measure.unit))
     try:
-        same_kind = argument.is_compatible_with(wanted) and _roots(argument) == _roots(wanted)
+        same_kind = argument.is_compatible_with(reference) and _root_units(argument) == _root_units(
+            reference
+        )
     except Exception:  # offset units such as degC cannot be compared
         same_kind = False
     if same_kind:
@@ -311,15 +324,15 @@ def _check_kind(
     unit = f"{argument.units:~}" or "no unit"
     unit_needed = "" if measure.unit == Unit.ONE else f" in a unit such as {measure.unit}"
     text = str(value)
-    hint = of_related_kind(argument, text, measure) or misread(text, measure)
+    hint = related_kind_hint(argument, text, measure) or misread_unit_hint(text, measure)
     msg = (
-        f"{owner}: {name} needs {measure.name}{unit_needed}, got {shown(text)} ({unit})"
+        f"{owner}: {name} needs {measure.name}{unit_needed}, got {short_repr(text)} ({unit})"
         f"{hint}; {measure.example_of(name)}"
     )
     raise UnitsError(msg)
 
 
-def _roots(value: Any) -> dict[str, float]:
+def _root_units(value: Any) -> dict[str, float]:
     # For pint the radian is dimensionless, so that a ratio would pass for an angle and rad/s for
     # Hz (a factor of 2 pi); the root units differ. They are those of one unit, as a huge value
     # would overflow.
@@ -331,10 +344,10 @@ def _check_value(
     number: float, value: object, condition: Condition | None, *, owner: str, name: str
 ) -> float:
     if not math.isfinite(number):
-        msg = f"{owner}: {name} must be finite, got {shown(str(value))}"
+        msg = f"{owner}: {name} must be finite, got {short_repr(str(value))}"
         raise ComponentError(msg)
     if condition is not None and not condition.holds(number):
         hint = condition.hint(str(value))
-        msg = f"{owner}: {name} must be {condition.words}, got {shown(str(value))}{hint}"
+        msg = f"{owner}: {name} must be {condition.words}, got {short_repr(str(value))}{hint}"
         raise ComponentError(msg)
     return number

@@ -3,7 +3,7 @@
 import re
 from typing import Any, Final
 
-from rockframe.errors import shown
+from rockframe.errors import short_repr
 from rockframe.units.kinds import (
     BED_STIFFNESS,
     FREQUENCY,
@@ -22,8 +22,8 @@ _NUMBER_AND_UNIT: Final = re.compile(rf"\s*(?P<number>{_NUMBER})\s*(?P<unit>.*)"
 
 _SPELLINGS: Final = str.maketrans("⋅\N{MULTIPLICATION SIGN}[]", "**()")
 _DOUBLE_STAR: Final = re.compile(r"\s*(?:\*\*|\^)\s*")
-_RAISED: Final = re.compile(r"(?<=[^\W\d_)])⁻?[⁰¹²³⁴-⁹]+")
-_PLAIN: Final = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
+_SUPERSCRIPTS: Final = re.compile(r"(?<=[^\W\d_)])⁻?[⁰¹²³⁴-⁹]+")
+_FROM_SUPERSCRIPTS: Final = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 _POWER: Final = r"(?:\d{1,2}(?:\.\d*)?|\.\d+)(?![\d^])"
 _UNIT: Final = re.compile(
     # excluded are a second number and a power of a number or of a power: no unit has them, and
@@ -31,7 +31,7 @@ _UNIT: Final = re.compile(
     rf"(?:[^\W\d_]|_\d*|\^(?:[-+]?{_POWER}|\([-+]{_POWER}\))|[\s*·()%‰°]|/(?!/)|\.(?!\d))*"
 )
 _NAME: Final = re.compile(r"[^\W\d]\w*")
-_FOREIGN: Final = re.compile(r"[^\s\w*/^()%‰°·.+⁻-]")
+_INVALID_CHARACTER: Final = re.compile(r"[^\s\w*/^()%‰°·.+⁻-]")
 
 
 def number_and_unit(text: str) -> tuple[str, str] | None:
@@ -40,7 +40,7 @@ def number_and_unit(text: str) -> tuple[str, str] | None:
     return None if parts is None else (parts["number"], parts["unit"])
 
 
-def plain_spelling(text: str) -> str | None:
+def pint_spelling(text: str) -> str | None:
     """Rewrite one number and its unit so that pint drops nothing; None for any other text."""
     parts = number_and_unit(text)
     if parts is None or not _is_unit(parts[1]):
@@ -48,28 +48,28 @@ def plain_spelling(text: str) -> str | None:
     return f"{float(parts[0])!r} {parts[1].translate(_SPELLINGS)}"
 
 
-def foreign_sign(text: str) -> str | None:
+def invalid_character(text: str) -> str | None:
     """Return the first character that occurs in no number and no unit; None if there is none."""
-    found = _FOREIGN.search(text.translate(_SPELLINGS))
+    found = _INVALID_CHARACTER.search(text.translate(_SPELLINGS))
     if found is not None:
         return found[0]
     # for example a fraction or a subscript: numeric characters that occur in no number
-    return next((one for one in text if one.isnumeric() and not _is_figure(one)), None)
+    return next((one for one in text if one.isnumeric() and not _is_digit(one)), None)
 
 
 def _is_unit(text: str) -> bool:
     """Whether a text consists of names, powers and operators; the names may be unknown."""
     plain = _DOUBLE_STAR.sub("^", text.translate(_SPELLINGS))
-    plain = _RAISED.sub(lambda power: f"^{power[0].translate(_PLAIN)}", plain)
+    plain = _SUPERSCRIPTS.sub(lambda power: f"^{power[0].translate(_FROM_SUPERSCRIPTS)}", plain)
     names: list[str] = _NAME.findall(plain)
     return _UNIT.fullmatch(plain) is not None and all(name.isidentifier() for name in names)
 
 
-def _is_figure(one: str) -> bool:
+def _is_digit(one: str) -> bool:
     return one.isdecimal() or one in "⁰¹²³⁴⁵⁶⁷⁸⁹"
 
 
-_HEAVY: Final = (Unit.KILOGRAM, Unit.KILOGRAM_PER_CUBIC_METRE, Unit.KILOGRAM_METRE_SQUARED)
+_MASS_UNITS: Final = (Unit.KILOGRAM, Unit.KILOGRAM_PER_CUBIC_METRE, Unit.KILOGRAM_METRE_SQUARED)
 _MISREAD_UNITS: Final = (
     # (pattern, unit of the argument or None for any, what is wrong)
     (
@@ -105,7 +105,7 @@ AMBIGUOUS: Final = (
 )
 
 
-def foreign_quantity(value: object) -> str:
+def foreign_quantity_hint(value: object) -> str:
     """Say how to convert a quantity of another library; nothing for other values."""
     home = type(value).__module__.partition(".")[0]
     unit = next((one for one in ("unit", "units") if hasattr(value, one)), None)
@@ -117,26 +117,32 @@ def foreign_quantity(value: object) -> str:
     )
 
 
-def of_related_kind(value: Any, text: str, measure: Measure) -> str:
+def related_kind_hint(value: Any, text: str, measure: Measure) -> str:
     """Say how to convert a quantity of a related kind to the one that is needed, or nothing."""
-    return _weight(value, text, measure) or _subgrade(value, measure) or _period(value, measure)
+    return (
+        _weight_hint(value, text, measure)
+        or _subgrade_hint(value, measure)
+        or _period_hint(value, measure)
+    )
 
 
-def _weight(value: Any, text: str, measure: Measure) -> str:
+def _weight_hint(value: Any, text: str, measure: Measure) -> str:
     """Say how to get the mass from a weight that was given for a mass."""
-    if measure.unit not in _HEAVY:
+    if measure.unit not in _MASS_UNITS:
         return ""
     over_g = re.search(r"/\s*g$", text)  # read as the gram
     try:
-        heavy = value.is_compatible_with(f"{measure.unit} m s^-2{' g^-1' if over_g else ''}")
+        is_weight = value.is_compatible_with(f"{measure.unit} m s^-2{' g^-1' if over_g else ''}")
     except Exception:  # offset units such as degC cannot be compared
         return ""
     if over_g:
-        return f" ('g' is the gram there; write {shown(f'{text}_0')})" if heavy else ""
-    return f" (a force is no mass; divide it by g_0: {shown(f'{text}/g_0')})" if heavy else ""
+        return f" ('g' is the gram there; write {short_repr(f'{text}_0')})" if is_weight else ""
+    return (
+        f" (a force is no mass; divide it by g_0: {short_repr(f'{text}/g_0')})" if is_weight else ""
+    )
 
 
-def _subgrade(value: Any, measure: Measure) -> str:
+def _subgrade_hint(value: Any, measure: Measure) -> str:
     """Name the constructor for a subgrade modulus that was given for the stiffness of a bed."""
     if measure.unit != BED_STIFFNESS.unit or not _is_in(value, SUBGRADE_MODULUS.unit):
         return ""
@@ -146,14 +152,14 @@ def _subgrade(value: Any, measure: Measure) -> str:
     )
 
 
-def _period(value: Any, measure: Measure) -> str:
+def _period_hint(value: Any, measure: Measure) -> str:
     """Return the frequency of a period that was given for a frequency."""
     if measure.unit != FREQUENCY.unit or not _is_in(value, TIME.unit):
         return ""
     seconds = float(value.m_as(str(TIME.unit)))
     if not seconds > 0.0:
         return ""
-    return f" (a period; its frequency is {shown(f'{1.0 / seconds:.6g} {FREQUENCY.unit}')})"
+    return f" (a period; its frequency is {short_repr(f'{1.0 / seconds:.6g} {FREQUENCY.unit}')})"
 
 
 def _is_in(value: Any, unit: Unit) -> bool:
@@ -163,16 +169,16 @@ def _is_in(value: Any, unit: Unit) -> bool:
         return False
 
 
-def misread(text: str, measure: Measure) -> str:
+def misread_unit_hint(text: str, measure: Measure) -> str:
     """Say which unit was probably meant, or nothing."""
     parts = number_and_unit(text)
     text = text if parts is None else parts[1]
     for pattern, meant, words in _MISREAD_UNITS:
         if meant in (None, measure.unit) and re.search(pattern, text):
             return f" ({words})"
-    sign = foreign_sign(text)
+    sign = invalid_character(text)
     if sign is not None:
-        return f" ({shown(sign)} occurs in no number and in no unit)"
+        return f" ({short_repr(sign)} occurs in no number and in no unit)"
     if measure is FREQUENCY:
         return " (a cyclic frequency in Hz is the angular one in rad/s divided by 2 pi)"
     return ""

@@ -10,10 +10,10 @@ import rockframe as rf
 from rockframe.motion.matching.adjustment import (
     OscillatorPeaks,
     Oscillators,
-    adjustment_of,
-    lead_of,
+    make_adjustment,
+    taper_width,
     wavelet_at,
-    width_of,
+    wavelet_lead,
 )
 from rockframe.signals.spectra import spectral_peaks
 
@@ -55,9 +55,9 @@ def test_a_wavelet_in_the_open_is_the_tapered_cosine_without_its_mean(period, da
     share = np.sqrt(1.0 - damping**2)
     frequency = 2.0 * np.pi / period * share
     lead = np.arctan(share / damping) / frequency
-    assert lead_of(period, damping) == pytest.approx(lead, rel=1e-12)
+    assert wavelet_lead(period, damping) == pytest.approx(lead, rel=1e-12)
     width = 1.178 * period**0.93
-    assert width_of(period) == pytest.approx(width, rel=1e-12)
+    assert taper_width(period) == pytest.approx(width, rel=1e-12)
     mean = np.exp(-((frequency * width) ** 2) / 4.0)
 
     def continuous(time):
@@ -157,7 +157,7 @@ def test_the_matrix_is_the_change_of_the_response_per_wavelet():
     oscillators = Oscillators(PERIODS, damping, STEP)
     peaks = oscillators.peaks(samples, oscillators.histories(samples))
     targets = np.full(PERIODS.size, 3.0)
-    made = adjustment_of(oscillators, peaks, targets, COUNT)
+    made = make_adjustment(oscillators, peaks, targets, COUNT)
     assert made.effects.shape == (peaks.values.size, peaks.values.size)
     small = 1e-3
 
@@ -183,7 +183,7 @@ def test_amplitudes_bring_the_peaks_where_they_are_to_be():
     peaks = oscillators.peaks(samples, histories)
     target = np.array([1.01 * peaks.spectrum[0]])
     alone = OscillatorPeaks(*(values[:1] for values in peaks))
-    made = adjustment_of(oscillators, alone, target, COUNT)
+    made = make_adjustment(oscillators, alone, target, COUNT)
     changed = samples + made.wavelets @ made.amplitudes(1e-12)
     at = np.interp(
         peaks.times[0] / STEP,
@@ -199,7 +199,7 @@ def test_rivals_are_held_down():
     oscillators = Oscillators(np.array([0.5]), 0.05, STEP)
     peaks = oscillators.peaks(samples, oscillators.histories(samples))
     assert peaks.values.size > 1
-    made = adjustment_of(oscillators, peaks, np.array([0.9 * peaks.spectrum[0]]), COUNT)
+    made = make_adjustment(oscillators, peaks, np.array([0.9 * peaks.spectrum[0]]), COUNT)
     found = made.amplitudes(1e-8)
     left = made.missing - made.effects @ found
     assert abs(left[0]) < 1e-3

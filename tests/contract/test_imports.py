@@ -7,7 +7,7 @@ import sys
 import pytest
 
 import rockframe as rf
-from rockframe import old_names
+from rockframe import deprecated
 from rockframe.errors import RockframeError, RockframeWarning
 
 pytestmark = pytest.mark.contract
@@ -176,7 +176,7 @@ def test_names_that_have_moved_are_given_with_a_warning():
         with pytest.warns(DeprecationWarning, match=rf"rockframe\.{name} is now rockframe\."):
             old = getattr(rf, name)
         assert old(*given).drop_attrs().identical(new.drop_attrs())
-    for name in old_names.MOVED:
+    for name in deprecated.MOVED:
         with pytest.warns(DeprecationWarning, match=rf"rockframe\.{name} is now rockframe\."):
             assert callable(getattr(rf, name))
 

@@ -5,13 +5,13 @@ import pytest
 import xarray as xr
 
 import rockframe as rf
-from rockframe.arguments import whole_number
+from rockframe.arguments import checked_integer
 from rockframe.errors import ComponentError, RockframeError
 
 
 @pytest.mark.parametrize("given", [3, np.int64(3), np.uint8(3), np.array(3)])
 def test_whole_numbers_of_python_and_numpy(given):
-    found = whole_number(given, owner="Frame", name="storeys", lowest=3, highest=3)
+    found = checked_integer(given, owner="Frame", name="storeys", lowest=3, highest=3)
     assert found == 3
     assert type(found) is int
 
@@ -21,13 +21,13 @@ def test_whole_numbers_of_python_and_numpy(given):
 )
 def test_what_is_none_or_out_of_range(given):
     with pytest.raises(ComponentError, match=r"Frame: storeys must be a whole number from 3 to 5"):
-        whole_number(given, owner="Frame", name="storeys", lowest=3, highest=5)
+        checked_integer(given, owner="Frame", name="storeys", lowest=3, highest=5)
 
 
 def test_without_an_upper_bound():
-    assert whole_number(10**30, owner="Frame", name="storeys", lowest=0) == 10**30
+    assert checked_integer(10**30, owner="Frame", name="storeys", lowest=0) == 10**30
     with pytest.raises(ComponentError, match="storeys must be a whole number, 0 or more, got -1"):
-        whole_number(-1, owner="Frame", name="storeys", lowest=0)
+        checked_integer(-1, owner="Frame", name="storeys", lowest=0)
 
 
 @pytest.mark.parametrize("given", [np.array(0.5), xr.DataArray(0.5)])

@@ -17,7 +17,7 @@ from overdamping import overdamped
 
 import rockframe as rf
 from rockframe.components import Link, PointLink, component_from_dict
-from rockframe.components.registry import kinds
+from rockframe.components.registry import registered_classes
 from rockframe.errors import AssemblyError, ComponentError, ModelWarning, RockframeError, UnitsError
 
 pytestmark = pytest.mark.unit
@@ -152,7 +152,11 @@ GIVEN = (
 
 
 def test_every_kind_of_component_is_among_those_that_are_looked_at():
-    own = {kind for kind in kinds().values() if kind.__module__.startswith("rockframe.components")}
+    own = {
+        kind
+        for kind in registered_classes().values()
+        if kind.__module__.startswith("rockframe.components")
+    }
     assert own - {Link, PointLink} == {type(one) for one in GIVEN}
 
 

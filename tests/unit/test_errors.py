@@ -13,13 +13,13 @@ import xarray as xr
 import rockframe as rf
 from rockframe import errors
 from rockframe.errors import (
-    LONGEST_SHOWN,
+    MAX_SHOWN_LENGTH,
     AssemblyError,
     FileError,
     RecordError,
     RockframeError,
     StudyError,
-    shown,
+    short_repr,
 )
 
 pytestmark = pytest.mark.unit
@@ -27,20 +27,20 @@ pytestmark = pytest.mark.unit
 
 @pytest.mark.parametrize("value", [4, "4 m", None, [1, 2], np.array([0.1]), rf.Block, 1j])
 def test_short_values_are_shown_as_written(value):
-    assert shown(value) == repr(value)
+    assert short_repr(value) == repr(value)
 
 
 @pytest.mark.parametrize("value", [list(range(5000)), "m" * 5000, dict.fromkeys(range(5000))])
 def test_long_values_are_cut(value):
-    assert len(shown(value)) == LONGEST_SHOWN
-    assert shown(value).endswith("...")
-    assert shown(value)[:20] == repr(value)[:20]
+    assert len(short_repr(value)) == MAX_SHOWN_LENGTH
+    assert short_repr(value).endswith("...")
+    assert short_repr(value)[:20] == repr(value)[:20]
 
 
 def test_arrays_and_datasets_are_shown_by_their_type():
-    assert shown(np.linspace(0.0, 1.0, 5000)) == "a ndarray of shape (5000,)"
-    assert shown(xr.DataArray(np.zeros(3), dims="x")) == "a DataArray of shape (3,)"
-    assert shown(rf.GroundMotion.sine_pulse().to_dataset()) == "a Dataset"
+    assert short_repr(np.linspace(0.0, 1.0, 5000)) == "a ndarray of shape (5000,)"
+    assert short_repr(xr.DataArray(np.zeros(3), dims="x")) == "a DataArray of shape (3,)"
+    assert short_repr(rf.GroundMotion.sine_pulse().to_dataset()) == "a Dataset"
 
 
 @pytest.mark.parametrize(
@@ -60,7 +60,7 @@ def test_arrays_and_datasets_are_shown_by_their_type():
 def test_messages_do_not_print_all_of_a_long_value(call):
     with pytest.raises(RockframeError) as caught:
         call([0.05] * 5000)
-    assert max(len(line) for line in str(caught.value).splitlines()) < 4 * LONGEST_SHOWN
+    assert max(len(line) for line in str(caught.value).splitlines()) < 4 * MAX_SHOWN_LENGTH
 
 
 OF_MANY_FAULTS = {

@@ -17,7 +17,7 @@ import rockframe as rf
 from rockframe.errors import ComponentError, UnitsError
 from rockframe.reports.values import value_of
 from rockframe.units import LENGTH, to_si, to_si_values
-from rockframe.units.shown import behind, in_degrees, reader_units
+from rockframe.units.display import degrees_text, display_units, unit_suffix
 
 pytestmark = pytest.mark.unit
 
@@ -176,11 +176,13 @@ LONG = {"length": "mm", "stiffness": "kN/mm"}
 
 
 def test_sentences_are_told_in_the_units_of_the_reader():
-    units = reader_units({"acceleration": "g", "length": "mm"}, owner="a figure")
-    told = units.of_sentence("from 9.80665 to 19.6133 m s^-2, 0.02 m, -1e-3 m; 2 m s^-1, 3 m s^-2.")
+    units = display_units({"acceleration": "g", "length": "mm"}, owner="a figure")
+    told = units.convert_text(
+        "from 9.80665 to 19.6133 m s^-2, 0.02 m, -1e-3 m; 2 m s^-1, 3 m s^-2."
+    )
     assert told == "from 1 to 2 g, 20 mm, -1 mm; 2 m s^-1, 0.3059 g."
     chosen = {**LONG, "moment": "MN*m", "force": "kN", "angle": "deg", "mass": "t"}
-    units = reader_units(chosen, owner="a figure")
+    units = display_units(chosen, owner="a figure")
     for text, wanted in (
         ("M_OT 4707 N m, 1e+07 N", "M_OT 0.004707 MN m, 10000 kN"),
         ("1.5e+07 N/m, 80 N s/m", "15 kN mm^-1, 80 N s/m"),
@@ -191,8 +193,8 @@ def test_sentences_are_told_in_the_units_of_the_reader():
         ("0.244979 rad (14.04°), 0.01663 rad", "14.036°, 0.953°"),
         ("0.5 rad/s", "0.5 rad/s"),
     ):
-        assert units.of_sentence(text) == wanted
-    assert reader_units(None, owner="a figure").of_sentence("4 m") == "4 m"
+        assert units.convert_text(text) == wanted
+    assert display_units(None, owner="a figure").convert_text("4 m") == "4 m"
 
 
 def test_two_values_of_which_one_is_a_quantity_are_no_number_and_its_unit():
@@ -253,13 +255,13 @@ def test_a_masked_value_is_not_zero():
 
 def test_degrees_follow_a_number_without_a_space_everywhere():
     """ISO 80000-1: a space before every unit, but none before the sign of degrees."""
-    assert [behind(unit) for unit in ("1", "", "m s^-1", "°", "° s^-1")] == [
+    assert [unit_suffix(unit) for unit in ("1", "", "m s^-1", "°", "° s^-1")] == [
         "", "", " m s^-1", "°", "° s^-1"]  # fmt: skip
-    assert (in_degrees(math.pi / 7), in_degrees(math.pi / 7, 2)) == ("25.71°", "26°")
+    assert (degrees_text(math.pi / 7), degrees_text(math.pi / 7, 2)) == ("25.71°", "26°")
     angle = xr.DataArray(0.25, attrs={"units": "rad"})
-    units = reader_units({"angle": "deg"}, owner="a page")
+    units = display_units({"angle": "deg"}, owner="a page")
     assert value_of(angle) == "0.25 rad (14.3°)"
-    assert value_of(angle, units) == "14.32°" == units.of_sentence("0.25 rad")
+    assert value_of(angle, units) == "14.32°" == units.convert_text("0.25 rad")
     block = rf.Block(width="0.5 m", height="2 m", mass="1 t")
     text = rf.System(block, inclination="2 deg").describe()
     assert "(12.04°)" in text

@@ -20,7 +20,7 @@ from rockframe.reports.values import value_of
 from rockframe.results.schema import SCHEMA
 from rockframe.simulation.certify import certificate
 from rockframe.simulation.run_arguments import MIN_RUNS
-from rockframe.units.shown import ReaderUnits
+from rockframe.units.display import DisplayUnits
 
 pytestmark = [pytest.mark.unit, pytest.mark.usefixtures("no_pictures")]
 
@@ -235,7 +235,7 @@ def test_a_certificate_near_a_boundary_is_shown_as_such(response):
     told = response.assign(dict.fromkeys(("verdict_converged", "verdict_robust"), True))
     told.attrs["certificate"] = certificate.NEAR_WORDS + ": the body stands, but ..."
     (shown,) = [
-        one for one in sections.verdict_section(told, "", ReaderUnits()) if "Certificate" in one
+        one for one in sections.verdict_section(told, "", DisplayUnits()) if "Certificate" in one
     ]
     assert "the verdict holds, but near a boundary" in shown
     assert 'class="verdict doubt"' in shown
@@ -245,9 +245,9 @@ def test_a_certificate_near_a_boundary_is_shown_as_such(response):
 def test_a_certificate_holds_only_where_it_is_sure_in_every_way(response, doubted):
     told = response.assign(dict.fromkeys(("verdict_converged", "verdict_robust"), True))
     told.attrs["certificate"] = "The body stands."
-    assert "the verdict holds" in "".join(sections.verdict_section(told, "", ReaderUnits()))
+    assert "the verdict holds" in "".join(sections.verdict_section(told, "", DisplayUnits()))
     assert "the verdict is in doubt" in "".join(
-        sections.verdict_section(told.assign({doubted: False}), "", ReaderUnits())
+        sections.verdict_section(told.assign({doubted: False}), "", DisplayUnits())
     )
 
 
@@ -311,7 +311,7 @@ def test_the_parts_of_a_part_have_tables_of_their_own():
         (stack, ("Body 1: Block", "Body 2: Block", "Interface 1: RigidGround", "0.01 m")),
         (rf.RockingFrame(block, columns=3, beam_mass="2 t"), ("Column: Block", "500 kg")),
     ):
-        shown = Page("".join(sections._part("part", part, ReaderUnits()))).text
+        shown = Page("".join(sections._part("part", part, DisplayUnits()))).text
         assert all(each in shown for each in words)
         assert "{" not in shown
 

@@ -12,7 +12,7 @@ import rockframe as rf
 from rockframe.errors import ComponentError, RecordWarning, RockframeWarning
 from rockframe.reports import motions as in_reports
 from rockframe.results.schema import SCHEMA
-from rockframe.units.shown import reader_units
+from rockframe.units.display import display_units
 
 pytestmark = [pytest.mark.unit, pytest.mark.usefixtures("no_pictures")]
 
@@ -203,7 +203,7 @@ def test_what_a_code_says_stands_beside_the_motion(check, tmp_path):
                                  spectral_acceleration=1.0)  # fmt: skip
     units = {"force": "kN", "length": "mm"}
     path = rf.report(run, tmp_path / "r.html", checks=[check, cabinet], certify=False, units=units)
-    told = reader_units(units, owner="a test").of_sentence
+    told = display_units(units, owner="a test").of_sentence
     words = text_of(path)
     above = words.split("Response")[0]
     assert "Did not overturn" in above

@@ -9,7 +9,7 @@ import pytest
 import rockframe as rf
 from rockframe.errors import ComponentError, UnitsError
 from rockframe.units import Unit
-from rockframe.units.shown import reader_units
+from rockframe.units.display import display_units
 
 pytestmark = [pytest.mark.unit, pytest.mark.usefixtures("no_pictures")]
 
@@ -116,7 +116,7 @@ def test_titles_of_figures_follow_the_units(tmp_path):
 @pytest.mark.parametrize("unit", ["gal", "kN", "quux"])
 def test_a_wrong_unit_is_told_as_it_was_typed(unit):
     with pytest.raises(UnitsError) as caught:
-        reader_units({"acceleration": unit}, owner="report")
+        display_units({"acceleration": unit}, owner="report")
     words = str(caught.value)
     assert f"got '{unit}'" in words
     assert "m s^-2" in words

@@ -8,7 +8,12 @@ import pytest
 
 import rockframe as rf
 from rockframe.errors import StudyError
-from rockframe.shared_arguments import Argument, declared_in, documented_by, takes
+from rockframe.shared_arguments import (
+    Argument,
+    declared_arguments,
+    with_documented_arguments,
+    with_shared_arguments,
+)
 from rockframe.simulation.run_arguments import ComparedArguments, RunArguments, ScaleArguments
 from rockframe.studies.sweeps.arguments import (
     SWEEP_ARGUMENT_NAMES,
@@ -41,7 +46,7 @@ class Some(TypedDict, total=False):
     colour: Annotated[str | None, Argument(None, "str, optional", "Of the rock.")]
 
 
-@takes(Some, colour="grey")
+@with_shared_arguments(Some, colour="grey")
 def pit(width: float, *, roof: bool = False, **more: Unpack[Some]) -> dict[str, object]:
     """Dig.
 
@@ -95,7 +100,7 @@ def test_rows_that_a_docstring_has_stay_and_all_follow_the_signature():
             More.
         """
 
-    text = inspect.getdoc(documented_by(Some)(dug))
+    text = inspect.getdoc(with_documented_arguments(Some)(dug))
     rows = text.split("----------\n")[1].splitlines()
     assert rows[::2] == ["depth : float, optional", "colour : str", "*others"]
     assert rows[3] == "    Its own words."
@@ -103,7 +108,7 @@ def test_rows_that_a_docstring_has_stay_and_all_follow_the_signature():
     def bare(depth=2.0):
         pass
 
-    assert documented_by(Some)(bare).__doc__ == ""
+    assert with_documented_arguments(Some)(bare).__doc__ == ""
 
 
 WITH_AXES = (rf.incremental_dynamic_analysis, rf.rocking_spectrum, rf.overturning_spectrum)
@@ -112,7 +117,7 @@ WITH_AXES = (rf.incremental_dynamic_analysis, rf.rocking_spectrum, rf.overturnin
 @pytest.mark.parametrize("function", TAKEN, ids=lambda one: one.__name__)
 def test_each_analysis_has_the_names_and_defaults_that_it_had(function):
     kind, names = TAKEN[function]
-    declared = declared_in(kind)
+    declared = declared_arguments(kind)
     assert list(declared) == names
     own = inspect.signature(function).parameters
     further = [one.name for one in own.values() if one.kind is one.VAR_KEYWORD]
@@ -124,7 +129,7 @@ def test_each_analysis_has_the_names_and_defaults_that_it_had(function):
         assert own[name].kind is inspect.Parameter.KEYWORD_ONLY
         assert own[name].default == usual
         assert f"\n{name} : " in inspect.getdoc(function)
-        assert declared[name].words[-1] in ".]"
+        assert declared[name].description[-1] in ".]"
     refused = (
         (StudyError, "'acuracies' names no parameter; was 'accuracy' meant")
         if further  # any other name may be that of an axis
@@ -140,7 +145,7 @@ def test_each_analysis_has_the_names_and_defaults_that_it_had(function):
 def test_sweep_and_simulate_have_what_is_declared():
     """Both write their arguments out: one takes any further name, the other any outputs."""
     of_sweep = inspect.signature(rf.sweep).parameters
-    for name, one in declared_in(SweepArguments).items():
+    for name, one in declared_arguments(SweepArguments).items():
         assert of_sweep[name].default == one.default
     assert set(SWEEP_ARGUMENT_NAMES) < set(of_sweep)
     of_run = inspect.signature(rf.System.simulate).parameters

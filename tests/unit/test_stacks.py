@@ -125,7 +125,7 @@ def test_twelve_drums_rock(slips):
 
 
 def test_modes_of_twelve_drums_can_be_told_apart():
-    assert (2 * rows.RIGID_MODES) ** stack.MOST_BODIES <= MAX_MODES
+    assert (2 * rows.RIGID_MODES) ** stack.MAX_BODIES <= MAX_MODES
 
 
 def test_no_slope_under_a_stack():

@@ -3,7 +3,7 @@
 import re
 from typing import Final
 
-from rockframe.components.registry import kinds
+from rockframe.components.registry import registered_classes
 from rockframe.system.parts import default_class, slot_of_class
 
 _TEXT: Final = r"(?:'[^']*'|\"[^\"]*\")"
@@ -42,12 +42,12 @@ def _table(call: re.Match[str]) -> str:
     if kind in _OBJECTS:
         return f"{_OBJECTS[kind]} = {{ {', '.join(given) or '...'} }}"
     slot = _SYSTEM.get(kind)
-    if kind in kinds():
-        slot = slot_of_class(kinds()[kind])
+    if kind in registered_classes():
+        slot = slot_of_class(registered_classes()[kind])
     if slot is None:
         return call[0]
     if call["way"] is not None:
         given.insert(0, f'constructor = "{call["way"]}"')
-    if kind in kinds() and default_class(slot).__name__ != kind:
+    if kind in registered_classes() and default_class(slot).__name__ != kind:
         given.insert(0, f'type = "{kind}"')
     return f"[{slot}] with {', '.join(given)}" if given else f"[{slot}]"

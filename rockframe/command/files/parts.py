@@ -7,9 +7,9 @@ from typing import Any, Final
 
 from rockframe.command.files.tables import Place, TomlFile, arguments_of, checked, made, table_title
 from rockframe.components import Component, RockingFrame, Stack
-from rockframe.components.registry import kinds
-from rockframe.errors import nearest, shown
-from rockframe.proposals import hints_of
+from rockframe.components.registry import registered_classes
+from rockframe.errors import did_you_mean, short_repr
+from rockframe.suggestions import hints_of
 from rockframe.system.parts import RESTRAINER, default_class, slot_of_class, slots
 
 TYPE: Final = "type"
@@ -82,10 +82,11 @@ def _described(
         ways = constructors(kind)
         if constructor not in ways:
             listed = ", ".join(ways) or "none but the usual one"
-            near = nearest(str(constructor), ways)
+            near = did_you_mean(str(constructor), ways)
             file.fault(
                 (*where, CONSTRUCTOR),
-                f"constructors of {kind.__name__} are {listed}; got {shown(constructor)}{near}",
+                f"constructors of {kind.__name__} are {listed}; got "
+                f"{short_repr(constructor)}{near}",
             )
             return None
         function, declared = ways[constructor], {}
@@ -112,7 +113,7 @@ def _inner(file: TomlFile, where: Place, wanted: InnerParts, table: dict[str, An
     value = table[name]
     if wanted.several and not isinstance(value, list):
         header = f"[[{table_title(where)}]]"
-        words = f"{name} must be an array of tables, {header} above each, got {shown(value)}"
+        words = f"{name} must be an array of tables, {header} above each, got {short_repr(value)}"
         file.fault(where, words)
         return False
     known = {key: kind for slot in wanted.slots for key, kind in classes_in(slot).items()}
@@ -124,7 +125,9 @@ def _inner(file: TomlFile, where: Place, wanted: InnerParts, table: dict[str, An
 def classes_in(slot: str) -> dict[str, type[Component]]:
     """Return the classes of parts that a table may describe, the usual one first."""
     usual = default_class(slot)
-    fitting = {name: kind for name, kind in kinds().items() if slot_of_class(kind) == slot}
+    fitting = {
+        name: kind for name, kind in registered_classes().items() if slot_of_class(kind) == slot
+    }
     return {usual.__name__: fitting[usual.__name__], **fitting}
 
 
@@ -147,8 +150,8 @@ def _kind_of(
     of_own = (
         f'; a class of your own is found once its file is named at the top, {MODULES} = ["mine.py"]'
     )
-    near = nearest(str(name), known)
-    words = f"type must be {' or '.join(known)}, got {shown(name)}{near or of_own}"
+    near = did_you_mean(str(name), known)
+    words = f"type must be {' or '.join(known)}, got {short_repr(name)}{near or of_own}"
     file.fault((*where, TYPE), words)
     return None
 

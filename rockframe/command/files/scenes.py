@@ -12,16 +12,16 @@ from rockframe.command.files.parts import CONSTRUCTOR, MODULES, described_parts,
 from rockframe.command.files.tables import Place, TomlFile, arguments_of, checked, made, table_title
 from rockframe.command.typed_calls import check_of
 from rockframe.components import Component, InitialState
-from rockframe.components.registry import kinds
-from rockframe.errors import AssemblyError, RockframeError, nearest, shown
+from rockframe.components.registry import registered_classes
+from rockframe.errors import AssemblyError, RockframeError, did_you_mean, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import CONSTRUCTORS, OPERATIONS
-from rockframe.proposals import hints_of
 from rockframe.reports.project import CHECKS, project_json
 from rockframe.simulation.plan import read_arguments, read_certification
 from rockframe.simulation.run_arguments import Certification
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import Accuracy
+from rockframe.suggestions import hints_of
 from rockframe.system.parts import slot_of_class
 
 _FILE: Final = "file"
@@ -59,7 +59,7 @@ def described_motion(file: TomlFile, where: Place, value: object) -> GroundMotio
 def _read(file: TomlFile, where: Place, table: dict[str, Any]) -> GroundMotion | None:
     name = table.pop(_FILE)
     if not isinstance(name, str):
-        file.fault((*where, _FILE), f"file must be the path of a record, got {shown(name)}")
+        file.fault((*where, _FILE), f"file must be the path of a record, got {short_repr(name)}")
         return None
     component = table.get("component")
     if isinstance(component, list):  # TOML has no tuples
@@ -75,8 +75,8 @@ def _constructed(file: TomlFile, where: Place, table: dict[str, Any]) -> GroundM
     constructor = table.pop(CONSTRUCTOR)
     if constructor not in MOTIONS:
         known = ", ".join(MOTIONS)
-        near = nearest(str(constructor), MOTIONS)
-        words = f"constructor must be one of {known}, got {shown(constructor)}{near}"
+        near = did_you_mean(str(constructor), MOTIONS)
+        words = f"constructor must be one of {known}, got {short_repr(constructor)}{near}"
         file.fault((*where, CONSTRUCTOR), words)
         return None
     function = getattr(GroundMotion, constructor)
@@ -92,14 +92,14 @@ def _operated(
     where = (*where, _OPERATIONS)
     if not isinstance(operations, list):
         words = "operations must be a list such as [{ scaled = { factor = 1.5 } }]"
-        file.fault(where, f"{words}, got {shown(operations)}")
+        file.fault(where, f"{words}, got {short_repr(operations)}")
         return None
     found: GroundMotion | None = motion
     for number, one in enumerate(operations):
         here = (*where, number)
         if not isinstance(one, dict) or len(one) != 1:
             words = "an operation is written { scaled = { factor = 1.5 } }"
-            file.fault(here, f"{words}, got {shown(one)}")
+            file.fault(here, f"{words}, got {short_repr(one)}")
             return None
         ((name, value),) = one.items()
         if found is None:
@@ -252,7 +252,9 @@ def _read_arguments(**values: Any) -> None:
 
 def _unknown_table(file: TomlFile, name: str) -> None:
     letters = name.replace("_", "").casefold()
-    kind = next((kind for one, kind in kinds().items() if one.casefold() == letters), None)
+    kind = next(
+        (kind for one, kind in registered_classes().items() if one.casefold() == letters), None
+    )
     slot = None if kind is None else slot_of_class(kind)
     if kind is None or slot is None:
         file.unknown((), name, keys())
@@ -265,7 +267,9 @@ def import_modules(file: TomlFile) -> None:
     """Import the files in which users declare their own parts."""
     value = file.values.get(MODULES, [])
     if not isinstance(value, list):
-        file.fault((MODULES,), f'modules must be a list such as ["mine.py"], got {shown(value)}')
+        file.fault(
+            (MODULES,), f'modules must be a list such as ["mine.py"], got {short_repr(value)}'
+        )
         return
     for name in value:
         try:

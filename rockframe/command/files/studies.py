@@ -26,7 +26,7 @@ from rockframe.command.files.tables import (
     made,
     read_columns,
 )
-from rockframe.errors import FileError, RockframeError, StudyError, shown
+from rockframe.errors import FileError, RockframeError, StudyError, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.simulation.system import System
 from rockframe.studies import sweep
@@ -108,10 +108,12 @@ def _scene_of(file: TomlFile) -> Described | None:
     inner = [key for key in file.values if key in scene_keys() and key != PROJECT]
     for key in inner:
         where = "; arguments of the runs of a study belong in [sweep]" if key == RUN else ""
-        words = f"[{key}] and scene = {shown(name)} are both given; give only one of them{where}"
+        words = (
+            f"[{key}] and scene = {short_repr(name)} are both given; give only one of them{where}"
+        )
         file.fault((key,), words)
     if not isinstance(name, str):
-        file.fault((SCENE,), f"scene must be the path of a file, got {shown(name)}")
+        file.fault((SCENE,), f"scene must be the path of a file, got {short_repr(name)}")
         return None
     try:
         scene = read_scene(file.path_relative_to(name))
@@ -137,7 +139,7 @@ def _motions_of(file: TomlFile) -> Motions:
         return [one for one in found if one is not None]
     if not items or not all(isinstance(item, str) for item in items):
         words = 'motions must be a list of files, folders or patterns such as ["records/*.AT2"]'
-        file.fault(where, f"{words}, or of tables [[motions]]; got {shown(value)}")
+        file.fault(where, f"{words}, or of tables [[motions]]; got {short_repr(value)}")
         return None
     paths: list[str] = []
     for item in items:
@@ -207,6 +209,6 @@ def _path_of(file: TomlFile, name: str) -> Path | None:
     if value is None:
         return None
     if not isinstance(value, str) or not value:
-        file.fault((name,), f"{name} must be a path, got {shown(value)}")
+        file.fault((name,), f"{name} must be a path, got {short_repr(value)}")
         return None
     return file.path_of(value)

@@ -20,8 +20,8 @@ from rockframe.errors import (
     RockframeError,
     RockframeWarning,
     StudyError,
-    nearest,
-    shown,
+    did_you_mean,
+    short_repr,
     warn,
 )
 from rockframe.results.variables.studies import MOTION
@@ -169,7 +169,7 @@ class TomlFile:
         self.fault(
             where,
             f"{where[-1]} must be a table, [{table_title(where)}] with its keys below it, "
-            f"got {shown(argument)}",
+            f"got {short_repr(argument)}",
         )
         return None
 
@@ -179,7 +179,7 @@ class TomlFile:
         if hint:
             self.fault((*where, name), f"unknown key {name!r}: {hint}")
             return
-        meant = nearest(name, known) or ";"
+        meant = did_you_mean(name, known) or ";"
         inside = f"[{table_title(where)}] takes" if where else "there are"
         self.fault((*where, name), f"unknown key {name!r}{meant} {inside} {', '.join(known)}")
 

@@ -7,7 +7,7 @@ from typing import Any, Final
 
 from rockframe.command.files.parts import CONSTRUCTOR, TYPE, constructors, inner_parts
 from rockframe.components import Component
-from rockframe.components.registry import kinds
+from rockframe.components.registry import registered_classes
 from rockframe.system.parts import RESTRAINER, default_class, slot_of_class
 
 _POINT: Final = re.compile(r"\((?P<numbers>[^()]+)\) (?P<unit>\S+)")
@@ -45,7 +45,7 @@ def _keys(values: Mapping[str, Any], slot: str) -> list[str]:
     rest = dict(values)
     kind = str(rest.pop(TYPE))
     keys: dict[str, Any] = {} if kind == default_class(slot).__name__ else {TYPE: kind}
-    part = kinds()[kind]
+    part = registered_classes()[kind]
     if _FROM_MEMBERS in constructors(part) and not rest.keys() <= part.declared().keys():
         keys[CONSTRUCTOR] = _FROM_MEMBERS  # the only one whose arguments a part keeps
     if _MEMBERS in rest:

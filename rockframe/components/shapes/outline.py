@@ -10,25 +10,25 @@ import numpy.typing as npt
 from rockframe.components.alternatives import OneOf
 from rockframe.components.shapes.standing import (
     ROUNDING,
-    Made,
+    BaseSegment,
+    ComponentType,
     OutlineCorner,
     PlaneMass,
-    Points,
-    Stance,
+    PointsLike,
     read_mass,
     read_points,
     shaped_body,
 )
 from rockframe.errors import ComponentError
-from rockframe.proposals import hinted
 from rockframe.signals.arrays import Array
+from rockframe.suggestions import with_hints
 from rockframe.units import DENSITY, LENGTH, MASS, POSITIVE, THICKNESS, Measure, QuantityLike, to_si
-from rockframe.units.shown import in_degrees
+from rockframe.units.display import degrees_text
 
 _THIN: Final = 1e-12  # thickness over size below which an outline has no area
 
 
-def polygon(points: Array) -> tuple[float, float, float, float]:
+def polygon_properties(points: Array) -> tuple[float, float, float, float]:
     """Return area, centroid and mean square distance from it, from :eq:`eq-polygon-area` on.
 
     The points are the corners in order, clockwise or anticlockwise. The sums follow from Green's
@@ -36,33 +36,33 @@ def polygon(points: Array) -> tuple[float, float, float, float]:
     divided by its size, so that a distant origin costs no digits.
     """
     low, high = points.min(axis=0), points.max(axis=0)
-    middle, size = 0.5 * (low + high), extent_of(points)
+    middle, size = 0.5 * (low + high), extent(points)
     x, y = ((points - middle) / size).T
-    twice = _twice(x, y)
+    twice = _twice_areas(x, y)
     area = 0.5 * math.fsum(twice)  # negative if clockwise
     across = math.fsum((x + np.roll(x, -1)) * twice) / (6.0 * area)
     up = math.fsum((y + np.roll(y, -1)) * twice) / (6.0 * area)
     x, y = x - across, y - up
-    polar = math.fsum(_twice(x, y) * (_squares(x) + _squares(y))) / 12.0
+    polar = math.fsum(_twice_areas(x, y) * (_mean_squares(x) + _mean_squares(y))) / 12.0
     centroid = float(middle[0] + size * across), float(middle[1] + size * up)
     return abs(area) * size * size, *centroid, polar / area * size * size
 
 
-def extent_of(points: Array) -> float:
+def extent(points: Array) -> float:
     """Return the greater of width and height [m]."""
     return float(np.ptp(points, axis=0).max())
 
 
 def is_flat(points: Array) -> bool:
     """Tell whether all points lie on one line, up to rounding."""
-    size = extent_of(points)
+    size = extent(points)
     if not 0.0 < size < math.inf:
         return True
     spread = np.linalg.svd((points - points.mean(axis=0)) / size, compute_uv=False)
     return bool(spread[-1] <= _THIN * len(points))
 
 
-def turning_back(points: Array) -> int | None:
+def find_reversal(points: Array) -> int | None:
     """Find a corner at which an outline turns back on itself, if there is one."""
     before, after = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
     cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
@@ -71,7 +71,7 @@ def turning_back(points: Array) -> int | None:
     return int(found[0]) if len(found) else None
 
 
-def crossing(points: Array) -> tuple[int, int] | None:
+def find_crossing(points: Array) -> tuple[int, int] | None:
     """Find two edges that cross or touch, other than neighbours, if there are any."""
     starts, ends = points, np.roll(points, -1, axis=0)
     left, low = np.minimum(starts, ends).T.copy()
@@ -96,14 +96,14 @@ def crossing(points: Array) -> tuple[int, int] | None:
     return None
 
 
-def _squares(x: Array) -> Array:
+def _mean_squares(x: Array) -> Array:
     """Return six times the mean square over the triangle of the origin and each edge."""
     # in an order that gives the same rounding in both directions
     ahead = np.roll(x, -1)
     return (x * x + ahead * ahead) + x * ahead
 
 
-def _twice(x: Array, y: Array) -> Array:
+def _twice_areas(x: Array, y: Array) -> Array:
     """Return twice the area between the origin and each edge."""
     return x * np.roll(y, -1) - np.roll(x, -1) * y
 
@@ -123,7 +123,7 @@ def outline_mass(
     kept = [k for k in range(len(read)) if (read[k] != read[k - 1]).any()]
     corners = [OutlineCorner(f"{name}[{k}]", float(read[k, 0]), float(read[k, 1])) for k in kept]
     _check_simple(read[kept], corners, owner)
-    area, x, y, mean_square = polygon(read[kept])
+    area, x, y, mean_square = polygon_properties(read[kept])
     mass = read_mass(values, area, owner=owner)
     return PlaneMass(mass, x, y, mass * mean_square), corners
 
@@ -135,15 +135,16 @@ def _check_simple(points: Array, corners: Sequence[OutlineCorner], owner: str) -
     if is_flat(points):
         msg = f"{owner}: the outline has no area: all its points lie on one line"
         raise ComponentError(msg)
-    scaled = (points - points.mean(axis=0)) / extent_of(points)
-    back = turning_back(scaled)
+    scaled = (points - points.mean(axis=0)) / extent(points)
+    back = find_reversal(scaled)
     if back is not None:
-        msg = f"{owner}: the outline turns back on itself at {_at(corners[back])}"
+        msg = f"{owner}: the outline turns back on itself at {_corner_text(corners[back])}"
         raise ComponentError(msg)
-    both = crossing(scaled)
+    both = find_crossing(scaled)
     if both is not None:
         first, second = (
-            f"from {_at(corners[k])} to {_at(corners[(k + 1) % len(corners)])}" for k in both
+            f"from {_corner_text(corners[k])} to {_corner_text(corners[(k + 1) % len(corners)])}"
+            for k in both
         )
         msg = (
             f"{owner}: the outline crosses or touches itself: its edge {first} meets that "
@@ -152,39 +153,40 @@ def _check_simple(points: Array, corners: Sequence[OutlineCorner], owner: str) -
         raise ComponentError(msg)
 
 
-def _refuse_single(corners: Sequence[OutlineCorner], owner: str) -> None:
+def _raise_single_point_base(corners: Sequence[OutlineCorner], owner: str) -> None:
     heights = np.array([corner.y for corner in corners])
     first, second = (int(k) for k in np.argsort(heights, kind="stable")[:2])
     low, next_low = corners[first], corners[second]
     rise, run = next_low.y - low.y, next_low.x - low.x
     msg = (
-        f"{owner}: the outline stands on one point, {_at(low)}; the next lowest, {_at(next_low)}, "
-        f"is {rise:.4g} m higher. A base needs two lowest points at one height"
+        f"{owner}: the outline stands on one point, {_corner_text(low)}; the next lowest, "
+        f"{_corner_text(next_low)}, is {rise:.4g} m higher. A base needs two lowest points at one "
+        "height"
     )
     if (second - first) % len(corners) in (1, len(corners) - 1):
         slope = math.copysign(math.atan2(rise, abs(run)), run)
         msg += (
-            f": the edge between these is inclined by {in_degrees(slope)}; rotate the outline "
+            f": the edge between these is inclined by {degrees_text(slope)}; rotate the outline "
             f"until it is level, and for ground with this slope give System(..., "
             f"inclination='{math.degrees(slope):.4g} deg')"
         )
     raise ComponentError(msg)
 
 
-def _at(corner: OutlineCorner) -> str:
+def _corner_text(corner: OutlineCorner) -> str:
     return f"{corner.words} ({corner.x:.6g} m, {corner.y:.6g} m)"
 
 
-@hinted()
+@with_hints()
 def from_outline(
-    cls: type[Made],
-    points: Points,
+    cls: type[ComponentType],
+    points: PointsLike,
     *,
     unit: str | None = None,
     density: QuantityLike | None = None,
     depth: QuantityLike | None = None,
     mass: QuantityLike | None = None,
-) -> Made:
+) -> ComponentType:
     """Build a body from its outline in the plane of rocking.
 
     Parameters
@@ -242,23 +244,25 @@ def from_outline(
     values = {"mass": mass, "density": density, "depth": depth}
     whole, corners = outline_mass(given, values, owner, "points")
     ground, top = (of(corner.y for corner in corners) for of in (min, max))
-    slack = ROUNDING * extent_of(np.array([(corner.x, corner.y) for corner in corners]))
+    slack = ROUNDING * extent(np.array([(corner.x, corner.y) for corner in corners]))
     lowest = [corner.x for corner in corners if corner.y <= ground + slack]
     if max(lowest) - min(lowest) <= slack:
-        _refuse_single(corners, owner)
-    return shaped_body(cls, whole, Stance(min(lowest), max(lowest), ground), top, corners, owner)
+        _raise_single_point_base(corners, owner)
+    return shaped_body(
+        cls, whole, BaseSegment(min(lowest), max(lowest), ground), top, corners, owner
+    )
 
 
-@hinted()
+@with_hints()
 def cylinder(
-    cls: type[Made],
+    cls: type[ComponentType],
     *,
     diameter: QuantityLike,
     height: QuantityLike,
     mass: QuantityLike | None = None,
     density: QuantityLike | None = None,
     wall_thickness: QuantityLike | None = None,
-) -> Made:
+) -> ComponentType:
     """Build a circular cylinder that rocks in a plane, such as a drum or a column.
 
     Parameters
@@ -315,10 +319,10 @@ def cylinder(
         inner = outer - thickness
     OneOf("mass", "density").check({"mass": mass, "density": density}, owner)
     if mass is not None:
-        of_all = positive(mass, "mass", MASS)
+        total_mass = positive(mass, "mass", MASS)
     else:
         area = math.pi * (outer - inner) * (outer + inner)
-        of_all = positive(density, "density", DENSITY) * (area * top)
-    inertia = of_all * (3.0 * (outer * outer + inner * inner) + top * top) / 12.0
-    whole = PlaneMass(of_all, 0.0, 0.5 * top, inertia)
-    return shaped_body(cls, whole, Stance(-outer, outer, 0.0), top, (), owner)
+        total_mass = positive(density, "density", DENSITY) * (area * top)
+    inertia = total_mass * (3.0 * (outer * outer + inner * inner) + top * top) / 12.0
+    whole = PlaneMass(total_mass, 0.0, 0.5 * top, inertia)
+    return shaped_body(cls, whole, BaseSegment(-outer, outer, 0.0), top, (), owner)

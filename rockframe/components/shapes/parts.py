@@ -7,19 +7,19 @@ from typing import TYPE_CHECKING, Any, Final, TypedDict, cast
 from rockframe.components.shapes.outline import outline_mass
 from rockframe.components.shapes.standing import (
     ROUNDING,
-    Made,
+    BaseSegment,
+    ComponentType,
     OutlineCorner,
-    Place,
     PlaneMass,
-    Points,
-    Stance,
+    PointLike,
+    PointsLike,
     combined_mass,
     read_mass,
-    read_place,
+    read_point,
     shaped_body,
 )
-from rockframe.errors import ComponentError, shown
-from rockframe.proposals import hinted
+from rockframe.errors import ComponentError, short_repr
+from rockframe.suggestions import with_hints
 from rockframe.units import (
     INERTIA,
     LENGTH,
@@ -38,13 +38,13 @@ if TYPE_CHECKING:
 class Part(TypedDict, total=False):
     """Description of a part of a body, see :meth:`rockframe.Block.from_parts`."""
 
-    at: Place
+    at: PointLike
     mass: QuantityLike
     density: QuantityLike
     depth: QuantityLike
     width: QuantityLike
     height: QuantityLike
-    outline: Points
+    outline: PointsLike
     body: "Block"
     inertia: QuantityLike
 
@@ -85,17 +85,18 @@ def read_part(name: str, arguments: Mapping[str, Any], owner: str) -> PlacedPart
     if kind is None:
         msg = (
             f"{place} needs width and height, an outline, a body, or its mass alone; got "
-            f"{', '.join(map(shown, arguments)) or 'nothing'}"
+            f"{', '.join(map(short_repr, arguments)) or 'nothing'}"
         )
         raise ComponentError(msg)
     foreign = [word for word in values if word not in _KINDS[kind]]
     if foreign:
         msg = (
-            f"{place} has {', '.join(map(shown, foreign))}, which a part with {shown(kind)} does "
+            f"{place} has {', '.join(map(short_repr, foreign))}, which a part with "
+            f"{short_repr(kind)} does "
             f"not take; expected some of {', '.join(_KINDS[kind])}"
         )
         raise ComponentError(msg)
-    x, y = (0.0, 0.0) if "at" not in values else read_place(values["at"], owner=place, name="at")
+    x, y = (0.0, 0.0) if "at" not in values else read_point(values["at"], owner=place, name="at")
     read = {"body": _body, "outline": _outline, "mass": _point}.get(kind, _rectangle)
     return read(name, values, (x, y), place)
 
@@ -129,7 +130,7 @@ def _outline(
 def _body(name: str, values: Mapping[str, Any], at: tuple[float, float], owner: str) -> PlacedPart:
     si = getattr(values["body"], "si", None)
     if not hasattr(si, "centre_height"):
-        msg = f"{owner} needs a Block as its body, got {shown(values['body'])}"
+        msg = f"{owner} needs a Block as its body, got {short_repr(values['body'])}"
         raise ComponentError(msg)
     block: Block = values["body"]
     (x, y), si = at, block.si
@@ -160,7 +161,7 @@ def _positive(values: Mapping[str, Any], name: str, measure: Measure, *, owner: 
     return to_si(values[name], measure, owner=owner, name=name, condition=POSITIVE)
 
 
-def _standing(kind: type[Made], value: object, base: object, owner: str) -> Made:
+def _standing(kind: type[ComponentType], value: object, base: object, owner: str) -> ComponentType:
     """Make a body of parts that are fixed to one another, on their common base."""
     parts = _read(value, owner)
     corners = [corner for part in parts for corner in part.corners]
@@ -190,11 +191,11 @@ def _read(value: object, owner: str) -> list[PlacedPart]:
     example = "{'case': {'width': '0.8 m', 'height': '1.9 m', 'mass': '60 kg'}, ...}"
     if not isinstance(value, Mapping) or not value:
         msg = f"{owner}: parts needs a mapping from names to parts, such as {example}; got "
-        raise ComponentError(msg + shown(cast("object", value)))
+        raise ComponentError(msg + short_repr(cast("object", value)))
     parts = cast("Mapping[object, object]", value)
     for name, part in parts.items():
         if not isinstance(part, Mapping):
-            msg = f"{owner}: part {name!r} needs a mapping, as in {example}; got {shown(part)}"
+            msg = f"{owner}: part {name!r} needs a mapping, as in {example}; got {short_repr(part)}"
             raise ComponentError(msg)
     return [
         read_part(str(name), cast("Mapping[str, Any]", part), owner) for name, part in parts.items()
@@ -213,7 +214,7 @@ def _check_above(parts: Sequence[PlacedPart], slack: float, owner: str) -> None:
 
 def _common_base(
     parts: Sequence[PlacedPart], on_ground: Sequence[float], slack: float, owner: str
-) -> Stance:
+) -> BaseSegment:
     """Take the base between the outermost corners on the ground."""
     if not on_ground:
         lowest = min(parts, key=lambda part: part.bottom)
@@ -229,15 +230,15 @@ def _common_base(
             "base=(left, right), the ends of the base, if it is wider"
         )
         raise ComponentError(msg)
-    return Stance(on_ground[0], on_ground[-1], 0.0)
+    return BaseSegment(on_ground[0], on_ground[-1], 0.0)
 
 
 def _given_base(
     base: object, on_ground: Mapping[float, PlacedPart], slack: float, owner: str
-) -> Stance:
-    left, right = read_place(base, owner=owner, name="base")
+) -> BaseSegment:
+    left, right = read_point(base, owner=owner, name="base")
     if left >= right:
-        msg = f"{owner}: base needs the left end, then the right end, got {shown(base)}"
+        msg = f"{owner}: base needs the left end, then the right end, got {short_repr(base)}"
         raise ComponentError(msg)
     for x, part in on_ground.items():
         if not left - slack <= x <= right + slack:
@@ -246,11 +247,13 @@ def _given_base(
                 f"base, which extends from {left:.6g} m to {right:.6g} m"
             )
             raise ComponentError(msg)
-    return Stance(left, right, 0.0)
+    return BaseSegment(left, right, 0.0)
 
 
-@hinted()
-def from_parts(cls: type[Made], parts: Mapping[str, Part], *, base: Place | None = None) -> Made:
+@with_hints()
+def from_parts(
+    cls: type[ComponentType], parts: Mapping[str, Part], *, base: PointLike | None = None
+) -> ComponentType:
     """Build a body from parts that are fixed to one another, such as a cabinet and its load.
 
     Parameters

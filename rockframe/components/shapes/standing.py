@@ -9,7 +9,7 @@ from typing import Any, Final, TypeAlias, TypeVar
 import numpy as np
 import pint
 
-from rockframe.arguments import iterates
+from rockframe.arguments import is_iterable
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.errors import (
@@ -17,7 +17,7 @@ from rockframe.errors import (
     ModelWarning,
     UnitsError,
     collected_warnings,
-    shown,
+    short_repr,
     warn,
 )
 from rockframe.signals.arrays import Array
@@ -29,7 +29,7 @@ from rockframe.units import (
     POSITIVE,
     Quantity,
     QuantityLike,
-    check_own_unit,
+    check_attached_unit,
     to_si,
 )
 
@@ -47,7 +47,7 @@ class PlaneMass:
 Mass = TypeVar("Mass", bound=PlaneMass)
 
 
-def mean_by_mass(masses: Sequence[Mass], value: Callable[[Mass], float]) -> float:
+def mass_weighted_mean(masses: Sequence[Mass], value: Callable[[Mass], float]) -> float:
     """Return the mean of a value, weighted by mass."""
     # every fraction is at most 1, so that masses of any magnitude do not overflow
     total = sum(one.mass for one in masses)
@@ -56,46 +56,50 @@ def mean_by_mass(masses: Sequence[Mass], value: Callable[[Mass], float]) -> floa
 
 def centre_of_mass(masses: Sequence[PlaneMass]) -> tuple[float, float]:
     """Return the coordinates of the common centre of masses, :eq:`eq-parts-centre` [m]."""
-    return mean_by_mass(masses, lambda one: one.x), mean_by_mass(masses, lambda one: one.y)
+    return mass_weighted_mean(masses, lambda one: one.x), mass_weighted_mean(
+        masses, lambda one: one.y
+    )
 
 
 def combined_mass(masses: Sequence[PlaneMass]) -> PlaneMass:
     """Combine masses to one, by the parallel-axis theorem, :eq:`eq-parts-inertia`."""
     x, y = centre_of_mass(masses)
     total = sum(one.mass for one in masses)
-    squares = mean_by_mass(
+    squares = mass_weighted_mean(
         masses, lambda one: one.inertia / one.mass + math.hypot(one.x - x, one.y - y) ** 2
     )
     return PlaneMass(total, x, y, total * squares)
 
 
-Place: TypeAlias = tuple[QuantityLike, QuantityLike]
-Points: TypeAlias = Iterable[Place] | Iterable[tuple[float, float]] | Quantity | tuple[Any, str]
+PointLike: TypeAlias = tuple[QuantityLike, QuantityLike]
+PointsLike: TypeAlias = (
+    Iterable[PointLike] | Iterable[tuple[float, float]] | Quantity | tuple[Any, str]
+)
 
-MASS_WAYS: Final = OneOf("mass", ("density", "depth"))
+MASS_ALTERNATIVES: Final = OneOf("mass", ("density", "depth"))
 
 
 def read_points(value: object, *, owner: str, name: str) -> Array:
     """Read points from pairs of lengths or an array with a unit, shape (n, 2) [m]."""
-    wanted = (
+    message = (
         f"{owner}: {name} needs pairs of lengths, such as [('0 m', '0 m'), ('1 m', '0 m'), ...], "
         "or numbers of shape (n, 2) with their unit, (points, 'm')"
     )
     if isinstance(value, pint.Quantity):
         whole: Any = value
         factor = to_si(type(whole)(1.0, whole.units), LENGTH, owner=owner, name=name)
-        return _array(whole.magnitude, factor, wanted)
-    if isinstance(value, str | Mapping) or not iterates(value):
-        msg = f"{wanted}; got {shown(value)}"
+        return _point_array(whole.magnitude, factor, message)
+    if isinstance(value, str | Mapping) or not is_iterable(value):
+        msg = f"{message}; got {short_repr(value)}"
         raise ComponentError(msg)
     each: list[Any] = list(value)
     if len(each) == 2 and isinstance(each[1], str) and not isinstance(each[0], str):
-        check_own_unit(each[0], each[1], owner=owner, name=name)
-        return _array(each[0], to_si(f"1 {each[1]}", LENGTH, owner=owner, name=name), wanted)
+        check_attached_unit(each[0], each[1], owner=owner, name=name)
+        return _point_array(each[0], to_si(f"1 {each[1]}", LENGTH, owner=owner, name=name), message)
     if isinstance(value, np.ndarray) or _is_bare(each):
-        msg = f"{wanted}; got {shown(value)}, bare numbers"
+        msg = f"{message}; got {short_repr(value)}, bare numbers"
         raise UnitsError(msg)
-    pairs = [read_place(one, owner=owner, name=f"{name}[{k}]") for k, one in enumerate(each)]
+    pairs = [read_point(one, owner=owner, name=f"{name}[{k}]") for k, one in enumerate(each)]
     return np.array(pairs, dtype=np.float64).reshape(-1, 2)
 
 
@@ -107,13 +111,16 @@ def _is_bare(points: list[Any]) -> bool:
     )
 
 
-def read_place(value: object, *, owner: str, name: str) -> tuple[float, float]:
+def read_point(value: object, *, owner: str, name: str) -> tuple[float, float]:
     """Read a pair of lengths, or a Quantity of shape (2,) [m]."""
     pair: list[Any] = []
-    if iterates(value) and not isinstance(value, str | Mapping):
+    if is_iterable(value) and not isinstance(value, str | Mapping):
         pair = list(value)
     if len(pair) != 2:
-        msg = f"{owner}: {name} needs two lengths, such as ('0.2 m', '1.5 m'), got {shown(value)}"
+        msg = (
+            f"{owner}: {name} needs two lengths, such as ('0.2 m', '1.5 m'), got "
+            f"{short_repr(value)}"
+        )
         raise ComponentError(msg)
     x, y = (to_si(one, LENGTH, owner=owner, name=f"{name}[{k}]") for k, one in enumerate(pair))
     return x, y
@@ -121,7 +128,7 @@ def read_place(value: object, *, owner: str, name: str) -> tuple[float, float]:
 
 def read_mass(values: Mapping[str, object], area: float, *, owner: str) -> float:
     """Read a mass, or compute it from density, depth and the area in the plane [kg]."""
-    MASS_WAYS.check(values, owner)
+    MASS_ALTERNATIVES.check(values, owner)
 
     def positive(name: str, measure: Any) -> float:
         return to_si(values[name], measure, owner=owner, name=name, condition=POSITIVE)
@@ -135,28 +142,28 @@ def read_mass(values: Mapping[str, object], area: float, *, owner: str) -> float
     raise ComponentError(msg)
 
 
-def _array(values: object, factor: float, wanted: str) -> Array:
+def _point_array(values: object, factor: float, message: str) -> Array:
     try:
         array = np.asarray(values)
     except (ValueError, TypeError):  # rows of different lengths, or not an array
         array = np.array([None])
     if array.dtype.kind not in "fiu" or array.ndim != 2 or array.shape[1] != 2:
-        found = f"shape {array.shape}" if array.dtype.kind in "fiu" else shown(values)
-        msg = f"{wanted}; got {found}"
+        found = f"shape {array.shape}" if array.dtype.kind in "fiu" else short_repr(values)
+        msg = f"{message}; got {found}"
         raise ComponentError(msg)
     points = np.asarray(array, dtype=np.float64) * factor
     if not np.isfinite(points).all():
-        msg = f"{wanted}; got a number that is not finite"
+        msg = f"{message}; got a number that is not finite"
         raise ComponentError(msg)
     return points
 
 
 ROUNDING: Final = 1e-9
 """Difference over the size of the body up to which heights count as equal [1]."""
-CENTRED: Final = 1e-12
+MIN_ECCENTRICITY: Final = 1e-12
 """Eccentricity over the width of the base up to which it counts as zero [1]."""
 
-Made = TypeVar("Made", bound=Component)
+ComponentType = TypeVar("ComponentType", bound=Component)
 
 
 @dataclass(frozen=True)
@@ -169,7 +176,7 @@ class OutlineCorner:
 
 
 @dataclass(frozen=True)
-class Stance:
+class BaseSegment:
     """Ends of the base and level of the ground [m]."""
 
     left: float
@@ -193,53 +200,55 @@ class Stance:
             return 0.5 * math.pi
         return math.atan2(corner.y - self.ground, beyond)
 
-    def overturning_angle(self, whole: PlaneMass, side: float) -> float:
+    def overturning_angle(self, mass: PlaneMass, side: float) -> float:
         """Return the rotation at which the centre of mass is above an end of the base [rad]."""
         end = self.right if side > 0.0 else self.left
-        return math.atan2(side * (end - whole.x), whole.y - self.ground)
+        return math.atan2(side * (end - mass.x), mass.y - self.ground)
 
 
 def shaped_body(
-    kind: Callable[..., Made],
-    whole: PlaneMass,
-    stance: Stance,
+    kind: Callable[..., ComponentType],
+    mass: PlaneMass,
+    base: BaseSegment,
     top: float,
     corners: Sequence[OutlineCorner],
     owner: str,
-) -> Made:
+) -> ComponentType:
     """Make a block from mass and base; refuse a centre of mass that is not above the base.
 
     `top` is the height of the highest point [m]; `corners` may touch the ground beyond the base.
     """
-    if not stance.left < whole.x < stance.right:
+    if not base.left < mass.x < base.right:
         msg = (
-            f"{owner}: the body would fall on its own: its centre of mass, at x = {whole.x:.6g} m, "
-            f"is not above its base, which extends from {stance.left:.6g} m to "
-            f"{stance.right:.6g} m"
+            f"{owner}: the body would fall on its own: its centre of mass, at x = {mass.x:.6g} m, "
+            f"is not above its base, which extends from {base.left:.6g} m to "
+            f"{base.right:.6g} m"
         )
         raise ComponentError(msg)
-    width, beside = stance.right - stance.left, whole.x - stance.middle
+    width, eccentricity = base.right - base.left, mass.x - base.middle
     arguments = {
-        "width": _written(width, LENGTH),
-        "height": _written(top - stance.ground, LENGTH),
-        "mass": _written(whole.mass, MASS),
-        "inertia": _written(whole.inertia, INERTIA),
-        "centre_height": _written(whole.y - stance.ground, LENGTH),
+        "width": _quantity_text(width, LENGTH),
+        "height": _quantity_text(top - base.ground, LENGTH),
+        "mass": _quantity_text(mass.mass, MASS),
+        "inertia": _quantity_text(mass.inertia, INERTIA),
+        "centre_height": _quantity_text(mass.y - base.ground, LENGTH),
     }
-    if abs(beside) > CENTRED * width:
-        arguments["eccentricity"] = _written(beside, LENGTH)
+    if abs(eccentricity) > MIN_ECCENTRICITY * width:
+        arguments["eccentricity"] = _quantity_text(eccentricity, LENGTH)
     with collected_warnings():  # a body wider than its base may exceed the bound of its inertia
-        made = kind(**arguments)
-    for caution in _touching(whole, stance, corners):
+        body = kind(**arguments)
+    for caution in _contact_warnings(mass, base, corners):
         warn(f"{owner}: {caution}", ModelWarning)
-    return made
+    return body
 
 
-def _touching(whole: PlaneMass, stance: Stance, corners: Sequence[OutlineCorner]) -> Iterator[str]:
+def _contact_warnings(
+    mass: PlaneMass, base: BaseSegment, corners: Sequence[OutlineCorner]
+) -> Iterator[str]:
     for side, word in ((1.0, "right"), (-1.0, "left")):
-        limit = stance.overturning_angle(whole, side)
-        corner = min(corners, key=lambda one: stance.touching_angle(one, side), default=None)
-        angle = limit if corner is None else stance.touching_angle(corner, side)
+        limit = base.overturning_angle(mass, side)
+        corner = min(corners, key=lambda one: base.touching_angle(one, side), default=None)
+        angle = limit if corner is None else base.touching_angle(corner, side)
         if corner is not None and angle < limit:
             yield (
                 f"leaning to the {word}, {corner.words}, at ({corner.x:.6g} m, {corner.y:.6g} m), "
@@ -248,5 +257,5 @@ def _touching(whole: PlaneMass, stance: Stance, corners: Sequence[OutlineCorner]
             )
 
 
-def _written(value: float, measure: Any) -> str:
+def _quantity_text(value: float, measure: Any) -> str:
     return f"{float(value)!r} {measure.unit}"

@@ -6,6 +6,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from rockframe.case_arrays import atan2, sqrt
 from rockframe.compiled import Vector
 from rockframe.dynamics.bodies import ROTATION, VERTICAL
 from rockframe.dynamics.body import BodyState
@@ -31,7 +32,6 @@ from rockframe.dynamics.stacked import (
     UPPER,
 )
 from rockframe.dynamics.vibrations import ChainBody, fastest_vibration
-from rockframe.many import atan2, sqrt
 
 
 class StackRest(NamedTuple):

@@ -7,7 +7,7 @@ from functools import partial
 from typing import Final, Self
 
 from rockframe.motion.constructors.analytic_arguments import PULSES as PULSES
-from rockframe.motion.constructors.analytic_arguments import pulse
+from rockframe.motion.constructors.analytic_arguments import pulse_constructor
 from rockframe.motion.pulses import (
     QUARTER_TURN,
     mavroeidis_papageorgiou,
@@ -28,7 +28,7 @@ class AnalyticMotion(MotionValue):
     __slots__ = ()
 
     @classmethod
-    @pulse("sine pulse", sine)
+    @pulse_constructor("sine pulse", sine)
     def sine_pulse(
         cls,
         amplitude: QuantityLike = "-9.81 m/s^2",
@@ -60,7 +60,7 @@ class AnalyticMotion(MotionValue):
         ...
 
     @classmethod
-    @pulse("cosine pulse", partial(sine, phase=QUARTER_TURN))
+    @pulse_constructor("cosine pulse", partial(sine, phase=QUARTER_TURN))
     def cosine_pulse(
         cls, amplitude: QuantityLike, frequency: QuantityLike, cycles: RatioLike = 1
     ) -> Self:
@@ -93,7 +93,7 @@ class AnalyticMotion(MotionValue):
         ...
 
     @classmethod
-    @pulse(
+    @pulse_constructor(
         "half-sine pulse",
         lambda owner, amplitude, duration: sine(owner, amplitude, 0.5 / duration, 0.5),
     )
@@ -121,7 +121,7 @@ class AnalyticMotion(MotionValue):
         ...
 
     @classmethod
-    @pulse(
+    @pulse_constructor(
         "harmonic motion",
         lambda owner, amplitude, frequency, duration, phase=0.0: sine(
             owner, amplitude, frequency, duration * frequency, phase
@@ -161,7 +161,7 @@ class AnalyticMotion(MotionValue):
         ...
 
     @classmethod
-    @pulse(
+    @pulse_constructor(
         "type A pulse",
         lambda owner, velocity, period: sine(owner, math.pi * velocity / period, 1.0 / period, 1.0),
     )
@@ -193,7 +193,7 @@ class AnalyticMotion(MotionValue):
         ...
 
     @classmethod
-    @pulse(
+    @pulse_constructor(
         "type B pulse",
         lambda owner, velocity, period: sine(
             owner, 2.0 * math.pi * velocity / period, 1.0 / period, 1.0, QUARTER_TURN
@@ -228,7 +228,7 @@ class AnalyticMotion(MotionValue):
         ...
 
     @classmethod
-    @pulse("type C pulse", type_c)
+    @pulse_constructor("type C pulse", type_c)
     def type_c_pulse(cls, velocity: QuantityLike, period: QuantityLike, order: int = 1) -> Self:
         """Build a pulse of `order` cycles in the displacement of the ground.
 
@@ -271,7 +271,7 @@ class AnalyticMotion(MotionValue):
         ...
 
     @classmethod
-    @pulse("Ricker wavelet", ricker)
+    @pulse_constructor("Ricker wavelet", ricker)
     def ricker_wavelet(
         cls, amplitude: QuantityLike, period: QuantityLike, *, antisymmetric: bool = False
     ) -> Self:
@@ -315,7 +315,9 @@ class AnalyticMotion(MotionValue):
         ...
 
     @classmethod
-    @pulse("pulse of Mavroeidis and Papageorgiou", mavroeidis_papageorgiou, cycles=_AT_LEAST_ONE)
+    @pulse_constructor(
+        "pulse of Mavroeidis and Papageorgiou", mavroeidis_papageorgiou, cycles=_AT_LEAST_ONE
+    )
     def mavroeidis_papageorgiou_pulse(
         cls,
         velocity: QuantityLike,
@@ -365,7 +367,7 @@ class AnalyticMotion(MotionValue):
         ...
 
     @classmethod
-    @pulse("double impulse", opposite_impulses)
+    @pulse_constructor("double impulse", opposite_impulses)
     def double_impulse(
         cls,
         velocity: QuantityLike,

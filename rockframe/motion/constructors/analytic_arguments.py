@@ -7,11 +7,11 @@ from functools import wraps
 from inspect import signature
 from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
-from rockframe.arguments import whole_number
-from rockframe.errors import ComponentError, shown
+from rockframe.arguments import checked_integer
+from rockframe.errors import ComponentError, short_repr
 from rockframe.motion.pulses import impulse_duration
-from rockframe.proposals import hinted
-from rockframe.shared_arguments import with_raises
+from rockframe.shared_arguments import with_raises_section
+from rockframe.suggestions import with_hints
 from rockframe.units import (
     ACCELERATION,
     ANGLE,
@@ -75,14 +75,14 @@ class ArgumentReader:
             self._read_quantity(name, value, *_MEASURES[name])
         elif name == "cycles":
             number = to_ratio(value, owner=owner, name=name, condition=self._cycles, example="2")
-            self._keep(name, number, number, f"{name}: {number:.6g}", f"{name}: {number!r}")
+            self._store(name, number, number, f"{name}: {number:.6g}", f"{name}: {number!r}")
         elif name == "order":
-            order = whole_number(value, owner=owner, name=name, lowest=1, highest=_HIGHEST_ORDER)
-            self._keep(name, order, order, *[f"{name}: {order}"] * 2)
+            order = checked_integer(value, owner=owner, name=name, lowest=1, highest=_HIGHEST_ORDER)
+            self._store(name, order, order, *[f"{name}: {order}"] * 2)
         elif isinstance(value, bool):
-            self._keep(name, value, value, *[name if value else f"not {name}"] * 2)
+            self._store(name, value, value, *[name if value else f"not {name}"] * 2)
         else:
-            msg = f"{owner}: {name} must be True or False, got {shown(value)}"
+            msg = f"{owner}: {name} must be True or False, got {short_repr(value)}"
             raise ComponentError(msg)
 
     def _read_quantity(
@@ -97,16 +97,16 @@ class ArgumentReader:
             return
         unit = _SPELLED.get(measure.unit, str(measure.unit))
         kept = f"{number!r} {measure.unit}"
-        self._keep(name, number, kept, f"{words}{number:.6g} {unit}", f"{words}{number!r} {unit}")
+        self._store(name, number, kept, f"{words}{number:.6g} {unit}", f"{words}{number!r} {unit}")
 
-    def _keep(self, name: str, number: Any, kept: Any, short: str, exact: str) -> None:
+    def _store(self, name: str, number: Any, kept: Any, short: str, exact: str) -> None:
         self.numbers[name] = number
         self.recipe[name] = kept
         self.short.append(short)
         self.exact.append(exact)
 
 
-def pulse(
+def pulse_constructor(
     title: str, formula: Callable[..., Motion], cycles: Condition = POSITIVE
 ) -> Callable[[Constructor], Constructor]:
     """Make a constructor from a formula, whose arguments are converted to SI units.
@@ -118,7 +118,7 @@ def pulse(
         own = signature(declared)
         declared.__qualname__ = declared.__name__  # as messages name it
         PULSES.append(declared.__name__)
-        checked = hinted()(declared)
+        checked = with_hints()(declared)
 
         @wraps(checked)
         def construct(kind: type[Any], *items: Any, **named: Any) -> Any:
@@ -135,7 +135,7 @@ def pulse(
                 recipe={"constructor": declared.__name__, **reader.recipe},
             )
 
-        construct.__doc__ = with_raises(declared.__doc__ or "", _RAISES)
+        construct.__doc__ = with_raises_section(declared.__doc__ or "", _RAISES)
         return cast("Constructor", construct)
 
     return decorate

@@ -10,13 +10,20 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
-from rockframe.arguments import text
-from rockframe.errors import ComponentError, RecordWarning, UnitsError, nearest, shown, warn
-from rockframe.motion.quantities import ArrayLike, accelerations_to_si, declared_times
-from rockframe.motion.value import UNNAMED, Made
-from rockframe.proposals import hinted
+from rockframe.arguments import checked_text
+from rockframe.errors import (
+    ComponentError,
+    RecordWarning,
+    UnitsError,
+    did_you_mean,
+    short_repr,
+    warn,
+)
+from rockframe.motion.quantities import ArrayLike, accelerations_to_si, attached_times
+from rockframe.motion.value import UNNAMED, MotionType
 from rockframe.records import PathLike, RecordLike, read_record, request_of
 from rockframe.signals import Motion
+from rockframe.suggestions import with_hints
 from rockframe.units import POSITIVE, TIME_STEP, QuantityLike, to_si
 
 if TYPE_CHECKING:
@@ -29,9 +36,9 @@ _SAME_STEP: Final = 1e-6
 _UNEVEN: Final = 0.01
 
 
-@hinted()
+@with_hints()
 def read(
-    kind: type[Made],
+    kind: type[MotionType],
     path: RecordLike,
     format: str | None = None,  # noqa: A002
     component: str | tuple[str, str] | None = None,
@@ -39,7 +46,7 @@ def read(
     *,
     time_step: QuantityLike | None = None,
     response: PathLike | None = None,
-) -> Made:
+) -> MotionType:
     """Read a record file.
 
     Parameters
@@ -116,15 +123,15 @@ def read(
     )
 
 
-@hinted()
+@with_hints()
 def from_arrays(
-    kind: type[Made],
+    kind: type[MotionType],
     acceleration: ArrayLike,
     time_step: QuantityLike | None = None,
     vertical: ArrayLike | None = None,
     *,
     name: str | None = None,
-) -> Made:
+) -> MotionType:
     """Build a motion from arrays with a unit.
 
     Parameters
@@ -179,10 +186,10 @@ def from_arrays(
             )
             raise ComponentError(msg)
     for label, array in (("acceleration", acceleration), ("vertical", vertical)):
-        times = declared_times(array)
+        times = attached_times(array)
         if times is not None:
             _check_times(times, step, owner=owner, label=label)
-    called = UNNAMED if name is None else text(name, owner=owner, name="name") or UNNAMED
+    called = UNNAMED if name is None else checked_text(name, owner=owner, name="name") or UNNAMED
     words = f"built from arrays: {across.size} samples at {step!r} s"
     return kind(Motion.of_samples(step, across, upwards), name=called, history=(words,))
 
@@ -208,12 +215,12 @@ def _check_times(times: Array, step: float, *, owner: str, label: str) -> None:
 _PROVENANCE: Final = "provenance.toml"
 
 
-@hinted()
+@with_hints()
 def example(
-    kind: type[Made],
+    kind: type[MotionType],
     name: str = "loma-prieta",
     component: str | tuple[str, str] | None = None,
-) -> Made:
+) -> MotionType:
     """Read a recorded motion that comes with rockframe.
 
     Parameters
@@ -250,7 +257,7 @@ def example(
     record = records.get(name) if isinstance(cast("object", name), str) else None
     if record is None:
         known = ", ".join(repr(one) for one in records)
-        got = f"{shown(name)}{nearest(name, records)}"
+        got = f"{short_repr(name)}{did_you_mean(name, records)}"
         msg = f"{kind.__name__}.example: name must be one of {known}, got {got}"
         raise ComponentError(msg)
     file = io.BytesIO((folder / record["file"]).read_bytes())

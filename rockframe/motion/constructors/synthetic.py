@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Final
 
-from rockframe.arguments import one_of_words, whole_number
+from rockframe.arguments import checked_choice, checked_integer
 from rockframe.errors import ComponentError, ModelWarning, warn
 from rockframe.motion.stochastic import (
     LARGEST_DISTANCE,
@@ -14,9 +14,9 @@ from rockframe.motion.stochastic import (
     Site,
     accelerogram,
 )
-from rockframe.motion.value import Made
-from rockframe.proposals import hinted
+from rockframe.motion.value import MotionType
 from rockframe.signals import Motion
+from rockframe.suggestions import with_hints
 from rockframe.units import (
     DENSITY,
     NOT_NEGATIVE,
@@ -62,9 +62,9 @@ _STEPS: Final = Condition("from 0.0005 s to 0.02 s", lambda value: 0.0005 <= val
 _EXPONENTS: Final = Condition("from 0 to 1", lambda value: 0.0 <= value <= 1.0)
 
 
-@hinted()
+@with_hints()
 def stochastic(
-    kind: type[Made],
+    kind: type[MotionType],
     magnitude: RatioLike,
     distance: QuantityLike,
     seed: int,
@@ -79,7 +79,7 @@ def stochastic(
     source: Corners | str | None = None,
     vertical: RatioLike | None = None,
     time_step: QuantityLike = "0.005 s",
-) -> Made:
+) -> MotionType:
     """Generate a random motion of an earthquake from a published model.
 
     Windowed noise is given the mean spectrum of an earthquake of this magnitude at this
@@ -163,12 +163,12 @@ def stochastic(
         ),
         quality_exponent=number(quality_exponent, name="quality_exponent", condition=_EXPONENTS),
         kappa=amount(kappa, _KAPPA, name="kappa", condition=NOT_NEGATIVE),
-        site=one_of_words(Site, site, owner=owner, name="site"),
+        site=checked_choice(Site, site, owner=owner, name="site"),
         corners=usual
         if source is None
-        else one_of_words(Corners, source, owner=owner, name="source"),
+        else checked_choice(Corners, source, owner=owner, name="source"),
     )
-    first = whole_number(seed, owner=owner, name="seed", lowest=0)
+    first = checked_integer(seed, owner=owner, name="seed", lowest=0)
     ratio = None if vertical is None else number(vertical, name="vertical", condition=POSITIVE)
     step = amount(time_step, _STEP, name="time_step", condition=_STEPS)
     for message in _extrapolations(earthquake, owner):

@@ -8,17 +8,16 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
-from rockframe.arguments import one_of_words
-from rockframe.errors import ComponentError, RecordWarning, nearest, shown, warn
-from rockframe.motion.processing.samples import instants_of
+from rockframe.arguments import checked_choice
+from rockframe.errors import ComponentError, RecordWarning, did_you_mean, short_repr, warn
+from rockframe.motion.processing.samples import sample_times
 from rockframe.motion.quantities import (
     ArrayLike,
     accelerations_to_si,
     relative_seconds,
     times_to_si,
 )
-from rockframe.motion.value import UNNAMED, Made
-from rockframe.proposals import hinted
+from rockframe.motion.value import UNNAMED, MotionType
 from rockframe.records import (
     DOWNWARDS,
     MAXIMUM_SAMPLES,
@@ -32,6 +31,7 @@ from rockframe.records import (
     uniform_step,
 )
 from rockframe.signals import Motion
+from rockframe.suggestions import with_hints
 from rockframe.units import POSITIVE, TIME_STEP, QuantityLike, to_si
 
 if TYPE_CHECKING:
@@ -42,30 +42,30 @@ _SAME_STEP: Final = 1e-6
 _COARSER: Final = 1.5
 
 
-class Between(StrEnum):
+class UnevenInterpolation(StrEnum):
     """Interpolation of an acceleration between uneven times."""
 
     LINEAR = "linear"
     CUBIC = "cubic"
 
 
-_HOW: Final = {
-    Between.LINEAR: "straight lines between them",
-    Between.CUBIC: "a cubic spline through them",
+_METHOD_NOTES: Final = {
+    UnevenInterpolation.LINEAR: "straight lines between them",
+    UnevenInterpolation.CUBIC: "a cubic spline through them",
 }
 
 
-@hinted()
+@with_hints()
 def from_times(
-    kind: type[Made],
+    kind: type[MotionType],
     times: ArrayLike,
     acceleration: ArrayLike,
     time_step: QuantityLike,
     vertical: ArrayLike | None = None,
     *,
-    interpolation: Between | str = Between.LINEAR,
+    interpolation: UnevenInterpolation | str = UnevenInterpolation.LINEAR,
     name: str | None = None,
-) -> Made:
+) -> MotionType:
     """Build a motion from accelerations at uneven times, interpolated at an even time step.
 
     Parameters
@@ -112,7 +112,7 @@ def from_times(
     [0.0, 0.1, 0.2, 0.3, 0.2, 0.1, 0.08, 0.06, 0.04, 0.02, 0.0]
     """
     owner = f"{kind.__name__}.from_times"
-    between = one_of_words(Between, interpolation, owner=owner, name="interpolation")
+    between = checked_choice(UnevenInterpolation, interpolation, owner=owner, name="interpolation")
     step = to_si(time_step, TIME_STEP, owner=owner, name="time_step", condition=POSITIVE)
     instants = times_to_si(times, owner=owner, name="times")
     length = float(instants[-1] - instants[0])
@@ -122,7 +122,7 @@ def from_times(
             f"{length:.6g} s"
         )
         raise ComponentError(msg)
-    grid = instants_of(length, step)
+    grid = sample_times(length, step)
     read: list[Array] = []
     for label, array in (("acceleration", acceleration), ("vertical", vertical)):
         if array is None:
@@ -134,7 +134,7 @@ def from_times(
                 "one finite sample for each time"
             )
             raise ComponentError(msg)
-        read.append(_read_off(instants - instants[0], values, grid, between))
+        read.append(_interpolated(instants - instants[0], values, grid, between))
     gaps = np.diff(instants)
     if step > _COARSER * float(np.median(gaps)):
         words = (
@@ -144,15 +144,15 @@ def from_times(
         warn(words, RecordWarning)
     words = (
         f"built from {instants.size} samples {gaps.min():.6g} s to {gaps.max():.6g} s apart, "
-        f"{_HOW[between]}, read off every {step!r} s"
+        f"{_METHOD_NOTES[between]}, read off every {step!r} s"
     )
     return kind(
         Motion.of_samples(step, *read), name=UNNAMED if name is None else name, history=(words,)
     )
 
 
-def _read_off(times: Array, values: Array, grid: Array, between: Between) -> Array:
-    if between is Between.LINEAR:
+def _interpolated(times: Array, values: Array, grid: Array, between: UnevenInterpolation) -> Array:
+    if between is UnevenInterpolation.LINEAR:
         return np.interp(grid, times, values)
     from scipy.interpolate import CubicSpline  # slow to import, and needed only here
 
@@ -160,9 +160,9 @@ def _read_off(times: Array, values: Array, grid: Array, between: Between) -> Arr
     return np.asarray(spline(grid), dtype=np.float64)
 
 
-@hinted()
+@with_hints()
 def from_frame(
-    kind: type[Made],
+    kind: type[MotionType],
     frame: Any,
     unit: str,
     component: str | None = None,
@@ -171,7 +171,7 @@ def from_frame(
     time: str | None = None,
     time_step: QuantityLike | None = None,
     name: str | None = None,
-) -> Made:
+) -> MotionType:
     """Build a motion from columns of a pandas DataFrame.
 
     Parameters
@@ -221,12 +221,12 @@ def from_frame(
     """
     owner = f"{kind.__name__}.from_frame"
     if not (hasattr(frame, "columns") and hasattr(frame, "index") and hasattr(frame, "loc")):
-        msg = f"{owner}: frame needs a pandas DataFrame, got {shown(frame)}"
+        msg = f"{owner}: frame needs a pandas DataFrame, got {short_repr(frame)}"
         raise ComponentError(msg)
     record_unit = argument_unit(unit, owner=owner)
     for what, label in (("component", component), ("vertical", vertical), ("time", time)):
         if label is not None and not isinstance(cast("object", label), Hashable):
-            msg = f"{owner}: {what} must name a column, got {shown(label)}"
+            msg = f"{owner}: {what} must name a column, got {short_repr(label)}"
             raise ComponentError(msg)
     labels = [label for label in frame.columns if label not in (time, vertical)]
     if component is None and len(labels) != 1:
@@ -259,8 +259,8 @@ def from_frame(
 def _column(frame: Any, label: object, owner: str, argument: str) -> Array:
     if label not in frame.columns:
         listed = ", ".join(repr(one) for one in list(frame.columns)[:10])
-        near = nearest(label, map(str, frame.columns))
-        msg = f"{owner}: {argument} {shown(label)} is none of the columns {listed}{near}"
+        near = did_you_mean(label, map(str, frame.columns))
+        msg = f"{owner}: {argument} {short_repr(label)} is none of the columns {listed}{near}"
         raise ComponentError(msg)
     values = np.asarray(frame[label])
     if values.ndim != 1 or values.dtype.kind not in "fiu" or not np.isfinite(values).all():
@@ -284,8 +284,8 @@ def _step(frame: Any, time: str | None, time_step: QuantityLike | None, owner: s
                 msg = f"{owner}: the column {time!r} must hold times, in seconds or as dates"
                 raise ComponentError(msg) from problem
     else:
-        near = nearest(time, map(str, frame.columns))
-        msg = f"{owner}: time {shown(time)} is none of the columns{near}"
+        near = did_you_mean(time, map(str, frame.columns))
+        msg = f"{owner}: time {short_repr(time)} is none of the columns{near}"
         raise ComponentError(msg)
     times = relative_seconds(axis, "s")
     if times is None:
@@ -314,15 +314,15 @@ def _step(frame: Any, time: str | None, time_step: QuantityLike | None, owner: s
 _NEEDED: Final = ("id", "data", "stats")
 
 
-@hinted()
+@with_hints()
 def from_trace(
-    kind: type[Made],
+    kind: type[MotionType],
     trace: Any,
     unit: str | None = None,
     component: str | tuple[str, str] | None = None,
     *,
     name: str | None = None,
-) -> Made:
+) -> MotionType:
     """Build a motion from an ObsPy Trace or Stream.
 
     Parameters
@@ -389,7 +389,8 @@ def _listed(stream: Any, owner: str) -> list[Any]:
     traces: list[Any] = list(getattr(stream, "traces", ()))
     if not traces or not all(hasattr(one, part) for one in traces for part in _NEEDED):
         msg = (
-            f"{owner}: trace needs an ObsPy Trace, or a Stream that holds one, got {shown(stream)}"
+            f"{owner}: trace needs an ObsPy Trace, or a Stream that holds one, got "
+            f"{short_repr(stream)}"
         )
         raise ComponentError(msg)
     return traces

@@ -12,22 +12,22 @@ from rockframe.motion.processing.floors import interval_matrix
 from rockframe.signals.arrays import Array
 from rockframe.signals.oscillator import step_extremum
 
-WIDTH: Final = 1.178
+TAPER_WIDTH: Final = 1.178
 """Width of the taper at a period of one second [s] (Al Atik and Abrahamson 2010)."""
 
-WIDTH_POWER: Final = 0.93
+TAPER_WIDTH_EXPONENT: Final = 0.93
 """Exponent of the period in this width [1] (Al Atik and Abrahamson 2010)."""
 
-REACH: Final = 4.0
+HALF_LENGTH: Final = 4.0
 """Half the length of a wavelet over its width; there it has 10^-7 of its height [1]."""
 
-_ROOM: Final = 3.0
+_END_DISTANCE: Final = 3.0
 """Least distance of the wavelet from both ends over its width, which is reduced if needed [1]."""
 
-_NARROWEST: Final = 0.5
+_MIN_WIDTH: Final = 0.5
 """Least width over the period, with which the wavelet still has a full cycle [1]."""
 
-_FADE: Final = 0.25
+_FADE_DURATION: Final = 0.25
 """Duration over the period in which a wavelet fades at an end of the motion [1]."""
 
 
@@ -43,12 +43,12 @@ class Wavelet(NamedTuple):
         return slice(self.first, self.first + self.values.size)
 
 
-def width_of(period: float) -> float:
+def taper_width(period: float) -> float:
     """Compute the width of the taper, :eq:`eq-taper-width` [s]."""
-    return WIDTH * period**WIDTH_POWER
+    return TAPER_WIDTH * period**TAPER_WIDTH_EXPONENT
 
 
-def lead_of(period: float, damping_ratio: float) -> float:
+def wavelet_lead(period: float, damping_ratio: float) -> float:
     """Compute the time from the peak of the wavelet to that of the oscillator.
 
     It is :eq:`eq-wavelet-lead` [s].
@@ -65,15 +65,15 @@ def wavelet_at(
     It is :eq:`eq-tapered-cosine`.
     """
     duration = (count - 1) * time_step
-    edge = _NARROWEST * period
-    centre = min(max(peak_time - lead_of(period, damping_ratio), edge), duration - edge)
-    room = min(centre, duration - centre)
-    width = max(min(width_of(period), room / _ROOM), edge)
-    first = max(math.ceil((centre - REACH * width) / time_step), 0)
-    last = min(math.floor((centre + REACH * width) / time_step), count - 1)
+    edge = _MIN_WIDTH * period
+    centre = min(max(peak_time - wavelet_lead(period, damping_ratio), edge), duration - edge)
+    end_distance = min(centre, duration - centre)
+    width = max(min(taper_width(period), end_distance / _END_DISTANCE), edge)
+    first = max(math.ceil((centre - HALF_LENGTH * width) / time_step), 0)
+    last = min(math.floor((centre + HALF_LENGTH * width) / time_step), count - 1)
     times = np.arange(first, last + 1) * time_step
     place = (times - centre) / width
-    from_end = np.minimum(times, duration - times) / (_FADE * period)
+    from_end = np.minimum(times, duration - times) / (_FADE_DURATION * period)
     taper = np.exp(-(place**2)) * np.sin(0.5 * math.pi * np.clip(from_end, 0.0, 1.0)) ** 2
     frequency = 2.0 * math.pi / period * math.sqrt(1.0 - damping_ratio**2)
     cosine = np.cos(frequency * (times - centre))
@@ -86,13 +86,13 @@ def wavelet_at(
     return Wavelet(first, taper * (cosine - mean - slope * place))
 
 
-_RIVAL: Final = 0.75
+_MIN_PEAK_RATIO: Final = 0.75
 """Ratio to the greatest peak from which on other peaks may come to exceed it [1]."""
 
-_FEW: Final = 3
+_PEAKS_ALWAYS_KEPT: Final = 3
 """Number of peaks of an oscillator that are always considered."""
 
-_MOST: Final = 10
+_MAX_PEAKS: Final = 10
 """Number of peaks of an oscillator that are considered if they exceed its target."""
 
 
@@ -114,10 +114,10 @@ class OscillatorPeaks(NamedTuple):
         """The greatest pseudo-acceleration of each oscillator, shape (k,) [m s^-2]."""
         return np.abs(self.values[self.greatest])
 
-    def looked_at(self, chosen: NDArray[np.bool_], targets: Array) -> OscillatorPeaks:
+    def select(self, chosen: NDArray[np.bool_], targets: Array) -> OscillatorPeaks:
         """Keep the greatest peaks of some oscillators, and those that exceed the target."""
         exceeding = np.abs(self.values) > targets[self.oscillators]
-        kept = chosen[self.oscillators] & (exceeding | (self.ranks < _FEW))
+        kept = chosen[self.oscillators] & (exceeding | (self.ranks < _PEAKS_ALWAYS_KEPT))
         return OscillatorPeaks(
             self.oscillators[kept], self.values[kept], self.times[kept], self.ranks[kept]
         )
@@ -159,15 +159,20 @@ class Oscillators:
         size = np.abs(histories)
         top = size.max(axis=1, keepdims=True)
         inner = size[:, 1:-2]
-        turns = (inner >= size[:, :-3]) & (inner > size[:, 2:-1]) & (inner >= _RIVAL * top)
-        lost = np.flatnonzero(~turns.any(axis=1))  # greatest at the end of the history
-        turns[lost, np.clip(size[lost].argmax(axis=1) - 1, 0, turns.shape[1] - 1)] = True
-        which, places = np.nonzero(turns)
-        values, times = self._turns(samples, histories, which, places + 1)
+        maxima = (
+            (inner >= size[:, :-3]) & (inner > size[:, 2:-1]) & (inner >= _MIN_PEAK_RATIO * top)
+        )
+        without_maximum = np.flatnonzero(~maxima.any(axis=1))  # greatest at the end of the history
+        maxima[
+            without_maximum,
+            np.clip(size[without_maximum].argmax(axis=1) - 1, 0, maxima.shape[1] - 1),
+        ] = True
+        which, places = np.nonzero(maxima)
+        values, times = self._extrema(samples, histories, which, places + 1)
         order = np.lexsort((-np.abs(values), which))
         first = np.searchsorted(which, np.arange(len(histories)))
         rank = np.arange(which.size) - first[which]
-        few = rank < _MOST
+        few = rank < _MAX_PEAKS
         kept = order[few]
         return OscillatorPeaks(which[kept], values[kept], times[kept], rank[few])
 
@@ -213,7 +218,7 @@ class Oscillators:
         still = np.zeros(self._after)
         return np.append(samples[:-1], still), np.append(np.diff(samples), still)
 
-    def _turns(
+    def _extrema(
         self,
         samples: Array,
         histories: Array,
@@ -242,13 +247,13 @@ class Oscillators:
         return values, (rows + np.clip(inside, 0.0, 1.0)) * self.time_step
 
 
-_ROUNDS: Final = 4
+_ITERATIONS: Final = 4
 """Iterations in which lesser peaks that exceed the target are constrained, too."""
 
-_EXCESS: Final = 0.005
+_TOLERATED_EXCESS: Final = 0.005
 """Relative excess of a lesser peak over the target up to which it is not constrained [1]."""
 
-_LEAST_WEIGHT: Final = 0.02
+_MIN_WEIGHT: Final = 0.02
 """Weight of a peak without misfit; each misfit is added to it [1]."""
 
 
@@ -259,7 +264,7 @@ class Adjustment(NamedTuple):
     wavelets: Array
     # change of a peak (row) by a wavelet (column), over its target, positive if the peak grows [1]
     effects: Array
-    missing: Array  # target less peak, over the target [1]
+    misfits: Array  # target less peak, over the target [1]
     greatest: NDArray[np.bool_]  # peaks to bring to the target; others must not exceed it
 
     def amplitudes(self, regularisation: float) -> Array:
@@ -267,33 +272,33 @@ class Adjustment(NamedTuple):
         from scipy import linalg as module
 
         linalg: Any = module
-        weights = np.abs(self.missing) + _LEAST_WEIGHT
+        weights = np.abs(self.misfits) + _MIN_WEIGHT
         weights = weights / np.sqrt((weights[self.greatest] ** 2).mean())
         weights[~self.greatest] = np.maximum(weights[~self.greatest], 1.0)
-        held = self.greatest | (self.missing < 0.0)
-        found = np.zeros(self.missing.size)
-        for _ in range(_ROUNDS):
-            rows = weights[held, None] * self.effects[held]
+        constrained = self.greatest | (self.misfits < 0.0)
+        found = np.zeros(self.misfits.size)
+        for _ in range(_ITERATIONS):
+            rows = weights[constrained, None] * self.effects[constrained]
             # one equation for each constrained peak, which are no more than wavelets
             square = rows @ rows.T
             square[np.diag_indices_from(square)] += regularisation
-            driven = weights[held] * self.missing[held]
+            driven = weights[constrained] * self.misfits[constrained]
             found = rows.T @ linalg.solve(square, driven, assume_a="pos")
-            exceeding = self.effects @ found > self.missing + _EXCESS
-            if not (exceeding & ~held).any():
+            exceeding = self.effects @ found > self.misfits + _TOLERATED_EXCESS
+            if not (exceeding & ~constrained).any():
                 break
-            held = held | exceeding
+            constrained = constrained | exceeding
         return found
 
 
-def adjustment_of(
+def make_adjustment(
     oscillators: Oscillators, peaks: OscillatorPeaks, targets: Array, count: int
 ) -> Adjustment:
     """Make the wavelets of all peaks, and the matrix of their effects, :eq:`eq-matching-matrix`."""
-    wanted = targets[peaks.oscillators]
-    scaled = oscillators.influences(peaks, count) * (np.sign(peaks.values) / wanted)[:, None]
+    target_values = targets[peaks.oscillators]
+    scaled = oscillators.influences(peaks, count) * (np.sign(peaks.values) / target_values)[:, None]
     periods = oscillators.periods[peaks.oscillators]
-    wavelets = np.zeros((count, wanted.size))
+    wavelets = np.zeros((count, target_values.size))
     both = zip(peaks.times.tolist(), periods.tolist(), strict=True)
     for column, (time, period) in enumerate(both):
         one = wavelet_at(
@@ -306,5 +311,5 @@ def adjustment_of(
         wavelets[one.samples, column] = one.values
     effects = scaled @ wavelets
     heights = 1.0 / np.abs(effects).max(axis=0)
-    missing = 1.0 - np.abs(peaks.values) / wanted
-    return Adjustment(wavelets * heights, effects * heights, missing, peaks.greatest)
+    misfits = 1.0 - np.abs(peaks.values) / target_values
+    return Adjustment(wavelets * heights, effects * heights, misfits, peaks.greatest)

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from rockframe.motion.matching.adjustment import OscillatorPeaks, Oscillators, adjustment_of
+from rockframe.motion.matching.adjustment import OscillatorPeaks, Oscillators, make_adjustment
 from rockframe.motion.processing import velocity_pulses
-from rockframe.motion.velocity_pulse import LEAST_INDICATOR
+from rockframe.motion.velocity_pulse import MIN_INDICATOR
 from rockframe.signals import Signal
 from rockframe.signals.integrals import ground_path
 from rockframe.signals.motion import absolute_peak, knots_of
@@ -26,55 +26,55 @@ if TYPE_CHECKING:
 _SPACING: Final = 0.5
 """Relative distance of matched periods over the damping ratio: a fourth of a resonance's width."""
 
-_CLOSEST: Final = 0.0125
-_WIDEST: Final = 0.05
+_MIN_SPACING: Final = 0.0125
+_MAX_SPACING: Final = 0.05
 """Limits of the relative distance of matched periods [1]."""
 
-_BETWEEN: Final = 8
+_CHECKED_PER_MATCHED: Final = 8
 """Number of periods of the checked spectrum for each matched period."""
 
-_PASS: Final = 0.45
+_DECADES_PER_PASS: Final = 0.45
 """Range of periods that each pass adds, in decades."""
 
-_STEPS_OF_A_PASS: Final = 10
+_STEPS_PER_PASS: Final = 10
 """Most adjustments in a pass."""
 
 _STEPS_BETWEEN_CHECKS: Final = 6
-_CHECKS: Final = 12
+_MAX_CHECKS: Final = 12
 """Adjustments between checks of the whole spectrum, and most checks."""
 
 _PATIENCE: Final = 3
-_GAIN: Final = 0.95
+_MIN_REDUCTION: Final = 0.95
 """The iteration ends after this number of checks that do not reduce the misfit by this factor."""
 
-_AIM: Final = 0.6
+_MATCHED_MISFIT: Final = 0.6
 """Misfit to reach at matched periods, over the tolerance [1]."""
 
-_MARGIN: Final = 0.95
+_CHECKED_MISFIT: Final = 0.95
 """Misfit to reach in the checked spectrum, which has cusps, over the tolerance [1]."""
 
-_BROUGHT_IN: Final = 0.8
+_ADDED_MISFIT: Final = 0.8
 """Misfit over the tolerance above which a checked period is added to the matched ones [1]."""
 
 _FIRST_REGULARISATION: Final = 1e-2
-_LEAST_REGULARISATION: Final = 1e-5
+_MIN_REGULARISATION: Final = 1e-5
 """Regularisation of the first adjustment of a pass, and its least value [1]."""
 
-_STRONGER: Final = 5.0
-_EASIER: Final = 0.3
+_INCREASE_FACTOR: Final = 5.0
+_DECREASE_FACTOR: Final = 0.3
 """Factors of the regularisation after a failed and after a full adjustment [1]."""
 
 _STEP_LENGTHS: Final = (1.0, 0.5, 0.25)
 """Fractions of an adjustment that are tried."""
 
-_TRIALS: Final = 4
+_MAX_TRIALS: Final = 4
 """Most regularisations that are tried before a pass ends."""
 
 _POWER: Final = 4.0
 """Exponent of the misfits in the norm that every adjustment reduces; large ones dominate."""
 
 
-class Goal(NamedTuple):
+class MatchingGoal(NamedTuple):
     """Target, range and tolerance of matching."""
 
     spectrum: Callable[[Array], Array]  # pseudo-accelerations [m s^-2] at periods [s]
@@ -86,14 +86,14 @@ class Goal(NamedTuple):
     @property
     def matched(self) -> Array:
         """The periods at which wavelets are added, shape (k,) [s]."""
-        spacing = min(max(_SPACING * self.damping_ratio, _CLOSEST), _WIDEST)
+        spacing = min(max(_SPACING * self.damping_ratio, _MIN_SPACING), _MAX_SPACING)
         count = math.ceil(math.log(self.longest / self.shortest) / math.log1p(spacing)) + 1
         return np.geomspace(self.shortest, self.longest, max(count, 2))
 
     @property
     def checked(self) -> Array:
         """The periods at which the spectrum is checked, shape (c,) [s]."""
-        count = _BETWEEN * (self.matched.size - 1) + 1
+        count = _CHECKED_PER_MATCHED * (self.matched.size - 1) + 1
         return np.geomspace(self.shortest, self.longest, count)
 
     def ratios(self, signal: Signal) -> Array:
@@ -103,7 +103,7 @@ class Goal(NamedTuple):
         return pseudo_spectra(signal, periods, displacement)[1] / self.spectrum(periods)
 
 
-class Matched(NamedTuple):
+class MatchResult(NamedTuple):
     """The best motion found, with its spectrum."""
 
     signal: Signal  # the motion
@@ -117,61 +117,63 @@ class Matched(NamedTuple):
         return float(np.abs(self.ratios - 1.0).max())
 
 
-def match(signal: Signal, goal: Goal) -> Matched:
+def match(signal: Signal, goal: MatchingGoal) -> MatchResult:
     """Scale a motion, and add wavelets until its spectrum matches the target."""
-    best = Matched(signal, 1.0, goal.ratios(signal), 0)
+    best = MatchResult(signal, 1.0, goal.ratios(signal), 0)
     if best.misfit <= goal.tolerance:
         return best
     factor = math.exp(-float(np.log(best.ratios).mean()))
     best = _checked(goal, signal, factor * signal.samples, factor, 0)
     periods = goal.matched
-    run = _Run(signal.time_step, best.signal.samples, goal, periods)
-    passes = max(1, math.ceil(math.log10(goal.longest / goal.shortest) / _PASS))
-    for upto in np.geomspace(goal.shortest, goal.longest, passes + 1)[1:-1]:
-        run.improve(periods <= upto, _STEPS_OF_A_PASS)
-        run.begin_again()
-    waited, before = 0, math.inf
-    for _ in range(_CHECKS):
+    run = _Iteration(signal.time_step, best.signal.samples, goal, periods)
+    passes = max(1, math.ceil(math.log10(goal.longest / goal.shortest) / _DECADES_PER_PASS))
+    for limit in np.geomspace(goal.shortest, goal.longest, passes + 1)[1:-1]:
+        run.improve(periods <= limit, _STEPS_PER_PASS)
+        run.reset_regularisation()
+    stalled_checks, before = 0, math.inf
+    for _ in range(_MAX_CHECKS):
         done = run.improve(np.ones(periods.size, dtype=bool), _STEPS_BETWEEN_CHECKS)
-        now = _checked(goal, signal, run.samples, factor, run.steps)
-        best = min(best, now, key=lambda one: one.misfit)
-        if best.misfit < _GAIN * before:
-            waited, before = 0, best.misfit
+        current = _checked(goal, signal, run.samples, factor, run.steps)
+        best = min(best, current, key=lambda one: one.misfit)
+        if best.misfit < _MIN_REDUCTION * before:
+            stalled_checks, before = 0, best.misfit
         else:
-            waited += 1
-        if best.misfit <= _MARGIN * goal.tolerance or waited >= _PATIENCE:
+            stalled_checks += 1
+        if best.misfit <= _CHECKED_MISFIT * goal.tolerance or stalled_checks >= _PATIENCE:
             break
         if done:
-            off = np.abs(now.ratios - 1.0) > _BROUGHT_IN * goal.tolerance
-            more = np.union1d(periods, goal.checked[off])
+            exceeding = np.abs(current.ratios - 1.0) > _ADDED_MISFIT * goal.tolerance
+            more = np.union1d(periods, goal.checked[exceeding])
             if more.size == periods.size:
                 break
             periods = more
-            run = _Run(signal.time_step, run.samples, goal, periods, run.steps)
+            run = _Iteration(signal.time_step, run.samples, goal, periods, run.steps)
     return best
 
 
-def _checked(goal: Goal, signal: Signal, samples: Array, factor: float, steps: int) -> Matched:
+def _checked(
+    goal: MatchingGoal, signal: Signal, samples: Array, factor: float, steps: int
+) -> MatchResult:
     made = Signal(signal.time_step, samples, name=signal.name)
-    return Matched(made, factor, goal.ratios(made), steps)
+    return MatchResult(made, factor, goal.ratios(made), steps)
 
 
-class _Run:
+class _Iteration:
     """State of the iteration: the motion, and the response of oscillators to it."""
 
     def __init__(
-        self, time_step: float, samples: Array, goal: Goal, periods: Array, steps: int = 0
+        self, time_step: float, samples: Array, goal: MatchingGoal, periods: Array, steps: int = 0
     ) -> None:
         self.samples = samples
         self.steps = steps
         self._regularisation = _FIRST_REGULARISATION
-        self._aim = _AIM * goal.tolerance
+        self._target_misfit = _MATCHED_MISFIT * goal.tolerance
         self._targets = goal.spectrum(periods)
         self._oscillators = Oscillators(periods, goal.damping_ratio, time_step)
         self._histories = self._oscillators.histories(samples)
         self._peaks = self._oscillators.peaks(samples, self._histories)
 
-    def begin_again(self) -> None:
+    def reset_regularisation(self) -> None:
         """Reset the regularisation."""
         self._regularisation = _FIRST_REGULARISATION
 
@@ -179,57 +181,57 @@ class _Run:
         """Make adjustments for some oscillators; tell whether further ones would not help."""
         for _ in range(most):
             misfits = np.abs(self._peaks.spectrum[chosen] / self._targets[chosen] - 1.0)
-            if misfits.max() <= self._aim or not self._step(chosen):
+            if misfits.max() <= self._target_misfit or not self._step(chosen):
                 return True
         return False
 
     def _step(self, chosen: NDArray[np.bool_]) -> bool:
         """Make the first adjustment that reduces the misfit; tell whether there was one."""
         count = self.samples.size
-        looked_at = self._peaks.looked_at(chosen, self._targets)
-        made = adjustment_of(self._oscillators, looked_at, self._targets, count)
-        before = self._size(self._peaks, chosen)
-        for _ in range(_TRIALS):
-            added = made.wavelets @ made.amplitudes(self._regularisation)
+        looked_at = self._peaks.select(chosen, self._targets)
+        adjustment = make_adjustment(self._oscillators, looked_at, self._targets, count)
+        before = self._objective(self._peaks, chosen)
+        for _ in range(_MAX_TRIALS):
+            added = adjustment.wavelets @ adjustment.amplitudes(self._regularisation)
             response = self._oscillators.histories(added)
             for length in _STEP_LENGTHS:
                 samples = self.samples + length * added
                 histories = self._histories + length * response
                 peaks = self._oscillators.peaks(samples, histories)
-                if self._size(peaks, chosen) < before:
+                if self._objective(peaks, chosen) < before:
                     self.samples, self._histories, self._peaks = samples, histories, peaks
                     self.steps += 1
                     if length == 1.0:
-                        easier = _EASIER * self._regularisation
-                        self._regularisation = max(easier, _LEAST_REGULARISATION)
+                        decreased = _DECREASE_FACTOR * self._regularisation
+                        self._regularisation = max(decreased, _MIN_REGULARISATION)
                     return True
-            self._regularisation *= _STRONGER
+            self._regularisation *= _INCREASE_FACTOR
         return False
 
-    def _size(self, peaks: OscillatorPeaks, chosen: NDArray[np.bool_]) -> float:
+    def _objective(self, peaks: OscillatorPeaks, chosen: NDArray[np.bool_]) -> float:
         """Return the mean fourth power of ln(spectrum / target)."""
         logarithms = np.log(peaks.spectrum[chosen] / self._targets[chosen])
         return float((np.abs(logarithms) ** _POWER).mean())
 
 
-LARGEST_USUAL: Final = 1.5
+MAX_USUAL_GROWTH: Final = 1.5
 """Growth factor above which a warning is issued [1]."""
 
-_BEYOND: Final = 5.0
+_PERIOD_RANGE_BEYOND: Final = 5.0
 _PERIODS: Final = 24
 """Last period beyond the range, over the longest in it [1], and number of periods up to it."""
 
-_LEAST_STEPS: Final = 4.0
+_MIN_STEPS: Final = 4.0
 _PULSES: Final = (0.25, 15.0)
 """Fewest time steps in the shortest period of a pulse; range of these periods [s]."""
 
 PEAKS: Final = tuple(f"peak_ground_{what}" for what in ("acceleration", "velocity", "displacement"))
 INDICATOR: Final = "pulse_indicator"
 GROWTH: Final = "spectral_growth_beyond_range"
-AT: Final = "period_of_spectral_growth"
+GROWTH_PERIOD: Final = "period_of_spectral_growth"
 
 
-def changes(before: Signal, after: Signal, goal: Goal) -> dict[str, float]:
+def matching_changes(before: Signal, after: Signal, goal: MatchingGoal) -> dict[str, float]:
     """Compare a motion before and after its matching."""
     found: dict[str, float] = {}
     for when, signal in (("before", before), ("after", after)):
@@ -237,33 +239,35 @@ def changes(before: Signal, after: Signal, goal: Goal) -> dict[str, float]:
         for name, pieces in zip(PEAKS, (signal.pieces, velocity, displacement), strict=True):
             found[f"{name}_{when}_matching"] = absolute_peak(pieces)
         found[f"{INDICATOR}_{when}_matching"] = _indicator(knots_of(velocity), signal.time_step)
-    periods = np.geomspace(goal.longest, _BEYOND * goal.longest, _PERIODS + 1)[1:]
+    periods = np.geomspace(goal.longest, _PERIOD_RANGE_BEYOND * goal.longest, _PERIODS + 1)[1:]
     old, new = (spectral_peaks(one, periods, goal.damping_ratio)[:, 0] for one in (before, after))
     growth = new / old
     most = int(growth.argmax())
-    return {**found, GROWTH: float(growth[most]), AT: float(periods[most])}
+    return {**found, GROWTH: float(growth[most]), GROWTH_PERIOD: float(periods[most])}
 
 
-def unusual(found: dict[str, float]) -> list[str]:
+def unusual_changes(found: dict[str, float]) -> list[str]:
     """Say which peaks have grown unusually, and whether the motion has become a pulse."""
     words: list[str] = []
     for name in PEAKS:
         old, new = (found[f"{name}_{when}_matching"] for when in ("before", "after"))
-        if new > LARGEST_USUAL * old:
+        if new > MAX_USUAL_GROWTH * old:
             words.append(f"{name.replace('_', ' ')} {new / old:.3g} times")
-    if found[GROWTH] > LARGEST_USUAL:
-        words.append(f"spectrum {found[GROWTH]:.3g} times at {found[AT]:.3g} s, beyond the range")
+    if found[GROWTH] > MAX_USUAL_GROWTH:
+        words.append(
+            f"spectrum {found[GROWTH]:.3g} times at {found[GROWTH_PERIOD]:.3g} s, beyond the range"
+        )
     old, new = (found[f"{INDICATOR}_{when}_matching"] for when in ("before", "after"))
-    if new > LEAST_INDICATOR >= old:
+    if new > MIN_INDICATOR >= old:
         words.append(f"a velocity pulse where none was (indicator {old:.2g}, now {new:.2g})")
     return words
 
 
 def _indicator(velocity: Array, time_step: float) -> float:
     shortest, longest = _PULSES
-    periods = velocity_pulses.periods_between(max(shortest, _LEAST_STEPS * time_step), longest)
-    place = velocity_pulses.strongest(velocity[None, :], time_step, periods)
-    wavelets = velocity_pulses.extracted(velocity, time_step, place)
-    wavelet = velocity_pulses.wavelet_of(place.period, time_step)
-    within = velocity_pulses.sum_of(wavelets, wavelet, 0, velocity.size)
-    return velocity_pulses.measures(velocity, within, time_step).indicator
+    periods = velocity_pulses.period_range(max(shortest, _MIN_STEPS * time_step), longest)
+    peak = velocity_pulses.strongest_wavelet(velocity[None, :], time_step, periods)
+    wavelets = velocity_pulses.extract_wavelets(velocity, time_step, peak)
+    wavelet = velocity_pulses.sampled_wavelet(peak.period, time_step)
+    pulse_velocity = velocity_pulses.sum_wavelets(wavelets, wavelet, 0, velocity.size)
+    return velocity_pulses.pulse_measures(velocity, pulse_velocity, time_step).indicator

@@ -9,23 +9,23 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import numpy as np
 
 from rockframe.errors import ComponentError, RecordWarning, warn
-from rockframe.motion.operations.following import (
-    OF_VERTICAL,
-    following,
-    other_motion,
+from rockframe.motion.operations.derived import (
+    VERTICAL_PREFIX,
+    checked_other_motion,
+    cleared_vertical_metadata,
+    derived_motion,
     warn_of_other_start,
-    without_vertical,
 )
-from rockframe.motion.operations.scaling import times
+from rockframe.motion.operations.scaling import scaled_signal
 from rockframe.motion.processing.samples import padded
-from rockframe.motion.value import Made, MotionValue
-from rockframe.proposals import hinted
+from rockframe.motion.value import MotionType, MotionValue
 from rockframe.records import DOWNWARDS, SENSE, UPWARDS
 from rockframe.records import VERTICAL as EITHER
 from rockframe.signals import Motion, Signal
 from rockframe.signals.motion import COEFFICIENTS, VERTICAL
+from rockframe.suggestions import with_hints
 from rockframe.units import ANGLE, QuantityLike, to_si
-from rockframe.units.shown import in_degrees
+from rockframe.units.display import degrees_text
 
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array
@@ -34,8 +34,8 @@ _RIGHT_ANGLE_TOLERANCE: Final = 1.0  # degree; agencies round azimuths to whole 
 _ROUNDING: Final = 1e-15
 
 
-@hinted()
-def with_vertical(motion: Made, other: MotionValue | None) -> Made:
+@with_hints()
+def with_vertical(motion: MotionType, other: MotionValue | None) -> MotionType:
     """Add a vertical component: the horizontal component of another motion, positive upwards.
 
     Parameters
@@ -74,12 +74,13 @@ def with_vertical(motion: Made, other: MotionValue | None) -> Made:
     if other is None:
         if si.vertical is None:
             return motion
-        return following(
+        return derived_motion(
             motion, Motion(si.horizontal, None), "vertical component left out",
-            operation={"with_vertical": {"other": None}}, metadata=without_vertical(motion),
+            operation={"with_vertical": {"other": None}},
+            metadata=cleared_vertical_metadata(motion),
             same_spectrum=True,
         )  # fmt: skip
-    theirs = other_motion(other, si, owner).si
+    theirs = checked_other_motion(other, si, owner).si
     warn_of_other_start(motion, other, owner)
     count = max(len(motion), len(other))
     upwards = replace(padded(theirs.horizontal, count), time_step=si.time_step, name=VERTICAL)
@@ -87,7 +88,7 @@ def with_vertical(motion: Made, other: MotionValue | None) -> Made:
     steps = [f"{verb} {other.name} (sha256 {other.sha256[:12]})"]
     sense = other.metadata.get(SENSE)
     if sense == DOWNWARDS:
-        upwards = times(upwards, -1.0)
+        upwards = scaled_signal(upwards, -1.0)
         named = other.metadata.get("component", other.name)
         steps.append(f"component {named} turned over: positive upwards")
     elif sense == EITHER:
@@ -100,29 +101,29 @@ def with_vertical(motion: Made, other: MotionValue | None) -> Made:
         if len(one) < count:
             steps.append(f"{label} component padded with {count - len(one)} zeros")
     result = Motion(padded(si.horizontal, count), upwards)
-    added: dict[str, Any] = without_vertical(motion)
+    added: dict[str, Any] = cleared_vertical_metadata(motion)
     added |= {
-        f"{OF_VERTICAL}{key}": value
+        f"{VERTICAL_PREFIX}{key}": value
         for key, value in other.metadata.items()
-        if not key.startswith(OF_VERTICAL)
+        if not key.startswith(VERTICAL_PREFIX)
     }
     if sense is not None:
-        added[f"{OF_VERTICAL}{SENSE}"] = UPWARDS
+        added[f"{VERTICAL_PREFIX}{SENSE}"] = UPWARDS
     known = None if other.recipe is None else dict(other.recipe)
     operation = None if known is None else {"with_vertical": {"other": known}}
-    return following(
+    return derived_motion(
         motion, result, *steps, operation=operation, metadata=added, same_spectrum=True
     )
 
 
-@hinted()
+@with_hints()
 def rotated(
-    motion: Made,
+    motion: MotionType,
     other: MotionValue,
     angle: QuantityLike | None = None,
     *,
     azimuth: QuantityLike | None = None,
-) -> Made:
+) -> MotionType:
     """Compute the horizontal acceleration in another direction.
 
     Parameters
@@ -167,7 +168,7 @@ def rotated(
     <Quantity(5.0, 'meter / second ** 2')>
     """
     owner, si = f"{type(motion).__name__}.rotated", motion.si
-    theirs = other_motion(other, si, owner).si
+    theirs = checked_other_motion(other, si, owner).si
     if (angle is None) == (azimuth is None):
         msg = f"{owner}: give either angle or azimuth, for example angle='30 deg'"
         raise ComponentError(msg)
@@ -193,7 +194,9 @@ def rotated(
         pieces += across * _polynomials(partner)
     turned = Signal(si.time_step, along * mine.samples + across * partner.samples, pieces)
     result = Motion(turned, None if si.vertical is None else padded(si.vertical, count))
-    steps = [f"rotated by {in_degrees(turn, 9)} towards {other.name} (sha256 {other.sha256[:12]})"]
+    steps = [
+        f"rotated by {degrees_text(turn, 9)} towards {other.name} (sha256 {other.sha256[:12]})"
+    ]
     for label, one in (("this", motion), ("the other", other)):
         if len(one) < count:
             steps.append(f"{label} component padded with {count - len(one)} zeros")
@@ -206,8 +209,8 @@ def rotated(
     metadata["component"] = " and ".join(
         str(one.metadata.get("component", one.name)) for one in (motion, other)
     )
-    metadata["component"] += f" rotated by {in_degrees(turn, 6)}"
-    return following(motion, result, *steps, operation=operation, metadata=metadata)
+    metadata["component"] += f" rotated by {degrees_text(turn, 6)}"
+    return derived_motion(motion, result, *steps, operation=operation, metadata=metadata)
 
 
 def _scale(motion: MotionValue) -> float:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from enum import StrEnum
 from typing import Final
 
-from rockframe.arguments import one_of_words, truth, whole_number
+from rockframe.arguments import checked_bool, checked_choice, checked_integer
 from rockframe.errors import ComponentError
-from rockframe.motion.operations.following import (
-    following,
-    lost_pieces,
-    starting_later,
-    with_samples,
+from rockframe.motion.operations.derived import (
+    derived_motion,
+    dropped_pieces_note,
+    map_samples,
+    shifted_start_times,
 )
 from rockframe.motion.processing.samples import (
     butterworth,
@@ -19,9 +19,9 @@ from rockframe.motion.processing.samples import (
     without_baseline,
     without_drift,
 )
-from rockframe.motion.value import Made
-from rockframe.proposals import hinted
+from rockframe.motion.value import MotionType
 from rockframe.signals.motion import MAXIMUM_SAMPLES
+from rockframe.suggestions import with_hints
 from rockframe.units import FREQUENCY, POSITIVE, QuantityLike, to_si
 
 _HIGHEST_ORDER: Final = 12
@@ -35,16 +35,16 @@ class Baseline(StrEnum):
     VELOCITY = "velocity"
 
 
-@hinted()
+@with_hints()
 def filtered(
-    motion: Made,
+    motion: MotionType,
     low: QuantityLike | None = None,
     high: QuantityLike | None = None,
     *,
     order: int = 4,
     causal: bool = False,
     keep_padding: bool = False,
-) -> Made:
+) -> MotionType:
     """Apply a Butterworth filter, zero-phase by default.
 
     Parameters
@@ -115,9 +115,9 @@ def filtered(
                 f"frequency, {nyquist:.6g} Hz"
             )
             raise ComponentError(msg)
-    order = whole_number(order, owner=owner, name="order", lowest=1, highest=_HIGHEST_ORDER)
-    causal = truth(causal, owner=owner, name="causal")
-    keep_padding = truth(keep_padding, owner=owner, name="keep_padding")
+    order = checked_integer(order, owner=owner, name="order", lowest=1, highest=_HIGHEST_ORDER)
+    causal = checked_bool(causal, owner=owner, name="causal")
+    keep_padding = checked_bool(keep_padding, owner=owner, name="keep_padding")
     padding = padding_samples(si.time_step, lower, upper, order)
     band = ", ".join(f"{name} corner {value:.9g} Hz" for name, value in corners.items())
     if padding > MAXIMUM_SAMPLES:
@@ -126,7 +126,7 @@ def filtered(
             f"too close to the other one or to the Nyquist frequency, {nyquist:.6g} Hz"
         )
         raise ComponentError(msg)
-    result = with_samples(
+    result = map_samples(
         si,
         lambda signal: butterworth(
             si.time_step,
@@ -150,14 +150,16 @@ def filtered(
     operation = {
         "filtered": {**named, "order": order, "causal": causal, "keep_padding": keep_padding}
     }
-    start = starting_later(motion, -before * si.time_step if keep_padding else 0.0)
-    return following(motion, result, step, *lost_pieces(si), operation=operation, metadata=start)
+    start = shifted_start_times(motion, -before * si.time_step if keep_padding else 0.0)
+    return derived_motion(
+        motion, result, step, *dropped_pieces_note(si), operation=operation, metadata=start
+    )
 
 
-@hinted()
+@with_hints()
 def baseline_corrected(
-    motion: Made, order: int = 1, *, fit: Baseline | str = Baseline.ACCELERATION
-) -> Made:
+    motion: MotionType, order: int = 1, *, fit: Baseline | str = Baseline.ACCELERATION
+) -> MotionType:
     """Subtract a polynomial baseline, fitted to the acceleration or the velocity.
 
     Parameters
@@ -187,18 +189,18 @@ def baseline_corrected(
     <Quantity([-0.3  0.9 -0.9  0.3], 'meter / second ** 2')>
     """
     owner, si = f"{type(motion).__name__}.baseline_corrected", motion.si
-    fitted = one_of_words(Baseline, fit, owner=owner, name="fit")
+    fitted = checked_choice(Baseline, fit, owner=owner, name="fit")
     lowest = 1 if fitted is Baseline.VELOCITY else 0
     highest = min(_HIGHEST_DEGREE, len(motion) - 1)
-    order = whole_number(order, owner=owner, name="order", lowest=lowest, highest=highest)
+    order = checked_integer(order, owner=owner, name="order", lowest=lowest, highest=highest)
     if fitted is Baseline.VELOCITY:
-        result = with_samples(si, lambda signal: without_drift(si.time_step, signal.samples, order))
+        result = map_samples(si, lambda signal: without_drift(si.time_step, signal.samples, order))
         step = (
             f"baseline corrected: slope of the polynomial of degree {order} through the "
             "velocity subtracted (least squares)"
         )
     else:
-        result = with_samples(si, lambda signal: without_baseline(signal.samples, order))
+        result = map_samples(si, lambda signal: without_baseline(signal.samples, order))
         step = f"baseline corrected: polynomial of degree {order} subtracted (least squares)"
     operation = {"baseline_corrected": {"order": order, "fit": str(fitted)}}
-    return following(motion, result, step, *lost_pieces(si), operation=operation)
+    return derived_motion(motion, result, step, *dropped_pieces_note(si), operation=operation)

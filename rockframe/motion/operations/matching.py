@@ -9,13 +9,19 @@ from typing import TYPE_CHECKING, Any, Final, Protocol, runtime_checkable
 
 import numpy as np
 
-from rockframe.errors import ComponentError, RecordWarning, shown, warn
-from rockframe.motion.matching.iteration import Goal, Matched, changes, match, unusual
-from rockframe.motion.operations.following import following, lost_pieces
-from rockframe.motion.processing.samples import finer, warn_of_coarse_samples
-from rockframe.motion.value import Made
-from rockframe.proposals import hinted
+from rockframe.errors import ComponentError, RecordWarning, short_repr, warn
+from rockframe.motion.matching.iteration import (
+    MatchingGoal,
+    MatchResult,
+    match,
+    matching_changes,
+    unusual_changes,
+)
+from rockframe.motion.operations.derived import derived_motion, dropped_pieces_note
+from rockframe.motion.processing.samples import time_step_for_period, warn_of_coarse_samples
+from rockframe.motion.value import MotionType
 from rockframe.signals.spectra import check_cost
+from rockframe.suggestions import with_hints
 from rockframe.units import PERIOD, Condition, QuantityLike, RatioLike, to_ratio, to_si_values
 
 if TYPE_CHECKING:
@@ -30,13 +36,13 @@ _TOLERANCE: Final = Condition("from 0.01 to 0.5", lambda value: 0.01 <= value <=
 _DAMPING: Final = Condition("from 0.01 to 0.5", lambda value: 0.01 <= value <= 0.5)
 """Spectra of less damping need too many wavelets; with more damping there is no resonance."""
 
-_LEAST_STEPS: Final = 4
+_MIN_STEPS: Final = 4
 """Fewest time steps in the shortest period: fewer samples do not represent a wavelet."""
 
-_LEAST_PERIODS: Final = 3
+_MIN_PERIODS: Final = 3
 """Least duration of the motion over the longest period, so that a wavelet fits in [1]."""
 
-_MOST_NUMBERS: Final = 5_000_000
+_MAX_NUMBERS: Final = 5_000_000
 """Largest product of samples and periods; beyond it matching takes minutes and gigabytes."""
 
 _ROUNDING: Final = 1e-9
@@ -62,14 +68,14 @@ class Target(Protocol):
         ...
 
 
-@hinted(damping_ratio="the target has one")
+@with_hints(damping_ratio="the target has one")
 def matched(
-    motion: Made,
+    motion: MotionType,
     target: Target,
     *,
     periods: Sequence[QuantityLike] = USUAL_PERIODS,
     tolerance: RatioLike = USUAL_TOLERANCE,
-) -> Made:
+) -> MotionType:
     """Match the response spectrum to a target by wavelets that are added in the time domain.
 
     Parameters
@@ -138,7 +144,7 @@ def matched(
     if found.signal is not scaled:
         samples = found.scale_factor * scaled.samples
         scaled = replace(scaled, samples=samples, polynomials=None)
-    changed = changes(scaled, found.signal, goal)
+    changed = matching_changes(scaled, found.signal, goal)
     added = {**_attributes_of(motion, target, found), "target_reached": int(reached), **changed}
     if not reached:
         worst = float(goal.checked[np.abs(found.ratios - 1.0).argmax()])
@@ -149,7 +155,7 @@ def matched(
             "Another record, a narrower range of periods or a wider tolerance may help"
         )
         warn(msg, RecordWarning)
-    grown = unusual(changed)
+    grown = unusual_changes(changed)
     if grown:
         msg = (
             f"{owner}: the wavelets have changed {motion.name!r} beyond its spectrum: "
@@ -166,18 +172,18 @@ def matched(
             recipe=motion.recipe,
         )
     across = replace(si, horizontal=found.signal)
-    return following(motion, across, words, *lost_pieces(si), metadata=added)
+    return derived_motion(motion, across, words, *dropped_pieces_note(si), metadata=added)
 
 
-def _goal(target: object, periods: object, tolerance: RatioLike, owner: str) -> Goal:
+def _goal(target: object, periods: object, tolerance: RatioLike, owner: str) -> MatchingGoal:
     if not isinstance(target, Target):
-        msg = f"{owner}: target needs a TargetSpectrum, got {shown(target)}; write {_EXAMPLE}"
+        msg = f"{owner}: target needs a TargetSpectrum, got {short_repr(target)}; write {_EXAMPLE}"
         raise ComponentError(msg)
     seconds = to_si_values(periods, PERIOD, owner=owner, name="periods")
     if len(seconds) != 2 or not 0.0 < seconds[0] < seconds[1] < math.inf:
         msg = (
             f"{owner}: periods must be the shortest and the longest, above zero and increasing, "
-            f"for example ('0.1 s', '2 s'), got {shown(periods)}"
+            f"for example ('0.1 s', '2 s'), got {short_repr(periods)}"
         )
         raise ComponentError(msg)
     damping = to_ratio(
@@ -185,7 +191,9 @@ def _goal(target: object, periods: object, tolerance: RatioLike, owner: str) -> 
     )
     within = to_ratio(tolerance, owner=owner, name="tolerance", condition=_TOLERANCE)
     shortest, longest = seconds
-    goal = Goal(lambda at: target.at_seconds(at, owner=owner), shortest, longest, damping, within)
+    goal = MatchingGoal(
+        lambda at: target.at_seconds(at, owner=owner), shortest, longest, damping, within
+    )
     wanted = goal.spectrum(goal.checked)
     if not (np.isfinite(wanted).all() and (wanted > 0.0).all()):
         worst = float(goal.checked[int(np.argmin(np.where(wanted > 0.0, wanted, -math.inf)))])
@@ -194,37 +202,37 @@ def _goal(target: object, periods: object, tolerance: RatioLike, owner: str) -> 
     return goal
 
 
-def _check_motion(motion: Any, signal: Signal, goal: Goal, owner: str) -> None:
+def _check_motion(motion: Any, signal: Signal, goal: MatchingGoal, owner: str) -> None:
     if not np.any(signal.pieces):
         msg = f"{owner}: {motion.name!r} has no acceleration; it cannot be matched"
         raise ComponentError(msg)
     step, shortest, longest = signal.time_step, goal.shortest, goal.longest
-    if shortest < _LEAST_STEPS * step * (1.0 - _ROUNDING):
+    if shortest < _MIN_STEPS * step * (1.0 - _ROUNDING):
         msg = (
-            f"{owner}: the shortest period, {shortest:.4g} s, must be {_LEAST_STEPS} time steps or "
-            f"more, {_LEAST_STEPS * step:.4g} s; resample the motion, for example "
-            f"resampled('{finer(step, shortest):.4g} s')"
+            f"{owner}: the shortest period, {shortest:.4g} s, must be {_MIN_STEPS} time steps or "
+            f"more, {_MIN_STEPS * step:.4g} s; resample the motion, for example "
+            f"resampled('{time_step_for_period(step, shortest):.4g} s')"
         )
         raise ComponentError(msg)
-    if signal.duration < _LEAST_PERIODS * longest:
+    if signal.duration < _MIN_PERIODS * longest:
         msg = (
-            f"{owner}: the motion must be {_LEAST_PERIODS} times as long as the longest period, "
+            f"{owner}: the motion must be {_MIN_PERIODS} times as long as the longest period, "
             f"{longest:.4g} s; it is {signal.duration:.4g} s long"
         )
         raise ComponentError(msg)
     check_cost(signal, goal.checked, owner=owner)
     numbers = goal.matched.size * signal.samples.size
-    if numbers > _MOST_NUMBERS:
+    if numbers > _MAX_NUMBERS:
         msg = (
             f"{owner}: {signal.samples.size} samples at {goal.matched.size} periods are too many; "
-            f"expected at most {_MOST_NUMBERS // goal.matched.size} samples: cut the strong part "
+            f"expected at most {_MAX_NUMBERS // goal.matched.size} samples: cut the strong part "
             "out with window(), or resample it"
         )
         raise ComponentError(msg)
     warn_of_coarse_samples([replace(signal, polynomials=None)], shortest, owner=owner)
 
 
-def _attributes_of(motion: Any, target: Target, found: Matched) -> dict[str, str | float | int]:
+def _attributes_of(motion: Any, target: Target, found: MatchResult) -> dict[str, str | float | int]:
     before = motion.metadata.get("scale_factor")
     factor = found.scale_factor * (before if isinstance(before, int | float) else 1.0)
     return {
@@ -237,7 +245,7 @@ def _attributes_of(motion: Any, target: Target, found: Matched) -> dict[str, str
     }
 
 
-def _words(target: Target, goal: Goal, found: Matched) -> str:
+def _words(target: Target, goal: MatchingGoal, found: MatchResult) -> str:
     where = (
         f"{target.name}, damping ratio {goal.damping_ratio:.6g}, from {goal.shortest:.6g} s to "
         f"{goal.longest:.6g} s"

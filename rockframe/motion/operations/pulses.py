@@ -7,40 +7,40 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from rockframe.errors import ComponentError
-from rockframe.motion.operations.following import (
-    following,
-    lost_pieces,
-    starting_later,
-    without_vertical,
+from rockframe.motion.operations.derived import (
+    cleared_vertical_metadata,
+    derived_motion,
+    dropped_pieces_note,
+    shifted_start_times,
 )
 from rockframe.motion.processing import velocity_pulses
-from rockframe.motion.quantities import with_quantity
-from rockframe.motion.value import Made
+from rockframe.motion.quantities import as_quantity
+from rockframe.motion.value import MotionType
 from rockframe.motion.velocity_pulse import VelocityPulse
-from rockframe.proposals import hinted
 from rockframe.signals import Motion
 from rockframe.signals.integrals import ground_path
 from rockframe.signals.motion import MAXIMUM_SAMPLES, knots_of
+from rockframe.suggestions import with_hints
 from rockframe.units import PERIOD, POSITIVE, TIME, VELOCITY, QuantityLike, to_si
 
 if TYPE_CHECKING:
     from rockframe.signals import Signal
     from rockframe.signals.arrays import Array
 
-SHORTEST: Final = "0.25 s"
-LONGEST: Final = "15 s"
+SHORTEST_PERIOD: Final = "0.25 s"
+LONGEST_PERIOD: Final = "15 s"
 """Default range of periods of the search for a pulse (Shahi and Baker 2014)."""
 
 _STEPS_PER_PERIOD: Final = 4.0
 
 
-@hinted()
+@with_hints()
 def velocity_pulse(
-    motion: Made,
+    motion: MotionType,
     *,
-    shortest_period: QuantityLike = SHORTEST,
-    longest_period: QuantityLike = LONGEST,
-) -> VelocityPulse[Made]:
+    shortest_period: QuantityLike = SHORTEST_PERIOD,
+    longest_period: QuantityLike = LONGEST_PERIOD,
+) -> VelocityPulse[MotionType]:
     """Find the strongest pulse in the velocity, extract it, and classify it (Baker 2007).
 
     Parameters
@@ -77,56 +77,60 @@ def velocity_pulse(
     """
     owner, si = f"{type(motion).__name__}.velocity_pulse", motion.si
     dt = si.time_step
-    periods = searched(shortest_period, longest_period, dt, owner=owner)
-    velocity = velocity_of(si.horizontal)
+    periods = search_periods(shortest_period, longest_period, dt, owner=owner)
+    velocity = ground_velocity(si.horizontal)
     if not np.any(velocity):
         msg = f"{owner}: {motion.name!r} has no velocity, and so no pulse"
         raise ComponentError(msg)
-    place = velocity_pulses.strongest(velocity[None, :], dt, periods)
-    wavelets = velocity_pulses.extracted(velocity, dt, place)
-    wavelet = velocity_pulses.wavelet_of(place.period, dt)
-    within = velocity_pulses.sum_of(wavelets, wavelet, 0, velocity.size)
-    found = velocity_pulses.measures(velocity, within, dt)
+    peak = velocity_pulses.strongest_wavelet(velocity[None, :], dt, periods)
+    wavelets = velocity_pulses.extract_wavelets(velocity, dt, peak)
+    wavelet = velocity_pulses.sampled_wavelet(peak.period, dt)
+    pulse_velocity = velocity_pulses.sum_wavelets(wavelets, wavelet, 0, velocity.size)
+    measures = velocity_pulses.pulse_measures(velocity, pulse_velocity, dt)
     # zeros before and after the motion, so that all wavelets begin and end at rest
     reach = wavelet.size // 2 + 1
     before = max(0, reach - min(middle for middle, _ in wavelets))
     after = max(0, reach + max(middle for middle, _ in wavelets) + 1 - velocity.size)
-    whole = velocity_pulses.sum_of(wavelets, wavelet, -before, before + velocity.size + after)
+    padded_velocity = velocity_pulses.sum_wavelets(
+        wavelets, wavelet, -before, before + velocity.size + after
+    )
     # central differences: their integral by the trapezoidal rule is zero over the whole pulse
-    pulse = np.gradient(whole, dt)
-    still = before, after
-    rest = np.pad(si.horizontal.samples, still)
-    upwards = None if si.vertical is None else np.pad(si.vertical.samples, still)
+    pulse = np.gradient(padded_velocity, dt)
+    padding = before, after
+    rest = np.pad(si.horizontal.samples, padding)
+    vertical = None if si.vertical is None else np.pad(si.vertical.samples, padding)
     steps = (
-        *lost_pieces(si),
+        *dropped_pieces_note(si),
         f"{before} samples of still ground put before and {after} after it",
-        f"velocity pulse of {place.period:.6g} s about {place.sample * dt:.6g} s: "
+        f"velocity pulse of {peak.period:.6g} s about {peak.sample * dt:.6g} s: "
         f"{len(wavelets)} Daubechies wavelets (Baker 2007)",
     )
-    residual = Motion.of_samples(dt, rest - pulse, upwards)
-    start = starting_later(motion, -before * dt)
+    residual = Motion.of_samples(dt, rest - pulse, vertical)
+    start = shifted_start_times(motion, -before * dt)
     return VelocityPulse(
-        period=with_quantity(place.period, TIME),
-        time=with_quantity(place.sample * dt, TIME),
-        peak_velocity=with_quantity(float(np.abs(velocity).max()), VELOCITY),
-        peak_ratio=found.peak_ratio,
-        energy_ratio=found.energy_ratio,
-        indicator=found.indicator,
-        pulse_start=with_quantity(found.pulse_start, TIME),
-        motion_start=with_quantity(found.motion_start, TIME),
-        extracted=following(
+        period=as_quantity(peak.period, TIME),
+        time=as_quantity(peak.sample * dt, TIME),
+        peak_velocity=as_quantity(float(np.abs(velocity).max()), VELOCITY),
+        peak_ratio=measures.peak_ratio,
+        energy_ratio=measures.energy_ratio,
+        indicator=measures.indicator,
+        pulse_start=as_quantity(measures.pulse_start, TIME),
+        motion_start=as_quantity(measures.motion_start, TIME),
+        extracted=derived_motion(
             motion,
             Motion.of_samples(dt, pulse),
             *steps,
             "the pulse alone",
-            metadata={**start, **without_vertical(motion)},
+            metadata={**start, **cleared_vertical_metadata(motion)},
         ),
-        residual=following(motion, residual, *steps, "the pulse taken out", metadata=start),
-        lead=with_quantity(before * dt, TIME),
+        residual=derived_motion(motion, residual, *steps, "the pulse taken out", metadata=start),
+        lead=as_quantity(before * dt, TIME),
     )
 
 
-def searched(shortest: QuantityLike, longest: QuantityLike, dt: float, *, owner: str) -> Array:
+def search_periods(
+    shortest: QuantityLike, longest: QuantityLike, dt: float, *, owner: str
+) -> Array:
     """Read the range of periods, and give the periods of the search [s]."""
     first, last = (
         to_si(value, PERIOD, owner=owner, name=name, condition=POSITIVE)
@@ -145,9 +149,9 @@ def searched(shortest: QuantityLike, longest: QuantityLike, dt: float, *, owner:
             f"samples at {dt:.6g} s; give a shorter one"
         )
         raise ComponentError(msg)
-    return velocity_pulses.periods_between(first, last)
+    return velocity_pulses.period_range(first, last)
 
 
-def velocity_of(signal: Signal) -> Array:
+def ground_velocity(signal: Signal) -> Array:
     """Return the velocity of the ground at the samples, from rest [m s^-1]."""
     return knots_of(ground_path(signal)[0])

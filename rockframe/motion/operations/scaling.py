@@ -8,19 +8,14 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from rockframe.errors import ComponentError
-from rockframe.motion.operations.following import OF_VERTICAL, following
+from rockframe.motion.operations.derived import VERTICAL_PREFIX, derived_motion
 from rockframe.motion.processing.samples import warn_of_coarse_samples
-from rockframe.motion.value import Made
-from rockframe.proposals import hinted
+from rockframe.motion.value import MotionType
 from rockframe.records import DOWNWARDS, SENSE, UPWARDS
 from rockframe.signals.integrals import ground_path
 from rockframe.signals.motion import absolute_peak
-from rockframe.signals.spectra import (
-    DAMPING_RATIO,
-    check_cost,
-    pseudo_spectra,
-    spectral_peaks,
-)
+from rockframe.signals.spectra import DAMPING_RATIO, check_cost, pseudo_spectra, spectral_peaks
+from rockframe.suggestions import with_hints
 from rockframe.units import (
     ACCELERATION,
     PERIOD,
@@ -45,9 +40,9 @@ _TARGETS: Final = {
 }
 
 
-@hinted()
+@with_hints()
 def scaled(
-    motion: Made,
+    motion: MotionType,
     factor: RatioLike | None = None,
     *,
     peak: QuantityLike | None = None,
@@ -55,7 +50,7 @@ def scaled(
     spectral_acceleration: QuantityLike | None = None,
     period: QuantityLike | None = None,
     damping_ratio: RatioLike | None = None,
-) -> Made:
+) -> MotionType:
     """Multiply both components of the motion by a factor.
 
     Give one of `factor`, `peak`, `peak_velocity` and `spectral_acceleration`.
@@ -118,46 +113,48 @@ def scaled(
         raise ComponentError(msg)
     if factor is not None:
         ratio = to_ratio(factor, owner=owner, name="factor", example="2")
-        return _times(motion, ratio, f"scaled by {ratio!r}", {"factor": ratio})
+        return _scale_motion(motion, ratio, f"scaled by {ratio!r}", {"factor": ratio})
     ((name, value),) = values.items()
     what, measure = _TARGETS[name]
-    wanted = to_si(value, measure, owner=owner, name=name, condition=POSITIVE)
-    words = f"{what} of {wanted:.9g} {measure.unit}"
-    arguments: dict[str, float | str] = {name: f"{wanted!r} {measure.unit}"}
-    across = motion.si.horizontal
+    target = to_si(value, measure, owner=owner, name=name, condition=POSITIVE)
+    words = f"{what} of {target:.9g} {measure.unit}"
+    arguments: dict[str, float | str] = {name: f"{target!r} {measure.unit}"}
+    horizontal = motion.si.horizontal
     if peak is not None:
-        present = absolute_peak(across.pieces)
+        current = absolute_peak(horizontal.pieces)
     elif peak_velocity is not None:
-        present = absolute_peak(ground_path(across)[0])
+        current = absolute_peak(ground_path(horizontal)[0])
     else:
         seconds = to_si(period, PERIOD, owner=owner, name="period", condition=POSITIVE)
         given_damping = _USUAL_DAMPING if damping_ratio is None else damping_ratio
         damping = to_ratio(
             given_damping, owner=owner, name="damping_ratio", condition=DAMPING_RATIO
         )
-        present = _pseudo_acceleration(across, seconds, damping, owner)
+        current = _pseudo_acceleration(horizontal, seconds, damping, owner)
         words += f" at {seconds:.9g} s, damping ratio {damping:.9g}"
         arguments |= {"period": f"{seconds!r} {TIME.unit}", "damping_ratio": damping}
-    if present <= 0.0:
+    if current <= 0.0:
         msg = f"{owner}: the motion has no horizontal acceleration that could be scaled"
         raise ComponentError(msg)
-    ratio = wanted / present
-    return _times(motion, ratio, f"scaled by {ratio!r} to {words}", arguments)
+    ratio = target / current
+    return _scale_motion(motion, ratio, f"scaled by {ratio!r} to {words}", arguments)
 
 
-def multiplied(motion: Motion, ratio: float) -> Motion:
+def scaled_components(motion: Motion, ratio: float) -> Motion:
     """Multiply the accelerations of both components."""
-    return motion.each(lambda signal: times(signal, ratio))
+    return motion.each(lambda signal: scaled_signal(signal, ratio))
 
 
-def times(signal: Signal, ratio: float) -> Signal:
+def scaled_signal(signal: Signal, ratio: float) -> Signal:
     """Multiply the accelerations of one component."""
     with np.errstate(over="ignore"):
         pieces = None if signal.polynomials is None else signal.polynomials * ratio
         return replace(signal, samples=signal.samples * ratio, polynomials=pieces)
 
 
-def _times(motion: Made, ratio: float, step: str, values: dict[str, float | str]) -> Made:
+def _scale_motion(
+    motion: MotionType, ratio: float, step: str, values: dict[str, float | str]
+) -> MotionType:
     added: dict[str, str | float] = {}
     known = motion.metadata
     sense, azimuth, component = (known.get(key) for key in (SENSE, "azimuth", "component"))
@@ -169,19 +166,19 @@ def _times(motion: Made, ratio: float, step: str, values: dict[str, float | str]
     if ratio < 0.0 and component is not None:  # no name from which the old direction is read
         name = str(component)
         added["component"] = name[1:] if name.startswith("-") else f"-{name}"
-    prefixes = ("",) if motion.si.vertical is None else ("", OF_VERTICAL)
+    prefixes = ("",) if motion.si.vertical is None else ("", VERTICAL_PREFIX)
     for name in (f"{prefix}scale_factor" for prefix in prefixes):
         factor = known.get(name)
         added[name] = ratio * (factor if isinstance(factor, int | float) else 1.0)
-    return following(
-        motion, multiplied(motion.si, ratio), step, operation={"scaled": values}, metadata=added,
-        same_spectrum=abs(ratio) == 1.0,
+    return derived_motion(
+        motion, scaled_components(motion.si, ratio), step, operation={"scaled": values},
+        metadata=added, same_spectrum=abs(ratio) == 1.0,
     )  # fmt: skip
 
 
-def _pseudo_acceleration(across: Signal, seconds: float, damping: float, owner: str) -> float:
+def _pseudo_acceleration(signal: Signal, seconds: float, damping: float, owner: str) -> float:
     periods = np.array([seconds])
-    check_cost(across, periods, owner=owner)
-    warn_of_coarse_samples([across], seconds, owner=owner)
-    displacement = spectral_peaks(across, periods, damping)[:, 0]
-    return float(pseudo_spectra(across, periods, displacement)[1][0])
+    check_cost(signal, periods, owner=owner)
+    warn_of_coarse_samples([signal], seconds, owner=owner)
+    displacement = spectral_peaks(signal, periods, damping)[:, 0]
+    return float(pseudo_spectra(signal, periods, displacement)[1][0])

@@ -10,23 +10,27 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 
-from rockframe.arguments import iterates, one_of_words, whole_number
-from rockframe.errors import ComponentError, RecordWarning, shown, warn
-from rockframe.motion.operations.following import following, lost_pieces, without_vertical
+from rockframe.arguments import checked_choice, checked_integer, is_iterable
+from rockframe.errors import ComponentError, RecordWarning, short_repr, warn
+from rockframe.motion.operations.derived import (
+    cleared_vertical_metadata,
+    derived_motion,
+    dropped_pieces_note,
+)
 from rockframe.motion.processing.floors import (
     FloorModes,
     building_modes,
     decay_time,
-    passed_on,
+    modal_acceleration,
     uniform_modes,
 )
 from rockframe.motion.processing.samples import divided_signal, padded
 from rockframe.motion.quantities import ArrayLike
-from rockframe.motion.value import Made
-from rockframe.proposals import hinted
+from rockframe.motion.value import MotionType
 from rockframe.signals import Motion
 from rockframe.signals.motion import MAXIMUM_SAMPLES
 from rockframe.signals.spectra import DAMPING_RATIO, MAXIMUM_PARTS
+from rockframe.suggestions import with_hints
 from rockframe.units import (
     MASS,
     NOT_NEGATIVE,
@@ -50,11 +54,11 @@ if TYPE_CHECKING:
     from rockframe.signals import Signal
     from rockframe.signals.arrays import Array
 
-    _Read: TypeAlias = tuple[Array, Array, str, dict[str, Any]]
+    _BuildingModes: TypeAlias = tuple[Array, Array, str, dict[str, Any]]
     """Periods and participations of the modes, a description of the building, its arguments."""
 
-_MOST_STOREYS: Final = 1000
-_WAYS: Final = (
+_MAX_STOREYS: Final = 1000
+_BUILDING_ARGUMENTS: Final = (
     # (required arguments, optional arguments)
     (("periods",), ("floor_participations",)),
     (("storeys", "period", "floor"), ("modes",)),
@@ -67,18 +71,24 @@ def _read_building(
 ) -> tuple[FloorModes, str, dict[str, Any]]:
     """Return the modes of a building, its description in words, and its arguments."""
     values = {name: value for name, value in entries.items() if value is not None}
-    ways = [set(needed) <= set(values) <= {*needed, *more} for needed, more in _WAYS]
-    if True not in ways:
+    matches = [
+        set(needed) <= set(values) <= {*needed, *more} for needed, more in _BUILDING_ARGUMENTS
+    ]
+    if True not in matches:
         found = ", ".join(values) or "none of them"
-        known = "; or ".join(_listed(needed) for needed, _ in _WAYS)
+        known = "; or ".join(_listed(needed) for needed, _ in _BUILDING_ARGUMENTS)
         msg = f"{owner}: give {known}; got {found}; write for example periods=['0.5 s']"
         raise ComponentError(msg)
-    periods, participations, words, arguments = (_of_modes, _uniform, _of_masses)[ways.index(True)](
-        values, owner
-    )
+    periods, participations, words, arguments = (
+        _read_modes,
+        _read_uniform_building,
+        _read_shear_building,
+    )[matches.index(True)](values, owner)
     if "modes" in values:
         highest = periods.size
-        kept = whole_number(values["modes"], owner=owner, name="modes", lowest=1, highest=highest)
+        kept = checked_integer(
+            values["modes"], owner=owner, name="modes", lowest=1, highest=highest
+        )
         periods, participations = periods[:kept], participations[:kept]
         words += f", of {highest} modes the first {kept}"
         arguments["modes"] = kept
@@ -92,7 +102,7 @@ def _listed(names: tuple[str, ...]) -> str:
     return f"{', '.join(first)} and {last}" if first else last
 
 
-def _of_modes(values: Mapping[str, Any], owner: str) -> _Read:
+def _read_modes(values: Mapping[str, Any], owner: str) -> _BuildingModes:
     periods = _values(values["periods"], PERIOD, owner, "periods", zero=True)
     value = values.get("floor_participations")
     if value is None and periods.size > 1:
@@ -108,31 +118,33 @@ def _of_modes(values: Mapping[str, Any], owner: str) -> _Read:
             f"periods, got {len(each)}"
         )
         raise ComponentError(msg)
-    arguments = {"periods": _written(periods, PERIOD), "floor_participations": each}
+    arguments = {"periods": _quantity_texts(periods, PERIOD), "floor_participations": each}
     return periods, np.array(each), "given modes", arguments
 
 
-def _uniform(values: Mapping[str, Any], owner: str) -> _Read:
-    storeys = whole_number(
-        values["storeys"], owner=owner, name="storeys", lowest=1, highest=_MOST_STOREYS
+def _read_uniform_building(values: Mapping[str, Any], owner: str) -> _BuildingModes:
+    storeys = checked_integer(
+        values["storeys"], owner=owner, name="storeys", lowest=1, highest=_MAX_STOREYS
     )
-    floor = whole_number(values["floor"], owner=owner, name="floor", lowest=1, highest=storeys)
+    floor = checked_integer(values["floor"], owner=owner, name="floor", lowest=1, highest=storeys)
     period = to_si(values["period"], PERIOD, owner=owner, name="period", condition=POSITIVE)
     words = f"floor {floor} of a shear building of equal storeys, {storeys} in number"
     arguments = {"storeys": storeys, "floor": floor, "period": f"{period!r} {PERIOD.unit}"}
     return *uniform_modes(storeys, floor, period), words, arguments
 
 
-def _of_masses(values: Mapping[str, Any], owner: str) -> _Read:
+def _read_shear_building(values: Mapping[str, Any], owner: str) -> _BuildingModes:
     masses = _values(values["masses"], MASS, owner, "masses")
     stiffnesses = _values(values["stiffnesses"], STIFFNESS, owner, "stiffnesses")
-    if masses.size != stiffnesses.size or masses.size > _MOST_STOREYS:
+    if masses.size != stiffnesses.size or masses.size > _MAX_STOREYS:
         msg = (
             f"{owner}: masses and stiffnesses need one value for each storey, from the lowest "
-            f"up, at most {_MOST_STOREYS}; got {masses.size} and {stiffnesses.size}"
+            f"up, at most {_MAX_STOREYS}; got {masses.size} and {stiffnesses.size}"
         )
         raise ComponentError(msg)
-    floor = whole_number(values["floor"], owner=owner, name="floor", lowest=1, highest=masses.size)
+    floor = checked_integer(
+        values["floor"], owner=owner, name="floor", lowest=1, highest=masses.size
+    )
     with np.errstate(invalid="ignore", divide="ignore"):
         periods, participations = building_modes(masses, stiffnesses, floor)
     if not np.isfinite(periods).all():
@@ -140,8 +152,8 @@ def _of_masses(values: Mapping[str, Any], owner: str) -> _Read:
         raise ComponentError(msg)
     words = f"floor {floor} of a shear building of {masses.size} storeys"
     arguments = {
-        "masses": _written(masses, MASS),
-        "stiffnesses": _written(stiffnesses, STIFFNESS),
+        "masses": _quantity_texts(masses, MASS),
+        "stiffnesses": _quantity_texts(stiffnesses, STIFFNESS),
         "floor": floor,
     }
     return periods, participations, words, arguments
@@ -151,7 +163,7 @@ def _values(value: object, measure: Measure, owner: str, name: str, *, zero: boo
     values = np.array(to_si_values(value, measure, owner=owner, name=name))
     least = "zero or more" if zero else "greater than zero"
     if values.size == 0 or not ((values >= 0.0) if zero else (values > 0.0)).all():
-        msg = f"{owner}: {name} must be one or more values, each {least}, got {shown(value)}"
+        msg = f"{owner}: {name} must be one or more values, each {least}, got {short_repr(value)}"
         raise ComponentError(msg)
     return values
 
@@ -159,7 +171,7 @@ def _values(value: object, measure: Measure, owner: str, name: str, *, zero: boo
 def _ratios(
     value: Any, owner: str, name: str, example: str, condition: Condition | None = None
 ) -> list[float]:
-    if isinstance(value, str) or not iterates(value):
+    if isinstance(value, str) or not is_iterable(value):
         return [to_ratio(value, owner=owner, name=name, condition=condition, example=example)]
     return [
         to_ratio(one, owner=owner, name=f"{name}[{k}]", condition=condition, example=example)
@@ -178,13 +190,13 @@ def _damping_ratios(value: object, modes: int, owner: str) -> list[float]:
     return ratios * modes if len(ratios) == 1 else ratios
 
 
-def _written(values: Array, measure: Measure) -> list[str]:
+def _quantity_texts(values: Array, measure: Measure) -> list[str]:
     return [f"{value!r} {measure.unit}" for value in values.tolist()]
 
 
-_SNAP: Final = 1e-9
+_ROUNDING: Final = 1e-9
 _MODES_LISTED: Final = 10
-_COARSE: Final = 0.02
+_MAX_DEVIATION: Final = 0.02
 """Interpolation error between samples, over the peak, that causes a warning [1]."""
 
 
@@ -195,9 +207,9 @@ class VerticalComponent(StrEnum):
     OMITTED = "omitted"
 
 
-@hinted()
+@with_hints()
 def through_storeys(
-    motion: Made,
+    motion: MotionType,
     periods: ArrayLike | Iterable[QuantityLike] | QuantityLike | None = None,
     damping_ratio: RatioLike | Iterable[RatioLike] = 0.05,
     *,
@@ -211,7 +223,7 @@ def through_storeys(
     free_vibration: QuantityLike | None = None,
     time_step: QuantityLike | None = None,
     vertical: VerticalComponent | str = VerticalComponent.UNCHANGED,
-) -> Made:
+) -> MotionType:
     """Compute the motion of a floor of an elastic building on the ground.
 
     Describe the building by `periods` (one for a single oscillator, several with
@@ -301,20 +313,20 @@ def through_storeys(
         damping_ratio,
         owner,
     )
-    upwards = one_of_words(VerticalComponent, vertical, owner=owner, name="vertical")
-    still = _still_time(free_vibration, building.moving, owner)
-    parts = _parts(time_step, si.time_step, owner)
-    _check_size(si, building.moving, still, parts, owner)
-    zeros = math.ceil(still / si.time_step * (1.0 - _SNAP))
+    vertical_treatment = checked_choice(VerticalComponent, vertical, owner=owner, name="vertical")
+    duration = _free_vibration_time(free_vibration, building.participating, owner)
+    parts = _step_divisions(time_step, si.time_step, owner)
+    _check_size(si, building.participating, duration, parts, owner)
+    zeros = math.ceil(duration / si.time_step * (1.0 - _ROUNDING))
     count = len(motion) + zeros
-    across, deviation = _floor(padded(si.horizontal, count), building, parts)
-    above = None
-    if si.vertical is not None and upwards is VerticalComponent.UNCHANGED:
-        above = divided_signal(padded(si.vertical, count), parts)
-    result = Motion(across, above)
-    if deviation > _COARSE:
+    horizontal, deviation = _floor_motion(padded(si.horizontal, count), building, parts)
+    vertical_signal = None
+    if si.vertical is not None and vertical_treatment is VerticalComponent.UNCHANGED:
+        vertical_signal = divided_signal(padded(si.vertical, count), parts)
+    result = Motion(horizontal, vertical_signal)
+    if deviation > _MAX_DEVIATION:
         # the deviation falls with the square of the time step, :eq:`eq-floor-chords`
-        finer = parts * math.ceil(math.sqrt(deviation / _COARSE))
+        finer = parts * math.ceil(math.sqrt(deviation / _MAX_DEVIATION))
         msg = (
             f"{owner}: between samples {result.time_step:.4g} s apart the floor's acceleration "
             f"departs from straight lines by up to {100.0 * deviation:.2g} % of its peak; "
@@ -332,37 +344,37 @@ def through_storeys(
         f"{100.0 * deviation:.2g} % of its peak"
     )
     if si.vertical is not None:
-        steps.append(f"vertical component {upwards}")
+        steps.append(f"vertical component {vertical_treatment}")
     operation = {
         "through_storeys": {
             **arguments,
-            "free_vibration": f"{still!r} {TIME.unit}",
+            "free_vibration": f"{duration!r} {TIME.unit}",
             "time_step": f"{result.time_step!r} {TIME.unit}",
-            "vertical": str(upwards),
+            "vertical": str(vertical_treatment),
         }
     }
-    dropped = lost_pieces(Motion(si.horizontal))
-    lost = without_vertical(motion) if above is None else None
-    return following(motion, result, *steps, *dropped, operation=operation, metadata=lost)
+    dropped = dropped_pieces_note(Motion(si.horizontal))
+    lost = cleared_vertical_metadata(motion) if vertical_signal is None else None
+    return derived_motion(motion, result, *steps, *dropped, operation=operation, metadata=lost)
 
 
-def _floor(ground: Signal, modes: FloorModes, parts: int) -> tuple[Signal, float]:
+def _floor_motion(ground: Signal, modes: FloorModes, parts: int) -> tuple[Signal, float]:
     """Return the floor acceleration, and its deviation from straight lines over its peak."""
     halves = divided_signal(ground, 2 * parts)
-    rigid = modes.rigid_share * divided_signal(ground, parts).samples
-    added = passed_on(halves.pieces, halves.time_step, modes.moving)
-    samples = rigid + added[::2]
+    rigid = modes.rigid_participation * divided_signal(ground, parts).samples
+    modal = modal_acceleration(halves.pieces, halves.time_step, modes.participating)
+    samples = rigid + modal[::2]
     peak = float(np.max(np.abs(samples)))
-    amid = np.abs(added[1::2] - 0.5 * (added[:-1:2] + added[2::2]))
-    deviation = float(np.max(amid)) / peak if peak > 0.0 else 0.0
+    midpoint_errors = np.abs(modal[1::2] - 0.5 * (modal[:-1:2] + modal[2::2]))
+    deviation = float(np.max(midpoint_errors)) / peak if peak > 0.0 else 0.0
     step = ground.time_step / parts
     return replace(ground, time_step=step, samples=samples, polynomials=None), deviation
 
 
-def _still_time(value: QuantityLike | None, moving: FloorModes, owner: str) -> float:
+def _free_vibration_time(value: QuantityLike | None, modes: FloorModes, owner: str) -> float:
     if value is not None:
         return to_si(value, TIME, owner=owner, name="free_vibration", condition=NOT_NEGATIVE)
-    needed = decay_time(moving)
+    needed = decay_time(modes)
     if math.isfinite(needed):
         return needed
     msg = (
@@ -372,30 +384,30 @@ def _still_time(value: QuantityLike | None, moving: FloorModes, owner: str) -> f
     raise ComponentError(msg)
 
 
-def _parts(value: QuantityLike | None, own: float, owner: str) -> int:
+def _step_divisions(value: QuantityLike | None, current: float, owner: str) -> int:
     if value is None:
         return 1
     step = to_si(value, TIME_STEP, owner=owner, name="time_step", condition=POSITIVE)
-    if step > own * (1.0 + _SNAP):
+    if step > current * (1.0 + _ROUNDING):
         msg = (
-            f"{owner}: time_step = {step:.6g} s is longer than that of the motion, {own:.6g} s; "
-            "leave it out, and use resampled afterwards"
+            f"{owner}: time_step = {step:.6g} s is longer than that of the motion, {current:.6g} "
+            "s; leave it out, and use resampled afterwards"
         )
         raise ComponentError(msg)
-    return math.ceil(min(own / step * (1.0 - _SNAP), float(MAXIMUM_SAMPLES)))
+    return math.ceil(min(current / step * (1.0 - _ROUNDING), float(MAXIMUM_SAMPLES)))
 
 
-def _check_size(si: Motion, moving: FloorModes, still: float, parts: int, owner: str) -> None:
-    if (si.duration + still) / si.time_step * parts > MAXIMUM_SAMPLES:
+def _check_size(si: Motion, modes: FloorModes, duration: float, parts: int, owner: str) -> None:
+    if (si.duration + duration) / si.time_step * parts > MAXIMUM_SAMPLES:
         msg = (
-            f"{owner}: {si.duration + still:.6g} s in steps of {si.time_step / parts:.6g} s "
+            f"{owner}: {si.duration + duration:.6g} s in steps of {si.time_step / parts:.6g} s "
             f"are more than {MAXIMUM_SAMPLES} samples; give a shorter free_vibration"
         )
         raise ComponentError(msg)
     shortest = si.time_step / MAXIMUM_PARTS
-    if (moving.periods < shortest).any():
+    if (modes.periods < shortest).any():
         msg = (
-            f"{owner}: a period of {moving.periods.min():.6g} s is too short for the time "
+            f"{owner}: a period of {modes.periods.min():.6g} s is too short for the time "
             f"step, {si.time_step:.6g} s; a rigid mode has the period '0 s'"
         )
         raise ComponentError(msg)
@@ -409,7 +421,7 @@ def _modes_words(modes: FloorModes) -> str:
     ]
     if len(rows) > _MODES_LISTED:
         each.append(f"{len(rows) - _MODES_LISTED} further modes")
-    rigid = modes.rigid_share
-    if abs(rigid) > _SNAP:
+    rigid = modes.rigid_participation
+    if abs(rigid) > _ROUNDING:
         each.append(f"participation {rigid:.9g} with the ground")
     return "; ".join(each)

@@ -7,33 +7,33 @@ from dataclasses import replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Final
 
-from rockframe.arguments import one_of_words
+from rockframe.arguments import checked_choice
 from rockframe.errors import ComponentError
-from rockframe.motion.operations.following import (
+from rockframe.motion.operations.derived import (
     SAME_STEP,
-    following,
-    lost_pieces,
-    starting_later,
-    with_samples,
+    derived_motion,
+    dropped_pieces_note,
+    map_samples,
+    shifted_start_times,
 )
 from rockframe.motion.processing.samples import (
-    MOST_DIVISIONS,
+    MAX_DIVISIONS,
     band_limited,
-    coarsened,
-    divisions,
+    division_count,
+    downsampled,
     refined,
     tapered,
 )
-from rockframe.motion.value import Made
-from rockframe.proposals import hinted
+from rockframe.motion.value import MotionType
 from rockframe.signals.motion import MAXIMUM_SAMPLES
+from rockframe.suggestions import with_hints
 from rockframe.units import POSITIVE, TIME, TIME_STEP, QuantityLike, to_si
 
 if TYPE_CHECKING:
     from rockframe.signals import Signal
     from rockframe.signals.arrays import Array
 
-_SNAP: Final = 1e-6
+_ROUNDING: Final = 1e-6
 
 
 class Interpolation(StrEnum):
@@ -43,20 +43,20 @@ class Interpolation(StrEnum):
     LINEAR = "linear"
 
 
-_HOW: Final = {
+_METHOD_NOTES: Final = {
     Interpolation.BAND_LIMITED: "without anything beyond the old Nyquist frequency",
     Interpolation.LINEAR: "linear between samples",
 }
 
 
-@hinted()
+@with_hints()
 def window(
-    motion: Made,
+    motion: MotionType,
     start: QuantityLike | None = None,
     end: QuantityLike | None = None,
     *,
     taper: QuantityLike | None = None,
-) -> Made:
+) -> MotionType:
     """Cut out a part of the motion, optionally with tapers; its time starts at zero.
 
     Parameters
@@ -95,7 +95,7 @@ def window(
     places = {name: value / si.time_step for name, value in ends.items()}
     for name, place in places.items():
         # the length of some records is n dt, one step beyond the last sample
-        if place < -_SNAP or place > last + 1.0 + _SNAP:
+        if place < -_ROUNDING or place > last + 1.0 + _ROUNDING:
             msg = (
                 f"{owner}: {name} = {ends[name]:.6g} s is outside the motion, "
                 f"which lasts from 0 s to {si.duration:.6g} s"
@@ -109,39 +109,42 @@ def window(
         )
         raise ComponentError(msg)
     step = f"window from {first * si.time_step:.9g} s to {final * si.time_step:.9g} s"
-    if any(abs(places[n] - k) > _SNAP for n, k in (("start", first), ("end", final))):
+    if any(abs(places[n] - k) > _ROUNDING for n, k in (("start", first), ("end", final))):
         step += f", the samples nearest to {ends['start']:.9g} s and {ends['end']:.9g} s"
-    part = si.each(lambda signal: _between(signal, first, final))
+    part = si.each(lambda signal: _sub_signal(signal, first, final))
     values = {name: f"{value!r} {TIME.unit}" for name, value in ends.items()}
     steps = [step]
     if taper is not None:
         length = to_si(taper, TIME, owner=owner, name="taper", condition=POSITIVE)
-        if 2.0 * length > part.duration * (1.0 + _SNAP):
+        if 2.0 * length > part.duration * (1.0 + _ROUNDING):
             msg = (
                 f"{owner}: two tapers of {length:.6g} s are longer than the window, "
                 f"{part.duration:.6g} s"
             )
             raise ComponentError(msg)
         values["taper"] = f"{length!r} {TIME.unit}"
-        steps += [f"tapered over {length!r} s at both ends, half a cosine", *lost_pieces(si)]
-        part = with_samples(part, lambda signal: tapered(signal.samples, length / si.time_step))
-    changes = starting_later(motion, first * si.time_step)
-    return following(motion, part, *steps, operation={"window": values}, metadata=changes)
+        steps += [
+            f"tapered over {length!r} s at both ends, half a cosine",
+            *dropped_pieces_note(si),
+        ]
+        part = map_samples(part, lambda signal: tapered(signal.samples, length / si.time_step))
+    changes = shifted_start_times(motion, first * si.time_step)
+    return derived_motion(motion, part, *steps, operation={"window": values}, metadata=changes)
 
 
-def _between(signal: Signal, first: int, final: int) -> Signal:
+def _sub_signal(signal: Signal, first: int, final: int) -> Signal:
     """Cut out the part between two samples, both included."""
     pieces = None if signal.polynomials is None else signal.polynomials[first:final]
     return replace(signal, samples=signal.samples[first : final + 1], polynomials=pieces)
 
 
-@hinted()
+@with_hints()
 def resampled(
-    motion: Made,
+    motion: MotionType,
     time_step: QuantityLike,
     *,
     interpolation: Interpolation | str = Interpolation.BAND_LIMITED,
-) -> Made:
+) -> MotionType:
     """Change the time step.
 
     A finer motion is interpolated: band-limited, without frequencies beyond the Nyquist frequency
@@ -176,7 +179,7 @@ def resampled(
     <Quantity([ 0.   0.7  1.   0.2 -1. ], 'meter / second ** 2')>
     """
     owner, si = f"{type(motion).__name__}.resampled", motion.si
-    between = one_of_words(Interpolation, interpolation, owner=owner, name="interpolation")
+    method = checked_choice(Interpolation, interpolation, owner=owner, name="interpolation")
     step = to_si(time_step, TIME_STEP, owner=owner, name="time_step", condition=POSITIVE)
     if step > si.duration:
         msg = f"{owner}: time_step = {step:.6g} s exceeds the duration, {si.duration:.6g} s"
@@ -184,18 +187,18 @@ def resampled(
     if si.duration / step > MAXIMUM_SAMPLES:
         msg = f"{owner}: time_step = {step:.6g} s would give more than {MAXIMUM_SAMPLES} samples"
         raise ComponentError(msg)
-    values = {"time_step": f"{step!r} {TIME.unit}", "interpolation": str(between)}
+    values = {"time_step": f"{step!r} {TIME.unit}", "interpolation": str(method)}
     operation = {"resampled": values}
     if math.isclose(step, si.time_step, rel_tol=SAME_STEP):
         same = f"resampled to {step!r} s: the time step that it had"
-        return following(motion, si, same, operation=operation, same_spectrum=True)
-    finer = step < si.time_step
+        return derived_motion(motion, si, same, operation=operation, same_spectrum=True)
+    is_finer = step < si.time_step
 
-    def anew(signal: Signal) -> Array:
-        if not finer:
-            return coarsened(si.time_step, signal.samples, step)
-        if not signal.analytic and between is Interpolation.BAND_LIMITED:
-            if divisions(si.time_step / step) > MOST_DIVISIONS:
+    def resample_signal(signal: Signal) -> Array:
+        if not is_finer:
+            return downsampled(si.time_step, signal.samples, step)
+        if not signal.analytic and method is Interpolation.BAND_LIMITED:
+            if division_count(si.time_step / step) > MAX_DIVISIONS:
                 msg = (
                     f"{owner}: time_step = {step:.6g} s is too short compared with that of the "
                     f"record, {si.time_step:.6g} s; interpolation='linear' needs no filter"
@@ -204,14 +207,19 @@ def resampled(
             return band_limited(si.time_step, signal.samples, step)
         return refined(signal, step)
 
-    result = with_samples(si, anew, step)
-    how = _HOW[between] if finer else "after a zero-phase anti-alias filter"
-    if finer and si.horizontal.analytic:
+    result = map_samples(si, resample_signal, step)
+    how = _METHOD_NOTES[method] if is_finer else "after a zero-phase anti-alias filter"
+    if is_finer and si.horizontal.analytic:
         how = "read off the analytic pieces"
     steps = [f"resampled from {si.time_step!r} s to {step!r} s, {how}"]
     rest = si.duration - result.duration
-    if rest > _SNAP * step:
+    if rest > _ROUNDING * step:
         steps.append(f"the last {rest:.6g} s, less than one new time step, are left out")
-    return following(
-        motion, result, *steps, *lost_pieces(si), operation=operation, same_spectrum=finer
+    return derived_motion(
+        motion,
+        result,
+        *steps,
+        *dropped_pieces_note(si),
+        operation=operation,
+        same_spectrum=is_finer,
     )

@@ -8,11 +8,11 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Final
 
-from rockframe.arguments import one_of_words
+from rockframe.arguments import checked_choice
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError
 from rockframe.motion.value import MotionValue
-from rockframe.proposals import hinted
+from rockframe.suggestions import with_hints
 from rockframe.writing import FileKind, checked_path, write_file
 
 _TITLE: Final = "PEER FORMAT ACCELERATION FILE, WRITTEN BY ROCKFRAME"
@@ -29,7 +29,7 @@ class WrittenComponent(StrEnum):
     VERTICAL = "vertical"
 
 
-@hinted()
+@with_hints()
 def to_at2(
     motion: MotionValue,
     path: str | os.PathLike[str],
@@ -75,7 +75,7 @@ def to_at2(
     <Quantity(3.0, 'meter / second ** 2')>
     """
     owner = f"{type(motion).__name__}.to_at2"
-    which = one_of_words(WrittenComponent, component, owner=owner, name="component")
+    which = checked_choice(WrittenComponent, component, owner=owner, name="component")
     signal = motion.si.horizontal
     named = str(motion.metadata.get("component", ""))
     if which is WrittenComponent.VERTICAL:

@@ -11,7 +11,7 @@ import numpy as np
 from rockframe.signals.arrays import Array
 from rockframe.signals.oscillator import STEPS_PER_PERIOD, fill_step
 
-DECAYED: Final = 0.01
+DECAY_RATIO: Final = 0.01
 """Ratio to its initial amplitude at which a free vibration ends by default [1]."""
 
 
@@ -24,15 +24,15 @@ class FloorModes(NamedTuple):
     participations: Array
 
     @property
-    def moving(self) -> FloorModes:
+    def participating(self) -> FloorModes:
         """The modes that are not rigid and have a participation at the floor."""
         kept = (self.periods > 0.0) & (self.participations != 0.0)
         return FloorModes(*(values[kept] for values in self))
 
     @property
-    def rigid_share(self) -> float:
+    def rigid_participation(self) -> float:
         """Participation of the rigid motion with the ground [1]."""
-        return 1.0 - math.fsum(self.moving.participations)
+        return 1.0 - math.fsum(self.participating.participations)
 
 
 def interval_matrix(time_step: float, period: float, damping: float, powers: int) -> Array:
@@ -55,7 +55,7 @@ def interval_matrix(time_step: float, period: float, damping: float, powers: int
     return whole
 
 
-def passed_on(pieces: Array, time_step: float, modes: FloorModes) -> Array:
+def modal_acceleration(pieces: Array, time_step: float, modes: FloorModes) -> Array:
     """Compute the sum of the modes in the floor acceleration, :eq:`eq-floor-acceleration`."""
     total = np.zeros(len(pieces) + 1)
     for period, damping, participation in np.column_stack(modes).tolist():
@@ -66,7 +66,7 @@ def passed_on(pieces: Array, time_step: float, modes: FloorModes) -> Array:
 def decay_time(modes: FloorModes) -> float:
     """Return the time in which all modes decay, :eq:`eq-floor-decay` [s]."""
     with np.errstate(divide="ignore"):
-        periods = 1.0 - math.log(DECAYED) / (2.0 * math.pi * modes.damping_ratios)
+        periods = 1.0 - math.log(DECAY_RATIO) / (2.0 * math.pi * modes.damping_ratios)
     return max((modes.periods * periods).tolist(), default=0.0)
 
 
@@ -76,13 +76,13 @@ def _oscillator(pieces: Array, time_step: float, period: float, damping: float) 
     (uu, uv), (vu, vv) = matrix[:, :2].tolist()
     driven = matrix[:, 2:] @ pieces.T
 
-    def following(state: tuple[float, float], force: tuple[float, float]) -> tuple[float, float]:
+    def next_state(state: tuple[float, float], force: tuple[float, float]) -> tuple[float, float]:
         u, v = state
         return uu * u + uv * v + force[0], vu * u + vv * v + force[1]
 
     forces = zip(*driven.tolist(), strict=True)
     # the displacement alone, by a recursive filter, would lose digits for long periods
-    states = accumulate(forces, following, initial=(0.0, 0.0))
+    states = accumulate(forces, next_state, initial=(0.0, 0.0))
     numbers = np.fromiter(chain.from_iterable(states), np.float64, 2 * len(pieces) + 2)
     frequency = 2.0 * math.pi / period
     return -(frequency**2) * (numbers[::2] + 2.0 * damping * numbers[1::2])

@@ -24,8 +24,8 @@ _INTEGER_RATIO: Final = 1e-9
 _ANTI_ALIAS_ORDER: Final = 9  # an even order would lower low frequencies by 0.1 dB
 _ANTI_ALIAS_RIPPLE: Final = 0.05
 _ANTI_ALIAS_EDGE: Final = 0.8
-_SINC_REACH: Final = 64
-MOST_DIVISIONS: Final = 200_000
+_SINC_HALF_WIDTH: Final = 64
+MAX_DIVISIONS: Final = 200_000
 """Most parts of a time step; with more the filter alone would take gigabytes."""
 _SINC_WINDOW: Final = 12.0
 _OVERSAMPLING: Final = 8
@@ -36,26 +36,26 @@ def sample_count(duration: float, time_step: float) -> int:
     return math.floor(duration / time_step * (1.0 + 1e-12) + _INTEGER_RATIO) + 1
 
 
-def whole_ratio(ratio: float) -> int | None:
+def integer_ratio(ratio: float) -> int | None:
     """Return a ratio of time steps as a whole number; None if it is not whole."""
-    times = round(ratio)
-    return times if abs(ratio - times) <= _INTEGER_RATIO * ratio else None
+    nearest = round(ratio)
+    return nearest if abs(ratio - nearest) <= _INTEGER_RATIO * ratio else None
 
 
-def instants_of(duration: float, time_step: float) -> Array:
+def sample_times(duration: float, time_step: float) -> Array:
     """Return the times of the samples of step `time_step` within `duration` [s]."""
     return np.minimum(np.arange(sample_count(duration, time_step)) * time_step, duration)
 
 
 def refined(signal: Signal, time_step: float) -> Array:
     """Sample the same function of time, linear or polynomial between samples, more finely."""
-    place = instants_of(signal.duration, time_step) / signal.time_step
+    place = sample_times(signal.duration, time_step) / signal.time_step
     if signal.analytic:
         return signal.at_place(place)
     samples = signal.samples
-    times = whole_ratio(signal.time_step / time_step)
-    if times is not None:
-        share = np.arange(times) / times
+    ratio = integer_ratio(signal.time_step / time_step)
+    if ratio is not None:
+        share = np.arange(ratio) / ratio
         between = samples[:-1, None] * (1.0 - share) + samples[1:, None] * share
         return np.append(between.reshape(-1), samples[-1])
     interval = np.minimum(place.astype(np.intp), samples.size - 2)
@@ -74,18 +74,22 @@ def band_limited(dt: float, samples: Array, time_step: float) -> Array:
     from scipy import signal as module
 
     signal: Any = module
-    whole = whole_ratio(dt / time_step)
-    times = divisions(dt / time_step)
-    sinc = np.sinc(np.arange(-_SINC_REACH * times, _SINC_REACH * times + 1) / times)
+    integer = integer_ratio(dt / time_step)
+    divisions = division_count(dt / time_step)
+    sinc = np.sinc(
+        np.arange(-_SINC_HALF_WIDTH * divisions, _SINC_HALF_WIDTH * divisions + 1) / divisions
+    )
     taps = sinc * signal.windows.kaiser(sinc.size, _SINC_WINDOW)
     # not divided by the sum of the coefficients, so that the old samples do not change
-    fine: Array = signal.resample_poly(samples, times, 1, window=taps / times, padtype="line")
-    fine = fine[: (samples.size - 1) * times + 1]
-    if whole is not None:
-        fine[::times] = samples
+    fine: Array = signal.resample_poly(
+        samples, divisions, 1, window=taps / divisions, padtype="line"
+    )
+    fine = fine[: (samples.size - 1) * divisions + 1]
+    if integer is not None:
+        fine[::divisions] = samples
         return fine
-    instants = instants_of((samples.size - 1) * dt, time_step)
-    return _spline(fine, dt / times, instants, 5)
+    instants = sample_times((samples.size - 1) * dt, time_step)
+    return _spline(fine, dt / divisions, instants, 5)
 
 
 def _spline(samples: Array, time_step: float, instants: Array, degree: int) -> Array:
@@ -97,12 +101,12 @@ def _spline(samples: Array, time_step: float, instants: Array, degree: int) -> A
     return splines.make_interp_spline(times, samples, k=degree)(instants)
 
 
-def divisions(ratio: float) -> int:
+def division_count(ratio: float) -> int:
     """Count the parts into which band-limited samples are divided for a ratio of time steps."""
-    return whole_ratio(ratio) or math.ceil(_OVERSAMPLING * ratio)
+    return integer_ratio(ratio) or math.ceil(_OVERSAMPLING * ratio)
 
 
-def coarsened(dt: float, samples: Array, time_step: float) -> Array:
+def downsampled(dt: float, samples: Array, time_step: float) -> Array:
     """Sample more coarsely, after a zero-phase low-pass filter against aliasing.
 
     The filter is a Chebyshev filter of order 9 with a ripple of 0.05 dB up to 0.8 of the new
@@ -116,10 +120,10 @@ def coarsened(dt: float, samples: Array, time_step: float) -> Array:
     sos = signal.cheby1(_ANTI_ALIAS_ORDER, _ANTI_ALIAS_RIPPLE, edge, output="sos")
     padding = min(samples.size - 1, math.ceil(10.0 * time_step / dt) + 27)
     smooth: Array = signal.sosfiltfilt(sos, samples, padtype="odd", padlen=padding)
-    times = whole_ratio(time_step / dt)
-    if times is not None:
-        return smooth[::times]
-    instants = instants_of((samples.size - 1) * dt, time_step)
+    factor = integer_ratio(time_step / dt)
+    if factor is not None:
+        return smooth[::factor]
+    instants = sample_times((samples.size - 1) * dt, time_step)
     return _spline(smooth, dt, instants, min(3, samples.size - 1))
 
 
@@ -176,8 +180,8 @@ def butterworth(
     rest = np.zeros(padding)
     if causal:
         # at rest before the motion; one zero shows the rise to a first sample that is not zero
-        once: Array = signal.sosfilt(sos, np.concatenate([[0.0], samples, rest]))
-        return once if keep_padding else once[1 : samples.size + 1]
+        filtered: Array = signal.sosfilt(sos, np.concatenate([[0.0], samples, rest]))
+        return filtered if keep_padding else filtered[1 : samples.size + 1]
     padded = np.concatenate([rest, samples, rest])
     result: Array = signal.sosfiltfilt(sos, padded, padtype=None)
     return result if keep_padding else result[padding : padding + samples.size]
@@ -208,11 +212,11 @@ def without_drift(dt: float, samples: Array, order: int) -> Array:
     """Subtract the slope of the polynomial that fits the velocity best (least squares)."""
     slopes = np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, samples.size), order - 1)
     # integrated like the motion, so that a polynomial drift is removed exactly
-    together = np.column_stack([slopes, samples])
-    steps = 0.5 * dt * (together[1:] + together[:-1])
+    columns = np.column_stack([slopes, samples])
+    steps = 0.5 * dt * (columns[1:] + columns[:-1])
     path = np.concatenate([np.zeros((1, order + 1)), np.cumsum(steps, axis=0)])
-    shares = np.linalg.lstsq(path[:, :-1], path[:, -1], rcond=None)[0]
-    return samples - slopes @ shares
+    coefficients = np.linalg.lstsq(path[:, :-1], path[:, -1], rcond=None)[0]
+    return samples - slopes @ coefficients
 
 
 def tapered(samples: Array, intervals: float) -> Array:
@@ -223,7 +227,7 @@ def tapered(samples: Array, intervals: float) -> Array:
     return samples * np.sin(0.5 * np.pi * share) ** 2
 
 
-FEWEST: Final = 10
+MIN_SAMPLES_PER_PERIOD: Final = 10
 """Samples per period below which linear interpolation lowers an ordinate by more than 3 %."""
 
 _ROUNDING: Final = 1e-9
@@ -234,13 +238,18 @@ def warn_of_coarse_samples(
 ) -> None:
     """Warn of records that are sampled too coarsely for the shortest period."""
     steps = [one.time_step for one in signals if not one.analytic]
-    coarse = [step for step in steps if shortest < FEWEST * step * (1.0 - _ROUNDING)]
+    coarse = [
+        step for step in steps if shortest < MIN_SAMPLES_PER_PERIOD * step * (1.0 - _ROUNDING)
+    ]
     if not coarse:
         return
     which = f"{len(coarse)} of {len(steps)} records are" if len(steps) > 1 else "the record is"
     least, most = (f"{step:.4g} s" for step in (min(coarse), max(coarse)))
     spaced = most if least == most else f"{least} to {most}"
-    helps = remedy or f"resampled('{finer(max(coarse), shortest):.4g} s') refines a record"
+    helps = (
+        remedy
+        or f"resampled('{time_step_for_period(max(coarse), shortest):.4g} s') refines a record"
+    )
     msg = (
         f"{owner}: {which} sampled every {spaced}, which is coarse for periods "
         f"from {shortest:.4g} s: straight lines between samples lower ordinates by 3 % at ten "
@@ -249,6 +258,6 @@ def warn_of_coarse_samples(
     warn(msg, RecordWarning)
 
 
-def finer(time_step: float, shortest: float) -> float:
+def time_step_for_period(time_step: float, shortest: float) -> float:
     """Return a time step, divided into equal parts, that is short enough for a period [s]."""
-    return time_step / math.ceil(FEWEST * time_step / shortest * (1.0 - _ROUNDING))
+    return time_step / math.ceil(MIN_SAMPLES_PER_PERIOD * time_step / shortest * (1.0 - _ROUNDING))

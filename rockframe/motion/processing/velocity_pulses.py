@@ -56,7 +56,7 @@ def _table() -> tuple[Array, Array]:
     vector = np.real(vectors[:, np.argmin(np.abs(eigenvalues - 1.0))])
     scaling = np.concatenate([[0.0], vector / vector.sum(), [0.0]])
     for level in range(_LEVELS):
-        scaling = _refined(scaling, taps, level)
+        scaling = _halve_spacing(scaling, taps, level)
     details = taps[::-1] * (-1.0) ** np.arange(size)
     # psi(x) = sum of g_k phi(2 x - k): phi on every second point, shifted by k
     wavelet = np.zeros_like(scaling)
@@ -69,7 +69,7 @@ def _table() -> tuple[Array, Array]:
     return np.arange(scaling.size) / half, wavelet
 
 
-def _refined(values: Array, taps: Array, level: int) -> Array:
+def _halve_spacing(values: Array, taps: Array, level: int) -> Array:
     """Halve the distance of points by phi(x) = sum of h_k phi(2 x - k)."""
     spacing = 2**level
     count = (values.size - 1) * 2 + 1
@@ -86,13 +86,13 @@ def _refined(values: Array, taps: Array, level: int) -> Array:
 PERIOD_RATIO: Final = 1.02
 """Ratio of successive periods of the wavelet transform [1]."""
 
-WAVELETS: Final = 10
+WAVELET_COUNT: Final = 10
 """Number of wavelets in a pulse (Baker 2007)."""
 
 REACH: Final = 0.4
 """Greatest distance of wavelets from the first one, over their scale [1] (Shahi and Baker 2014)."""
 
-INDICATOR: Final = (-23.3, 14.6, 20.5)
+INDICATOR_COEFFICIENTS: Final = (-23.3, 14.6, 20.5)
 """Constant, and coefficients of the ratios of peak velocities and energies [1] (Baker 2007)."""
 
 PULSE_SHARE: Final = 0.1
@@ -111,7 +111,7 @@ class WaveletPeak(NamedTuple):
     direction: float  # from the first component towards the second; zero for one component [rad]
 
 
-class Measures(NamedTuple):
+class PulseMeasures(NamedTuple):
     """Quantities by which a motion is classified as pulse-like or not."""
 
     # peak and sum of squares of the residual velocity, over those of the motion [1]
@@ -123,23 +123,23 @@ class Measures(NamedTuple):
     motion_start: float
 
 
-def periods_between(shortest: float, longest: float) -> Array:
+def period_range(shortest: float, longest: float) -> Array:
     """Return the periods of the search for a pulse [s]."""
     count = math.ceil(math.log(longest / shortest) / math.log(PERIOD_RATIO)) + 1
     return np.geomspace(shortest, longest, max(count, 2))
 
 
-def strongest(velocities: Array, dt: float, periods: Array) -> WaveletPeak:
+def strongest_wavelet(velocities: Array, dt: float, periods: Array) -> WaveletPeak:
     """Find where :eq:`eq-wavelet-coefficient` is greatest, by :eq:`eq-pulse-direction`."""
     from scipy import fft
 
     count = velocities.shape[1]
-    reach = wavelet_of(float(periods[-1]), dt).size
+    reach = sampled_wavelet(float(periods[-1]), dt).size
     size = fft.next_fast_len(count + reach, real=True)
     transforms = np.fft.rfft(velocities, size)
     greatest, period, sample = -1.0, 0.0, 0
     for one in periods.tolist():
-        wavelet = wavelet_of(one, dt)
+        wavelet = sampled_wavelet(one, dt)
         transform = np.conj(np.fft.rfft(wavelet, size))
         products = np.fft.irfft(transforms * transform, size)
         # the velocity is zero before and after; a wavelet may extend beyond both ends
@@ -150,28 +150,32 @@ def strongest(velocities: Array, dt: float, periods: Array) -> WaveletPeak:
             greatest, period, sample = float(squares[top]), one, top
     near = np.geomspace(period / PERIOD_RATIO, period * PERIOD_RATIO, 2 * _REFINEMENT + 1)
     near = near[(near >= periods[0]) & (near <= periods[-1])]
-    found = np.array([_at(velocities, sample, wavelet_of(one, dt)) for one in near.tolist()])
+    found = np.array(
+        [_coefficients_at(velocities, sample, sampled_wavelet(one, dt)) for one in near.tolist()]
+    )
     best = int(np.argmax(np.sum(found**2, axis=1)))
     direction = math.atan2(found[best, 1], found[best, 0]) if len(velocities) == 2 else 0.0
     return WaveletPeak(float(near[best]), sample, direction % math.pi)
 
 
-def extracted(velocity: Array, dt: float, place: WaveletPeak) -> list[tuple[int, float]]:
+def extract_wavelets(velocity: Array, dt: float, peak: WaveletPeak) -> list[tuple[int, float]]:
     """Extract the strongest wavelets near a place from a velocity, :eq:`eq-extracted-pulse`."""
-    wavelet = wavelet_of(place.period, dt)
-    reach = math.ceil(REACH * place.period * CENTRE_FREQUENCY / dt)
-    around = range(max(0, place.sample - reach), min(velocity.size - 1, place.sample + reach) + 1)
-    left = velocity.copy()
+    wavelet = sampled_wavelet(peak.period, dt)
+    reach = math.ceil(REACH * peak.period * CENTRE_FREQUENCY / dt)
+    around = range(max(0, peak.sample - reach), min(velocity.size - 1, peak.sample + reach) + 1)
+    residual = velocity.copy()
     wavelets: list[tuple[int, float]] = []
-    for _ in range(WAVELETS):
-        coefficients = _coefficients_about(left, around, wavelet)
+    for _ in range(WAVELET_COUNT):
+        coefficients = _coefficients_near(residual, around, wavelet)
         top = int(np.argmax(np.abs(coefficients)))
         wavelets.append((around[top], float(coefficients[top])))
-        left -= sum_of([wavelets[-1]], wavelet, 0, velocity.size)
+        residual -= sum_wavelets([wavelets[-1]], wavelet, 0, velocity.size)
     return wavelets
 
 
-def sum_of(wavelets: list[tuple[int, float]], wavelet: Array, start: int, count: int) -> Array:
+def sum_wavelets(
+    wavelets: list[tuple[int, float]], wavelet: Array, start: int, count: int
+) -> Array:
     """Return the sum of wavelets at some samples."""
     total = np.zeros(count)
     for middle, coefficient in wavelets:
@@ -181,23 +185,23 @@ def sum_of(wavelets: list[tuple[int, float]], wavelet: Array, start: int, count:
     return total
 
 
-def measures(velocity: Array, pulse: Array, dt: float) -> Measures:
+def pulse_measures(velocity: Array, pulse: Array, dt: float) -> PulseMeasures:
     """Compare the residual velocity with the velocity, :eq:`eq-pulse-indicator`."""
-    left = velocity - pulse
-    peak_ratio = float(np.abs(left).max() / np.abs(velocity).max())
-    energy_ratio = float(left @ left / (velocity @ velocity))
-    constant, of_peak, of_energy = INDICATOR
+    residual = velocity - pulse
+    peak_ratio = float(np.abs(residual).max() / np.abs(velocity).max())
+    energy_ratio = float(residual @ residual / (velocity @ velocity))
+    constant, of_peak, of_energy = INDICATOR_COEFFICIENTS
     exponent = constant + of_peak * peak_ratio + of_energy * energy_ratio
-    return Measures(
+    return PulseMeasures(
         peak_ratio,
         energy_ratio,
         1.0 / (1.0 + math.exp(exponent)),
-        _reached(pulse, PULSE_SHARE) * dt,
-        _reached(velocity, MOTION_SHARE) * dt,
+        _samples_to_fraction(pulse, PULSE_SHARE) * dt,
+        _samples_to_fraction(velocity, MOTION_SHARE) * dt,
     )
 
 
-def wavelet_of(period: float, dt: float) -> Array:
+def sampled_wavelet(period: float, dt: float) -> Array:
     """Sample the wavelet of a period, :eq:`eq-pseudo-period`, symmetrically to its middle."""
     scale = period * CENTRE_FREQUENCY / dt
     half = math.ceil(0.5 * SUPPORT * scale)
@@ -205,25 +209,25 @@ def wavelet_of(period: float, dt: float) -> Array:
     return wavelet / math.sqrt(float(wavelet @ wavelet))
 
 
-def _reached(velocity: Array, share: float) -> int:
+def _samples_to_fraction(velocity: Array, fraction: float) -> int:
     """Count the samples until the sum of squares has reached a fraction of the total."""
-    grown = np.cumsum(velocity**2)
-    return int(np.searchsorted(grown, share * grown[-1]))
+    cumulative = np.cumsum(velocity**2)
+    return int(np.searchsorted(cumulative, fraction * cumulative[-1]))
 
 
-def _coefficients_about(velocity: Array, samples: range, wavelet: Array) -> Array:
+def _coefficients_near(velocity: Array, samples: range, wavelet: Array) -> Array:
     """Return the coefficients of a wavelet centred at consecutive samples."""
     from scipy import signal as module
 
     signal: Any = module
     half = wavelet.size // 2
-    still = np.zeros(half)
-    reached = np.concatenate([still, velocity, still])[samples[0] : samples[-1] + wavelet.size]
-    return signal.correlate(reached, wavelet, mode="valid")
+    zeros = np.zeros(half)
+    window = np.concatenate([zeros, velocity, zeros])[samples[0] : samples[-1] + wavelet.size]
+    return signal.correlate(window, wavelet, mode="valid")
 
 
-def _at(velocities: Array, sample: int, wavelet: Array) -> Array:
+def _coefficients_at(velocities: Array, sample: int, wavelet: Array) -> Array:
     """Return the coefficient of a wavelet centred at a sample, for each component."""
     return np.array(
-        [_coefficients_about(one, range(sample, sample + 1), wavelet)[0] for one in velocities]
+        [_coefficients_near(one, range(sample, sample + 1), wavelet)[0] for one in velocities]
     )

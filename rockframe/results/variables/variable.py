@@ -8,9 +8,9 @@ from typing import Any, Final
 
 import numpy as np
 
-from rockframe.proposals import proposing
+from rockframe.suggestions import suggests_names
 from rockframe.units import Unit
-from rockframe.units.shown import behind
+from rockframe.units.display import unit_suffix
 
 TIME: Final = ("time",)
 EVENT: Final = ("event",)
@@ -27,7 +27,7 @@ TRUTH: Final = ("false", "true")
 """Meanings of the flags 0 and 1, by which truth values are stored in files."""
 
 
-@proposing
+@suggests_names
 @dataclass(frozen=True)
 class Variable:
     """A row of the table.
@@ -85,7 +85,7 @@ class Variable:
 
 def unit_suffix(attributes: Mapping[Any, Any]) -> str:
     """Return the unit of values as it follows a number; empty where it is 1."""
-    return behind(str(attributes.get("units", Unit.ONE)))
+    return unit_suffix(str(attributes.get("units", Unit.ONE)))
 
 
 def flag_words(attributes: Mapping[Any, Any]) -> dict[Any, str]:

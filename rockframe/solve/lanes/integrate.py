@@ -10,10 +10,10 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from rockframe.case_arrays import CaseArray
 from rockframe.compiled import LANES, Matrix, bind_in_lanes, compiled_within
 from rockframe.compiled.bound import elements_of, structure_of
 from rockframe.dynamics.protocol import ContactModel, Ending
-from rockframe.many import Many
 from rockframe.signals import Motion
 from rockframe.solve import workspace as at
 from rockframe.solve.equations import BoundEquations, equations_of
@@ -23,14 +23,7 @@ from rockframe.solve.lanes.batch import Batch, BatchSizes, advance_batch
 from rockframe.solve.lanes.fields import FieldIndices, field_indices
 from rockframe.solve.lanes.steps import steps_in_lanes
 from rockframe.solve.trajectory import Summary, summary_fields
-from rockframe.solve.workspace import (
-    NO_STEPS,
-    EventTable,
-    Output,
-    Pieces,
-    Status,
-    Workspace,
-)
+from rockframe.solve.workspace import NO_STEPS, EventTable, Output, Pieces, Status, Workspace
 
 MAX_COEFFICIENTS: Final = 4_000_000
 """Most coefficients of ground motions in a batch, so that they stay in a processor's caches."""
@@ -70,10 +63,12 @@ class Outcomes:
         )
 
     def summary_of_many(self, some: IntegerArray, substeps: int) -> Summary:
-        """Return one summary of runs that ended in the same way, whose numbers are `Many`."""
+        """Return one summary of runs that ended in the same way, whose numbers are `CaseArray`."""
 
         def each(rows: Any) -> Any:
-            return np.array([Many(row[some].astype(np.float64)) for row in rows.T], dtype=object)
+            return np.array(
+                [CaseArray(row[some].astype(np.float64)) for row in rows.T], dtype=object
+            )
 
         mode = int(self.modes[some[0]])
         return Summary(
@@ -150,7 +145,7 @@ def _batches(motions: Sequence[Motion | None], motion_of: IntegerArray) -> list[
 
 
 def initial_rows(model: ContactModel, start: RunStart, count: int = 1) -> Matrix:
-    """Return the row of a run, or the rows of many runs, whose numbers are :class:`Many`."""
+    """Return the row of a run, or the rows of many runs, whose numbers are :class:`CaseArray`."""
     indices, numbers = field_indices(model.system), list(elements_of(model.system))
     memory = indices.numbers + len(numbers)
     tolerance = memory + len(start.memory)
@@ -167,7 +162,7 @@ def initial_rows(model: ContactModel, start: RunStart, count: int = 1) -> Matrix
         (tolerance, start.tolerance),
     ):
         for place, number in enumerate(row, start=first):
-            rows[:, place] = number.values if isinstance(number, Many) else number
+            rows[:, place] = number.values if isinstance(number, CaseArray) else number
     wholes[:, fields.COUNTERS : fields.COUNTERS + at.COUNTERS] = start.counters
     wholes[:, fields.OWN_INTEGERS + fields.BUSY] = 1
     return rows

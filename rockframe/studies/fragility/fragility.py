@@ -7,9 +7,8 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import iterates, one_of_names, one_of_words, several
-from rockframe.errors import ComponentError, SchemaError, UnitsError, shown
-from rockframe.proposals import hinted
+from rockframe.arguments import checked_choice, checked_list, checked_name, is_iterable
+from rockframe.errors import ComponentError, SchemaError, UnitsError, short_repr
 from rockframe.results.schema import with_labels, with_variables
 from rockframe.results.variables.analyses import LIMIT_STATE
 from rockframe.simulation.soundness import share_words
@@ -45,6 +44,7 @@ from rockframe.studies.limit_states import (
 from rockframe.studies.line_scan import SCALE
 from rockframe.studies.sweeps.axes import read_free_values
 from rockframe.studies.sweeps.motions import MotionsLike
+from rockframe.suggestions import with_hints
 from rockframe.units import RatioLike
 
 _OWNER: Final = "fragility"
@@ -58,7 +58,7 @@ _MAX_JACKKNIFE_MOTIONS: Final = 80
 """Motions up to which each is left out in turn; with more the sandwich has equal coverage."""
 
 
-@hinted()
+@with_hints()
 def fragility(
     runs: xr.Dataset | dict[str, Any],
     intensity: str | xr.DataArray | Sequence[str | xr.DataArray] = "PGA",
@@ -185,9 +185,9 @@ def fragility(
         return _fit_counts(runs, intensity, period, bands, confidence, others)
     runs = check_runs(runs, owner=_OWNER)
     arguments = [column_of_runs(runs, one) for one in _listed_measures(intensity)]
-    pooled_axes = several(pooled, owner=_OWNER, name="pooled", of="names")
+    pooled_axes = checked_list(pooled, owner=_OWNER, name="pooled", of="names")
     structures = structures_of(runs, pooled_axes, arguments, owner=_OWNER)
-    of_capacities = one_of_names(trials, _TRIALS, owner=_OWNER, name="trials") == _CAPACITIES
+    of_capacities = checked_name(trials, _TRIALS, owner=_OWNER, name="trials") == _CAPACITIES
     if of_capacities and "capacity_scale" not in runs:
         msg = f"{_OWNER}: capacities are those of rf.incremental_dynamic_analysis, found a sweep"
         raise SchemaError(msg)
@@ -207,7 +207,7 @@ def fragility(
              for one in structures.parts(verdicts[-1])]  # fmt: skip
     repeated = not of_capacities and any(motions < count for motions, count in sizes)
     of_runs = Bands.JACKKNIFE if max(sizes)[0] <= _MAX_JACKKNIFE_MOTIONS else Bands.SANDWICH
-    common = one_of_names(dispersion, _DISPERSIONS, owner=_OWNER, name="dispersion") == _COMMON
+    common = checked_name(dispersion, _DISPERSIONS, owner=_OWNER, name="dispersion") == _COMMON
     if common and (of_capacities or len(measures) > 1 or bands == "profile"):
         msg = (
             f"{_OWNER}: a common dispersion is fitted to runs, over one measure, with bands by "
@@ -271,10 +271,10 @@ def _fit_counts(
 ) -> xr.Dataset:
     """Fit a capacity to counts: intensities, and how many of how many trials exceeded there."""
     if set(counts) != set(_COLUMNS) or others or not isinstance(measure, str):
-        found = ", ".join(map(shown, [*counts, *others]))
+        found = ", ".join(map(short_repr, [*counts, *others]))
         msg = (
             f"{_OWNER}: counts have {', '.join(map(repr, _COLUMNS))} and go with one name of a "
-            f"measure, without limits, motions and pooled; found {found} and {shown(measure)}"
+            f"measure, without limits, motions and pooled; found {found} and {short_repr(measure)}"
         )
         raise ComponentError(msg)
     intensity, exceeded, trials = (counts[name] for name in _COLUMNS)
@@ -282,7 +282,7 @@ def _fit_counts(
     expected = which.attributes()["units"]
     values, unit = read_free_values(intensity, "intensity", owner=_OWNER, expected=expected)
     if unit != expected:
-        msg = f"{_OWNER}: {which.name} is in {expected}, got {shown(intensity)}"
+        msg = f"{_OWNER}: {which.name} is in {expected}, got {short_repr(intensity)}"
         raise UnitsError(msg)
     over = np.asarray(exceeded, dtype=np.float64)
     count = np.broadcast_to(np.asarray(trials, dtype=np.float64), values.shape)
@@ -293,7 +293,8 @@ def _fit_counts(
     if wrong or not whole or not np.array_equal(count, np.round(count)):
         msg = (
             f"{_OWNER}: expected intensities above zero and for each of them a number of "
-            f"exceedances from 0 to that of the trials, got {shown(exceeded)} of {shown(trials)}"
+            f"exceedances from 0 to that of the trials, got {short_repr(exceeded)} of "
+            f"{short_repr(trials)}"
         )
         raise ComponentError(msg)
     settings = BoundSettings(
@@ -369,9 +370,9 @@ def _sliding_sentence(runs: xr.Dataset, *, of_capacities: bool) -> str:
 def _listed_measures(value: object) -> list[object]:
     if isinstance(value, str | xr.DataArray):
         return [value]
-    listed = list(value) if iterates(value) else []
+    listed = list(value) if is_iterable(value) else []
     if not 1 <= len(listed) <= _MAX_MEASURES:
-        msg = f"{_OWNER}: intensity needs one measure, or two, got {shown(value)}"
+        msg = f"{_OWNER}: intensity needs one measure, or two, got {short_repr(value)}"
         raise ComponentError(msg)
     return listed
 
@@ -379,7 +380,7 @@ def _listed_measures(value: object) -> list[object]:
 def _read_bands(value: str | None, default: Bands, measures: int) -> Bands:
     if value is None:
         return default if measures == 1 or default is not Bands.PROFILE else Bands.SANDWICH
-    found = one_of_words(Bands, value, owner=_OWNER, name="bands")
+    found = checked_choice(Bands, value, owner=_OWNER, name="bands")
     if found is Bands.PROFILE and measures > 1:
         msg = f"{_OWNER}: bands by profile are those of one intensity measure; use 'jackknife'"
         raise ComponentError(msg)

@@ -15,7 +15,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from rockframe.errors import ComponentError, SchemaError, StudyError, shown
+from rockframe.errors import ComponentError, SchemaError, StudyError, short_repr
 from rockframe.results.outcome import Generic
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.signals.arrays import Array
@@ -124,7 +124,8 @@ def _check_pooled(
     wrong = [one for one in pooled if one not in known]
     if wrong:
         msg = (
-            f"{owner}: pooled names {', '.join(map(shown, wrong))}; what differs in these runs "
+            f"{owner}: pooled names {', '.join(map(short_repr, wrong))}; what differs in these "
+            "runs "
             f"beside motion and intensity: {', '.join(differing) or 'nothing'}"
         )
         raise ComponentError(msg)

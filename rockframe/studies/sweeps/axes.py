@@ -13,7 +13,7 @@ import pint
 import xarray as xr
 from numpy.typing import NDArray
 
-from rockframe.errors import ComponentError, UnitsError, shown
+from rockframe.errors import ComponentError, UnitsError, short_repr
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import CASE, MOTION
@@ -22,9 +22,9 @@ from rockframe.simulation.provenance import Changes as Changes
 from rockframe.units import (
     Measure,
     Unit,
-    check_own_unit,
-    own_unit,
-    products,
+    attached_unit,
+    check_attached_unit,
+    decimal_products,
     to_ratio,
     to_si,
     to_si_values,
@@ -66,12 +66,12 @@ def read_numbers(value: object, measure: Measure, name: str, *, owner: str = OWN
     value = _with_own_unit(value)
     if measure.unit == Unit.ONE:
         if (pair := _values_and_unit(value)) is not None:
-            check_own_unit(*pair, owner=owner, name=name)
+            check_attached_unit(*pair, owner=owner, name=name)
             factor = to_ratio(f"1 {pair[1]}", owner=owner, name="unit")
             if np.ma.isMaskedArray(pair[0]) and np.ma.getmaskarray(pair[0]).any():
                 msg = f"{owner}: {name} has masked values; fill them in first"
                 raise ComponentError(msg)
-            value = products([float(one) for one in as_list(pair[0])], factor)
+            value = decimal_products([float(one) for one in as_list(pair[0])], factor)
         found = as_list(_as_python(value))
         if not all(type(one) is float and math.isfinite(one) for one in found):
             example = measure.example
@@ -96,7 +96,7 @@ def _with_own_unit(value: object) -> object:
     """
     if isinstance(value, Iterator):
         return list(cast("Iterator[object]", value))
-    own = None if isinstance(value, pint.Quantity | tuple) else own_unit(value)
+    own = None if isinstance(value, pint.Quantity | tuple) else attached_unit(value)
     return value if own in (None, "", str(Unit.ONE)) else (value, own)
 
 
@@ -132,10 +132,12 @@ def read_free_values(
     items = _as_python(as_list(value))
     array = np.array(items)
     if array.ndim != 1 or array.dtype.kind not in "ifbU":  # whole numbers beyond int64 are "u"
-        msg = f"{owner}: {name} needs numbers, words or quantities in a row, got {shown(value)}"
+        msg = (
+            f"{owner}: {name} needs numbers, words or quantities in a row, got {short_repr(value)}"
+        )
         raise ComponentError(msg)
     if array.dtype.kind == "U" and not all(isinstance(item, str) for item in items):
-        msg = f"{owner}: {name} needs values of one sort, got {shown(value)}"
+        msg = f"{owner}: {name} needs values of one sort, got {short_repr(value)}"
         raise ComponentError(msg)
     if array.dtype.kind == "i":
         return array.astype(np.int64), str(Unit.ONE)
@@ -180,7 +182,7 @@ def _measure_of(unit: str, name: str, owner: str, expected: str) -> Measure:
             read_number(f"1 {unit}", measure, owner=owner, name=name)
             return measure
     known = ", ".join(str(one) for one in Unit)
-    msg = f"{owner}: {name} has the unit {shown(unit)}; expected that of a quantity in {known}"
+    msg = f"{owner}: {name} has the unit {short_repr(unit)}; expected that of a quantity in {known}"
     raise UnitsError(msg)
 
 
@@ -212,7 +214,9 @@ def labels_in_unit(labels: xr.DataArray, unit: str | None, *, owner: str) -> xr.
         return labels
     measure = Measure("a value", Unit(unit), f"1 {unit}")
     factor = read_number(f"1 {own}", measure, owner=owner, name=str(labels.name))
-    found = np.reshape(products(np.ravel(labels).astype(float).tolist(), factor), labels.shape)
+    found = np.reshape(
+        decimal_products(np.ravel(labels).astype(float).tolist(), factor), labels.shape
+    )
     attributes = {**labels.attrs, "units": unit}
     return xr.DataArray(found, labels.coords, labels.dims, labels.name, attributes)
 

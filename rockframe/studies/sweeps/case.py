@@ -15,9 +15,8 @@ import xarray as xr
 
 from rockframe.arguments import checked_dataset
 from rockframe.components import InitialState
-from rockframe.errors import SchemaError, StudyError, nearest, shown
+from rockframe.errors import SchemaError, StudyError, did_you_mean, short_repr
 from rockframe.motion import GroundMotion
-from rockframe.proposals import hinted, proposing
 from rockframe.results.variables.studies import MOTION, REPEATED
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import LEVELS, Accuracy
@@ -27,6 +26,7 @@ from rockframe.studies.sweeps.motions import full_name, motion_number, motion_of
 from rockframe.studies.sweeps.scenes import SweptScene, scene_of
 from rockframe.studies.sweeps.store import Store
 from rockframe.studies.sweeps.study import Study
+from rockframe.suggestions import suggests_names, with_hints
 from rockframe.units import Measure, Unit
 
 NOT_GIVEN: Final = "must be given, as motions="
@@ -39,7 +39,7 @@ _CACHE_SIZE: Final = 16
 _studies: Final[OrderedDict[str, Study]] = OrderedDict()
 
 
-@proposing
+@suggests_names
 @dataclass(frozen=True)
 class SweepCase:
     """A case of a sweep: its system, its motion, and the arguments of its run.
@@ -83,7 +83,7 @@ class SweepCase:
         return self.system.simulate(self.motion, **{**self.options, **changes})
 
 
-@hinted()
+@with_hints()
 def case(
     runs: "xr.Dataset | str | PathLike[str]",
     *,
@@ -207,7 +207,8 @@ def _indices_of_case(
     unknown = [name for name in labels if name not in (*dims, *fixed)]
     missing = [name for name in dims if name not in labels and dataset.sizes[name] > 1]
     faults = [
-        f"there is no axis {name!r}{nearest(name, (*dims, *fixed))}; there are {', '.join(dims)}"
+        f"there is no axis {name!r}{did_you_mean(name, (*dims, *fixed))}; there are "
+        f"{', '.join(dims)}"
         for name in unknown
     ]
     faults += [f"give a value of {name!r}" for name in missing]
@@ -247,7 +248,7 @@ def _index_of(labels: xr.DataArray, name: str, requested: Any, unit: str | None)
                 return place
     few = ", ".join(str(one) for one in values[:_MAX_LISTED].tolist())
     more = f", ...{near}" if len(values) > _MAX_LISTED else ""
-    msg = f"{_OWNER}: {name} has no {shown(requested)}; it has {few}{more}"
+    msg = f"{_OWNER}: {name} has no {short_repr(requested)}; it has {few}{more}"
     raise StudyError(msg)
 
 

@@ -4,11 +4,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any, TypeAlias
 
+from rockframe.case_arrays import CaseArray, CaseIndices
 from rockframe.components import InitialState
 from rockframe.errors import AssemblyError, collected_warnings
-from rockframe.many import Many, Places
 from rockframe.motion import GroundMotion
-from rockframe.motion.operations.scaling import multiplied
+from rockframe.motion.operations.scaling import scaled_components
 from rockframe.signals import Motion
 from rockframe.simulation.plan import Plan, resolve_plan
 from rockframe.studies.sweeps.axes import SYSTEM_AXES, Axis, Changes
@@ -78,12 +78,12 @@ class CasesOfJob:
         """Return the differences between cases that are words or counts."""
         return tuple(each[case] for axis, each in self._of_scene if axis.name not in self._numbers)
 
-    def _values_of(self, axis: Axis, values: list[Any], which: Places) -> Any:
+    def _values_of(self, axis: Axis, values: list[Any], which: CaseIndices) -> Any:
         """Return the value of an axis in many cases, which agree where it is no number."""
         numbers = self._numbers.get(axis.name)
-        return values[which[0]] if numbers is None else Many(numbers[which])
+        return values[which[0]] if numbers is None else CaseArray(numbers[which])
 
-    def scene_of_many(self, which: Places) -> tuple[Assembly, list[str]]:
+    def scene_of_many(self, which: CaseIndices) -> tuple[Assembly, list[str]]:
         """Return the scene of many cases; the warnings are the same for all."""
         values = {axis: self._values_of(axis, each, which) for axis, each in self._of_scene}
         with collected_warnings() as warned:
@@ -109,7 +109,7 @@ class CasesOfJob:
         if motion is None or [axis.name for axis, _ in self._scale] != [SCALE_AXIS]:
             found = self.motion(case)
             return None if found is None else found.si
-        return multiplied(motion.si, self._scale[0][1][case])
+        return scaled_components(motion.si, self._scale[0][1][case])
 
     def motion(self, case: int) -> GroundMotion | None:
         """Return the motion of a case; None where the ground stands still."""
@@ -131,7 +131,7 @@ class CasesOfJob:
         start = {axis.parameter: each[case] for axis, each in self._start}
         return system, messages, self._plan(system, start, self.motion(case))
 
-    def plan_of_many(self, which: Places) -> tuple[Assembly, list[str], Plan]:
+    def plan_of_many(self, which: CaseIndices) -> tuple[Assembly, list[str], Plan]:
         """Return the same of many cases, with the motion of the first before it is scaled."""
         system, messages = self.scene_of_many(which)
         start = {axis.parameter: self._values_of(axis, each, which) for axis, each in self._start}

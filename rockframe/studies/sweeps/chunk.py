@@ -11,8 +11,8 @@ from typing import Any, Final
 
 import numpy as np
 
+from rockframe.case_arrays import CaseIndices
 from rockframe.errors import PLEASE_REPORT, RockframeError
-from rockframe.many import Places
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.requests import POINT_TIME
@@ -276,7 +276,7 @@ class _Collector(CollectedResults):
             changed = verdict is not None and verdict is not first[case].overturned
             self._put_scalars(case, {REPEATED: 1.0, VERDICT_CHANGED: float(changed)})
 
-    def _put_scalars(self, case: int | Places, values: Mapping[str, Generic | float]) -> None:
+    def _put_scalars(self, case: int | CaseIndices, values: Mapping[str, Generic | float]) -> None:
         for name, value in values.items():
             if name == "status":  # which has a place of its own
                 continue
@@ -303,9 +303,9 @@ class _Collector(CollectedResults):
         self._clear(case)
         self._status[case] = RunStatus.REFUSED
 
-    def _clear(self, case: int | Places) -> None:
+    def _clear(self, case: int | CaseIndices) -> None:
         for column in (*self._scalars.values(), *self._histories.values()):
             column[case] = np.nan
 
-    def _set_message(self, case: int | Places, text: str) -> None:
+    def _set_message(self, case: int | CaseIndices, text: str) -> None:
         self._message[case] = self._texts.setdefault(text, len(self._texts))

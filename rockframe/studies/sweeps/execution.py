@@ -17,7 +17,7 @@ from functools import partial
 from threading import Event, Thread
 from typing import Any, Final, Protocol, runtime_checkable
 
-from rockframe.errors import ComponentError, RockframeError, StudyError, shown
+from rockframe.errors import ComponentError, RockframeError, StudyError, short_repr
 from rockframe.studies.sweeps.axes import OWNER, Chunk
 from rockframe.studies.sweeps.chunk import CaseResults, run_chunk
 from rockframe.studies.sweeps.study import SweepJob, worker_count
@@ -101,7 +101,7 @@ def progress_bar(value: object, *, owner: str, unit: str = "case") -> Generator[
 
 def _make_bar(value: object, owner: str, unit: str) -> ProgressBar:
     if value is not None and not isinstance(value, bool):
-        msg = f"{owner}: progress must be True, False or None, got {shown(value)}"
+        msg = f"{owner}: progress must be True, False or None, got {short_repr(value)}"
         raise ComponentError(msg)
     if value is False:
         return _NoBar()
@@ -158,7 +158,7 @@ def run_chunks(
     `glance` is called periodically.
     """
     if executor is not None and not hasattr(executor, "submit"):
-        msg = f"{OWNER}: executor must be a concurrent.futures.Executor, got {shown(executor)}"
+        msg = f"{OWNER}: executor must be a concurrent.futures.Executor, got {short_repr(executor)}"
         raise ComponentError(msg)
     stop = Event()
     waiting = iter(chunks)

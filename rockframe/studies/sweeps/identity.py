@@ -12,7 +12,7 @@ from typing import Any, Final, cast
 import numpy as np
 
 from rockframe.components import Component
-from rockframe.errors import StudyError, shown
+from rockframe.errors import StudyError, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
 
@@ -50,7 +50,8 @@ def description_of(value: object) -> Any:
     if callable(value):
         return _describe_function(value)
     msg = (
-        f"found {shown(value)}, of which nothing tells whether it is the same in another process; "
+        f"found {short_repr(value)}, of which nothing tells whether it is the same in another "
+        "process; "
         "expected numbers, words, arrays, motions, components or dataclasses of them"
     )
     raise StudyError(msg)

@@ -1,7 +1,7 @@
 """Cases whose runs go side by side in lanes, of scenes assembled one by one, or many at once.
 
 Values of many cases are in arrays over the cases, computed by the code of a single case,
-:mod:`rockframe.many`.
+:mod:`rockframe.case_arrays`.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -10,9 +10,15 @@ from typing import Any, Final
 
 import numpy as np
 
+from rockframe.case_arrays import (
+    CaseArray,
+    CaseIndices,
+    SingleCaseOnly,
+    run_by_branches,
+    values_by_case,
+)
 from rockframe.compiled import compiling_for
 from rockframe.errors import RockframeError
-from rockframe.many import Many, OnlyAlone, Places, each_way, in_each
 from rockframe.results.outcome import Generic
 from rockframe.signals import Motion
 from rockframe.simulation.certify.second_look import Look, look_at
@@ -174,7 +180,7 @@ def prepare_lanes(system: Assembly, messages: list[str], plan: Plan) -> LaneScen
 class FinishedGroup:
     """Cases that have run and ended in the same way."""
 
-    cases: Places  # their numbers in the job
+    cases: CaseIndices  # their numbers in the job
     status: Status
     warnings: list[str]  # what was warned of when their scenes were assembled, and of their runs
     scalars: dict[str, Generic | float]  # of each, or of all
@@ -184,7 +190,7 @@ class FinishedGroup:
         """Return the indications of each verdict."""
         count = len(self.cases)
         columns = (
-            [each] * count if isinstance(each, bool) else in_each(each, count).tolist()
+            [each] * count if isinstance(each, bool) else values_by_case(each, count).tolist()
             for each in vars(self.look).values()
         )
         rows = zip(*columns, strict=True)
@@ -196,7 +202,7 @@ class _Batch:
     """Cases whose scenes were assembled in the same way."""
 
     one: LaneScene  # that of the first
-    cases: Places
+    cases: CaseIndices
     rows: Any
 
 
@@ -216,7 +222,7 @@ def run_assembled_together(
         alike.setdefault((cases.word_key(case), cases.length_key(case)), []).append(case)
     for members in alike.values():
         places = np.array(members, dtype=np.intp)
-        for _, group in each_way(lambda some: _assemble_batch(cases, some), places):
+        for _, group in run_by_branches(lambda some: _assemble_batch(cases, some), places):
             if ready(group.one):
                 kinds.setdefault(group.one.kind, []).append(group)
     for groups in kinds.values():
@@ -224,7 +230,7 @@ def run_assembled_together(
         group_of = np.repeat(np.arange(len(groups)), [len(group.cases) for group in groups])
         rows = np.concatenate([group.rows for group in groups])
         order = np.argsort(every, kind="stable")  # neighbours share their motion
-        ran: list[Places] = []
+        ran: list[CaseIndices] = []
         found: list[Outcomes] = []
         for begin in range(0, len(order), BATCH_SIZE):
             if stopped():
@@ -239,21 +245,21 @@ def run_assembled_together(
         )
 
 
-def _assemble_batch(cases: CasesOfJob, some: Places) -> _Batch:
+def _assemble_batch(cases: CasesOfJob, some: CaseIndices) -> _Batch:
     """Assemble the scenes of cases; give the row of each for lanes."""
     first = int(some[0])
     several, one = prepare_lanes(*cases.plan_of_many(some)), prepare_lanes(*cases.plan(first))
     if several is None or one is None:
-        raise OnlyAlone
+        raise SingleCaseOnly
     rows = initial_rows(several.run.model, several.run.start, len(some))
     if rows[0].tobytes() != initial_rows(one.run.model, one.run.start).tobytes():
-        raise OnlyAlone
+        raise SingleCaseOnly
     return _Batch(one, some, rows)
 
 
 def _integrate_batch(
-    cases: CasesOfJob, one: LaneScene, some: Places, rows: Any
-) -> tuple[Places, Outcomes]:
+    cases: CasesOfJob, one: LaneScene, some: CaseIndices, rows: Any
+) -> tuple[CaseIndices, Outcomes]:
     """Run cases whose motions are available; give which these are."""
     motions: list[Motion | None] = []
     places: dict[Any, int] = {}
@@ -275,7 +281,11 @@ def _integrate_batch(
 
 
 def _results_of_lanes(
-    cases: CasesOfJob, groups: Sequence[_Batch], group_of: Places, ran: Places, outcomes: Outcomes
+    cases: CasesOfJob,
+    groups: Sequence[_Batch],
+    group_of: CaseIndices,
+    ran: CaseIndices,
+    outcomes: Outcomes,
 ) -> Iterator[Finished | FinishedGroup]:
     """Return the outcomes of runs, together for those that ended in the same way."""
     status, modes = outcomes.status, outcomes.modes
@@ -287,10 +297,10 @@ def _results_of_lanes(
     for k, (number, *_) in enumerate(ways.tolist()):
         substeps = groups[number].one.run.start.substeps
 
-        def work(some: Places, substeps: int = substeps) -> FinishedGroup:
+        def work(some: CaseIndices, substeps: int = substeps) -> FinishedGroup:
             return _group_result(cases, ran[some], outcomes.summary_of_many(some, substeps))
 
-        for some, found in each_way(work, np.flatnonzero(way_of == k)):
+        for some, found in run_by_branches(work, np.flatnonzero(way_of == k)):
             alone[some] = False
             yield found
     for k in np.flatnonzero(alone).tolist():
@@ -303,19 +313,20 @@ def _results_of_lanes(
             yield Finished(int(ran[k]), system, summary, messages)
 
 
-def _group_result(cases: CasesOfJob, some: Places, summary: Summary) -> FinishedGroup:
+def _group_result(cases: CasesOfJob, some: CaseIndices, summary: Summary) -> FinishedGroup:
     system, messages = cases.scene_of_many(some)
     missing: list[str] = []
     if not has_no_cautions(system, summary):
-        raise OnlyAlone
+        raise SingleCaseOnly
     scalars = run_scalars(system, summary, missing)
     moving = in_motion(system, summary, missing)
     duration = run_length(cases.job.arguments, cases.unscaled_motion(int(some[0])))
     look = look_at(system.setting, summary, duration)
     if missing:
-        raise OnlyAlone
+        raise SingleCaseOnly
     return FinishedGroup(
         some, summary.status, [*messages, *([STILL_MOVING] if moving else [])],
-        {name: each.values if isinstance(each, Many) else each for name, each in scalars.items()},
+        {name: each.values if isinstance(each, CaseArray) else each
+         for name, each in scalars.items()},
         look,
     )  # fmt: skip

@@ -6,10 +6,10 @@ from typing import Any, Final, TypeAlias, cast
 
 import numpy as np
 
-from rockframe.arguments import by_words, iterates
-from rockframe.errors import ComponentError, StudyError, shown
+from rockframe.arguments import is_iterable, with_string_keys
+from rockframe.errors import ComponentError, StudyError, short_repr
 from rockframe.motion import GroundMotion, HorizontalPair
-from rockframe.motion.description import shown_name
+from rockframe.motion.description import display_name
 from rockframe.studies.sweeps.axes import OWNER
 from rockframe.units import ACCELERATION, TIME, VELOCITY, Measure, Unit
 
@@ -77,8 +77,8 @@ def named_motions(value: object) -> dict[str, GroundMotion]:
     if isinstance(value, HorizontalPair):
         value = [value]
     if isinstance(value, Mapping):
-        named = _split_pairs(by_words(cast("Mapping[Any, Any]", value), owner=OWNER))
-    elif iterates(value) and not isinstance(value, str):
+        named = _split_pairs(with_string_keys(cast("Mapping[Any, Any]", value), owner=OWNER))
+    elif is_iterable(value) and not isinstance(value, str):
         several = list(value)
         pairs = (one.components if isinstance(one, HorizontalPair) else (one,) for one in several)
         named = _distinct_names([motion for pair in pairs for motion in pair])
@@ -86,7 +86,7 @@ def named_motions(value: object) -> dict[str, GroundMotion]:
         named = {"": value}
     wrong = [one for one in named.values() if not isinstance(one, GroundMotion)]
     if wrong or not named:
-        found = shown(wrong[0]) if wrong else "none"
+        found = short_repr(wrong[0]) if wrong else "none"
         msg = f"{OWNER}: motions must be a GroundMotion, or several, got {found}"
         raise ComponentError(msg)
     return named
@@ -127,7 +127,7 @@ def motion_number(requested: object, names: Sequence[str], *, owner: str) -> int
             return number
     few = ", ".join(map(repr, names[:_MAX_LISTED])) + ", ..." * (len(names) > _MAX_LISTED)
     msg = (
-        f"{owner}: there is no motion {shown(requested)}; expected a name, or a number from 0 to "
+        f"{owner}: there is no motion {short_repr(requested)}; expected a name, or a number from 0 to "
         f"{len(names) - 1}; there are {few}"
     )
     raise StudyError(msg)
@@ -139,7 +139,7 @@ def _distinct_names(motions: list[Any]) -> dict[str, Any]:
     named: dict[str, Any] = {}
     for own, motion in zip(names, motions, strict=True):
         alone = names.count(own) == 1
-        plain = name = own if alone else shown_name(own, getattr(motion, "history", ()))
+        plain = name = own if alone else display_name(own, getattr(motion, "history", ()))
         count = 1
         while name in named:
             count += 1

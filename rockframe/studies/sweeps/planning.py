@@ -11,7 +11,14 @@ from typing import Any, Final, TypeVar, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import RecordWarning, RockframeError, SolverWarning, StudyError, shown, warn
+from rockframe.errors import (
+    RecordWarning,
+    RockframeError,
+    SolverWarning,
+    StudyError,
+    short_repr,
+    warn,
+)
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import GROUPS, SCHEMA
@@ -49,7 +56,7 @@ from rockframe.studies.sweeps.scenes import (
 from rockframe.studies.sweeps.study import Histories, Study
 from rockframe.system.assembly import Assembly
 from rockframe.system.single_body import SingleBodySetting
-from rockframe.units import PERIOD, POSITIVE, QuantityLike, own_unit, to_si
+from rockframe.units import PERIOD, POSITIVE, QuantityLike, attached_unit, to_si
 
 
 def kept_histories(
@@ -240,7 +247,7 @@ def _read_table(cases: object) -> dict[str, object]:
     if hasattr(cases, "to_dict") and hasattr(cases, "columns"):  # a DataFrame
         columns = {name: columns[name] for name in columns.columns}
     if not isinstance(columns, Mapping) or not columns:
-        msg = f"cases must be a DataFrame, or columns by their names, got {shown(cases)}"
+        msg = f"cases must be a DataFrame, or columns by their names, got {short_repr(cases)}"
         raise StudyError(msg)
     table: dict[str, object] = {}
     for head, values in cast("Mapping[Any, Any]", columns).items():
@@ -250,7 +257,7 @@ def _read_table(cases: object) -> dict[str, object]:
             msg = f"column {name!r} is given twice in cases"
             raise StudyError(msg)
         plain = values
-        if not (own_unit(values) or isinstance(values, list | tuple)):
+        if not (attached_unit(values) or isinstance(values, list | tuple)):
             plain = np.asanyarray(values)  # masks stay
         table[name] = (plain, unit.removesuffix("]")) if bracket else values
     return table
@@ -279,7 +286,7 @@ def _name_fault(name: object) -> str | None:
     if not isinstance(name, str) or not all(part.isidentifier() for part in name.split(".")):
         written = re.sub(r"[^\w.]", "_", name) if isinstance(name, str) else ""
         way = f"; write {written!r} for what is called so" if "." in written else ""
-        return f"{shown(name)} cannot be the name of an axis{way}"
+        return f"{short_repr(name)} cannot be the name of an axis{way}"
     if name in _RESERVED_NAMES:
         way = "; write 'System.rotation' for the option" if name == "rotation" else ""
         return f"axis {name!r} has the name of a result, or of a dimension of results{way}"

@@ -8,10 +8,10 @@ from typing import Any, Final, TypeAlias
 
 import numpy as np
 
-from rockframe.arguments import one_of_words
+from rockframe.arguments import checked_choice
 from rockframe.components import Component, InitialState, RockingFrame, Stack
 from rockframe.components.parameters import Choice, Count, Declared, Flag, Text
-from rockframe.errors import ModelWarning, StudyError, shown, warn
+from rockframe.errors import ModelWarning, StudyError, short_repr, warn
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import SCHEMA
@@ -272,7 +272,7 @@ class FunctionScene:
         }
         found = self.function(**arguments)
         if not isinstance(found, System):
-            msg = f"{self.name} must return a System, got {shown(found)}"
+            msg = f"{self.name} must return a System, got {short_repr(found)}"
             raise StudyError(msg)
         return found
 
@@ -292,7 +292,10 @@ def scene_of(value: object) -> SweptScene:
         return SystemScene(value.assembly)
     if callable(value) and not isinstance(value, type):
         return FunctionScene(value)
-    msg = f"scene must be a System, or a function of the axes that returns one, got {shown(value)}"
+    msg = (
+        "scene must be a System, or a function of the axes that returns one, got "
+        f"{short_repr(value)}"
+    )
     raise StudyError(msg)
 
 
@@ -352,7 +355,7 @@ def _option_axis(name: str, option: str, value: object) -> Axis:
         one = NUMERIC_OPTIONS[option]
         return _number_axis(name, value, one.measure, one.description, Changes.OPTION, option)
     kind, words = _CHOICES[option]
-    values = read_words(value, lambda word: one_of_words(kind, word, owner=OWNER, name=name))
+    values = read_words(value, lambda word: checked_choice(kind, word, owner=OWNER, name=name))
     return Axis(name, values, None, words, Changes.OPTION, option)
 
 

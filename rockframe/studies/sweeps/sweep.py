@@ -11,12 +11,11 @@ from typing import Any, Final
 
 import xarray as xr
 
-from rockframe.arguments import several, truth, whole_number
+from rockframe.arguments import checked_bool, checked_integer, checked_list
 from rockframe.compiled import COMPILED
 from rockframe.components import InitialState
-from rockframe.errors import ModelWarning, SolverWarning, StudyError, shown, warn
-from rockframe.proposals import hinted
-from rockframe.shared_arguments import documented_by
+from rockframe.errors import ModelWarning, SolverWarning, StudyError, short_repr, warn
+from rockframe.shared_arguments import with_documented_arguments
 from rockframe.simulation.run import compute_response
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import AccuracyLevel
@@ -40,6 +39,7 @@ from rockframe.studies.sweeps.planning import plan_study
 from rockframe.studies.sweeps.store import Store, staggered
 from rockframe.studies.sweeps.study import Study
 from rockframe.studies.sweeps.words import cases_verdict, mark_not_screened, warn_of_missing_results
+from rockframe.suggestions import with_hints
 from rockframe.system.options import Overturning, OverturningLike, PointsLike, SweepAccuracyLike
 from rockframe.system.own_base import OwnBase
 from rockframe.system.own_scene import OwnScene
@@ -55,8 +55,8 @@ _CHECK_INTERVAL: Final = 1.0
 """Time between two checks of the chunks run by other jobs [s]."""
 
 
-@hinted()
-@documented_by(SweepArguments)
+@with_hints()
+@with_documented_arguments(SweepArguments)
 def sweep(
     scene: System | Callable[..., System],
     motions: MotionsLike | None = None,
@@ -163,7 +163,7 @@ def sweep(
     """
     named = axes is None or isinstance(axes, Mapping)  # pyright: ignore[reportUnnecessaryIsInstance]
     if not named:
-        found = f"axes must be a mapping of names to values, got {shown(axes)}"
+        found = f"axes must be a mapping of names to values, got {short_repr(axes)}"
         msg = f"{found}; write for example axes={{'Block.mass': ['1 t', '2 t']}}"
         raise StudyError(msg)
     values = dict(axes or {})
@@ -188,7 +188,7 @@ def sweep(
     )
     cache_study(study)
     with progress_bar(progress, owner=OWNER) as bar:
-        others = [known] if isinstance(known, PathLike) else several(
+        others = [known] if isinstance(known, PathLike) else checked_list(
             known, owner=OWNER, name="known", of="folders"
         )  # fmt: skip
         dataset, _ = run_study(
@@ -197,7 +197,7 @@ def sweep(
         return dataset
 
 
-@hinted()
+@with_hints()
 def open_study(path: str | PathLike[str], *, lazy: bool = False) -> xr.Dataset:
     """Read the stored results of a sweep, even while it runs.
 
@@ -238,7 +238,7 @@ def open_study(path: str | PathLike[str], *, lazy: bool = False) -> xr.Dataset:
             f"be others than those of this one, {__version__}",
             ModelWarning,
         )
-    later = truth(lazy, owner="open_study", name="lazy")
+    later = checked_bool(lazy, owner="open_study", name="lazy")
     return stored_dataset(stored, lazy=later)
 
 
@@ -260,7 +260,7 @@ def run_study(
     if chunk is None:
         as_python = _runs_as_python(study)
         chunk = study.chunk_size(workers, as_python=as_python)
-    size = whole_number(chunk, owner=OWNER, name="chunk", lowest=1, highest=_MAX_CHUNK)
+    size = checked_integer(chunk, owner=OWNER, name="chunk", lowest=1, highest=_MAX_CHUNK)
     _warn_of_long_study(study, workers, as_python=as_python, kept=store is not None)
     if store is None and known:
         msg = "known cases are copied into the store of the sweep; give store='a folder'"
@@ -412,5 +412,5 @@ def read_folder(path: object, *, owner: str = "") -> Path:
     """Read the argument ``store``, of a function that is named in messages, if there is one."""
     if isinstance(path, PathLike) or (isinstance(path, str) and path):
         return Path(path)  # pyright: ignore[reportUnknownArgumentType]
-    words = f"store must be the path of a folder, got {shown(path)}"
+    words = f"store must be the path of a folder, got {short_repr(path)}"
     raise StudyError(f"{owner}: {words}" if owner else words)

@@ -9,7 +9,7 @@ from scipy import signal
 
 import rockframe as rf
 from rockframe.errors import ComponentError, RecordWarning, UnitsError
-from rockframe.motion.matching.iteration import PEAKS, unusual
+from rockframe.motion.matching.iteration import PEAKS, unusual_changes
 from rockframe.signals.integrals import ground_path
 from rockframe.signals.motion import knots_of
 
@@ -165,7 +165,7 @@ def test_growth_beyond_half_as_much_again_is_unusual():
         "spectral_growth_beyond_range": 1.49,
         "period_of_spectral_growth": 3.0,
     }
-    assert unusual(usual) == []
+    assert unusual_changes(usual) == []
     for name, value, words in (
         ("peak_ground_acceleration_after_matching", 1.6, "acceleration 1.6 times"),
         ("peak_ground_velocity_after_matching", 1.6, "velocity 1.6 times"),
@@ -173,7 +173,7 @@ def test_growth_beyond_half_as_much_again_is_unusual():
         ("spectral_growth_beyond_range", 1.6, "spectrum 1.6 times at 3 s, beyond the range"),
         ("pulse_indicator_after_matching", 0.9, "a velocity pulse where none was"),
     ):
-        (found,) = unusual({**usual, name: value})
+        (found,) = unusual_changes({**usual, name: value})
         assert words in found
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from rockframe.errors import ComponentError, ModelWarning, UnitsError
 from rockframe.motion import GroundMotion
-from rockframe.motion.stochastic import Site, exponential_window, faded, normal_numbers
+from rockframe.motion.stochastic import Site, exponential_window, fade_window, normal_numbers
 
 ALL = {
     "stress_drop": "150 bar",
@@ -231,7 +231,7 @@ def test_streams_are_independent():
 
 
 def test_fade_rises_and_falls_with_its_derivatives():
-    step, slope, curvature = faded(2001, 400, 0.01)
+    step, slope, curvature = fade_window(2001, 400, 0.01)
     for values in (step, slope, curvature):
         assert values[0] == values[-1] == 0.0
     assert np.all(step[400:-400] == 1.0)

@@ -10,7 +10,11 @@ from records import record_path
 import rockframe as rf
 from rockframe.errors import ComponentError, UnitsError
 from rockframe.motion import GroundMotion
-from rockframe.motion.processing.velocity_pulses import measures, mother_wavelet, scaling_filter
+from rockframe.motion.processing.velocity_pulses import (
+    mother_wavelet,
+    pulse_measures,
+    scaling_filter,
+)
 
 STEP = 0.01
 # printed by PyWavelets 1.9, Wavelet("db4").rec_lo and .wavefun(level=14)
@@ -132,7 +136,7 @@ def test_the_criteria_are_those_published():
     """By hand, for a velocity of ones from which a pulse takes a part."""
     velocity = np.ones(100)
     pulse = np.where(np.arange(100) < 40, 0.5, 0.0)
-    found = measures(velocity, pulse, 0.5)
+    found = pulse_measures(velocity, pulse, 0.5)
     energy = (40 * 0.25 + 60) / 100
     assert (found.peak_ratio, found.energy_ratio) == pytest.approx((1.0, energy))
     exact = 1.0 / (1.0 + math.exp(-23.3 + 14.6 + 20.5 * energy))

@@ -9,7 +9,7 @@ import xarray as xr
 
 import rockframe as rf
 from rockframe.errors import ComponentError, SchemaError
-from rockframe.notebook import arguments_in_words, curve, number_with_unit
+from rockframe.notebook import number_with_unit, readable_arguments, sparkline
 
 BLOCK = rf.Block(width="0.8 m", height="4 m", mass="2 t", centre_of_mass=("2 m", "0.1 m"))
 PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
@@ -110,7 +110,7 @@ def test_a_curve_keeps_its_extremes_and_few_points():
     values = np.zeros(100_000)
     values[54_321] = 1.0
     values[54_322] = -0.5
-    drawn = curve(values.tolist(), width=200.0, height=100.0)
+    drawn = sparkline(values.tolist(), width=200.0, height=100.0)
     points = re.search(r'points="([^"]*)"', drawn)[1].split()
     heights = [float(point.split(",")[1]) for point in points]
     assert len(points) <= 600
@@ -123,7 +123,7 @@ def test_numbers_are_written_as_people_do():
              (2.5e5, "N m^-1"): "250 kN m^-1", (4.0, "m"): "4 m", (0.5, "s"): "0.5 s"}  # fmt: skip
     for (size, unit), words in cases.items():
         assert number_with_unit(size, unit) == words
-    assert arguments_in_words({"type": "x", "shape_factor": 2.92}) == {"shape factor": "2.92"}
+    assert readable_arguments({"type": "x", "shape_factor": 2.92}) == {"shape factor": "2.92"}
 
 
 def test_only_public_names_are_completed():

@@ -15,7 +15,7 @@ from rockframe.plot._artists import SOIL
 from rockframe.plot._axes import COLOURS, GREY
 from rockframe.plot._overturning import MAP_COLOURS
 from rockframe.plot._response import CONTACT_COLOURS, histories_of
-from rockframe.units.shown import reader_units
+from rockframe.units.display import display_units
 
 BLOCK = rf.Block(width="0.8 m", height="4 m", mass="2 t", centre_of_mass=("2 m", "0.05 m"))
 PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
@@ -375,7 +375,7 @@ def test_any_history_of_a_run_has_a_panel():
         )
         rows = lines(axes)
         assert len(rows) >= (2 if "point" in run[name].dims else 1)
-        unit = reader_units(units, owner="").of(run[name].attrs["units"])
+        unit = display_units(units, owner="").of(run[name].attrs["units"])
         first = run[name] if run[name].ndim == 1 else run[name][0]
         if name != "rotation":
             np.testing.assert_allclose(rows[0].get_ydata(), unit.of(first), rtol=1e-12)

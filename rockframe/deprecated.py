@@ -17,7 +17,7 @@ MOVED: Final = {
     "to_pelicun": "rockframe.export.to_pelicun",
     "velocity_and_displacement": "rockframe.measures.velocity_and_displacement",
 }
-_SHORTER: Final = {
+_ALTERNATIVES: Final = {
     "principal_axes": "; the direction alone is HorizontalPair.principal_axis",
     "velocity_and_displacement": "; the numbers alone are velocity and displacement of the motion",
 }
@@ -47,24 +47,24 @@ def _suite(value: Any) -> Any:
     return MotionSuite(value) if plain else value  # pyright: ignore[reportUnknownArgumentType]
 
 
-_BECAME: Final[dict[str, tuple[Callable[..., Any], str]]] = {
+_REPLACED: Final[dict[str, tuple[Callable[..., Any], str]]] = {
     "fragility_of_counts": (_fragility_of_counts, "rockframe.fragility(counts)"),
     "scale_to_target": (_scale_to_target, "rockframe.MotionSuite.scaling_to"),
     "select_for_target": (_select_for_target, "rockframe.MotionSuite.selection_for"),
 }
 
 
-def old_name(name: str, known: Iterable[str]) -> Any:
+def deprecated_object(name: str, known: Iterable[str]) -> Any:
     """Return the object of an old name, and warn with the new one; else propose a similar name."""
-    if name in _BECAME:
-        found, now = _BECAME[name]
+    if name in _REPLACED:
+        found, new_name = _REPLACED[name]
     elif name in MOVED:
-        now = MOVED[name]
-        home, _, attribute = now.rpartition(".")
+        new_name = MOVED[name]
+        home, _, attribute = new_name.rpartition(".")
         found = getattr(import_module(home), attribute)
     else:
         owner = "module 'rockframe'"
         raise errors.unknown_attribute(owner, name, known)
-    text = f"rockframe.{name} is now {now}{_SHORTER.get(name, '')}"
+    text = f"rockframe.{name} is now {new_name}{_ALTERNATIVES.get(name, '')}"
     warnings.warn(text, DeprecationWarning, stacklevel=3)
     return found

@@ -15,21 +15,21 @@ from rockframe.errors import AccessError, ArgumentError, unexpected_argument, un
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 Class = TypeVar("Class", bound=type)
-_BOUND: Final = {
+_MODULES_BY_FIRST_PARAMETER: Final = {
     "self": "", "cls": "", "kind": "rockframe.motion.", "motion": "rockframe.motion.",
     "suite": "rockframe.suites.",
 }  # fmt: skip
 """First parameters of methods, which a call never names, and the modules of such functions."""
 
 
-def hinted(**hints: str) -> Callable[[Function], Function]:
+def with_hints(**hints: str) -> Callable[[Function], Function]:
     """Make a function explain unknown arguments: by the hint for a name, or by a similar name."""
 
     def decorate(function: Function) -> Function:
         parameters = list(signature(function).parameters.values())
         by_name = (Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY)
         known = [one.name for one in parameters if one.kind in by_name]
-        home = _BOUND.get(parameters[0].name) if parameters else None
+        home = _MODULES_BY_FIRST_PARAMETER.get(parameters[0].name) if parameters else None
         bound = home is not None and function.__module__.startswith(home)
         listed = known[1:] if bound else known
         any_name = any(one.kind is one.VAR_KEYWORD for one in parameters)
@@ -46,7 +46,9 @@ def hinted(**hints: str) -> Callable[[Function], Function]:
             try:
                 return function(*values, **named)
             except TypeError as problem:
-                raise_refused(problem, [*listed, "further named arguments"] if any_name else listed)
+                raise_call_error(
+                    problem, [*listed, "further named arguments"] if any_name else listed
+                )
                 raise
 
         call.hints = hints  # type: ignore[attr-defined]
@@ -56,11 +58,11 @@ def hinted(**hints: str) -> Callable[[Function], Function]:
 
 
 def hints_of(function: Callable[..., Any]) -> Mapping[str, str] | None:
-    """Return the hints of a function that is :func:`hinted`; None for any other."""
+    """Return the hints of a function decorated by :func:`with_hints`; None for any other."""
     return getattr(function, "hints", None)
 
 
-def raise_refused(problem: TypeError, listed: Iterable[str]) -> None:
+def raise_call_error(problem: TypeError, listed: Iterable[str]) -> None:
     """List the arguments of a function if the call itself failed, before any line of it ran."""
     trace = problem.__traceback__
     if trace is None or trace.tb_next is not None:
@@ -71,7 +73,7 @@ def raise_refused(problem: TypeError, listed: Iterable[str]) -> None:
     raise ArgumentError(msg) from None
 
 
-def proposing(kind: Class) -> Class:
+def suggests_names(kind: Class) -> Class:
     """Make the methods of a class propose similar arguments, and the class similar attributes.
 
     A base class of it must be decorated, too: inherited methods are left as they are.
@@ -81,20 +83,20 @@ def proposing(kind: Class) -> Class:
             continue
         if isinstance(one, classmethod | staticmethod):
             function: Any = cast("Any", one).__func__
-            if _is_plain(function):
-                setattr(kind, name, type(one)(hinted()(function)))
-        elif _is_plain(one):
-            setattr(kind, name, hinted()(one))
+            if _is_unhinted_function(function):
+                setattr(kind, name, type(one)(with_hints()(function)))
+        elif _is_unhinted_function(one):
+            setattr(kind, name, with_hints()(one))
     if not any("__getattr__" in vars(one) for one in kind.__mro__):
-        kind.__getattr__ = _no_attribute
+        kind.__getattr__ = _raise_no_attribute
     return kind
 
 
-def _is_plain(one: object) -> bool:
+def _is_unhinted_function(one: object) -> bool:
     return isinstance(one, FunctionType) and hints_of(one) is None
 
 
-def _no_attribute(self: object, name: str) -> NoReturn:
+def _raise_no_attribute(self: object, name: str) -> NoReturn:
     if any(name in vars(one) for one in type(self).__mro__):  # a property that failed
         object.__getattribute__(self, name)
     # programs, and dir() itself, look up names that begin with an underscore
@@ -102,7 +104,7 @@ def _no_attribute(self: object, name: str) -> NoReturn:
     raise unknown_attribute(type(self).__name__, name, known)
 
 
-class Proposing(ABCMeta):
+class SuggestingMeta(ABCMeta):
     """Metaclass of classes that propose a similar name for a misspelt constructor.
 
     Derived classes may be abstract.
@@ -117,7 +119,7 @@ class Proposing(ABCMeta):
         return [name for name in super().__dir__() if name != "_abc_impl"]
 
 
-class Immutable(metaclass=Proposing):
+class Immutable(metaclass=SuggestingMeta):
     """A value whose attributes cannot be changed; ``dir`` lists the public ones."""
 
     __slots__ = ()
@@ -134,7 +136,7 @@ class Immutable(metaclass=Proposing):
         return [name for name in super().__dir__() if not name.startswith("_")]
 
 
-def attributes_of(module: str, names: Iterable[str]) -> Callable[[str], NoReturn]:
+def module_getattr(module: str, names: Iterable[str]) -> Callable[[str], NoReturn]:
     """Return a function ``__getattr__`` for a module: it proposes a similar public name."""
     known, owner = list(names), f"module {module!r}"
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
 import numpy as np
 import numpy.typing as npt
 
-from rockframe.errors import ComponentError, UnitsError, nearest, shown
+from rockframe.errors import ComponentError, UnitsError, did_you_mean, short_repr
 from rockframe.units import kinds
 from rockframe.units.kinds import Measure
 from rockframe.units.reading import to_si
@@ -18,18 +18,20 @@ if TYPE_CHECKING:
     import xarray as xr
 
 DEGREE: Final = "°"
-_WRITTEN: Final = {"g_0": "g", **dict.fromkeys(("deg", "degree", "degrees"), DEGREE)}
-_READ: Final = {("g", kinds.ACCELERATION): "g_0"}
+_DISPLAY_SYMBOLS: Final = {"g_0": "g", **dict.fromkeys(("deg", "degree", "degrees"), DEGREE)}
+_PINT_SYMBOLS: Final = {("g", kinds.ACCELERATION): "g_0"}
 """Meaning of a unit symbol that has another meaning elsewhere: ``g`` is also the gram."""
-_BELOW: Final = re.compile(r"\s*/\s*([^\W\d_]+)(?:\^(\d+))?")
+_DENOMINATOR: Final = re.compile(r"\s*/\s*([^\W\d_]+)(?:\^(\d+))?")
 _NUMBER: Final = r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?"
-_SPELLED: Final = {
+_UNIT_SPELLINGS: Final = {
     "m/s^2": "m s^-2", "m/s": "m s^-1", "rad/s": "rad s^-1", "N/m": "N m^-1",
     "N s/m": "N s m^-1",
 }  # fmt: skip
 """Spellings of units in descriptions of models."""
 _UNITS: Final = "|".join(
-    sorted(map(re.escape, [*_SPELLED, *map(str, list(kinds.Unit)[1:])]), key=len, reverse=True)
+    sorted(
+        map(re.escape, [*_UNIT_SPELLINGS, *map(str, list(kinds.Unit)[1:])]), key=len, reverse=True
+    )
 )
 _QUANTITY: Final = re.compile(
     rf"(?<![\w.])(?:\((?P<across>{_NUMBER}), (?P<up>{_NUMBER})\)|"
@@ -59,10 +61,10 @@ KINDS: Final[Mapping[str, Measure]] = {
 
 
 @dataclass(frozen=True)
-class Shown:
+class DisplayUnit:
     """A unit in which numbers are shown."""
 
-    words: str  # spelling after numbers, for :func:`behind`
+    words: str  # spelling after numbers, for :func:`unit_suffix`
     size: float  # value of one unit in the SI unit
 
     def of(self, values: Any) -> npt.NDArray[np.float64]:
@@ -70,56 +72,60 @@ class Shown:
         return np.asarray(values, np.float64) / self.size
 
 
-def behind(unit: str) -> str:
+def unit_suffix(unit: str) -> str:
     """Write a unit to follow a number: after a space, degrees without one; none for 1."""
     if unit in ("", kinds.Unit.ONE):
         return ""
     return unit if unit.startswith(DEGREE) else f" {unit}"  # ISO 80000-1: 4.7°, but 5 °C
 
 
-def in_degrees(radians: float, digits: int = _DIGITS) -> str:
+def degrees_text(radians: float, digits: int = _DIGITS) -> str:
     """Write an angle in degrees."""
     return f"{math.degrees(radians):.{digits}g}{DEGREE}"
 
 
-def shown_unit(value: object, measure: Measure, *, owner: str, name: str) -> Shown:
+def display_unit(value: object, measure: Measure, *, owner: str, name: str) -> DisplayUnit:
     """Read the unit in which numbers of a kind are shown."""
     if not isinstance(value, str):
-        msg = f"{owner}: {name} must be a unit, such as {str(measure.unit)!r}, got {shown(value)}"
+        msg = (
+            f"{owner}: {name} must be a unit, such as {str(measure.unit)!r}, got "
+            f"{short_repr(value)}"
+        )
         raise ComponentError(msg)
-    read = _READ.get((value, measure), value)
+    read = _PINT_SYMBOLS.get((value, measure), value)
     try:
         size = to_si(f"1 {read}", measure, owner=owner, name=name)
     except UnitsError as problem:  # its words are on a value, and end with an example of one
         words = str(problem).partition("; write for example ")[0]
         like = "" if "such as" in words else f"; write for example {str(measure.unit)!r}"
         raise UnitsError(words.replace(f"'1 {read}'", repr(value), 1) + like) from problem
-    return Shown(_spelled(value), size)
+    return DisplayUnit(_canonical_spelling(value), size)
 
 
-def _spelled(unit: str) -> str:
+def _canonical_spelling(unit: str) -> str:
     """Spell a unit as in datasets: ``m s^-2`` for ``m/s^2`` and ``m/s**2``."""
     plain = unit.strip().replace("**", "^").replace("*", " ")
-    plain = _BELOW.sub(lambda part: f" {part[1]}^-{part[2] or 1}", plain)
-    return " ".join(_WRITTEN.get(part, part) for part in plain.split())
+    plain = _DENOMINATOR.sub(lambda part: f" {part[1]}^-{part[2] or 1}", plain)
+    return " ".join(_DISPLAY_SYMBOLS.get(part, part) for part in plain.split())
 
 
 @dataclass(frozen=True)
-class ReaderUnits:
+class DisplayUnits:
     """The units that a reader has chosen; all others are SI units."""
 
-    chosen: Mapping[str, Shown] = field(default_factory=dict[str, Shown])  # by the SI unit
+    # by the SI unit
+    chosen: Mapping[str, DisplayUnit] = field(default_factory=dict[str, DisplayUnit])
     words: Mapping[str, str] = field(default_factory=dict[str, str])  # argument of the reader
 
-    def of(self, unit: str) -> Shown:
+    def of(self, unit: str) -> DisplayUnit:
         """Return the unit in which values in an SI unit are shown."""
-        return self.chosen.get(unit, Shown(unit, 1.0))
+        return self.chosen.get(unit, DisplayUnit(unit, 1.0))
 
-    def chose(self, measure: Measure) -> Shown | None:
+    def chosen_unit(self, measure: Measure) -> DisplayUnit | None:
         """Return the unit that was chosen for a kind, or None."""
         return self.chosen.get(str(measure.unit))
 
-    def of_all(self, dataset: "xr.Dataset") -> "xr.Dataset":
+    def convert_dataset(self, dataset: "xr.Dataset") -> "xr.Dataset":
         """Return a dataset with its values and their attributes ``units`` in these units."""
         found: dict[str, Any] = {}
         for name, values in dataset.variables.items():
@@ -128,68 +134,68 @@ class ReaderUnits:
                 shown_in = dataset[name].copy(data=unit.of(values.to_numpy()))
                 found[str(name)] = shown_in.assign_attrs(units=unit.words)
         coords = {name: found.pop(name) for name in list(found) if name in dataset.coords}
-        sentences = {name: self.of_sentence(str(dataset.attrs[name])) for name in _SENTENCES
+        texts = {name: self.convert_text(str(dataset.attrs[name])) for name in _SENTENCES
                 if name in dataset.attrs}  # fmt: skip
         return (
             dataset.assign(found)
-            .assign_attrs(sentences)
+            .assign_attrs(texts)
             .assign_coords({name: (one.dims, one.data, one.attrs) for name, one in coords.items()})
         )
 
-    def of_sentence(self, text: str) -> str:
+    def convert_text(self, text: str) -> str:
         """Convert the quantities in a text from SI units to these units."""
-        return _QUANTITY.sub(self._written, text) if self.chosen else text
+        return _QUANTITY.sub(self._converted_match, text) if self.chosen else text
 
-    def _written(self, found: "re.Match[str]") -> str:
+    def _converted_match(self, found: "re.Match[str]") -> str:
         """Convert one number with its unit, a range of two, or a pair of coordinates."""
-        unit = self.chosen.get(_SPELLED.get(found["unit"], found["unit"]))
+        unit = self.chosen.get(_UNIT_SPELLINGS.get(found["unit"], found["unit"]))
         if unit is None:
             return found[0]
         across, up, first, last = (
-            "" if found[name] is None else _with_digits(found[name], unit.size)
+            "" if found[name] is None else _converted_number(found[name], unit.size)
             for name in ("across", "up", "first", "last")
         )
         numbers = f"({across}, {up})" if across else last
         before = f"{first} {found['word']} " if first else ""
-        return f"{before}{numbers}{behind(unit.words)}"
+        return f"{before}{numbers}{unit_suffix(unit.words)}"
 
 
-def _with_digits(number: str, size: float) -> str:
+def _converted_number(number: str, size: float) -> str:
     """Convert a number to a unit of some size, without more digits than are significant.
 
     The conversion of a rounded number costs one digit, unless the size is a power of ten. A number
     of one or two digits may be exact and is written with four.
     """
     count = len(re.sub(r"e.*|\D", "", number).lstrip("0"))
-    moved = float(f"1e{round(math.log10(size))}") == size
-    digits = max(_DIGITS, count) if moved or count < _DIGITS - 1 else max(_DIGITS - 1, count - 1)
+    exact = float(f"1e{round(math.log10(size))}") == size  # a power of ten
+    digits = max(_DIGITS, count) if exact or count < _DIGITS - 1 else max(_DIGITS - 1, count - 1)
     value = f"{float(number) / size:.{digits}g}"
     return np.format_float_positional(float(value), trim="-") if "e+" in value else value
 
 
-def reader_units(value: object, *, owner: str) -> ReaderUnits:
+def display_units(value: object, *, owner: str) -> DisplayUnits:
     """Read units by kind of quantity, such as ``{"force": "kN"}``."""
     if value is None:
-        return ReaderUnits()
+        return DisplayUnits()
     example = "such as units={'force': 'kN', 'angle': 'deg'}"
     if not isinstance(value, Mapping):
-        msg = f"{owner}: units must be a mapping, {example}, got {shown(value)}"
+        msg = f"{owner}: units must be a mapping, {example}, got {short_repr(value)}"
         raise ComponentError(msg)
-    chosen = dict[str, Shown]()
+    chosen = dict[str, DisplayUnit]()
     for name, unit in cast("Mapping[Any, Any]", value).items():
         if name not in KINDS:
-            found = f"found {shown(name)}{nearest(name, KINDS)}"
+            found = f"found {short_repr(name)}{did_you_mean(name, KINDS)}"
             known = f"known are {', '.join(KINDS)}; times stay in s, and frequencies in Hz"
             msg = f"{owner}: units belong to kinds of quantities, {example}; {found}; {known}"
             raise ComponentError(msg)
         kind = KINDS[name]
-        chosen[str(kind.unit)] = shown_unit(unit, kind, owner=owner, name=f"units[{name!r}]")
-    return ReaderUnits(chosen, dict(cast("Mapping[str, str]", value)))
+        chosen[str(kind.unit)] = display_unit(unit, kind, owner=owner, name=f"units[{name!r}]")
+    return DisplayUnits(chosen, dict(cast("Mapping[str, str]", value)))
 
 
-_RAISED: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_SUPERSCRIPTS: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
-def raised(text: str) -> str:
+def with_superscripts(text: str) -> str:
     """Write the powers of units in a text as superscript characters."""
-    return re.sub(r"(?<=[^\W\d_])\^(-?\d+)", lambda power: power[1].translate(_RAISED), text)
+    return re.sub(r"(?<=[^\W\d_])\^(-?\d+)", lambda power: power[1].translate(_SUPERSCRIPTS), text)

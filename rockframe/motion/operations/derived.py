@@ -13,44 +13,44 @@ from rockframe.records import same_start, time_after
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from rockframe.motion.value import Made
+    from rockframe.motion.value import MotionType
     from rockframe.signals import Motion, Signal
     from rockframe.signals.arrays import Array
 
 SAME_STEP: Final = 1e-9
 """Relative difference up to which two time steps count as equal [1]."""
 
-_OF_ITS_SPECTRUM: Final = (
+_SPECTRUM_METADATA: Final = (
     "spectral_misfit", "largest_spectral_misfit", "mean_spectral_misfit", "target_reached",
 )  # fmt: skip
 """Metadata on the misfit of a spectrum, which operations that change the spectrum drop."""
 
-_START: Final = "record_time"
-_START_IN_FILE: Final = "start_time"
+_RECORD_START: Final = "record_time"
+_FILE_START: Final = "start_time"
 """Time of the first sample in the column of times of the file [s]."""
 
-OF_VERTICAL: Final = "vertical_"
+VERTICAL_PREFIX: Final = "vertical_"
 """Prefix of the metadata of a vertical component."""
 
-_DROPPED: Final = "the analytic pieces between samples are replaced by straight lines"
+_DROPPED_NOTE: Final = "the analytic pieces between samples are replaced by straight lines"
 
 
-def following(
-    motion: Made,
+def derived_motion(
+    motion: MotionType,
     si: Motion,
     *steps: str,
     operation: Mapping[str, Any] | None = None,
     metadata: Mapping[str, Any] | None = None,
     same_spectrum: bool = False,
-) -> Made:
+) -> MotionType:
     """Return the result of an operation as a motion; metadata that are None are left out."""
     recipe = None
     if motion.recipe is not None and operation is not None:
-        done = [*motion.recipe.get("operations", ()), dict(operation)]
-        recipe = {**motion.recipe, "operations": done}
-    lost: tuple[str, ...] = () if same_spectrum else _OF_ITS_SPECTRUM
+        operations = [*motion.recipe.get("operations", ()), dict(operation)]
+        recipe = {**motion.recipe, "operations": operations}
+    lost: tuple[str, ...] = () if same_spectrum else _SPECTRUM_METADATA
     if lost and si.vertical is not motion.si.vertical:
-        lost += tuple(f"{OF_VERTICAL}{name}" for name in _OF_ITS_SPECTRUM)
+        lost += tuple(f"{VERTICAL_PREFIX}{name}" for name in _SPECTRUM_METADATA)
     added: dict[str, Any] = {k: value for k, value in motion.metadata.items() if k not in lost}
     added |= metadata or {}
     return type(motion)(
@@ -62,12 +62,12 @@ def following(
     )
 
 
-def lost_pieces(si: Motion) -> tuple[str, ...]:
+def dropped_pieces_note(si: Motion) -> tuple[str, ...]:
     """Return the sentence that processing drops the analytic pieces, if there are any."""
-    return (_DROPPED,) if si.analytic else ()
+    return (_DROPPED_NOTE,) if si.analytic else ()
 
 
-def with_samples(
+def map_samples(
     si: Motion, change: Callable[[Signal], Array], time_step: float | None = None
 ) -> Motion:
     """Change the samples of both components; analytic pieces between them are dropped."""
@@ -79,7 +79,7 @@ def with_samples(
     return si.each(changed)
 
 
-def other_motion(other: object, si: Motion, owner: str) -> MotionValue:
+def checked_other_motion(other: object, si: Motion, owner: str) -> MotionValue:
     """Check a second motion that is to be combined with the first."""
     if not isinstance(other, MotionValue):
         msg = f"{owner}: other needs a GroundMotion, got {type(other).__name__}"
@@ -94,26 +94,28 @@ def other_motion(other: object, si: Motion, owner: str) -> MotionValue:
     return other
 
 
-def starting_later(motion: MotionValue, seconds: float) -> dict[str, str | float]:
+def shifted_start_times(motion: MotionValue, seconds: float) -> dict[str, str | float]:
     """Return the known start times in the metadata, moved by some seconds."""
-    moved: dict[str, str | float] = {}
-    for prefix in ("", OF_VERTICAL) if seconds != 0.0 else ():
-        if f"{prefix}{_START}" in motion.metadata:
-            moved[f"{prefix}{_START}"] = time_after(motion.metadata[f"{prefix}{_START}"], seconds)
-        first = motion.metadata.get(f"{prefix}{_START_IN_FILE}")
+    shifted: dict[str, str | float] = {}
+    for prefix in ("", VERTICAL_PREFIX) if seconds != 0.0 else ():
+        if f"{prefix}{_RECORD_START}" in motion.metadata:
+            shifted[f"{prefix}{_RECORD_START}"] = time_after(
+                motion.metadata[f"{prefix}{_RECORD_START}"], seconds
+            )
+        first = motion.metadata.get(f"{prefix}{_FILE_START}")
         if isinstance(first, int | float):
-            moved[f"{prefix}{_START_IN_FILE}"] = first + seconds
-    return moved
+            shifted[f"{prefix}{_FILE_START}"] = first + seconds
+    return shifted
 
 
-def without_vertical(motion: MotionValue) -> dict[str, None]:
+def cleared_vertical_metadata(motion: MotionValue) -> dict[str, None]:
     """Return the metadata of a vertical component that the result no longer has, as None."""
-    return {key: None for key in motion.metadata if key.startswith(OF_VERTICAL)}
+    return {key: None for key in motion.metadata if key.startswith(VERTICAL_PREFIX)}
 
 
 def warn_of_other_start(motion: MotionValue, other: MotionValue, owner: str) -> None:
     """Warn if the files of two motions state different starts."""
-    starts = motion.metadata.get(_START), other.metadata.get(_START)
+    starts = motion.metadata.get(_RECORD_START), other.metadata.get(_RECORD_START)
     if not same_start(*starts, motion.si.time_step):
         words = (
             f"{owner}: {motion.name} starts at {starts[0]}, {other.name} at {starts[1]}; their "
