@@ -12,12 +12,12 @@ from rockframe.errors import ComponentError, shown
 from rockframe.notebook import card, number_with_unit
 from rockframe.proposals import proposing
 from rockframe.reports import page
-from rockframe.reports.page import KIND
+from rockframe.reports.page import FILE_KIND
 from rockframe.units import Unit
 from rockframe.units.shown import ReaderUnits, UnitsLike, behind, raised, reader_units
 from rockframe.writing import write_file
 
-_SAID: Final = {True: ("satisfied", "good"), False: ("not satisfied", "bad")}
+_OUTCOMES: Final = {True: ("satisfied", "good"), False: ("not satisfied", "bad")}
 
 
 @proposing
@@ -176,13 +176,13 @@ class CodeCheck:
                 for one in several
             ]
         text += [
-            f"{one.title}: {_SAID[one.passed][0]}; {one.words} [{one.source}]"
+            f"{one.title}: {_OUTCOMES[one.passed][0]}; {one.words} [{one.source}]"
             for one in self.verdicts
         ]
         return "\n".join([*text, *(f"Left out: {one}" for one in self.notes)])
 
     def _repr_html_(self) -> str:
-        rows = {one.title: f"{_SAID[one.passed][0]}; {one.words}" for one in self.verdicts}
+        rows = {one.title: f"{_OUTCOMES[one.passed][0]}; {one.words}" for one in self.verdicts}
         return card(escape(self.title), rows)
 
     def banners(self, units: ReaderUnits) -> Iterator[str]:
@@ -199,7 +199,7 @@ class CodeCheck:
             HTML.
         """
         for one in self.verdicts:
-            text, kind = _SAID[one.passed]
+            text, kind = _OUTCOMES[one.passed]
             words = f"{units.of_sentence(one.words)} [{one.source}]. {self.code}."
             yield page.banner(f"{one.title}: {text}", words, kind)
 
@@ -227,9 +227,9 @@ class CodeCheck:
                 )
                 for one in several
             ]
-            yield title, [page.rows(cells, head=head)]
+            yield title, [page.parameter_table(cells, head=head)]
         if self.notes:
-            yield "Left out", [page.items(map(units.of_sentence, self.notes))]
+            yield "Left out", [page.numbered_list(map(units.of_sentence, self.notes))]
 
     def report(
         self,
@@ -264,13 +264,13 @@ class CodeCheck:
         """
         chosen = reader_units(units, owner="CodeCheck.report")
         body = [f"<h1>{escape(self.title)}</h1>", page.paragraph(self.code, kind="soft")]
-        body += self._checked(chosen)
+        body += self._scene_paragraph(chosen)
         body += self.banners(chosen)
         body += [page.section(title, pieces) for title, pieces in self.tables(chosen)]
-        content = page.page(self.title, body).encode()
-        return write_file(path, KIND, content, overwrite=overwrite)
+        content = page.html_page(self.title, body).encode()
+        return write_file(path, FILE_KIND, content, overwrite=overwrite)
 
-    def _checked(self, units: ReaderUnits) -> list[str]:
+    def _scene_paragraph(self, units: ReaderUnits) -> list[str]:
         words = units.of_sentence(self.scene)
         return [page.paragraph(f"Checked: {words}.")] if words else []
 
@@ -287,13 +287,13 @@ class CodeCheck:
         str
             HTML.
         """
-        pieces = [page.paragraph(f"{self.title}. {self.code}."), *self._checked(units)]
+        pieces = [page.paragraph(f"{self.title}. {self.code}."), *self._scene_paragraph(units)]
         for title, inner in self.tables(units):
             pieces += [page.subtitle(title), *inner]
         return page.section(f"Check by {self.code.split(',')[0]}", pieces)
 
 
-def checks_of(value: object, owner: str) -> list[CodeCheck]:
+def read_checks(value: object, owner: str) -> list[CodeCheck]:
     """Read a check, or several."""
     several = [value] if isinstance(value, CodeCheck) else value
     if several is None:
