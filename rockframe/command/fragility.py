@@ -6,9 +6,9 @@ from typing import Any, Final
 
 import xarray as xr
 
+from rockframe.command.analysis_inputs import SCALE, scene_and_motions, typed_intensity
 from rockframe.command.answer import Answer
 from rockframe.command.files.studies import AXES, CASES
-from rockframe.command.over_motions import SCALE, scene_and_motions, typed_intensity
 from rockframe.command.plot import PICTURE_KIND, finish_analysis
 from rockframe.command.shared import (
     Outputs,

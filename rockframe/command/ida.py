@@ -3,9 +3,9 @@
 import argparse
 from typing import Any, Final
 
+from rockframe.command.analysis_inputs import SCALE, scene_and_motions, typed_intensity
 from rockframe.command.answer import Answer
 from rockframe.command.files.studies import AXES, CASES, KNOWN
-from rockframe.command.over_motions import SCALE, scene_and_motions, typed_intensity
 from rockframe.command.plot import PICTURE_KIND, finish_analysis
 from rockframe.command.shared import (
     Outputs,

@@ -74,7 +74,7 @@ def is_terminal(stream: object) -> bool:
         return False
 
 
-class ProgressBar:
+class TerminalProgressBar:
     """Progress in one line of the standard error, if that is a terminal."""
 
     def __init__(self, what: str, *, enabled: bool) -> None:
@@ -113,9 +113,9 @@ class ProgressBar:
 
 
 @contextmanager
-def progress_bar(what: str, *, quiet: bool) -> Generator[ProgressBar]:
+def progress_bar(what: str, *, quiet: bool) -> Generator[TerminalProgressBar]:
     """Show a progress bar during an analysis."""
-    bar = ProgressBar(what, enabled=not quiet)
+    bar = TerminalProgressBar(what, enabled=not quiet)
     try:
         yield bar
     finally:

@@ -110,7 +110,8 @@ def spectra_section(
         name = raised(units.of_sentence(comparison.target.name))
         yield page.paragraph(
             f"Target: {name}. Compared at {comparison.periods.size} periods from "
-            f"{comparison.periods[0]:.4g} s to {comparison.periods[-1]:.4g} s, {100.0 * damping:g} % damping."
+            f"{comparison.periods[0]:.4g} s to {comparison.periods[-1]:.4g} s, "
+            f"{100.0 * damping:g} % damping."
         )
     figure = plot.suite(
         motions, _SPECTRUM_PERIODS, damping,

@@ -155,8 +155,8 @@ def motion_section(
     )
     yield page.captioned_figure(
         plot.spectra(found, units=units.words),
-        f"History of the {'horizontal ' * has_vertical}ground acceleration, its response spectra at "
-        "5 % damping and its Fourier spectrum.",
+        f"History of the {'horizontal ' * has_vertical}ground acceleration, its response spectra "
+        "at 5 % damping and its Fourier spectrum.",
     )
     if comparison is not None:
         yield page.subtitle("Spectrum and target")
