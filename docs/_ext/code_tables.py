@@ -126,7 +126,7 @@ def _units() -> Rows:
 
 def _figures() -> Rows:
     yield "of rf.plot", "draws", "which is given by"
-    yield from ((name, kind.what, kind.call) for name, kind in KINDS.items())
+    yield from ((name, kind.name, kind.call) for name, kind in KINDS.items())
 
 
 def _formats() -> Rows:

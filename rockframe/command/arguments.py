@@ -27,8 +27,8 @@ class Command:
     """One command."""
 
     name: str  # as typed, and of the module that runs it
-    words: str  # what it does, in one line
-    story: str  # what it does, in its help
+    summary: str  # what it does, in one line
+    description: str  # what it does, in its help
     examples: str  # lines to copy
     arguments: Sequence[CommandArgument]
 

@@ -82,7 +82,7 @@ def _zsh() -> str:
         choices = _choices(command)
         places = f"'*:choice:({' '.join(choices)})'" if choices else "'*:file:_files'"
         cases.append(f"        {command.name}) _arguments {' '.join([*words, places])} ;;")
-    names = "\n".join(f"        '{one.name}:{one.words}'" for one in COMMANDS)
+    names = "\n".join(f"        '{one.name}:{one.summary}'" for one in COMMANDS)
     return _ZSH.replace("@COMMANDS@", names).replace("@CASES@", "\n".join(cases))
 
 
@@ -95,7 +95,7 @@ def _zsh_value(one: CommandArgument) -> str:
 def _fish() -> str:
     unseen = "not __fish_seen_subcommand_from " + " ".join(one.name for one in COMMANDS)
     lines = [
-        f"complete -c rockframe -f -n '{unseen}' -a {command.name} -d '{command.words}'"
+        f"complete -c rockframe -f -n '{unseen}' -a {command.name} -d '{command.summary}'"
         for command in COMMANDS
     ]
     for command in COMMANDS:

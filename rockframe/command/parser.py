@@ -70,8 +70,8 @@ def build_parser() -> argparse.ArgumentParser:
     for command in COMMANDS:
         one = commands.add_parser(
             command.name,
-            help=command.words,
-            description=command.story,
+            help=command.summary,
+            description=command.description,
             epilog=f"examples:\n{command.examples}\n\n{EXIT_CODES}",
             formatter_class=_Formatter,
             parents=[everywhere],

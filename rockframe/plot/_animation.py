@@ -260,7 +260,7 @@ def animation(
     response(shown_run.dataset, panels=("rotation", "contact"), rotation=rotation_unit, units=units,
              ax=[trace, *strips])  # fmt: skip
     trace.tick_params(labelbottom=False)
-    artist = SceneArtist(above, history.builder, length=axis_units.of(LENGTH))
+    artist = SceneArtist(above, history.builder, length=axis_units.axis_unit(LENGTH))
     for_limits = samples[np.linspace(0, count - 1, min(count, _SAMPLES_FOR_LIMITS)).astype(int)]
     artist.set_points(history.points)
     artist.set_limits(

@@ -245,7 +245,7 @@ class LayoutBuilder:
 
 
 def _contact_points(outline: Array, in_contact: tuple[bool, bool]) -> Array:
-    """Return the part of a rigid base that bears: the whole, an end, or none."""
+    """Return the part of a rigid base in contact: the whole, an end, or none."""
     if all(in_contact):
         return outline[:2]
     return outline[[in_contact.index(True)]] if any(in_contact) else _NO_POINT

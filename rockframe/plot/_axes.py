@@ -233,13 +233,13 @@ class FigureUnits:
     owner: str
     reader: ReaderUnits
 
-    def of(self, measure: Measure, usual: str = "", **values: object) -> Shown:
+    def axis_unit(self, measure: Measure, default: str = "", **values: object) -> Shown:
         """Return the unit of an axis; `values` has the axis's own argument by its name."""
         for name, unit in values.items():
             if unit is not None:
                 return shown_unit(unit, measure, owner=self.owner, name=name)
-        usual = usual or str(measure.unit)
-        return self.reader.chose(measure) or shown_unit(usual, measure, owner=self.owner, name="")
+        default = default or str(measure.unit)
+        return self.reader.chose(measure) or shown_unit(default, measure, owner=self.owner, name="")
 
     def unit_or_relative(self, measure: Measure, **items: object) -> Shown | None:
         """Return the unit of an axis; None where values are relative to a scale of the body."""
@@ -247,7 +247,7 @@ class FigureUnits:
         if unit is None and self.reader.chose(measure) is None:
             return None
         is_relative = isinstance(unit, str) and unit == RELATIVE
-        return None if is_relative else self.of(measure, "", **items)
+        return None if is_relative else self.axis_unit(measure, "", **items)
 
     def rotation_unit(self, rotation: str | None) -> str | None:
         """Return the unit of a history of rotations: the given one, that of `units`, or degrees."""

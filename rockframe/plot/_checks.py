@@ -29,15 +29,15 @@ FigureFunction = TypeVar("FigureFunction", bound=Callable[..., Any])
 class DatasetKind:
     """A kind of dataset that a function draws."""
 
-    what: str  # its name in messages
+    name: str  # in messages
     call: str  # the call that gives it
-    known: tuple[str, ...]  # variables by which it is recognised
-    needed: tuple[str, ...] = ()  # further variables that are drawn
+    identifying: tuple[str, ...]  # variables by which it is recognised
+    required: tuple[str, ...] = ()  # further variables that are drawn
 
     @property
-    def words(self) -> str:
+    def description(self) -> str:
         """Its name, and the call that gives it."""
-        return f"{self.what}, as {self.call} gives it" if self.call else self.what
+        return f"{self.name}, as {self.call} gives it" if self.call else self.name
 
 
 RUN: Final = DatasetKind(
@@ -61,7 +61,7 @@ SWEEP_ATTRIBUTE: Final = "axes_json"
 _RUN_SCALARS: Final = ("overturned", "peak_rotation")
 _UNDRAWN_KINDS: Final = (
     # (variables, their name in messages, how to draw them); the first match counts
-    (RUN.known, "the result of a run", "rf.plot.response draws it"),
+    (RUN.identifying, "the result of a run", "rf.plot.response draws it"),
     (
         _RUN_SCALARS,
         "the result of a run without histories",
@@ -122,7 +122,7 @@ def draws(
         "title": Argument(None, "str, optional", f"Title of the figure{default_title}."),
     }
     raises = (
-        f"SchemaError\n    The dataset is not {kind.what}; the message names the function that "
+        f"SchemaError\n    The dataset is not {kind.name}; the message names the function that "
         "draws\n    what was given."
     )
 
@@ -131,7 +131,7 @@ def draws(
         text = completed(text, signature(drawing).parameters, shared)
         drawn = "matplotlib.axes.Axes" if ax == "Axes" else "Panels"
         text = with_section(text, "Returns", drawn, ("Raises", "Notes", "Examples"))
-        _REQUIRED_DATA[name] = kind.words
+        _REQUIRED_DATA[name] = kind.description
         if known:
             KINDS[name] = kind
             text = with_raises(text, raises)
@@ -142,7 +142,9 @@ def draws(
 
 
 def _function_for(dataset: xr.Dataset) -> str | None:
-    return next((name for name, kind in KINDS.items() if _has_variables(dataset, kind.known)), None)
+    return next(
+        (name for name, kind in KINDS.items() if _has_variables(dataset, kind.identifying)), None
+    )
 
 
 def figure_function_name(dataset: xr.Dataset) -> str:
@@ -171,7 +173,7 @@ def checked_run(value: object, function: str) -> xr.Dataset:
     owner = f"rf.plot.{function}"
     value = in_units_of_schema(_checked_kind(value, function, RUN), owner=owner)
     value = value.assign_coords(time=in_unit(value["time"], Unit.SECOND, owner=owner).variable)
-    for name in (*RUN.known, *RUN.needed):
+    for name in (*RUN.identifying, *RUN.required):
         if value[name].dtype.kind not in "fiub":
             raise _mismatch_error(function, f"one whose {name!r} holds no numbers")
     more = [str(name) for name in value["relative_rotation"].dims if name != "time"]
@@ -194,9 +196,11 @@ def figure_data(value: object, function: str, units: UnitsLike = None) -> xr.Dat
 
 
 def _checked_kind(value: object, function: str, kind: DatasetKind) -> xr.Dataset:
-    if not isinstance(value, xr.Dataset) or not _has_variables(value, kind.known):
+    if not isinstance(value, xr.Dataset) or not _has_variables(value, kind.identifying):
         raise SchemaError(mismatch_message(function, value))
-    missing = [repr(name) for name in (*kind.known, *kind.needed) if name not in value.variables]
+    missing = [
+        repr(name) for name in (*kind.identifying, *kind.required) if name not in value.variables
+    ]
     if missing:
         raise _mismatch_error(
             function, f"one that lacks {', '.join(missing)}; give it the whole dataset"
@@ -257,10 +261,10 @@ def _describe_value(function: str, value: object) -> tuple[str, str]:
     if not isinstance(value, xr.Dataset):
         return f"{value!r}" if value is None else f"a value of type {type(value).__name__}", ""
     if (known := _function_for(value)) is not None:
-        return f"a Dataset with {KINDS[known].what}", f"rf.plot.{known} draws it"
+        return f"a Dataset with {KINDS[known].name}", f"rf.plot.{known} draws it"
     if "overturned" in value and value["overturned"].ndim > 0:
         way = "rf.plot.sweep draws it"
-        if SWEEP_ATTRIBUTE in value.attrs and _required_data(function) == RUN.words:
+        if SWEEP_ATTRIBUTE in value.attrs and _required_data(function) == RUN.description:
             way += ", rf.case(dataset, ...).simulate() runs one of them with histories"
         return "a Dataset with many runs", way
     if (found := _describe_undrawn(value)) is not None:
@@ -283,7 +287,7 @@ def _describe_undrawn(dataset: xr.Dataset) -> tuple[str, str] | None:
 
 def _required_data(function: str) -> str:
     """Name what a function draws; all others draw runs, as in notebooks."""
-    return _REQUIRED_DATA.get(function, RUN.words)
+    return _REQUIRED_DATA.get(function, RUN.description)
 
 
 def _has_variables(dataset: xr.Dataset, names: tuple[str, ...]) -> bool:

@@ -87,8 +87,8 @@ def phase(
     >>> axes.figure.savefig("phase.png")  # doctest: +SKIP
     """
     data = read_runs(runs, "phase", window)
-    chosen = figure_units(units, "phase")
-    unit = chosen.unit_or_relative(ANGLE, rotation=rotation)
+    axis_units = figure_units(units, "phase")
+    unit = axis_units.unit_or_relative(ANGLE, rotation=rotation)
     sheet = make_single_panel(ax, "phase", (5.6, 4.4))
     reach, end = 0.0, np.inf
     for run in data:
@@ -111,7 +111,7 @@ def phase(
         sheet.axes.set(ylabel=axis_label("rate of the rotation", f"{unit.words} s^-1"))
     if len(data) > 1:
         add_legend(sheet.axes)
-    sheet.set_title(runs_title(data, chosen.reader), title)
+    sheet.set_title(runs_title(data, axis_units.reader), title)
     return sheet.axes
 
 
@@ -166,8 +166,8 @@ def moment_rotation(
     'rotation [°]'
     """
     axis_units = figure_units(units, "moment_rotation")
-    angle_unit = axis_units.of(ANGLE, "deg", rotation=rotation)
-    moment_unit = axis_units.of(MOMENT, "kN*m", moment=moment)
+    angle_unit = axis_units.axis_unit(ANGLE, "deg", rotation=rotation)
+    moment_unit = axis_units.axis_unit(MOMENT, "kN*m", moment=moment)
     if isinstance(given, System):
         equilibrium = _static_moments(given, largest)
         sheet = make_single_panel(ax, "moment_rotation", (5.6, 4.2))
@@ -241,7 +241,7 @@ def energies(
         raise SchemaError(mismatch_message("energies", run))
     _require_variables(data, ENERGIES, "energies")
     axis_units = figure_units(units, "energies")
-    unit = axis_units.of(ENERGY, "kJ", energy=energy)
+    unit = axis_units.axis_unit(ENERGY, "kJ", energy=energy)
     (whole_run,) = data
     changes = {
         name: unit.of(

@@ -132,9 +132,9 @@ def motion(
     limits = read_window(window, "motion")
     axis_units = figure_units(units, "motion")
     row_units = (
-        axis_units.of(ACCELERATION, acceleration=acceleration),
-        axis_units.of(VELOCITY, velocity=velocity),
-        axis_units.of(LENGTH, displacement=displacement),
+        axis_units.axis_unit(ACCELERATION, acceleration=acceleration),
+        axis_units.axis_unit(VELOCITY, velocity=velocity),
+        axis_units.axis_unit(LENGTH, displacement=displacement),
     )
     histories = [_within_window(velocity_and_displacement(one.motion), limits) for one in data]
     vertical_history = None
@@ -232,7 +232,7 @@ def velocity_pulse(
     """
     if not isinstance(cast("object", pulse), VelocityPulse):
         raise ComponentError(mismatch_message("velocity_pulse", pulse))
-    unit = figure_units(units, "velocity_pulse").of(VELOCITY)
+    unit = figure_units(units, "velocity_pulse").axis_unit(VELOCITY)
     sheet = make_sheet(
         ax, "velocity_pulse", ("the motion", "the residual motion"), (8.0, 4.6),
         lambda figure: figure.subplots(2, 1, sharex=True, sharey=True),

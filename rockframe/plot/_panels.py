@@ -189,7 +189,7 @@ def chosen_panels(panels: object, known: Iterable[str], function: str) -> tuple[
 
 
 def make_single_panel(ax: "AxesLike", function: str, size: tuple[float, float]) -> Sheet:
-    """Take the given panel, or make a figure with one; see :func:`sheet`."""
+    """Take the given panel, or make a figure with one; see :func:`make_sheet`."""
     return make_sheet(ax, function, ("the figure",), size, lambda figure: figure.subplots())
 
 

@@ -182,7 +182,7 @@ def player(
     (shown_run,) = read_runs(run, "player", window)
     axis_units = figure_units(units, "player")
     unit = axis_units.unit_or_relative(ANGLE, rotation=axis_units.rotation_unit(rotation))
-    ground = axis_units.of(ACCELERATION)
+    ground = axis_units.axis_unit(ACCELERATION)
     history = SceneHistory(shown_run.dataset, "player", magnify, axis_units)
     start, end = float(shown_run.time[0]), float(shown_run.time[-1])
     count = int(np.clip(1 + round((end - start) * _FRAMES_PER_SECOND), 2, _MAX_FRAMES))
@@ -191,7 +191,7 @@ def player(
     layers = _layers(history, samples, store)
     of_body = " of body 1" if "body" in shown_run.dataset.dims else ""
     label = _label_with_unit(f"rotation{of_body}", "-" if unit is None else unit.words)
-    length = axis_units.of(LENGTH)
+    length = axis_units.axis_unit(LENGTH)
     traces = [
         _trace_data(rotation_values(shown_run, unit), label, BLUE, store),
         *(_trace_data(length.of(slip), _label_with_unit(name, length.words), ORANGE, store)

@@ -227,11 +227,11 @@ def response(
     >>> axes.figure.savefig("rotation.png")  # doctest: +SKIP
     """
     data = read_runs(runs, "response", window)
-    chosen = figure_units(units, "response")
+    axis_units = figure_units(units, "response")
     shown_in = {
-        "ground": chosen.of(ACCELERATION, acceleration=acceleration),
-        "rotation": chosen.unit_or_relative(ANGLE, rotation=rotation),
-        "vertical": chosen.unit_or_relative(LENGTH, vertical=vertical),
+        "ground": axis_units.axis_unit(ACCELERATION, acceleration=acceleration),
+        "rotation": axis_units.unit_or_relative(ANGLE, rotation=rotation),
+        "vertical": axis_units.unit_or_relative(LENGTH, vertical=vertical),
     }
     marked = truth(events, owner="rf.plot.response", name="events")
     strips = contact_strips(data)
@@ -256,7 +256,7 @@ def response(
             state, words = strips[name]
             draw_contact(axes, state, words)
         elif name not in _PANEL_FUNCTIONS:
-            _draw_history(axes, data, name, chosen.reader)
+            _draw_history(axes, data, name, axis_units.reader)
         else:
             _PANEL_FUNCTIONS[name](axes, data, shown_in[name])
     if marked and "rotation" in drawn:
@@ -268,7 +268,7 @@ def response(
     ends = [run.time[[0, -1]] for run in data]
     for axes in sheet.panels:
         axes.set_xlim(min(start for start, _ in ends), max(end for _, end in ends))
-    sheet.set_title(runs_title(data, chosen.reader), title)
+    sheet.set_title(runs_title(data, axis_units.reader), title)
     return sheet.panels
 
 

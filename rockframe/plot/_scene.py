@@ -103,9 +103,9 @@ def scene(
         msg = f"rf.plot.scene: {'; '.join(faults)}"
         raise ComponentError(msg)
     sheet = make_single_panel(ax, "scene", figure_size(builder, wide=with_legend))
-    chosen = figure_units(units, "scene")
-    names = part_labels(system.parts, builder.geometry, chosen.reader)
-    artist = SceneArtist(sheet.axes, builder, names, chosen.of(LENGTH))
+    axis_units = figure_units(units, "scene")
+    names = part_labels(system.parts, builder.geometry, axis_units.reader)
+    artist = SceneArtist(sheet.axes, builder, names, axis_units.axis_unit(LENGTH))
     artist.set_points({point.name: (point.x, point.y) for point in marked})
     artist.set_limits([placement])
     artist.draw(placement)
@@ -164,12 +164,12 @@ def state(
     ''
     """
     run = checked_run(run, "state")
-    chosen = figure_units(units, "state")
-    history = SceneHistory(run, "state", magnify, chosen)
+    axis_units = figure_units(units, "state")
+    history = SceneHistory(run, "state", magnify, axis_units)
     sample = history.nearest_sample(time)
     placement = history.placement_at(sample)
     sheet = make_single_panel(ax, "state", figure_size(history.builder, wide=False))
-    artist = SceneArtist(sheet.axes, history.builder, length=chosen.of(LENGTH))
+    artist = SceneArtist(sheet.axes, history.builder, length=axis_units.axis_unit(LENGTH))
     artist.set_points(history.points)
     artist.set_limits([placement, history.upright])
     artist.draw_at_rest(history.upright)
@@ -185,7 +185,7 @@ class SceneHistory:
         self, run: xr.Dataset, function: str, magnify: object, units: FigureUnits | None = None
     ) -> None:
         self.function = function
-        self.angle = (units or figure_units(None, function)).of(ANGLE, "deg")
+        self.angle = (units or figure_units(None, function)).axis_unit(ANGLE, "deg")
         number = read_positive(magnify, function, "magnify")
         self.system = system_of_run(run, function)
         self.builder = LayoutBuilder(geometry_of(self.system.assembly), number)

@@ -87,9 +87,9 @@ def spectra(
     """
     data = labelled_motions(motion, "spectra")
     limits = read_window(window, "spectra")
-    chosen = figure_units(units, "spectra")
-    unit = chosen.of(ACCELERATION, acceleration=acceleration)
-    amplitude = chosen.of(VELOCITY)
+    axis_units = figure_units(units, "spectra")
+    unit = axis_units.axis_unit(ACCELERATION, acceleration=acceleration)
+    amplitude = axis_units.axis_unit(VELOCITY)
     found = [
         (
             one,
@@ -243,7 +243,7 @@ def suite(
         check_target(target, owner="rf.plot.suite")
     shown_average = one_of_words(Average, average, owner=_SUITE_OWNER, name="average")
     comparison = read_window(compared, "suite", "compared")
-    unit = figure_units(units, "suite").of(ACCELERATION, "g", acceleration=acceleration)
+    unit = figure_units(units, "suite").axis_unit(ACCELERATION, "g", acceleration=acceleration)
     labelled = {one.label or motions_title(data): one.motion for one in data}
     found = response_spectrum(labelled, periods, damping_ratio, component=component)
     found = found.isel(period=np.flatnonzero(found["period"].to_numpy() > 0.0))

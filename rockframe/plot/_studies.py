@@ -211,8 +211,8 @@ def free_decay(
     'rotation [°]'
     """
     data = figure_data(dataset, "free_decay")
-    chosen = figure_units(units, "free_decay")
-    unit = chosen.of(ANGLE, "deg", rotation=rotation)
+    axis_units = figure_units(units, "free_decay")
+    unit = axis_units.axis_unit(ANGLE, "deg", rotation=rotation)
     histories = "measured_rotation" in data
     if histories:
         names = ("measured_rotation", "fitted_rotation", "rotation_residual")
@@ -243,7 +243,7 @@ def free_decay(
         grid(axes)
     below.set_xlabel("time [s]" if histories or "measured_peak_time" in data else "peak")
     add_legend(above)
-    sheet.set_title(chosen.reader.of_sentence(str(data.attrs.get("verdict", ""))), title)
+    sheet.set_title(axis_units.reader.of_sentence(str(data.attrs.get("verdict", ""))), title)
     return sheet.panels
 
 

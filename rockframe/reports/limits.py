@@ -13,10 +13,10 @@ class Limit:
     """A limit of the models."""
 
     title: str  # as on the page of the manual
-    words: str  # its meaning for a result
+    meaning: str  # for a result
     # whether it concerns a scene with these parts
     applies_to: Callable[[Parts], bool] = lambda _: True
-    study_meaning: str = ""  # its meaning for the results of a study, where that differs
+    study_meaning: str = ""  # for the results of a study, where that differs
 
 
 SLIDING: Final = "Sliding"

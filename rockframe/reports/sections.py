@@ -165,7 +165,9 @@ def motion_section(
 
 def response_section(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
     """Return the scalars of a run, and figures of its histories."""
-    if dataset.sizes.get("time", 0) > 1 and {*RUN.known, *RUN.needed} <= {*dataset.variables}:
+    if dataset.sizes.get("time", 0) > 1 and {*RUN.identifying, *RUN.required} <= {
+        *dataset.variables
+    }:
         angle = units.chosen.get(Unit.RADIAN)
         yield page.captioned_figure(
             plot.response(dataset, rotation="deg" if angle else "relative", units=units.words),
@@ -205,7 +207,7 @@ def limits_section(
     parts = None if system is None else system.parts
     slides = system is not None and system.setting.slides
     left_out = [
-        (one.title, one.study_meaning if study and one.study_meaning else one.words)
+        (one.title, one.study_meaning if study and one.study_meaning else one.meaning)
         for one in model_limits(parts, slides=slides)
     ]
     known = WITH_CERTIFICATE if "certificate" in dataset.attrs else WITHOUT_CERTIFICATE

@@ -118,18 +118,18 @@ def _build_part(
     return call_with_table(file, where, lambda **rest: function(*bodies, **rest), table)
 
 
-def _build_inner(file: TomlFile, where: KeyPath, wanted: InnerParts, table: dict[str, Any]) -> bool:
+def _build_inner(file: TomlFile, where: KeyPath, inner: InnerParts, table: dict[str, Any]) -> bool:
     """Build the parts of an inner table; false if one of them has faults."""
     name = str(where[-1])
     value = table[name]
-    if wanted.several and not isinstance(value, list):
+    if inner.several and not isinstance(value, list):
         header = f"[[{table_title(where)}]]"
         words = f"{name} must be an array of tables, {header} above each, got {shown(value)}"
         file.add_fault(where, words)
         return False
-    known = {key: kind for slot in wanted.slots for key, kind in classes_in(slot).items()}
-    parts = _build_each(file, where, known, value, several=wanted.several)
-    table[name] = parts if wanted.several else parts[0]
+    known = {key: kind for slot in inner.slots for key, kind in classes_in(slot).items()}
+    parts = _build_each(file, where, known, value, several=inner.several)
+    table[name] = parts if inner.several else parts[0]
     return None not in parts
 
 

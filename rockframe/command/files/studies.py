@@ -74,7 +74,7 @@ class StudyDescription:
 
 
 def read_study(path: str | Path, *, needs_axes: bool = True) -> StudyDescription:
-    """Read the file of a study; unless `varied`, it may be a scene alone."""
+    """Read the file of a study; unless `needs_axes`, it may be a scene alone."""
     file = TomlFile.read(path)
     import_modules(file)  # before the keys are checked: its parts may add tables
     for name in file.values:
