@@ -1,4 +1,4 @@
-"""The answer of a command: lines of text for people, JSON for programs."""
+"""The answer of a command: lines of text, or JSON for programs."""
 
 import json
 import math
@@ -34,7 +34,7 @@ class Answer:
     def __init__(self, command: str, *, quiet: bool, verbose: bool, as_json: bool) -> None:
         self.quiet, self.as_json = quiet, as_json
         self._verbose = verbose
-        self._context_lines: list[int] = []  # numbers of the lines that repeat the question
+        self._context_lines: list[int] = []  # numbers of the lines on the input
         self._lines: list[tuple[bool, str]] = []  # whether --quiet omits the line; the line
         self._fields: dict[str, Any] = {"command": command, "version": __version__}
         self._numbers: dict[str, Any] = {}
@@ -44,12 +44,12 @@ class Answer:
         """Contents of a file that goes to the standard output."""
 
     def add_context(self, label: str, words: str) -> None:
-        """Add a line on the question, such as the scene; --quiet omits it."""
+        """Add a line on the input, such as the scene; --quiet omits it."""
         self._context_lines.append(len(self._lines))
         self._add(label, words, context=True)
 
     def add_result(self, label: str, words: str) -> None:
-        """Add a line of the answer."""
+        """Add a line on the result."""
         self._add(label, words, context=False)
 
     def add_text(self, words: str, **named: Any) -> None:
@@ -91,7 +91,7 @@ class Answer:
         self._warnings.append(words)
 
     def as_text(self, error: str = "") -> str:
-        """Return the lines for people; after an error without those on the question."""
+        """Return the lines of text; after an error without those on the input."""
         lines = [
             words for number, (context, words) in enumerate(self._lines)
             if not (context and self.quiet) and not (error and number in self._context_lines)

@@ -63,9 +63,9 @@ def finish_analysis(
     outputs: Outputs,
     runs: xr.Dataset | None = None,
 ) -> int:
-    """Tell the numbers of an analysis, write its result and its picture, and give the exit code.
+    """Report the numbers of an analysis, write its result and picture, and return the exit code.
 
-    `runs` are those that it is of, unless it has their status itself.
+    `runs` are those that were analysed, unless `dataset` has their status itself.
     """
     answer.add_numbers(dataset)
     outputs.write_result(dataset)

@@ -276,7 +276,7 @@ class SceneArtist:
             axes.spines[side].set_visible(False)
 
     def set_limits(self, shown: Iterable[Placement]) -> None:
-        """Set limits that hold the scene, and the points that are marked, at all instants."""
+        """Set limits that contain the scene and the marked points at all instants."""
         wall = self.builder.geometry.wall
         shown_parts = [] if wall is None else [wall]
         for placement in shown:

@@ -166,7 +166,7 @@ def figure_function_name(dataset: xr.Dataset) -> str:
 
 
 def checked_run(value: object, function: str) -> xr.Dataset:
-    """Raise unless given the result of one run with histories; give it up to its end.
+    """Return the result of one run with histories up to its end; raise on anything else.
 
     The histories of a case of a sweep are padded with NaN to the length of the longest case.
     """

@@ -1,4 +1,4 @@
-"""Fonts for letters that those of a figure lack, such as the letters of Chinese names."""
+"""Fallback fonts for letters that the fonts of a figure do not have, such as Chinese ones."""
 
 from collections.abc import Callable, Iterable
 from contextvars import ContextVar
@@ -24,7 +24,7 @@ _missing_letters: ContextVar[dict[str, None] | None] = ContextVar(
 
 
 def warn_of_letters_once(drawing: Callable[_P, _T]) -> Callable[_P, _T]:
-    """Let a function that draws several figures warn once of the letters that no font has."""
+    """Decorate a function of several figures, to warn once of letters that no font has."""
 
     @wraps(drawing)
     def wrapped(*args: _P.args, **kwargs: _P.kwargs) -> _T:
@@ -41,7 +41,7 @@ def warn_of_letters_once(drawing: Callable[_P, _T]) -> Callable[_P, _T]:
 
 
 def add_fallback_fonts(artists: "Iterable[Axes | Figure | SubFigure]") -> None:
-    """Give texts another installed font for the letters that theirs lack.
+    """Add installed fonts to texts, for the letters that their own fonts do not have.
 
     Letters that no installed font has are written as question marks, with one warning.
     """

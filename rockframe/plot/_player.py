@@ -39,7 +39,7 @@ _FRAMES_PER_SECOND: Final = 25.0
 _MAX_FRAMES: Final = 900
 """Largest number of instants of a page; the browser interpolates between them."""
 _TRACE_INTERVALS: Final = 700
-"""Number of intervals of time of which a trace keeps the least and the largest value."""
+"""Number of intervals of time; of each, a trace has the least and the largest value."""
 _MAX_SLIP_TRACES: Final = 4
 """Largest number of traces of slip."""
 _ROUNDING: Final = 1e-9

@@ -154,7 +154,7 @@ _MAX_UPLIFT_RATIO: Final = 5.0
 _ZERO_ROTATION: Final = 1e-12
 """Rotations below this are rounding [rad]."""
 _MAX_NAME_LENGTH: Final = 24
-"""Letters of the name of a point or a restrainer."""
+"""Longest name of a point or a restrainer [characters]."""
 SLIP: Final = "slip"
 BODY_SLIP: Final = "body_slip"
 CAP_SLIP: Final = "cap_slip"

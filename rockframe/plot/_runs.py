@@ -92,7 +92,7 @@ def runs_title(runs: list[Run], units: ReaderUnits) -> str:
 
 
 def verdict_of_case(run: xr.Dataset, units: ReaderUnits) -> str:
-    """Return verdict of a run, also of one case of a sweep, whose attribute covers all cases."""
+    """Return the verdict on a run, also on a case of a sweep, whose attribute covers all cases."""
     if "axes_json" not in run.attrs:
         return units.of_sentence(str(run.attrs.get("verdict", "")))
     overturned = verdict_of(run)
@@ -109,7 +109,7 @@ def verdict_of_case(run: xr.Dataset, units: ReaderUnits) -> str:
 
 
 def _case_label(run: xr.Dataset) -> str:
-    """Tell which case of a sweep a run is."""
+    """Name the case of a sweep by its coordinates."""
     axes = [str(one["name"]) for one in json.loads(str(run.attrs["axes_json"]))]
     names = [name for name in ("motion", *axes) if name in run.coords and not run[name].dims]
     labels = [(name.replace("_", " "), run[name].item(), run[name].attrs) for name in names]

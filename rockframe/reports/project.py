@@ -12,7 +12,7 @@ from rockframe.errors import ComponentError, nearest, shown
 from rockframe.reports import page
 
 PROJECT_ATTRIBUTE: Final = "project_json"
-"""Attribute of a result in which the command line keeps the project of a scene's file."""
+"""Attribute of a result in which the command line stores the project of a scene's file."""
 ENTRIES: Final = {
     "object": "Object",
     "place": "Place",
