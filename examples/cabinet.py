@@ -1,9 +1,10 @@
-"""How a cabinet is best loaded: the same things in its base, or on its upper shelf.
+"""How to load a cabinet: the same contents in its base, or on its upper shelf.
 
 Usage: python examples/cabinet.py [--folder results]
 
 An unanchored cabinet, 0.45 m deep and 1.9 m high, holds 120 kg on an upper floor.
-Prints at what floor acceleration it falls, loaded low and loaded high; writes cabinet.csv.
+Prints the peak floor acceleration at which it overturns, loaded low and loaded high; writes
+cabinet.csv.
 """
 
 import argparse
@@ -29,7 +30,7 @@ def cabinet(height_of_load: str) -> rf.Block:
 
 
 def main() -> None:
-    """Tell a curator where the heavy things belong."""
+    """Compare the cabinet with its load low and high."""
     parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("--folder", default=".", help="where the results are written")
     folder = Path(parser.parse_args().folder)
@@ -45,14 +46,15 @@ def main() -> None:
         peaks[name] = found.peak_ground_acceleration.item() / 9.80665
         rest = system.equilibrium()
         print(
-            f"Loaded {name}: falls once tilted by "
+            f"Loaded {name}: overturns at a tilt of "
             f"{math.degrees(rest.overturning_angle):.1f} degrees, or at a floor acceleration "
             f"of {peaks[name]:.2f} g."
         )
     rf.table(runs).to_csv(folder / "cabinet.csv")
     print(
-        f"With its load at the bottom the cabinet stands {peaks['low'] / peaks['high']:.1f} times "
-        "the shaking that throws it with the load at the top."
+        "With its load at the bottom the cabinet withstands "
+        f"{peaks['low'] / peaks['high']:.1f} times the acceleration that overturns it with the "
+        "load at the top."
     )
 
 

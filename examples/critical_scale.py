@@ -2,10 +2,11 @@
 
 Usage: python examples/critical_scale.py [record] [--largest 4] [--folder results]
 
-The record is a file as agencies give it out. Without one the motion is drawn from a model of
-an earthquake of magnitude 7.2 at 5 km. Prints from which scale on the tower overturns, where it
-stands again above that, and the spectral acceleration at the critical scale, and writes
-critical_scale.nc (all scales tried and all flips of the verdict, labelled).
+The record is a file in the format of an agency. Without one the motion is a sample of a
+stochastic model of an earthquake of magnitude 7.2 at 5 km. Prints the least scale at which the
+tower overturns, the scales above it at which the verdict changes again, and the spectral
+acceleration at the critical scale, and writes critical_scale.nc (all scales tried and all changes
+of the verdict, labelled).
 """
 
 import argparse
@@ -16,7 +17,7 @@ import rockframe as rf
 
 
 def main() -> int:
-    """Read the arguments, search, and tell in one line why it cannot be done."""
+    """Read the arguments and search; print errors in one line."""
     parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("record", nargs="?", help="ground-motion file; a synthetic one if none")
     parser.add_argument("--largest", type=float, default=4.0, help="largest scale of the motion")
@@ -33,7 +34,7 @@ def main() -> int:
 
 
 def search(record: str | None, largest: float, folder: Path) -> None:
-    """Build the tower, look for its critical scale, and show the result."""
+    """Build the tower, find its critical scale, and print the result."""
     tower = rf.System(
         rf.Block(width="1.2 m", height="6 m", mass="20 t"),
         rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.10),

@@ -1,4 +1,4 @@
-"""A six-storey frame taken apart into its members, and what they come to.
+"""The members of a six-storey frame, and the properties that follow from them.
 
 Usage: python examples/frame_members.py [--folder results]
 
@@ -13,7 +13,7 @@ import rockframe as rf
 
 
 def main() -> None:
-    """Build the frame, print what it consists of, and keep the table."""
+    """Build the frame, print its members and properties, and write the table."""
     parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("--folder", default=".", help="where the table is written")
     arguments = parser.parse_args()
@@ -41,8 +41,8 @@ def main() -> None:
         ("space proportion chi", frame.space_proportion, 0.138),
         ("overturning angle [rad]", frame.overturning_angle.m_as("rad"), 0.219),
     )
-    for name, ours, printed in rows:
-        print(f"{name:24}{ours:10.3f}{printed:10.3f}")
+    for name, computed, published in rows:
+        print(f"{name:24}{computed:10.3f}{published:10.3f}")
     share = frame.centre_of_mass_height / frame.height
     print(f"The centre of mass lies at {share.m_as(''):.3f} of the height.")
 

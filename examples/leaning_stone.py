@@ -1,9 +1,9 @@
-"""How safe is a standing stone that leans: it is easier to throw to one side.
+"""A leaning stone: it overturns more easily to one side.
 
 Usage: python examples/leaning_stone.py [--folder results]
 
 A menhir, 0.9 m wide and 4.2 m high, on stiff soil; its top stands 0.35 m beside its foot. Prints
-how much a pulse of the ground to either side it bears; writes leaning_stone.csv.
+the peak acceleration of a pulse to either side that it withstands; writes leaning_stone.csv.
 """
 
 import argparse
@@ -17,7 +17,7 @@ PEAK = 3.0  # of the pulse [m/s^2]
 
 
 def main() -> None:
-    """Tell a curator from which side the stone is in danger."""
+    """Find the pulse that overturns the stone to either side."""
     parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("--folder", default=".", help="where the results are written")
     folder = Path(parser.parse_args().folder)
@@ -41,11 +41,11 @@ def main() -> None:
             f"falls to the {run.attrs['overturning_direction']}."
         )
     rf.table(runs).to_csv(folder / "leaning_stone.csv")
-    weak, strong = sorted(scales, key=lambda side: scales[side])
-    share = 100.0 * (1.0 - scales[weak] / scales[strong])
+    weaker, stronger = sorted(scales, key=lambda side: scales[side])
+    reduction = 100.0 * (1.0 - scales[weaker] / scales[stronger])
     print(
-        f"The stone is in danger to the side it leans to: a pulse that starts to the {weak} fells "
-        f"it at {share:.0f} % less shaking."
+        f"The stone is weaker to the side it leans to: a pulse that starts to the {weaker} "
+        f"overturns it at an amplitude {reduction:.0f} % lower."
     )
 
 

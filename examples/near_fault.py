@@ -1,11 +1,11 @@
-"""Whether a block falls by the pulse of a near-fault motion, or by the rest of it.
+"""Whether the pulse of a near-fault motion overturns a block, or the rest of the motion.
 
 Usage: python examples/near_fault.py [record] [--component N] [--folder results]
 
 Without a record the pulse of a rupture that runs towards the site is added to a motion that was
 recorded far from the fault and comes with rockframe. Finds the pulse, runs a block under the whole
-motion, under the pulse alone and under what is left without it, and tells which of them overturn
-it. Writes near_fault.png (velocities of the motion, the pulse and the rest).
+motion, under the pulse alone and under the residual motion, and prints which of them overturn it.
+Writes near_fault.png (velocities of the motion, the pulse and the rest).
 """
 
 import argparse
@@ -17,39 +17,39 @@ import numpy as np
 import rockframe as rf
 
 
-def with_a_pulse() -> rf.GroundMotion:
+def motion_with_pulse() -> rf.GroundMotion:
     """Add a pulse of 1.2 s and 0.6 m/s to the record of Loma Prieta, scaled to 0.15 g."""
     record = rf.GroundMotion.example("loma-prieta").scaled(peak="0.15 g_0")
     pulse = rf.GroundMotion.mavroeidis_papageorgiou_pulse("60 cm/s", "0.8 Hz", 2, "0 deg")
     samples = record.si.horizontal.samples
     time = np.arange(samples.size) * record.si.time_step
-    together = samples + pulse.si.at(time - 8.0)
+    combined = samples + pulse.si.at(time - 8.0)
     step = f"{record.si.time_step!r} s"
-    return rf.GroundMotion.from_arrays((together, "m/s^2"), step, name="Loma Prieta and a pulse")
+    return rf.GroundMotion.from_arrays((combined, "m/s^2"), step, name="Loma Prieta and a pulse")
 
 
 def main() -> int:
-    """Read the arguments, run, and tell in one line why it cannot be done."""
+    """Read the arguments and run; print errors in one line."""
     parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
-    parser.add_argument("record", nargs="?", help="ground-motion file; made up if none")
+    parser.add_argument("record", nargs="?", help="ground-motion file; synthetic if none")
     parser.add_argument("--component", help="component of the record, such as N or 090")
     parser.add_argument("--folder", default=".", help="where the figure is written")
     arguments = parser.parse_args()
     try:
         folder = Path(arguments.folder)
         folder.mkdir(parents=True, exist_ok=True)
-        motion = with_a_pulse()
+        motion = motion_with_pulse()
         if arguments.record:
             motion = rf.GroundMotion.read(arguments.record, component=arguments.component)
-        shake_by_parts(motion, folder)
+        simulate_parts(motion, folder)
     except (rf.errors.RockframeError, OSError) as problem:
         print(f"near_fault: {' '.join(str(problem).split())}", file=sys.stderr)
         return 1
     return 0
 
 
-def shake_by_parts(motion: rf.GroundMotion, folder: Path) -> None:
-    """Find the pulse, and let each part of the motion shake the block."""
+def simulate_parts(motion: rf.GroundMotion, folder: Path) -> None:
+    """Find the pulse, and simulate the block under each part of the motion."""
     pulse = motion.velocity_pulse()
     print(f"{motion.name}: {pulse}")
 

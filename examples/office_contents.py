@@ -1,11 +1,11 @@
-"""Bookcases and filing cabinets that nothing holds: when they fall, beside FEMA P-58.
+"""Unanchored bookcases and filing cabinets: when they overturn, compared with FEMA P-58.
 
 Usage: python examples/office_contents.py [--motions 6] [--store study] [--folder results]
 
 Prints, for the nine unanchored contents of FEMA P-58 whose demand is the peak floor velocity, the
-median velocity at which they fall beside that of FEMA P-58; writes office_contents.csv (the
+median velocity at which they overturn and that of FEMA P-58; writes office_contents.csv (the
 table), office_contents.png (the medians with their bounds) and damage_library.csv (rows for
-pelicun). With --store what has been run is kept in that folder.
+pelicun). With --store finished runs are kept in that folder.
 
 Sizes and medians are those that pelicun's library of FEMA P-58 gives (components E.20.22.102a to
 125a; NHERI SimCenter). There the dispersion is 0.5 for all of them.
@@ -38,7 +38,7 @@ VELOCITY = "peak_ground_velocity"
 
 
 def main() -> int:
-    """Read the arguments, run the analyses, and tell in one line why it cannot be done."""
+    """Read the arguments and run the analyses; print errors in one line."""
     parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("--motions", type=int, default=6, help="number of synthetic earthquakes")
     parser.add_argument("--store", help="folder in which the runs are kept")
@@ -47,8 +47,8 @@ def main() -> int:
     try:
         folder = Path(arguments.folder)
         folder.mkdir(parents=True, exist_ok=True)
-        found = fragilities(earthquakes(arguments.motions), arguments.store)
-        table = table_of(found)
+        found = fragilities(synthetic_motions(arguments.motions), arguments.store)
+        table = comparison_table(found)
         print(table.to_string())
         table.to_csv(folder / "office_contents.csv")
         draw(table).savefig(folder / "office_contents.png", dpi=150)
@@ -64,7 +64,7 @@ def main() -> int:
     return 0
 
 
-def earthquakes(count: int) -> dict[str, rf.GroundMotion]:
+def synthetic_motions(count: int) -> dict[str, rf.GroundMotion]:
     """Draw shallow earthquakes of magnitude 6.5 to 7 at 10 km, all with a peak of 1 m/s."""
     return {
         f"seed {seed}": rf.GroundMotion.stochastic(
@@ -75,7 +75,7 @@ def earthquakes(count: int) -> dict[str, rf.GroundMotion]:
 
 
 def fragilities(motions: dict[str, rf.GroundMotion], store: str | None) -> dict[str, xr.Dataset]:
-    """Scale all motions until each of the contents falls; fit its capacity."""
+    """Scale all motions until each of the contents overturns; fit its capacity."""
     found = {}
     for name, (_, depth, height, _) in CONTENTS.items():
         block = rf.Block(width=f"{depth} inch", height=f"{height} inch", mass="100 kg")
@@ -92,8 +92,8 @@ def fragilities(motions: dict[str, rf.GroundMotion], store: str | None) -> dict[
     return found
 
 
-def table_of(found: dict[str, xr.Dataset]) -> pd.DataFrame:
-    """Put the medians beside those of FEMA P-58."""
+def comparison_table(found: dict[str, xr.Dataset]) -> pd.DataFrame:
+    """Compare the medians with those of FEMA P-58."""
     rows = {
         name: {
             "what": CONTENTS[name][0],
@@ -113,12 +113,12 @@ def draw(table: pd.DataFrame) -> Figure:
     """Draw both medians, the computed one with its bounds."""
     figure = Figure(figsize=(6.8, 4.0), layout="constrained")
     axes = figure.subplots()
-    place = np.arange(len(table))[::-1]
+    position = np.arange(len(table))[::-1]
     computed = table["computed [m/s]"]
-    reach = [computed - table["from [m/s]"], table["to [m/s]"] - computed]
-    axes.errorbar(computed, place, xerr=reach, fmt="o", color="#1f3a5f", label="computed")
-    axes.plot(table["FEMA P-58 [m/s]"], place, "D", color="#cc6677", label="FEMA P-58")
-    axes.set_yticks(place, table["what"])
+    errors = [computed - table["from [m/s]"], table["to [m/s]"] - computed]
+    axes.errorbar(computed, position, xerr=errors, fmt="o", color="#1f3a5f", label="computed")
+    axes.plot(table["FEMA P-58 [m/s]"], position, "D", color="#cc6677", label="FEMA P-58")
+    axes.set_yticks(position, table["what"])
     axes.set(xscale="log", xlabel="median peak floor velocity [m s$^{-1}$]")
     ticks = [0.2, 0.3, 0.5, 1.0, 2.0, 3.0]
     axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])

@@ -1,10 +1,10 @@
-"""Pads that yield: a base of one's own, in one file.
+"""Pads that yield: a user's own base, in one file.
 
 Usage: python examples/own_base.py [--folder results]
 
-Each pad is a bilinear spring beside a dashpot: where its force reaches a strength it yields, and
-keeps a plastic set. Prints what becomes of a block on such pads, alone and on a cap on soil, and
-what simpler bases would have told; writes own_base.nc.
+Each pad is a bilinear spring beside a dashpot: when its force reaches a strength it yields, with
+a plastic set. Prints the response of a block on such pads, alone and on a cap on soil, and a
+comparison with simpler bases; writes own_base.nc.
 """
 
 import argparse
@@ -18,7 +18,7 @@ import xarray as xr
 import rockframe as rf
 from rockframe import extension as ext
 
-INSTANT = 1e-6  # times the time of a vibration
+LOOK_AHEAD = 1e-6  # time ahead of the guards, over a period of vibration
 YIELDING = 1  # state of a pad
 
 
@@ -53,13 +53,13 @@ class YieldingPad(NamedTuple):
         return self.spring(point, own) + self.damping * point.speed
 
     def force_rate(self, state, point, own):
-        (growth,) = self.rates(state, point, own)
-        return self.stiffness * (point.speed - growth) + self.damping * point.acceleration
+        (set_rate,) = self.rates(state, point, own)
+        return self.stiffness * (point.speed - set_rate) + self.damping * point.acceleration
 
     def power(self, state, point, own):
-        """Return what dashpot and yielding dissipate."""
-        (growth,) = self.rates(state, point, own)
-        return self.damping * point.speed**2 + self.spring(point, own) * growth
+        """Return the power dissipated by dashpot and yielding."""
+        (set_rate,) = self.rates(state, point, own)
+        return self.damping * point.speed**2 + self.spring(point, own) * set_rate
 
     def return_rate(self):
         return self.stiffness / self.damping if self.damping > 0.0 else 0.0
@@ -69,18 +69,19 @@ class YieldingPad(NamedTuple):
         return (1.0 - self.hardening) * (point.pressed - self.strength / self.stiffness)
 
     def guard(self, state, point, own):
-        """Guard the set that is left until yielding, or the sinking that goes on."""
-        instant = INSTANT / math.sqrt(2.0 * self.stiffness)
+        """Guard the margin to yielding, or, while the pad yields, its rate of compression."""
+        look_ahead = LOOK_AHEAD / math.sqrt(2.0 * self.stiffness)
         if state == YIELDING:
-            return instant * point.speed / point.settlement, (
-                instant * point.acceleration / point.settlement
+            return look_ahead * point.speed / point.settlement, (
+                look_ahead * point.acceleration / point.settlement
             )
-        # where yielding has just ended the speed is rounding: the acceleration tells
-        soon = (1.0 - self.hardening) * (point.speed + instant * point.acceleration)
-        return (own[0] - self.yielding_set(point)) / point.settlement, -soon / point.settlement
+        # just after yielding ends the speed is rounding, and the acceleration decides
+        predicted_rate = (1.0 - self.hardening) * (point.speed + look_ahead * point.acceleration)
+        margin = own[0] - self.yielding_set(point)
+        return margin / point.settlement, -predicted_rate / point.settlement
 
     def settle(self, state, point, own):
-        """Put a set that has been integrated beside the hardening branch back on it."""
+        """Correct the integrated set, so that the force is on the hardening branch."""
         own[0] = max(own[0], self.yielding_set(point))
 
     def seen(self, state, point, own):
@@ -107,10 +108,10 @@ class YieldingSupport(ext.PadSupport):
         return ext.pads_over(pad, elastic, columns=columns, variable_scales=scales)
 
     def start_faults(self, rotation, has_vertical_start):
-        most = max(self.held_at(rotation).reactions.values())
-        yields = has_vertical_start or most > self.strength * self.load.weight
-        told = "InitialState: a run on YieldingPads starts in equilibrium, before any yields"
-        return [told] if yields else []
+        largest = max(self.held_at(rotation).reactions.values())
+        yields = has_vertical_start or largest > self.strength * self.load.weight
+        message = "InitialState: a run on YieldingPads starts in equilibrium, before any yields"
+        return [message] if yields else []
 
     def words(self):
         set_grows = "the set z grows by (1 - r) u' on k (u - z) = strength + r k z/(1 - r)"
@@ -143,8 +144,8 @@ class YieldingPads(ext.OwnBase):
         return YieldingSupport(load, *numbers, self.si.strength, self.si.hardening)
 
     def misfits(self, parts):
-        told = "YieldingPads yield under the weight alone; give a strength above 0.5, not "
-        return [] if self.si.strength > 0.5 else [f"{told}{self.si.strength:.6g}"]
+        message = "YieldingPads yield under the weight alone; give a strength above 0.5, not "
+        return [] if self.si.strength > 0.5 else [f"{message}{self.si.strength:.6g}"]
 
 
 rf.register(YieldingPads, columns=[

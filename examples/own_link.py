@@ -1,8 +1,8 @@
-"""A rope that hardens: a link by a law of one's own, in one file.
+"""A rope that hardens: a link with a user's own law, in one file.
 
 Usage: python examples/own_link.py
 
-The rope pulls by k e + h e^3 once it is taut. Prints what becomes of a block on pads with it and
+A taut rope has the tension k e + h e^3. Prints the response of a block on pads with the rope and
 without.
 """
 
@@ -18,7 +18,7 @@ BECAME_TAUT = int(ext.EventKind.RESTRAINER_TAUT)
 
 @ext.link_law
 class Hardening(NamedTuple):
-    """A rope that pulls by k e + h e^3, per unit mass."""
+    """A rope with the tension k e + h e^3, per unit mass."""
 
     stiffness: float
     hardening: float
@@ -77,7 +77,7 @@ rf.register(Rope)
 
 
 def main():
-    """Run a block with the rope and without."""
+    """Simulate a block with the rope and without."""
     block = rf.Block(width="1 m", height="4 m", mass="4 t")
     pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
     rope = Rope(

@@ -1,10 +1,10 @@
-"""A block that slides and rocks: a scene of one's own, with its own equations, in one file.
+"""A block that slides and rocks: a user's own scene, with its own equations, in one file.
 
 Usage: python examples/own_scene.py [--folder results]
 
 The block stands on rigid ground with Coulomb friction: it rests, slides on its whole base, rocks
-about a corner that friction holds, or slides on that corner while it rocks. Prints what becomes of
-it with little, some and much friction; writes own_scene.nc.
+about a corner that sticks, or slides on that corner while it rocks. Prints the response with
+little, some and much friction; writes own_scene.nc.
 """
 
 import argparse
@@ -18,20 +18,20 @@ import xarray as xr
 import rockframe as rf
 from rockframe import extension as ext
 
-FULL, RIGHT, LEFT = 0, 1, 2  # what bears: a mode is 3 * this + the slip
-HELD, TO_RIGHT, TO_LEFT = 0, 1, 2  # the slip of what bears
-TO_IMPACT, TO_STICK, ON_RIGHT, ON_LEFT, SLIP_RIGHT, SLIP_LEFT = range(6)  # guards
-GUARDS = 6
+FULL, RIGHT, LEFT = 0, 1, 2  # contact: the whole base or a corner; mode = 3 * contact + slip
+NO_SLIP, TO_RIGHT, TO_LEFT = 0, 1, 2  # slip of the contact
+TO_IMPACT, TO_STICK, UPLIFT_RIGHT, UPLIFT_LEFT, SLIP_RIGHT, SLIP_LEFT = range(6)  # guards
+GUARD_COUNT = 6
 ROUNDING = 1e-12  # of accelerations, over gravity
-INSTANT = 1e-10  # rotation, over that which overturns, that a rebound must reach
+LEAST_REBOUND = 1e-10  # rotation of the smallest rebound, over the overturning angle
 
 
-class Motion(NamedTuple):
-    """Accelerations, and force of the ground on the block."""
+class Accelerations(NamedTuple):
+    """Accelerations of slip and rotation, and the force of the ground on the block."""
 
     slip: float
     rotation: float
-    along: float
+    tangential: float
     normal: float
 
 
@@ -62,7 +62,7 @@ class SlideRock(NamedTuple):
 
     @ext.kernel
     def guards(self):
-        return GUARDS
+        return GUARD_COUNT
 
     @ext.kernel
     def modes(self):
@@ -76,88 +76,90 @@ class SlideRock(NamedTuple):
     @ext.inlined
     def contact_state_of(self, mode, k):
         if mode // 3 == FULL:
-            return BEARS_FULL
-        return BEARS_RIGHT if mode // 3 == RIGHT else BEARS_LEFT
+            return CONTACT_FULL
+        return CONTACT_RIGHT if mode // 3 == RIGHT else CONTACT_LEFT
 
     @ext.inlined
     def relaxation_in(self, mode):
         return 0.0
 
     @ext.inlined
-    def mirror(self, mode):
+    def corner_sign(self, mode):
         return -1.0 if mode // 3 == LEFT else 1.0
 
     @ext.inlined
-    def sense(self, mode):
-        """Return the sign of the slip, 0 where friction holds."""
-        return 0.0 if mode % 3 == HELD else 1.0 if mode % 3 == TO_RIGHT else -1.0
+    def slip_sign(self, mode):
+        """Return the sign of the slip, 0 without slip."""
+        return 0.0 if mode % 3 == NO_SLIP else 1.0 if mode % 3 == TO_RIGHT else -1.0
 
     @ext.inlined
-    def reach(self, mode, rotation):
-        """Return the place of the centre of mass beside the bearing corner, and above it."""
+    def centre_from_corner(self, mode, rotation):
+        """Return the centre of mass relative to the corner in contact, to the right and above."""
         sine, cosine = math.sin(rotation), math.cos(rotation)
-        side = self.mirror(mode)
+        side = self.corner_sign(mode)
         beside = self.height * sine - side * self.half_width * cosine
         return beside, self.height * cosine + side * self.half_width * sine
 
     @ext.inlined
-    def motion(self, mode, state, ground):
-        """Return the motion in a mode."""
-        weight, sense = self.gravity + ground.y, self.sense(mode)
+    def accelerations(self, mode, state, ground):
+        """Return accelerations and forces in a mode."""
+        weight, sign = self.gravity + ground.y, self.slip_sign(mode)
         if mode // 3 == FULL:
-            along = ground.x if sense == 0.0 else -sense * self.kinetic * weight
-            return Motion(along - ground.x, 0.0, along, weight)
-        beside, above = self.reach(mode, state[1])
+            tangential = ground.x if sign == 0.0 else -sign * self.kinetic * weight
+            return Accelerations(tangential - ground.x, 0.0, tangential, weight)
+        beside, above = self.centre_from_corner(mode, state[1])
         square = state[3] * state[3]
         pressing = weight - above * square
-        if sense == 0.0:
+        if sign == 0.0:
             inertia = self.inertia + beside * beside + above * above
-            turning = (weight * beside - ground.x * above) / inertia
-            along = ground.x + above * turning - beside * square
-            return Motion(0.0, turning, along, pressing - beside * turning)
-        arm = beside + sense * self.kinetic * above
-        turning = pressing * arm / (self.inertia + beside * arm)
-        normal = pressing - beside * turning
-        along = -sense * self.kinetic * normal
-        return Motion(along - ground.x - above * turning + beside * square, turning, along, normal)
+            angular = (weight * beside - ground.x * above) / inertia
+            tangential = ground.x + above * angular - beside * square
+            return Accelerations(0.0, angular, tangential, pressing - beside * angular)
+        arm = beside + sign * self.kinetic * above
+        angular = pressing * arm / (self.inertia + beside * arm)
+        normal = pressing - beside * angular
+        tangential = -sign * self.kinetic * normal
+        slip = tangential - ground.x - above * angular + beside * square
+        return Accelerations(slip, angular, tangential, normal)
 
     @ext.inlined
-    def speeds(self, mode, state):
+    def centre_velocity(self, mode, state):
         """Return the velocity of the centre of mass relative to the ground."""
-        beside, above = self.reach(mode, state[1])
+        beside, above = self.centre_from_corner(mode, state[1])
         return state[2] + above * state[3], -beside * state[3]
 
     @ext.inlined
     def accelerate(self, mode, state, ground):
-        """Return accelerations, what friction dissipates, and what the ground puts in."""
+        """Return accelerations, the power dissipated by friction, and that of the ground."""
         if mode == 0:
             return 0.0, 0.0, 0.0, 0.0
-        moved = self.motion(mode, state, ground)
-        across, up = self.speeds(mode, state)
+        motion = self.accelerations(mode, state, ground)
+        across, up = self.centre_velocity(mode, state)
         supplied = -ground.x * across - ground.y * up
-        return moved.slip, moved.rotation, -moved.along * state[2], supplied
+        return motion.slip, motion.rotation, -motion.tangential * state[2], supplied
 
     @ext.inlined
     def guards_in(self, mode, state, slope, ground):
-        """Guard the rotation's sign, the slip's, and at rest and where it sticks the forces."""
+        """Guard the signs of rotation and slip; without slip also the forces."""
         scale = 1.0 / self.gravity
-        landing = falling = stopping = slowing = 1.0
+        gap = gap_rate = slip_speed = slip_rate = 1.0
         right = left = to_right = to_left = 1.0
-        sense, side = self.sense(mode), self.mirror(mode)
+        sign, side = self.slip_sign(mode), self.corner_sign(mode)
         if mode // 3 != FULL:
-            landing, falling = side * state[1], side * state[3]
-        if sense != 0.0:
-            # a slip that starts is not stopped by rounding
-            stopping, slowing = sense * state[2], sense * slope[0] + ROUNDING * self.gravity
+            gap, gap_rate = side * state[1], side * state[3]
+        if sign != 0.0:
+            # rounding must not stop a slip that has just started
+            slip_speed, slip_rate = sign * state[2], sign * slope[0] + ROUNDING * self.gravity
         else:
-            moved = self.motion(mode, state, ground)
-            most = self.static * moved.normal
-            to_right, to_left = scale * (most + moved.along), scale * (most - moved.along)
+            motion = self.accelerations(mode, state, ground)
+            most = self.static * motion.normal
+            to_right = scale * (most + motion.tangential)
+            to_left = scale * (most - motion.tangential)
             if mode // 3 == FULL:
-                tips = self.half_width / self.height * moved.normal
-                right, left = scale * (tips + ground.x), scale * (tips - ground.x)
-        values = landing, stopping, right, left, to_right, to_left
-        return ext.Guards(values, (falling, slowing, 0.0, 0.0, 0.0, 0.0))
+                tipping_force = self.half_width / self.height * motion.normal
+                right, left = scale * (tipping_force + ground.x), scale * (tipping_force - ground.x)
+        values = gap, slip_speed, right, left, to_right, to_left
+        return ext.Guards(values, (gap_rate, slip_rate, 0.0, 0.0, 0.0, 0.0))
 
     @ext.kernel
     def some_end_slides(self, mode):
@@ -171,109 +173,114 @@ class SlideRock(NamedTuple):
     def switch(self, mode, guard, state, ground, memory):
         memory[ext.LAST_EVENT] = ext.SILENT
         if guard == TO_IMPACT:
-            return self.land(mode, state, ground, memory)
-        bears = mode // 3
-        if guard in (ON_RIGHT, ON_LEFT):
+            return self.impact(mode, state, ground, memory)
+        contact = mode // 3
+        if guard in (UPLIFT_RIGHT, UPLIFT_LEFT):
             memory[ext.LAST_EVENT] = UPLIFT
-            return 3 * (RIGHT if guard == ON_RIGHT else LEFT)
+            return 3 * (RIGHT if guard == UPLIFT_RIGHT else LEFT)
         if guard in (SLIP_RIGHT, SLIP_LEFT):
-            slips = 3 * bears + (TO_RIGHT if guard == SLIP_RIGHT else TO_LEFT)
-            # found too early, it would stick again
-            starts = self.sense(slips) * self.motion(slips, state, ground).slip
-            return slips if starts > -ROUNDING * self.gravity else mode
+            slipping = 3 * contact + (TO_RIGHT if guard == SLIP_RIGHT else TO_LEFT)
+            # located too early, it would stick again
+            slip_rate = self.slip_sign(slipping) * self.accelerations(slipping, state, ground).slip
+            return slipping if slip_rate > -ROUNDING * self.gravity else mode
         state[2] = 0.0
-        held = self.motion(3 * bears, state, ground)
-        if abs(held.along) <= self.static * held.normal:
-            memory[ext.LAST_EVENT] = HELD_AGAIN
-            return 3 * bears
-        return 3 * bears + (TO_LEFT if held.along > 0.0 else TO_RIGHT)
+        sticking = self.accelerations(3 * contact, state, ground)
+        if abs(sticking.tangential) <= self.static * sticking.normal:
+            memory[ext.LAST_EVENT] = STICK
+            return 3 * contact
+        return 3 * contact + (TO_LEFT if sticking.tangential > 0.0 else TO_RIGHT)
 
     @ext.kernel
-    def land(self, mode, state, ground, memory):
-        """Strike the other corner: friction holds it if its impulse can, else it slips."""
-        side, before, slip = self.mirror(mode), state[3], state[2]
-        wide, high, friction = side * self.half_width, self.height, self.kinetic
-        across, up = self.speeds(mode, state)
-        lost = 0.5 * (across * across + up * up + self.inertia * before * before)
-        square = wide * wide + high * high
-        # as if it were held: rate of the rotation, impulses along and normal to the ground
-        after = (self.inertia + square - 2.0 * wide * wide) * before + high * slip
+    def impact(self, mode, state, ground, memory):
+        """Impact of the other corner, which sticks if friction can hold its impulse, else slips."""
+        side, before, slip = self.corner_sign(mode), state[3], state[2]
+        b, h, friction = side * self.half_width, self.height, self.kinetic
+        across, up = self.centre_velocity(mode, state)
+        energy_loss = 0.5 * (across * across + up * up + self.inertia * before * before)
+        square = b * b + h * h
+        # if the corner sticks: angular velocity, and impulses along and normal to the ground
+        after = (self.inertia + square - 2.0 * b * b) * before + h * slip
         after /= self.inertia + square
-        normal = -wide * (after + before)
-        along = high * (after - before) - slip
-        left_over = 0.0
-        if abs(along) > friction * normal:
-            ratio = friction if along > 0.0 else -friction
-            arm = wide * (wide - ratio * high)
+        normal = -b * (after + before)
+        tangential = h * (after - before) - slip
+        slip_after = 0.0
+        if abs(tangential) > friction * normal:
+            ratio = friction if tangential > 0.0 else -friction
+            arm = b * (b - ratio * h)
             after = before * (self.inertia - arm) / (self.inertia + arm)
-            along = -ratio * wide * (after + before)
-            left_over = slip + along - high * (after - before)
+            tangential = -ratio * b * (after + before)
+            slip_after = slip + tangential - h * (after - before)
         state[1] = 0.0
-        bears = LEFT if mode // 3 == RIGHT else RIGHT
+        contact = LEFT if mode // 3 == RIGHT else RIGHT
         memory[ext.LAST_EVENT] = IMPACT
-        if side * after >= 0.0:  # so wide that it lands flat
-            bears, after = FULL, 0.0
-            most = friction * wide * abs(before)
-            sliding = slip + high * before
-            left_over = 0.0 if abs(sliding) <= most else sliding - math.copysign(most, sliding)
-        slides = HELD if left_over == 0.0 else TO_RIGHT if left_over > 0.0 else TO_LEFT
-        state[2], state[3] = left_over, after
-        if self.comes_to_rest(mode, 3 * bears + slides, state, ground):
-            bears, state[3] = FULL, 0.0
+        if side * after >= 0.0:  # a wide block lands flat
+            contact, after = FULL, 0.0
+            most = friction * b * abs(before)
+            sliding = slip + h * before
+            slip_after = 0.0 if abs(sliding) <= most else sliding - math.copysign(most, sliding)
+        slip_state = NO_SLIP if slip_after == 0.0 else TO_RIGHT if slip_after > 0.0 else TO_LEFT
+        state[2], state[3] = slip_after, after
+        if self.comes_to_rest(mode, 3 * contact + slip_state, state, ground):
+            contact, state[3] = FULL, 0.0
             memory[ext.LAST_EVENT] = REST
-        new = 3 * bears + slides
-        across, up = self.speeds(new, state)
-        lost -= 0.5 * (across * across + up * up + self.inertia * state[3] * state[3])
-        memory[ext.IMPACT_LOSS] += lost
-        return new
+        new_mode = 3 * contact + slip_state
+        across, up = self.centre_velocity(new_mode, state)
+        energy_loss -= 0.5 * (across * across + up * up + self.inertia * state[3] * state[3])
+        memory[ext.IMPACT_LOSS] += energy_loss
+        return new_mode
 
     @ext.kernel
     def comes_to_rest(self, old, new, state, ground):
-        """Whether a rebound is too low to be told, and the block can stand on its whole base."""
-        if new // 3 == FULL or (new % 3 != HELD and self.kinetic * self.height > self.half_width):
+        """Whether a rebound is negligible, and the block can rest on its whole base."""
+        slips = new % 3 != NO_SLIP
+        if new // 3 == FULL or (slips and self.kinetic * self.height > self.half_width):
             return False
-        restoring = -self.mirror(new) * self.motion(new, state, ground).rotation
-        held = self.mirror(old) * self.motion(3 * (old // 3), state, ground).rotation <= 0.0
-        most = INSTANT * math.atan2(self.half_width, self.height)
-        return held and restoring > 0.0 and state[3] * state[3] < 2.0 * restoring * most
+        restoring = -self.corner_sign(new) * self.accelerations(new, state, ground).rotation
+        before = self.accelerations(3 * (old // 3), state, ground).rotation
+        pressed = self.corner_sign(old) * before <= 0.0
+        least = LEAST_REBOUND * math.atan2(self.half_width, self.height)
+        return pressed and restoring > 0.0 and state[3] * state[3] < 2.0 * restoring * least
 
     @ext.kernel
     def rise(self, mode, rotation):
-        """Return the rise of the centre of mass, to all digits."""
+        """Return the rise of the centre of mass without cancellation."""
         half = math.sin(0.5 * rotation)
-        side = self.mirror(mode)
+        side = self.corner_sign(mode)
         return side * self.half_width * math.sin(rotation) - 2.0 * self.height * half * half
 
     @ext.kernel
     def energies(self, mode, state):
-        across, up = self.speeds(mode, state)
+        across, up = self.centre_velocity(mode, state)
         kinetic = 0.5 * (across * across + up * up + self.inertia * state[3] * state[3])
         return ext.Energies(kinetic, self.gravity * self.rise(mode, state[1]), 0.0, 0.0)
 
     @ext.kernel
     def observe(self, mode, state, slope, ground, memory):
         """Return the motion of the centre of mass, the reactions, and the slip."""
-        moved = self.motion(mode, state, ground)
-        beside, _ = self.reach(mode, state[1])
-        across, up = self.speeds(mode, state)
-        place = state[0] + self.mirror(mode) * self.half_width + beside
+        motion = self.accelerations(mode, state, ground)
+        beside, _ = self.centre_from_corner(mode, state[1])
+        across, up = self.centre_velocity(mode, state)
+        place = state[0] + self.corner_sign(mode) * self.half_width + beside
         if mode // 3 == FULL:
             place = state[0]
-        sway = moved.along - ground.x
-        rise = moved.normal - self.gravity - ground.y
-        tilt = self.height / self.half_width * moved.along
-        left, right = 0.5 * (moved.normal + tilt), 0.5 * (moved.normal - tilt)
+        horizontal = motion.tangential - ground.x
+        vertical = motion.normal - self.gravity - ground.y
+        difference = self.height / self.half_width * motion.tangential
+        left, right = 0.5 * (motion.normal + difference), 0.5 * (motion.normal - difference)
         if mode // 3 != FULL:
-            bears = mode // 3 == RIGHT
-            left, right = (0.0, moved.normal) if bears else (moved.normal, 0.0)
-        lift, shear = self.rise(mode, state[1]), moved.along
-        body = state[1], state[3], lift, up, place, shear, across, moved.rotation, sway, rise
-        return body + (shear, moved.normal, left, right, state[0], state[2])
+            on_right = mode // 3 == RIGHT
+            left, right = (0.0, motion.normal) if on_right else (motion.normal, 0.0)
+        rise, shear = self.rise(mode, state[1]), motion.tangential
+        body = (
+            state[1], state[3], rise, up, place, shear, across,
+            motion.rotation, horizontal, vertical,
+        )  # fmt: skip
+        return body + (shear, motion.normal, left, right, state[0], state[2])
 
 
-BEARS_FULL, BEARS_LEFT, BEARS_RIGHT = (int(state) for state in (
+CONTACT_FULL, CONTACT_LEFT, CONTACT_RIGHT = (int(state) for state in (
     ext.ContactState.FULL, ext.ContactState.LEFT, ext.ContactState.RIGHT))  # fmt: skip
-UPLIFT, IMPACT, REST, HELD_AGAIN = (int(kind) for kind in (
+UPLIFT, IMPACT, REST, STICK = (int(kind) for kind in (
     ext.EventKind.UPLIFT, ext.EventKind.IMPACT, ext.EventKind.REST,
     ext.EventKind.PIVOT_CHANGE))  # fmt: skip
 
@@ -318,9 +325,9 @@ class SlidingScene(ext.OwnScene):
 
         def initial(start):
             rotation, rate = start.rotation or 0.0, start.angular_velocity
-            leans = rotation or rate
-            bears = FULL if leans == 0.0 else RIGHT if leans > 0.0 else LEFT
-            return 3 * bears, np.array([0.0, rotation, 0.0, rate]), np.zeros(len(ext.MEMORY))
+            disturbed = rotation or rate
+            contact = FULL if disturbed == 0.0 else RIGHT if disturbed > 0.0 else LEFT
+            return 3 * contact, np.array([0.0, rotation, 0.0, rate]), np.zeros(len(ext.MEMORY))
 
         return ext.ContactModel(
             name=self.model,

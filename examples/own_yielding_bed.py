@@ -1,10 +1,10 @@
-"""Soil that yields: a bed of springs of one's own, in one file.
+"""Soil that yields: a user's own bed of springs, in one file.
 
 Usage: python examples/own_yielding_bed.py [--folder results]
 
-The soil is a bed of springs without tension, elastic up to its strength and plastic beyond: it
-keeps a residual settlement. Prints the moment of a wall that is rotated on it beside that in
-closed form, and what a ground motion leaves; writes own_yielding_bed.nc.
+The soil is a bed of springs without tension, elastic up to its strength and plastic beyond, with a
+residual settlement. Prints the moment of a rotated wall on it and that in closed form, and the
+residual settlements after a ground motion; writes own_yielding_bed.nc.
 """
 
 import argparse
@@ -17,13 +17,13 @@ import rockframe as rf
 from rockframe import extension as ext
 
 SPRINGS = 20
-INSTANT = 1e-6  # times the time of a vibration
+LOOK_AHEAD = 1e-6  # time ahead of the guards, over a period of vibration
 YIELDING = 1  # state of a spring
 
 
 @ext.point_law
 class YieldingSpring(NamedTuple):
-    """A spring that yields beside a dashpot, per unit length and mass; it keeps a set."""
+    """A spring that yields beside a dashpot, per unit length and mass, with a plastic set."""
 
     stiffness: float
     damping: float
@@ -55,7 +55,7 @@ class YieldingSpring(NamedTuple):
         return elastic + self.damping * point.acceleration
 
     def power(self, state, point, own):
-        """Return what dashpot and yielding dissipate."""
+        """Return the power dissipated by dashpot and yielding."""
         by_yielding = self.spring(point, own) * point.speed if state == YIELDING else 0.0
         return self.damping * point.speed**2 + by_yielding
 
@@ -63,17 +63,17 @@ class YieldingSpring(NamedTuple):
         return self.stiffness / self.damping if self.damping > 0.0 else 0.0
 
     def guard(self, state, point, own):
-        """Guard the strength that is left, or the sinking that goes on."""
-        instant = INSTANT * math.sqrt(point.settlement)  # as long as g is near 1 to 10 m/s^2
+        """Guard the margin to yielding, or, while the spring yields, its rate of compression."""
+        look_ahead = LOOK_AHEAD * math.sqrt(point.settlement)  # as long as g is near 1 to 10 m/s^2
         if state == YIELDING:
-            scale = instant / point.settlement
+            scale = look_ahead / point.settlement
             return scale * point.speed, scale * point.acceleration
-        # where yielding has just ended the speed is rounding: the acceleration tells
-        soon = self.stiffness * (point.speed + instant * point.acceleration)
-        return 1.0 - self.spring(point, own) / self.strength, -soon / self.strength
+        # just after yielding ends the speed is rounding, and the acceleration decides
+        predicted_rate = self.stiffness * (point.speed + look_ahead * point.acceleration)
+        return 1.0 - self.spring(point, own) / self.strength, -predicted_rate / self.strength
 
     def settle(self, state, point, own):
-        """Put a set that has been integrated beside the strength back on it."""
+        """Correct the integrated set, so that the force is the strength."""
         own[0] = max(own[0], point.pressed - self.strength / self.stiffness)
 
     def seen(self, state, point, own):
@@ -115,7 +115,7 @@ class YieldingSupport(ext.Support):
 
 
 class YieldingSoil(ext.OwnBase):
-    """A bed of springs that yield, by three numbers without dimension."""
+    """A bed of springs that yield, by three dimensionless numbers."""
 
     slot = "soil"
     settlement = ext.Ratio(ext.POSITIVE, doc="Elastic settlement under the weight over b.")
@@ -138,18 +138,18 @@ rf.register(YieldingSoil, columns=[
 
 def moment(n: float, phi: float) -> float:
     """Return M/(N_u b) of a strip at a rotation phi = k0 b alpha/q_u under n = N/N_u."""
-    lifts, yields = phi > n, phi > 1.0 - n
-    if lifts and (n <= 0.5 and phi <= 0.25 / n):
+    uplifts, yields = phi > n, phi > 1.0 - n
+    if uplifts and (n <= 0.5 and phi <= 0.25 / n):
         return n * (1.0 - 2.0 / 3.0 * math.sqrt(n / phi))
-    if not (lifts or yields):
+    if not (uplifts or yields):
         return phi / 3.0
-    if not lifts or (n > 0.5 and phi <= 0.25 / (1.0 - n)):  # the same, with what is left to yield
+    if not uplifts or (n > 0.5 and phi <= 0.25 / (1.0 - n)):  # the same, with 1 - n in place of n
         return (1.0 - n) * (1.0 - 2.0 / 3.0 * math.sqrt((1.0 - n) / phi))
     return n * (1.0 - n) - 1.0 / (48.0 * phi**2)
 
 
 def main() -> None:
-    """Rotate a wall on yielding soil, and shake it."""
+    """Rotate a wall on yielding soil statically, and simulate its response to a pulse."""
     parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("--folder", default=".", help="where the results are written")
     file = Path(parser.parse_args().folder) / "own_yielding_bed.nc"

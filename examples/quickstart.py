@@ -2,11 +2,10 @@
 
 Usage: python examples/quickstart.py [record] [--component NS] [--folder results]
 
-The record is a file as agencies give it out; of several components in it one is to be named.
-Without a record the motion is drawn from a model of an earthquake of magnitude 7.5 at 5 km.
-Prints what became of the frame, and writes
-quickstart.nc (all results, labelled) and quickstart.png (rotation, vertical displacement
-and contact along time).
+The record is a file in the format of an agency; of several components in it name one. Without a
+record the motion is a sample of a stochastic model of an earthquake of magnitude 7.5 at 5 km.
+Prints the verdict, and writes quickstart.nc (all results, labelled) and quickstart.png (rotation,
+vertical displacement and contact over time).
 """
 
 import argparse
@@ -17,7 +16,7 @@ import rockframe as rf
 
 
 def main() -> int:
-    """Read the arguments, run, and tell in one line why it cannot be done."""
+    """Read the arguments and run; print errors in one line."""
     parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("record", nargs="?", help="ground-motion file; a synthetic one if none")
     parser.add_argument("--component", help="component of the record, such as NS or 090")
@@ -27,7 +26,7 @@ def main() -> int:
         parser.error("--component is one of a record; none is given")
     try:
         folder = Path(arguments.folder)
-        folder.mkdir(parents=True, exist_ok=True)  # before the work, not after it
+        folder.mkdir(parents=True, exist_ok=True)  # fails before the run, not after it
         simulate(arguments.record, arguments.component, folder)
     except (rf.errors.RockframeError, OSError) as problem:
         print(f"quickstart: {' '.join(str(problem).split())}", file=sys.stderr)

@@ -5,7 +5,7 @@ Usage: python examples/size_and_pulse.py [--sizes 30] [--amplitudes 40] [--store
 
 Prints how many of the blocks overturned, the least amplitude for some sizes, and one case run
 alone; writes size_and_pulse.nc (all runs, labelled) and size_and_pulse.png (the map). With --store
-what has been run is kept in that folder, and the same call goes on from there.
+finished runs are kept in that folder, and the same call continues from there.
 """
 
 import argparse
@@ -29,7 +29,7 @@ COLOURS = {
 
 
 def main() -> int:
-    """Read the arguments, run the study, and tell in one line why it cannot be done."""
+    """Read the arguments and run the study; print errors in one line."""
     parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("--sizes", type=int, default=30, help="number of sizes")
     parser.add_argument("--amplitudes", type=int, default=40, help="number of amplitudes")
@@ -40,7 +40,7 @@ def main() -> int:
         folder = Path(arguments.folder)
         folder.mkdir(parents=True, exist_ok=True)
         runs = study(arguments.sizes, arguments.amplitudes, arguments.store)
-        tell(runs)
+        print_summary(runs)
         runs.to_netcdf(folder / "size_and_pulse.nc")
         draw(runs).savefig(folder / "size_and_pulse.png", dpi=150)
         print(f"Result: {folder / 'size_and_pulse.nc'}, map: {folder / 'size_and_pulse.png'}")
@@ -50,15 +50,15 @@ def main() -> int:
     return 0
 
 
-def block_of(radius: str) -> rf.System:
-    """Put a block of the given half diagonal on rigid ground."""
+def rigid_block(radius: str) -> rf.System:
+    """Return a block with a half diagonal, on rigid ground."""
     return rf.System(rf.Block.from_size(radius=radius, slenderness=SLENDERNESS, mass="10 t"))
 
 
 def study(sizes: int, amplitudes: int, store: str | None) -> xr.Dataset:
     """Run all sizes under all amplitudes of one cycle of a sine."""
     return rf.sweep(
-        block_of,
+        rigid_block,
         rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz"),
         radius=(np.geomspace(0.5, 20.0, sizes), "m"),
         peak_ground_acceleration=(np.linspace(2.5, 20.0, amplitudes), "m/s^2"),
@@ -69,21 +69,21 @@ def study(sizes: int, amplitudes: int, store: str | None) -> xr.Dataset:
     ).isel(motion=0)
 
 
-def lies_flat(runs: xr.Dataset) -> xr.DataArray:
-    """Tell which blocks lie flat in the end; a moving ground may bring one back."""
+def is_toppled(runs: xr.Dataset) -> xr.DataArray:
+    """Return which blocks lie flat in the end; a moving ground may right a block again."""
     return runs.status == runs.status.flag_meanings.split().index("toppled")
 
 
-def tell(runs: xr.Dataset) -> None:
-    """Print what was found."""
-    flat = lies_flat(runs)
+def print_summary(runs: xr.Dataset) -> None:
+    """Print the numbers of blocks, the least amplitudes, and one case."""
+    toppled = is_toppled(runs)
     print(runs.attrs["verdict"])
-    print(f"{int(flat.sum())} lie flat in the end. Least amplitude of those, by size:")
+    print(f"{int(toppled.sum())} lie flat in the end. Least amplitude of those, by size:")
     amplitude = runs.peak_ground_acceleration
-    least = amplitude.where(flat).min("peak_ground_acceleration")
+    least = amplitude.where(toppled).min("peak_ground_acceleration")
     for radius in runs.radius[:: max(1, runs.radius.size // 6)]:
-        found = least.sel(radius=radius).item()
-        words = "none" if np.isnan(found) else f"{found:.1f} m/s^2"
+        amplitude_found = least.sel(radius=radius).item()
+        words = "none" if np.isnan(amplitude_found) else f"{amplitude_found:.1f} m/s^2"
         print(f"  R = {radius.item():5.2f} m: {words}")
     case = rf.case(
         runs, radius=runs.radius[0].item(), peak_ground_acceleration=amplitude[-1].item()
@@ -93,7 +93,7 @@ def tell(runs: xr.Dataset) -> None:
 
 def draw(runs: xr.Dataset) -> Figure:
     """Draw the map."""
-    kind = xr.where(lies_flat(runs), xr.where(runs.impact_count > 0, 2, 1), 0)
+    kind = xr.where(is_toppled(runs), xr.where(runs.impact_count > 0, 2, 1), 0)
     figure = Figure(figsize=(6.4, 4.2), layout="constrained")
     axes = figure.subplots()
     axes.pcolormesh(

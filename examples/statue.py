@@ -1,10 +1,10 @@
-"""Does a statue fall: a marble figure with a low centre of mass that faces to one side.
+"""Does a statue overturn: a marble figure with a low, eccentric centre of mass.
 
 Usage: python examples/statue.py [--folder results]
 
 The outline of the figure, 2.1 m high and 0.25 m deep on the average, gives mass, centre of mass
-and moment of inertia. Prints how far it must tilt to either side and at what peak acceleration
-an earthquake and its mirror image throw it; writes statue.csv.
+and moment of inertia. Prints the overturning angle to either side and the peak acceleration at
+which an earthquake and its mirror image overturn it; writes statue.csv.
 """
 
 import argparse
@@ -20,22 +20,22 @@ OUTLINE = [
 
 
 def main() -> None:
-    """Tell a curator at what shaking the statue falls."""
+    """Find the peak ground acceleration at which the statue overturns."""
     parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("--folder", default=".", help="where the results are written")
     folder = Path(parser.parse_args().folder)
     statue = rf.Block.from_outline(OUTLINE, unit="m", density="2700 kg/m^3", depth="0.25 m")
-    height, beside = statue.centre_of_mass
+    height, eccentricity = statue.centre_of_mass
     print(
         f"The statue weighs {statue.mass.m_as('kg'):.0f} kg; its centre of mass is "
-        f"{height.m_as('cm'):.0f} cm high and {beside.m_as('cm'):+.1f} cm beside the middle of "
-        "its base."
+        f"{height.m_as('cm'):.0f} cm high and {eccentricity.m_as('cm'):+.1f} cm beside the middle "
+        "of its base."
     )
     system = rf.System(statue)
     rest = system.equilibrium()
     for side in ("left", "right"):
         angle = rest[f"{side}_overturning_angle"].item()
-        print(f"It falls to the {side} once tilted by {math.degrees(angle):.1f} degrees.")
+        print(f"It overturns to the {side} at a tilt of {math.degrees(angle):.1f} degrees.")
     motion = rf.GroundMotion.stochastic(magnitude=7.0, distance="5 km", seed=11)
     found = {
         name: rf.critical_scale(

@@ -1,11 +1,11 @@
-"""A download of records: read, scaled to the spectrum of a code, and run.
+"""A set of records: read, scaled to the spectrum of a code, and simulated.
 
 Usage: python examples/suite.py [records] [--count 7] [--folder results]
 
 `records` is a folder or an archive with records of both horizontal components. Without it a small
-download is made up: sixteen stations of a synthetic earthquake, packed as a zip archive. Prints the
-set that fits Eurocode 8 best and what becomes of a cabinet under it; writes selection.png,
-suite.nc and runs.csv.
+archive is synthesised: sixteen stations of an earthquake, in a zip file. Prints the set that fits
+Eurocode 8 best and how often a cabinet overturns under it; writes selection.png, suite.nc and
+runs.csv.
 """
 
 import argparse
@@ -19,7 +19,7 @@ import rockframe as rf
 STATIONS = 16
 
 
-def made_up() -> bytes:
+def synthetic_archive() -> bytes:
     """Pack accelerograms of sixteen stations, as a download would."""
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
@@ -38,25 +38,25 @@ def made_up() -> bytes:
 
 
 def main() -> int:
-    """Read the arguments, run, and tell in one line why it cannot be done."""
+    """Read the arguments and run; print errors in one line."""
     parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
-    parser.add_argument("records", nargs="?", help="folder or archive; made up if none")
+    parser.add_argument("records", nargs="?", help="folder or archive; synthetic if none")
     parser.add_argument("--count", type=int, default=7, help="records to choose")
     parser.add_argument("--folder", default=".", help="where the results are written")
     arguments = parser.parse_args()
     try:
         folder = Path(arguments.folder)
         folder.mkdir(parents=True, exist_ok=True)
-        choose(arguments.records, arguments.count, folder)
+        select_and_simulate(arguments.records, arguments.count, folder)
     except (rf.errors.RockframeError, OSError) as problem:
         print(f"suite: {' '.join(str(problem).split())}", file=sys.stderr)
         return 1
     return 0
 
 
-def choose(records: str | None, count: int, folder: Path) -> None:
-    """Read a suite, choose among it, and let it shake a cabinet."""
-    suite = rf.read_suite(records or made_up())
+def select_and_simulate(records: str | None, count: int, folder: Path) -> None:
+    """Read a suite, select motions by their spectra, and simulate a cabinet."""
+    suite = rf.read_suite(records or synthetic_archive())
     print(
         f"{len(suite)} motions, {len(suite.pairs)} of both components, {len(suite.unread)} not read"
     )
@@ -76,8 +76,8 @@ def choose(records: str | None, count: int, folder: Path) -> None:
         "motion",
         list(chosen),
     )
-    fallen = int(runs.overturned.sum())
-    print(f"A cabinet 2 m high and 0.3 m deep falls under {fallen} of {len(chosen)} motions.")
+    overturned = int(runs.overturned.sum())
+    print(f"A cabinet 2 m high and 0.3 m deep falls under {overturned} of {len(chosen)} motions.")
 
     rf.plot.selection(found).figure.savefig(folder / "selection.png", dpi=150)
     chosen.to_dataset().to_netcdf(folder / "suite.nc")

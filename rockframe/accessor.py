@@ -73,9 +73,9 @@ class RockframeAccessor:
             There is no function that draws such a dataset.
         """
         from rockframe import plot
-        from rockframe.plot._checks import drawn_by
+        from rockframe.plot._checks import figure_function_name
 
-        return getattr(plot, drawn_by(self._dataset))(self._dataset, **options)
+        return getattr(plot, figure_function_name(self._dataset))(self._dataset, **options)
 
     def player(
         self, path: "str | Path | None" = None, *, overwrite: bool = False, **options: Any

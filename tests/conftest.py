@@ -63,9 +63,9 @@ def no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     from rockframe.plot import _panels
     from rockframe.reports import page
 
-    monkeypatch.setattr(page, "_drawn", lambda figure, kind: b"<svg/>")
+    monkeypatch.setattr(page, "_rendered", lambda figure, kind: b"<svg/>")
     # it makes all ticks of a figure, to look for letters that their font lacks
-    monkeypatch.setattr(_panels, "make_legible", lambda artists: None)
+    monkeypatch.setattr(_panels, "add_fallback_fonts", lambda artists: None)
 
 
 def pytest_configure(config: pytest.Config) -> None:

@@ -13,7 +13,7 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 import rockframe as rf
-from rockframe.command.files.templates import every_key
+from rockframe.command.files.templates import all_keys_template
 from rockframe.dynamics.events import ContactState, EventKind
 from rockframe.motion import formats
 from rockframe.plot._checks import KINDS
@@ -126,7 +126,7 @@ def _units() -> Rows:
 
 def _figures() -> Rows:
     yield "of rf.plot", "draws", "which is given by"
-    yield from ((name, kind.what, kind.call) for name, kind in KINDS.items())
+    yield from ((name, kind.name, kind.call) for name, kind in KINDS.items())
 
 
 def _formats() -> Rows:
@@ -184,7 +184,7 @@ TABLES: dict[str, Callable[[], Rows]] = {
 }
 
 
-TEXTS: dict[str, Callable[[], str]] = {"every-key": every_key}
+TEXTS: dict[str, Callable[[], str]] = {"every-key": all_keys_template}
 
 
 class CodeTable(SphinxDirective):

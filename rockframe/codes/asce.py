@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from typing import Final, NamedTuple, Self
 
-from rockframe.codes.check import peaks_of, read_motions, rocking_block, scene_words
+from rockframe.codes.check import peak_responses, read_motions, rigid_block_setting, scene_summary
 from rockframe.components import Block
 from rockframe.motion import GroundMotion
 from rockframe.reports.checks import CheckedLine, CheckedVerdict, CodeCheck
@@ -14,10 +14,10 @@ from rockframe.units import POSITIVE, QuantityLike, RatioLike, Unit, to_ratio
 
 _OWNER: Final = "asce_7_22"
 _CODE: Final = "ASCE/SEI 7-22, chapter 13"
-_LEAST: Final = 0.3
-_MOST: Final = 1.6
-_VERTICAL: Final = 0.2
-_RESISTING: Final = 0.9
+_MIN_FORCE_FACTOR: Final = 0.3
+_MAX_FORCE_FACTOR: Final = 1.6
+_VERTICAL_FORCE_FACTOR: Final = 0.2
+_RESISTING_SHARE: Final = 0.9
 """Share of the weight that counts against tipping."""
 
 
@@ -81,7 +81,7 @@ def asce_7_22(
     False
     """
     system = System(block) if isinstance(block, Block) else block
-    setting = rocking_block(system, _OWNER, slides=True)
+    setting = rigid_block_setting(system, _OWNER, allow_sliding=True)
     factors = {
         symbol: to_ratio(value, owner=_OWNER, name=name, condition=POSITIVE, example="1.5")
         for symbol, name, value in (
@@ -93,49 +93,51 @@ def asce_7_22(
             ("R_po", "strength_factor", strength_factor),
         )
     }
-    there = None if system.parts.ground is None else system.parts.ground.friction
+    available_friction = None if system.parts.ground is None else system.parts.ground.friction
     if friction is not None:
-        there = to_ratio(friction, owner=_OWNER, name="friction", condition=POSITIVE, example="0.4")
-    forces = _Forces.of(factors, setting.body.mass * setting.gravity)
+        available_friction = to_ratio(
+            friction, owner=_OWNER, name="friction", condition=POSITIVE, example="0.4"
+        )
+    forces = _SeismicForces.of(factors, setting.body.mass * setting.gravity)
     # a rear wall prevents tipping to one side
-    height, lesser = setting.body.centre_height, min(setting.overturning_angles)
+    height, smaller_angle = setting.body.centre_height, min(setting.overturning_angles)
     lines = {
         "Factors": tuple(
             CheckedLine(name, value, Unit.ONE, "factor", "given") for name, value in factors.items()
         ),
         "Forces": forces.lines(),
     }
-    lines["Statics, without anchors"], verdicts = _statics(
-        forces, height, height * math.tan(lesser), there
+    lines["Statics, without anchors"], verdicts = _check_statics(
+        forces, height, height * math.tan(smaller_angle), available_friction
     )
     if floor_motions is not None:
-        runs = peaks_of(system, read_motions(floor_motions, _OWNER), free_vibration)
+        runs = peak_responses(system, read_motions(floor_motions, _OWNER), free_vibration)
         lines["Motion on the floor"] = tuple(
             CheckedLine(label, peak.rotation, Unit.RADIAN,
                         "overturned" if peak.overturned else "peak rotation", "run")
             for label, peak in runs.items()
         )  # fmt: skip
-        fallen = [label for label, peak in runs.items() if peak.overturned]
+        overturned = [label for label, peak in runs.items() if peak.overturned]
         verdicts.append(
-            CheckedVerdict("motion", not fallen,
-                           f"{len(fallen)} of {len(runs)} overturned", "not part of the code")
+            CheckedVerdict("motion", not overturned,
+                           f"{len(overturned)} of {len(runs)} overturned", "not part of the code")
         )  # fmt: skip
     notes = (
         "H_f, R_mu, C_AR and R_po are taken as they are given",
         "strength of anchors; loads other than earthquake and weight",
     )
     return CodeCheck(
-        "A component on its floor", _CODE, lines, tuple(verdicts), notes, scene_words(system)
+        "A component on its floor", _CODE, lines, tuple(verdicts), notes, scene_summary(system)
     )
 
 
-class _Forces(NamedTuple):
+class _SeismicForces(NamedTuple):
     """Seismic forces on a component [N], equation 13.3-1 and its limits."""
 
     weight: float
     by_formula: float
-    least: float
-    most: float
+    minimum: float
+    maximum: float
     vertical: float
 
     @classmethod
@@ -144,14 +146,15 @@ class _Forces(NamedTuple):
         base = factors["S_DS"] * factors["I_p"] * weight
         by_formula = 0.4 * base * factors["H_f"] / factors["R_mu"]
         return cls(
-            weight, by_formula * factors["C_AR"] / factors["R_po"], _LEAST * base, _MOST * base,
-            _VERTICAL * factors["S_DS"] * weight,
+            weight, by_formula * factors["C_AR"] / factors["R_po"],
+            _MIN_FORCE_FACTOR * base, _MAX_FORCE_FACTOR * base,
+            _VERTICAL_FORCE_FACTOR * factors["S_DS"] * weight,
         )  # fmt: skip
 
     @property
     def horizontal(self) -> float:
         """F_p, within its limits [N]."""
-        return min(max(self.by_formula, self.least), self.most)
+        return min(max(self.by_formula, self.minimum), self.maximum)
 
     def lines(self) -> tuple[CheckedLine, ...]:
         """Return the forces as lines of the check."""
@@ -160,8 +163,8 @@ class _Forces(NamedTuple):
             CheckedLine("W_p", self.weight, newton, "weight", "of the block"),
             CheckedLine("F_p, formula", self.by_formula, newton,
                         "0.4 S_DS I_p W_p (H_f/R_mu) (C_AR/R_po)", "13.3-1"),
-            CheckedLine("F_p, least", self.least, newton, "0.3 S_DS I_p W_p", "13.3.1"),
-            CheckedLine("F_p, greatest", self.most, newton, "1.6 S_DS I_p W_p", "13.3.1"),
+            CheckedLine("F_p, least", self.minimum, newton, "0.3 S_DS I_p W_p", "13.3.1"),
+            CheckedLine("F_p, greatest", self.maximum, newton, "1.6 S_DS I_p W_p", "13.3.1"),
             CheckedLine("F_p", self.horizontal, newton, "horizontal force at the centre of mass",
                         "13.3.1"),
             CheckedLine("F_v", self.vertical, newton,
@@ -169,28 +172,29 @@ class _Forces(NamedTuple):
         )  # fmt: skip
 
 
-def _statics(
-    forces: _Forces, height: float, arm: float, friction: float | None
+def _check_statics(
+    forces: _SeismicForces, height: float, arm: float, friction: float | None
 ) -> tuple[tuple[CheckedLine, ...], list[CheckedVerdict]]:
     """Return moments and friction without anchors, with verdicts; `arm` is the shorter one [m]."""
-    pressing = _RESISTING * forces.weight
-    lifted = max(pressing - forces.vertical, 0.0)
-    tipping, resisting = forces.horizontal * height, lifted * arm
+    resisting_weight = _RESISTING_SHARE * forces.weight
+    net_weight = max(resisting_weight - forces.vertical, 0.0)
+    tipping, resisting = forces.horizontal * height, net_weight * arm
     # the vertical force may exceed the weight, and then adds to the moment of the anchors
-    anchored = tipping - (pressing - forces.vertical) * arm
-    needed = forces.horizontal / lifted if lifted > 0.0 else math.inf
+    anchor_moment = tipping - (resisting_weight - forces.vertical) * arm
+    required_friction = forces.horizontal / net_weight if net_weight > 0.0 else math.inf
     moment = Unit.NEWTON_METRE
     lines = (
         CheckedLine("M_OT", tipping, moment, "F_p times the height of the centre of mass",
                     "equilibrium"),
-        CheckedLine("M_R", pressing * arm, moment, "0.9 W_p times the lesser arm", "equilibrium"),
+        CheckedLine("M_R", resisting_weight * arm, moment, "0.9 W_p times the lesser arm",
+                    "equilibrium"),
         CheckedLine("M_R, with F_v", resisting, moment, "0.9 W_p - F_v times the lesser arm",
                     "13.3.1"),
-        CheckedLine("M_anchors", max(anchored, 0.0), moment,
+        CheckedLine("M_anchors", max(anchor_moment, 0.0), moment,
                     "what anchors must carry, M_OT - M_R, with F_v", "equilibrium"),
-        CheckedLine("mu", forces.horizontal / pressing, Unit.ONE,
+        CheckedLine("mu", forces.horizontal / resisting_weight, Unit.ONE,
                     "friction to stay without anchors, F_p/(0.9 W_p)", "equilibrium"),
-        CheckedLine("mu, with F_v", needed, Unit.ONE, "F_p/(0.9 W_p - F_v)", "13.3.1"),
+        CheckedLine("mu, with F_v", required_friction, Unit.ONE, "F_p/(0.9 W_p - F_v)", "13.3.1"),
     )  # fmt: skip
     verdicts = [
         CheckedVerdict("tipping", tipping <= resisting,
@@ -198,7 +202,8 @@ def _statics(
     ]  # fmt: skip
     if friction is not None:
         verdicts.append(
-            CheckedVerdict("sliding", needed <= friction,
-                           f"needed with F_v {needed:.4g}, there is {friction:.4g}", "equilibrium")
+            CheckedVerdict("sliding", required_friction <= friction,
+                           f"needed with F_v {required_friction:.4g}, there is {friction:.4g}",
+                           "equilibrium")
         )  # fmt: skip
     return lines, verdicts

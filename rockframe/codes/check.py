@@ -12,8 +12,8 @@ from rockframe.system.sliding_stack import RestrainedSetting
 from rockframe.units import QuantityLike
 
 
-def rocking_block(
-    system: object, owner: str, *, carries: bool = False, slides: bool = False
+def rigid_block_setting(
+    system: object, owner: str, *, allow_loads: bool = False, allow_sliding: bool = False
 ) -> RigidGroundSetting | RestrainedSetting:
     """Return the setting of a block that rocks on level rigid ground; refuse any other scene.
 
@@ -25,22 +25,22 @@ def rocking_block(
     setting = system.setting
     level = system.options.slope.level
     if system.parts.block is not None and level:
-        if isinstance(setting, RigidGroundSetting) and (slides or not setting.slides):
+        if isinstance(setting, RigidGroundSetting) and (allow_sliding or not setting.slides):
             return setting
         if (
-            carries
+            allow_loads
             and isinstance(setting, RestrainedSetting)
             and not setting.slides
             and not setting.links  # links other than loads that are masses
         ):
             return setting
-    carried = ", which may carry loads that are masses," if carries else ","
+    carried = ", which may carry loads that are masses," if allow_loads else ","
     found = ", ".join(type(part).__name__ for part in system.parts.structural())
     slope = "" if level else " on a slope"
-    held = ", or with sliding='checked', which holds it" if setting.slides else ""
+    hint = ", or with sliding='checked', which holds it" if setting.slides else ""
     msg = (
         f"{owner}: the check is of a block on level rigid ground{carried} got {found}{slope}, "
-        f"{setting.model}; check the block alone, rf.System(block){held}"
+        f"{setting.model}; check the block alone, rf.System(block){hint}"
     )
     raise ComponentError(msg)
 
@@ -62,7 +62,7 @@ def read_motions(value: object, owner: str) -> dict[str, GroundMotion]:
     return {str(label): motion for label, motion in motions.items()}
 
 
-class Peak(NamedTuple):
+class PeakResponse(NamedTuple):
     """The largest motion of a block under one ground motion."""
 
     rotation: float  # [rad]
@@ -70,23 +70,23 @@ class Peak(NamedTuple):
     displacement: float  # of a point, horizontally to either side [m]
 
 
-def peaks_of(
+def peak_responses(
     system: System,
     motions: Mapping[str, GroundMotion],
     free_vibration: QuantityLike,
     point: tuple[float, float] = (0.0, 0.0),
-) -> dict[str, Peak]:
+) -> dict[str, PeakResponse]:
     """Return the largest motion of the block, and of a point of it [m], under each motion."""
     x, y = point
     points = {"point": (f"{x!r} m", f"{y!r} m")}
-    found: dict[str, Peak] = {}
+    found: dict[str, PeakResponse] = {}
     for label, motion in motions.items():
         run = system.simulate(motion, outputs=None, free_vibration=free_vibration, points=points)
-        moved = float(run.peak_point_horizontal_displacement[0])
-        found[label] = Peak(float(run.peak_rotation), bool(run.overturned), moved)
+        displacement = float(run.peak_point_horizontal_displacement[0])
+        found[label] = PeakResponse(float(run.peak_rotation), bool(run.overturned), displacement)
     return found
 
 
-def scene_words(system: System) -> str:
+def scene_summary(system: System) -> str:
     """Describe the scene that is checked, with its numbers, in one line."""
     return ", ".join(map(repr, system.parts.structural()))

@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from rockframe.arguments import checked_name
-from rockframe.codes.check import peaks_of, read_motions, rocking_block, scene_words
+from rockframe.codes.check import peak_responses, read_motions, rigid_block_setting, scene_summary
 from rockframe.components import Load
 from rockframe.errors import ComponentError
 from rockframe.measures import response_spectrum
@@ -32,14 +32,14 @@ from rockframe.units import (
 
 _OWNER: Final = "circolare_2019"
 _CODE: Final = "Circolare C.S.LL.PP. 21 January 2019, n. 7, to the NTC 2018, C8.7.1"
-_FACTOR: Final = Condition("1 or more", lambda value: value >= 1.0)
+_AT_LEAST_ONE: Final = Condition("1 or more", lambda value: value >= 1.0)
 LIMIT_STATES: Final = {"SLV": (0.40, 1.68, 0.08, "10"), "SLC": (0.60, 1.56, 0.10, "11")}
 """Share of d0, factor of the period over pi, damping ratio, and number of the formula."""
 SLD: Final = "SLD"
 """The limit state of damage: the wall is at rest until its mechanism is activated."""
 _SLD_DAMPING: Final = 0.05
-_PERIODS: Final = 80
-_SHORTEST: Final = 0.2
+_PERIOD_COUNT: Final = 80
+_SHORTEST_PERIOD: Final = 0.2
 """Shortest period at which the spectra of motions are evaluated [s]."""
 
 
@@ -102,48 +102,56 @@ def circolare_2019(
     >>> round(check.value("T_SLV"), 6)
     2.383086
     """
-    setting = rocking_block(system, _OWNER, carries=True)
-    factor = to_ratio(
-        confidence_factor, owner=_OWNER, name="confidence_factor", condition=_FACTOR, example="1.35"
+    setting = rigid_block_setting(system, _OWNER, allow_loads=True)
+    confidence = to_ratio(
+        confidence_factor,
+        owner=_OWNER,
+        name="confidence_factor",
+        condition=_AT_LEAST_ONE,
+        example="1.35",
     )
     checked_name(limit_state, (*LIMIT_STATES, SLD), owner=_OWNER, name="limit_state")
     to_si(free_vibration, TIME, owner=_OWNER, name="free_vibration", condition=POSITIVE)
     if (elastic_period is None) == (limit_state == SLD):
         msg = f"{_OWNER}: elastic_period goes with limit_state='SLD', for example '0.2 s'"
         raise ComponentError(msg)
-    mechanism = _mechanism(system, setting)
-    capacity = _capacity(mechanism, factor)
+    mechanism = _mechanism_of(system, setting)
+    capacity = _capacity_lines(mechanism, confidence)
     values = {one.symbol: one.value for one in capacity}
     if elastic_period is not None:
-        first = to_si(elastic_period, TIME, owner=_OWNER, name="elastic_period", condition=POSITIVE)
-        return _damage(system, demand, capacity, values["a_0*"], first)
+        period_before_uplift = to_si(
+            elastic_period, TIME, owner=_OWNER, name="elastic_period", condition=POSITIVE
+        )
+        return _check_damage(system, demand, capacity, values["a_0*"], period_before_uplift)
     _, _, damping, _ = LIMIT_STATES[limit_state]
     d_limit, period = values[f"d_{limit_state}"], values[f"T_{limit_state}"]
     motions: dict[str, GroundMotion] = {}
     if isinstance(demand, TargetSpectrum):
-        needed = _ordinate(demand, period, damping) * period * period / (4.0 * math.pi**2)
+        required = (
+            _spectral_acceleration(demand, period, damping) * period * period / (4.0 * math.pi**2)
+        )
         words = "S_e(T, xi) T^2/(4 pi^2)"
     else:
         motions = read_motions(demand, _OWNER)
-        needed = _of_motions(motions, period, damping)
+        required = _displacement_demand(motions, period, damping)
         words = "largest mean spectral displacement of the motions up to T"
-    wanted = CheckedLine(
-        "d_demand", needed, Unit.METRE, f"demand, {words}, xi = {100.0 * damping:g} %",
+    demand_line = CheckedLine(
+        "d_demand", required, Unit.METRE, f"demand, {words}, xi = {100.0 * damping:g} %",
         "C8.7.1.12",
     )  # fmt: skip
     verdicts = [
         CheckedVerdict(
-            f"kinematic, {limit_state}", needed <= d_limit,
-            f"demand {needed:.4g} m, capacity {d_limit:.4g} m", "C8.7.1.2.1",
+            f"kinematic, {limit_state}", required <= d_limit,
+            f"demand {required:.4g} m, capacity {d_limit:.4g} m", "C8.7.1.2.1",
         )
     ]  # fmt: skip
-    lines = {"Mechanism and capacity": capacity, "Demand in displacement": (wanted,)}
+    lines = {"Mechanism and capacity": capacity, "Demand in displacement": (demand_line,)}
     if motions:
-        found = _dynamic(system, mechanism, motions, free_vibration)
-        lines["Motion of the wall"] = found
-        verdicts += _dynamic_verdicts(found, values["d_0"], d_limit, limit_state)
+        displacements = _dynamic_displacements(system, mechanism, motions, free_vibration)
+        lines["Motion of the wall"] = displacements
+        verdicts += _dynamic_verdicts(displacements, values["d_0"], d_limit, limit_state)
     title = "A rigid block that overturns, by kinematics" + (" and by its motion" * bool(motions))
-    return CodeCheck(title, _CODE, lines, tuple(verdicts), _NOTES, scene_words(system))
+    return CodeCheck(title, _CODE, lines, tuple(verdicts), _NOTES, scene_summary(system))
 
 
 _NOTES: Final = (
@@ -152,7 +160,7 @@ _NOTES: Final = (
 )
 
 
-def _damage(
+def _check_damage(
     system: System,
     demand: TargetSpectrum | GroundMotion | Mapping[str, GroundMotion],
     capacity: tuple[CheckedLine, ...],
@@ -161,58 +169,60 @@ def _damage(
 ) -> CodeCheck:
     """Check that the mechanism is not activated by the demand of the SLD."""
     if isinstance(demand, TargetSpectrum):
-        needed = _ordinate(demand, period, _SLD_DAMPING)
+        required = _spectral_acceleration(demand, period, _SLD_DAMPING)
     else:
         motions = read_motions(demand, _OWNER)
-        found = response_spectrum(motions, ([period], "s"), _SLD_DAMPING)
-        needed = float(found.pseudo_spectral_acceleration.mean())
-    wanted = (
+        spectrum = response_spectrum(motions, ([period], "s"), _SLD_DAMPING)
+        required = float(spectrum.pseudo_spectral_acceleration.mean())
+    demand_lines = (
         CheckedLine("T_0", period, Unit.SECOND, "elastic period of the wall", "given"),
-        CheckedLine("S_e(T_0)", needed, Unit.METRE_PER_SECOND_SQUARED,
+        CheckedLine("S_e(T_0)", required, Unit.METRE_PER_SECOND_SQUARED,
                     "demand in acceleration, xi = 5 %", "C8.7.1.9"),
     )  # fmt: skip
     verdict = CheckedVerdict(
-        "kinematic, SLD", needed <= activation,
-        f"demand {needed:.4g} m s^-2, activation {activation:.4g} m s^-2", "C8.7.1.8",
+        "kinematic, SLD", required <= activation,
+        f"demand {required:.4g} m s^-2, activation {activation:.4g} m s^-2", "C8.7.1.8",
     )  # fmt: skip
-    lines = {"Mechanism and capacity": capacity, "Demand in acceleration": wanted}
+    lines = {"Mechanism and capacity": capacity, "Demand in acceleration": demand_lines}
     title = "A rigid block that overturns, whether its mechanism is activated"
-    return CodeCheck(title, _CODE, lines, (verdict,), _NOTES, scene_words(system))
+    return CodeCheck(title, _CODE, lines, (verdict,), _NOTES, scene_summary(system))
 
 
 class _Mechanism(NamedTuple):
     """Weights that overturn together about an edge, and their places relative to it."""
 
     weights: tuple[float, ...]  # of the wall, and of the masses that it carries [N]
-    beside: tuple[float, ...]  # horizontal distances of the weights from the edge [m]
-    above: tuple[float, ...]  # their heights above it [m]
+    arms: tuple[float, ...]  # horizontal distances of the weights from the edge [m]
+    heights: tuple[float, ...]  # their heights above it [m]
     gravity: float
     edge: float  # place of the edge, to the right of the middle of the base [m]
 
     @property
-    def place(self) -> tuple[float, float]:
+    def control_point(self) -> tuple[float, float]:
         """Place of the common centre of mass, from the middle of the base [m]."""
-        beside, above = self.centre
+        beside, above = self.centre_of_mass
         return self.edge - math.copysign(beside, self.edge), above
 
     @property
-    def centre(self) -> tuple[float, float]:
+    def centre_of_mass(self) -> tuple[float, float]:
         """Horizontal distance of the common centre of mass from the edge, and height [m]."""
         whole = math.fsum(self.weights)
         return tuple(  # type: ignore[return-value]
             math.fsum(map(operator.mul, self.weights, one)) / whole
-            for one in (self.beside, self.above)
+            for one in (self.arms, self.heights)
         )
 
     @property
-    def oscillator(self) -> float:
+    def oscillator_ratio(self) -> float:
         """Displacement of the equivalent oscillator over that of the centre of mass [1]."""
-        horizontal = math.fsum(map(operator.mul, self.weights, self.above))
-        square = math.fsum(p * y * y for p, y in zip(self.weights, self.above, strict=True))
-        return square / (self.centre[1] * horizontal)
+        first_moment = math.fsum(map(operator.mul, self.weights, self.heights))
+        second_moment = math.fsum(
+            p * y * y for p, y in zip(self.weights, self.heights, strict=True)
+        )
+        return second_moment / (self.centre_of_mass[1] * first_moment)
 
 
-def _mechanism(system: System, setting: RigidGroundSetting | RestrainedSetting) -> _Mechanism:
+def _mechanism_of(system: System, setting: RigidGroundSetting | RestrainedSetting) -> _Mechanism:
     """Return the mechanism of the wall and its loads about the edge over which it overturns."""
     angles, block = setting.overturning_angles, system.parts.block_si
     side = 1.0 if setting.overturning_rotations[0] > 0.0 and angles.right <= angles.left else -1.0
@@ -228,37 +238,37 @@ def _mechanism(system: System, setting: RigidGroundSetting | RestrainedSetting) 
     )
 
 
-def _capacity(mechanism: _Mechanism, factor: float) -> tuple[CheckedLine, ...]:
+def _capacity_lines(mechanism: _Mechanism, confidence: float) -> tuple[CheckedLine, ...]:
     """Return activation, capacity curve, and displacements and periods of the limit states."""
-    weights, beside, above, gravity, _ = mechanism
+    weights, arms, heights, gravity, _ = mechanism
     # virtual work of the weights in a virtual rotation of 1
-    vertical = math.fsum(map(operator.mul, weights, beside))
-    horizontal = math.fsum(map(operator.mul, weights, above))
-    square = math.fsum(weight * up * up for weight, up in zip(weights, above, strict=True))
+    vertical = math.fsum(map(operator.mul, weights, arms))
+    horizontal = math.fsum(map(operator.mul, weights, heights))
+    square = math.fsum(weight * up * up for weight, up in zip(weights, heights, strict=True))
     multiplier = vertical / horizontal
-    share = horizontal**2 / (math.fsum(weights) * square)
-    spectral = multiplier * gravity / (share * factor)
+    mass_share = horizontal**2 / (math.fsum(weights) * square)
+    spectral = multiplier * gravity / (mass_share * confidence)
     # displacement at which the centre of mass is vertically above the edge
-    last = mechanism.oscillator * mechanism.centre[0]
+    ultimate = mechanism.oscillator_ratio * mechanism.centre_of_mass[0]
     lines = [
         CheckedLine("alpha_0", multiplier, Unit.ONE, "activation multiplier, "
                     "sum(P d_Py)/sum((P + Q) d_PQx)", "C8.7.1.1"),
-        CheckedLine("e*", share, Unit.ONE, "share of the mass that takes part", "C8.7.1.5"),
-        CheckedLine("FC", factor, Unit.ONE, "confidence factor", "given"),
+        CheckedLine("e*", mass_share, Unit.ONE, "share of the mass that takes part", "C8.7.1.5"),
+        CheckedLine("FC", confidence, Unit.ONE, "confidence factor", "given"),
         CheckedLine("a_0*", spectral, Unit.METRE_PER_SECOND_SQUARED,
                     "acceleration of activation, alpha_0 g/(e* FC), also the capacity at the SLD",
                     "C8.7.1.3, C8.7.1.8"),
-        CheckedLine("d_0", last, Unit.METRE, "displacement at which the multiplier is zero, of "
+        CheckedLine("d_0", ultimate, Unit.METRE, "displacement at which the multiplier is zero, of "
                     "the equivalent oscillator", "C8.7.1.4"),
     ]  # fmt: skip
     for state, (part, times, _, number) in LIMIT_STATES.items():
-        limit = part * last
-        there = spectral * (1.0 - part)
-        period = times * math.pi * math.sqrt(limit / there)
+        limit = part * ultimate
+        acceleration = spectral * (1.0 - part)
+        period = times * math.pi * math.sqrt(limit / acceleration)
         lines += [
             CheckedLine(f"d_{state}", limit, Unit.METRE, f"{100.0 * part:.0f} % of d_0",
                         "C8.7.1.2.1"),
-            CheckedLine(f"a(d_{state})", there, Unit.METRE_PER_SECOND_SQUARED,
+            CheckedLine(f"a(d_{state})", acceleration, Unit.METRE_PER_SECOND_SQUARED,
                         "of the capacity curve, a_0* (1 - d/d_0)", "C8.7.1.3"),
             CheckedLine(f"T_{state}", period, Unit.SECOND,
                         f"equivalent period, {times:g} pi sqrt(d_{state}/a(d_{state}))",
@@ -267,7 +277,7 @@ def _capacity(mechanism: _Mechanism, factor: float) -> tuple[CheckedLine, ...]:
     return tuple(lines)
 
 
-def _ordinate(spectrum: TargetSpectrum, period: float, damping: float) -> float:
+def _spectral_acceleration(spectrum: TargetSpectrum, period: float, damping: float) -> float:
     """Return the spectral acceleration at a period [m s^-2]."""
     if not math.isclose(spectrum.damping_ratio, damping, rel_tol=1e-9):
         msg = (
@@ -278,47 +288,57 @@ def _ordinate(spectrum: TargetSpectrum, period: float, damping: float) -> float:
     return float(spectrum.at_seconds(np.array([period]), owner=_OWNER)[0])
 
 
-def _of_motions(motions: Mapping[str, GroundMotion], period: float, damping: float) -> float:
+def _displacement_demand(
+    motions: Mapping[str, GroundMotion], period: float, damping: float
+) -> float:
     """Return the largest mean spectral displacement of the motions, over periods up to one [m]."""
-    periods = np.geomspace(min(_SHORTEST, 0.5 * period), period, _PERIODS)
+    periods = np.geomspace(min(_SHORTEST_PERIOD, 0.5 * period), period, _PERIOD_COUNT)
     found = response_spectrum(motions, (periods, "s"), damping).spectral_displacement
     return float(found.mean("motion").max())
 
 
-def _dynamic(
+def _dynamic_displacements(
     system: System,
     mechanism: _Mechanism,
     motions: Mapping[str, GroundMotion],
     free_vibration: QuantityLike,
 ) -> tuple[CheckedLine, ...]:
     """Return the largest displacement of the equivalent oscillator under each motion."""
-    beside = mechanism.centre[0]
+    ultimate_arm = mechanism.centre_of_mass[0]
     lines: list[CheckedLine] = []
-    for label, peak in peaks_of(system, motions, free_vibration, mechanism.place).items():
+    for label, peak in peak_responses(
+        system, motions, free_vibration, mechanism.control_point
+    ).items():
         words = "overturned" if peak.overturned else f"peak rotation {peak.rotation:.4g} rad"
-        moved = mechanism.oscillator * (beside if peak.overturned else peak.displacement)
-        lines.append(CheckedLine(f"d, {label}", moved, Unit.METRE, words, "run"))
+        displacement = mechanism.oscillator_ratio * (
+            ultimate_arm if peak.overturned else peak.displacement
+        )
+        lines.append(CheckedLine(f"d, {label}", displacement, Unit.METRE, words, "run"))
     mean = float(np.mean([one.value for one in lines]))
     words = "of the largest displacements; overturned ones count d_0"
     return (*lines, CheckedLine("mean of d", mean, Unit.METRE, words, "C8.7.1.2.1.9"))
 
 
 def _dynamic_verdicts(
-    found: tuple[CheckedLine, ...], last: float, limit: float, state: str
+    displacements: tuple[CheckedLine, ...], ultimate: float, limit: float, state: str
 ) -> list[CheckedVerdict]:
-    fallen = [one.symbol.removeprefix("d, ") for one in found[:-1] if one.words == "overturned"]
+    overturned = [
+        one.symbol.removeprefix("d, ") for one in displacements[:-1] if one.words == "overturned"
+    ]
     # without a wall, one that is eccentric may stand beyond d_0 on the side of its longer arm
-    beyond = [one for one in found[:-1] if one.words != "overturned" and one.value > last]
-    mean, clause = found[-1].value, "C8.7.1.2.1.9"
+    beyond = [
+        one for one in displacements[:-1] if one.words != "overturned" and one.value > ultimate
+    ]
+    mean, clause = displacements[-1].value, "C8.7.1.2.1.9"
     return [
         CheckedVerdict(
-            "dynamic, no run beyond d_0", not (fallen or beyond),
-            f"{len(fallen)} of {len(found) - 1} overturned"
-            + (f": {', '.join(fallen)}" if fallen else f", d_0 = {last:.4g} m")
+            "dynamic, no run beyond d_0", not (overturned or beyond),
+            f"{len(overturned)} of {len(displacements) - 1} overturned"
+            + (f": {', '.join(overturned)}" if overturned else f", d_0 = {ultimate:.4g} m")
             + (f"; {len(beyond)} beyond d_0 to the other side" if beyond else ""), clause,
         ),
         CheckedVerdict(
-            f"dynamic, {state}", not (fallen or beyond) and mean <= limit,
+            f"dynamic, {state}", not (overturned or beyond) and mean <= limit,
             f"mean of the largest displacements {mean:.4g} m, capacity {limit:.4g} m", clause,
         ),
     ]  # fmt: skip

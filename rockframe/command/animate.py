@@ -7,15 +7,15 @@ from typing import Final
 import xarray as xr
 
 from rockframe.command.answer import Answer
-from rockframe.command.arguments import RUNNING
-from rockframe.command.run import finished
+from rockframe.command.arguments import RUN_OPTIONS
+from rockframe.command.run import is_finished
 from rockframe.command.shared import (
     Outputs,
     check_format,
     is_result,
     read_result,
     scene_from,
-    simulated,
+    simulate_scene,
     typed_options,
 )
 from rockframe.command.streams import STREAM
@@ -46,26 +46,26 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
         else animation(run, **options, **typed_options(arguments, "speed"))
     )
     try:
-        outputs.written_by(
+        outputs.save_by(
             path, ending, "Page" if ending in _PAGES else "Film",
             lambda place: moving.save(place, overwrite=arguments.overwrite),
         )  # fmt: skip
     finally:
         if isinstance(moving, Animation):
             moving.close()
-    return 0 if is_result(arguments.dataset) or finished(run) else 1
+    return 0 if is_result(arguments.dataset) or is_finished(run) else 1
 
 
 def _run_of(arguments: argparse.Namespace, answer: Answer) -> xr.Dataset:
     """Read a run, or simulate a scene."""
     if is_result(arguments.dataset):
-        typed = [one for one in RUNNING if getattr(arguments, one.attribute) is not None]
+        typed = [one for one in RUN_OPTIONS if getattr(arguments, one.attribute) is not None]
         if typed:
             words = f"this is a result, which has run; {typed[0].names[-1]} goes with a scene"
             raise FileError(arguments.dataset, words)
         run = read_result(arguments.dataset)
     else:
         arguments.scene = arguments.dataset
-        run = simulated(scene_from(arguments))
-    answer.says("Verdict", str(run.attrs.get("verdict", "")))
+        run = simulate_scene(scene_from(arguments))
+    answer.add_result("Verdict", str(run.attrs.get("verdict", "")))
     return run

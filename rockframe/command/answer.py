@@ -1,4 +1,4 @@
-"""The answer of a command: lines of text for people, JSON for programs."""
+"""The answer of a command: lines of text, or JSON for programs."""
 
 import json
 import math
@@ -16,15 +16,15 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-_LABEL: Final = 9
+_LABEL_WIDTH: Final = 9
 """Width of the label at the head of a line [characters]."""
-_MOST_SHOWN: Final = 40
+_MAX_ROWS: Final = 40
 """Largest number of rows of a table that is printed."""
-_WIDTH: Final = 100
+_MAX_WIDTH: Final = 100
 """Widest table that is printed in one piece, in characters."""
-_HEAD: Final = 14
+_TITLE_WIDTH: Final = 14
 """Width of the heads of its columns where it is wider."""
-_ALONG: Final = {"time", "event", "sample_after_end"}
+_HISTORY_DIMS: Final = {"time", "event", "sample_after_end"}
 """Dimensions of histories, which only the files of results hold."""
 
 
@@ -34,48 +34,48 @@ class Answer:
     def __init__(self, command: str, *, quiet: bool, verbose: bool, as_json: bool) -> None:
         self.quiet, self.as_json = quiet, as_json
         self._verbose = verbose
-        self._asked: list[int] = []  # numbers of the lines that repeat the question
+        self._context_lines: list[int] = []  # numbers of the lines on the input
         self._lines: list[tuple[bool, str]] = []  # whether --quiet omits the line; the line
-        self._told: dict[str, Any] = {"command": command, "version": __version__}
+        self._fields: dict[str, Any] = {"command": command, "version": __version__}
         self._numbers: dict[str, Any] = {}
         self._files: dict[str, list[str]] = {}
         self._warnings: list[str] = []
         self.data: bytes | None = None
         """Contents of a file that goes to the standard output."""
 
-    def subject(self, label: str, words: str) -> None:
-        """Add a line on the question, such as the scene; --quiet omits it."""
-        self._asked.append(len(self._lines))
-        self._add(label, words, beside=True)
+    def add_context(self, label: str, words: str) -> None:
+        """Add a line on the input, such as the scene; --quiet omits it."""
+        self._context_lines.append(len(self._lines))
+        self._add(label, words, context=True)
 
-    def says(self, label: str, words: str) -> None:
-        """Add a line of the answer."""
-        self._add(label, words, beside=False)
+    def add_result(self, label: str, words: str) -> None:
+        """Add a line on the result."""
+        self._add(label, words, context=False)
 
-    def text(self, words: str, **named: Any) -> None:
+    def add_text(self, words: str, **named: Any) -> None:
         """Add lines of text as they are; JSON has the named values instead."""
         self._lines.append((False, words))
-        self._told |= {name: _as_json(value) for name, value in named.items()}
+        self._fields |= {name: _json_value(value) for name, value in named.items()}
 
-    def table(self, values: Any) -> None:
+    def add_table(self, values: Any) -> None:
         """Add a table of pandas, unless it is long."""
-        if len(values) <= _MOST_SHOWN:
-            self.text(printed(values))
+        if len(values) <= _MAX_ROWS:
+            self.add_text(format_table(values))
 
-    def numbers(self, found: "xr.Dataset") -> None:
+    def add_numbers(self, found: "xr.Dataset") -> None:
         """Add the numbers of a result with their units: all variables but histories."""
         self._numbers |= {
-            str(name): _number(one)
+            str(name): _json_variable(one)
             for name, one in found.variables.items()
-            if not _ALONG & {*one.dims}
+            if not _HISTORY_DIMS & {*one.dims}
         }
 
-    def wrote(self, title: str, path: object) -> None:
+    def add_file(self, title: str, path: object) -> None:
         """Report a file that was written."""
         self._lines.append((True, f"{title}: {path}"))
         self._files.setdefault(title.lower(), []).append(str(path))
 
-    def hands_on(self, data: bytes) -> None:
+    def set_stdout_file(self, data: bytes) -> None:
         """Keep the one file that goes to the standard output."""
         if self.as_json or self.data is not None:
             other = "the answer in JSON" if self.as_json else "another file"
@@ -86,29 +86,29 @@ class Answer:
             raise FileError(STREAM, words)
         self.data = data
 
-    def warned(self, words: str) -> None:
+    def add_warning(self, words: str) -> None:
         """Keep a warning for JSON."""
         self._warnings.append(words)
 
-    def printed(self, error: str = "") -> str:
-        """Return the lines for people; after an error without those on the question."""
+    def as_text(self, error: str = "") -> str:
+        """Return the lines of text; after an error without those on the input."""
         lines = [
-            words for number, (beside, words) in enumerate(self._lines)
-            if not (beside and self.quiet) and not (error and number in self._asked)
+            words for number, (context, words) in enumerate(self._lines)
+            if not (context and self.quiet) and not (error and number in self._context_lines)
         ]  # fmt: skip
         if self._verbose:
             lines += [
-                f"  {name}: {_words(one)}"
+                f"  {name}: {_format_number(one)}"
                 for name, one in self._numbers.items()
                 if "dims" not in one and one["value"] is not None
             ]
         return "".join(f"{line}\n" for line in lines)
 
-    def json(self, code: int, error: str = "") -> str:
+    def as_json_text(self, code: int, error: str = "") -> str:
         """Return the answer as a JSON object."""
         files = {title: one[0] if len(one) == 1 else one for title, one in self._files.items()}
         fields = {
-            **self._told,
+            **self._fields,
             **({"numbers": self._numbers} if self._numbers else {}),
             **({"files": files} if files else {}),
             **({"warnings": self._warnings} if self._warnings else {}),
@@ -117,43 +117,43 @@ class Answer:
         }
         return json.dumps(fields, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
-    def _add(self, label: str, words: str, *, beside: bool) -> None:
-        self._lines.append((beside, f"{f'{label}:'.ljust(_LABEL - 1)} {words}"))
-        self._told[label.lower().replace(" ", "_")] = words
+    def _add(self, label: str, words: str, *, context: bool) -> None:
+        self._lines.append((context, f"{f'{label}:'.ljust(_LABEL_WIDTH - 1)} {words}"))
+        self._fields[label.lower().replace(" ", "_")] = words
 
 
-def printed(values: "pd.DataFrame") -> str:
+def format_table(values: "pd.DataFrame") -> str:
     """Write a table of pandas in columns, with four digits; a wide one with heads of several lines.
 
     What is still wider continues below, with the labels of the rows again.
     """
-    usual: Any = {"float_format": lambda value: f"{value:.4g}"}
-    text = values.to_string(**usual)
-    if max(map(len, text.splitlines()), default=0) <= _WIDTH:
+    options: Any = {"float_format": lambda value: f"{value:.4g}"}
+    text = values.to_string(**options)
+    if max(map(len, text.splitlines()), default=0) <= _MAX_WIDTH:
         return text
-    heads = [_lines_of_head(str(one)) for one in values]
-    most = max(map(len, heads))
-    lines = [tuple([""] * (most - len(one)) + one) for one in heads]
-    wrapped = values.set_axis(type(values)(lines).set_index([*range(most)]).index, axis=1)
-    wrapped = wrapped.rename_axis(columns=[None] * most)
-    text = wrapped.to_string(**usual, line_width=_WIDTH, sparsify=False)
-    kept = (line.rstrip().removesuffix("\\").rstrip() for line in text.splitlines())
-    return re.sub(r"\n{3,}", "\n\n", "\n".join(kept)).strip("\n")
+    titles = [_title_lines(str(one)) for one in values]
+    depth = max(map(len, titles))
+    lines = [tuple([""] * (depth - len(one)) + one) for one in titles]
+    wrapped = values.set_axis(type(values)(lines).set_index([*range(depth)]).index, axis=1)
+    wrapped = wrapped.rename_axis(columns=[None] * depth)
+    text = wrapped.to_string(**options, line_width=_MAX_WIDTH, sparsify=False)
+    lines_kept = (line.rstrip().removesuffix("\\").rstrip() for line in text.splitlines())
+    return re.sub(r"\n{3,}", "\n\n", "\n".join(lines_kept)).strip("\n")
 
 
-def _lines_of_head(head: str) -> list[str]:
+def _title_lines(title: str) -> list[str]:
     """Divide the head of a column into short lines, the last of which is its unit."""
-    name, bracket, unit = head.partition(" [")
-    lines = wrap(name.replace("_", " "), _HEAD, break_long_words=False)
+    name, bracket, unit = title.partition(" [")
+    lines = wrap(name.replace("_", " "), _TITLE_WIDTH, break_long_words=False)
     return [*lines, f"[{unit}"] if bracket else lines
 
 
-def _number(one: "xr.Variable") -> dict[str, Any]:
+def _json_variable(one: "xr.Variable") -> dict[str, Any]:
     """Return a value with its unit and, of an array, its dimensions."""
     import numpy as np
 
     values = np.asarray(one)
-    found: dict[str, Any] = {"value": _as_json(_in_words(values, one.attrs))}
+    found: dict[str, Any] = {"value": _json_value(_flag_words(values, one.attrs))}
     if "units" in one.attrs:
         found["unit"] = str(one.attrs["units"])
     if values.ndim:
@@ -161,7 +161,7 @@ def _number(one: "xr.Variable") -> dict[str, Any]:
     return found
 
 
-def _in_words(values: Any, attributes: Mapping[str, Any]) -> Any:
+def _flag_words(values: Any, attributes: Mapping[str, Any]) -> Any:
     """Replace flags by their meanings, and flags of truth by true and false."""
     import numpy as np
 
@@ -175,20 +175,20 @@ def _in_words(values: Any, attributes: Mapping[str, Any]) -> Any:
     return np.vectorize(words.get, otypes=[object])(values)
 
 
-def _as_json(value: Any) -> Any:
+def _json_value(value: Any) -> Any:
     """Return a value in the types of JSON; NaN and infinity become null."""
     if hasattr(value, "tolist"):  # of numpy
         value = value.tolist()
     if isinstance(value, list | tuple):
-        return [_as_json(one) for one in value]
+        return [_json_value(one) for one in value]
     if isinstance(value, Mapping):
-        return {str(name): _as_json(one) for name, one in value.items()}
+        return {str(name): _json_value(one) for name, one in value.items()}
     if isinstance(value, float):
         return value + 0.0 if math.isfinite(value) else None  # no negative zero
     return value if isinstance(value, str | int | bool | None) else str(value)
 
 
-def _words(one: Mapping[str, Any]) -> str:
+def _format_number(one: Mapping[str, Any]) -> str:
     value, unit = one["value"], one.get("unit", "1")
     number = f"{value:.6g}" if isinstance(value, float) else str(value)
     return number if unit == "1" else f"{number} {unit}"

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
-PICTURES: Final = "a picture, in the format of its ending: .png, .svg or .pdf"
+PICTURE_HELP: Final = "a picture, in the format of its ending: .png, .svg or .pdf"
 
 
 @dataclass(frozen=True)
@@ -14,7 +14,7 @@ class CommandArgument:
 
     names: tuple[str, ...]  # as typed
     settings: dict[str, Any]  # further arguments of :meth:`argparse.ArgumentParser.add_argument`
-    of_files: bool = False  # whether it names a file
+    is_file: bool = False  # whether it names a file
 
     @property
     def attribute(self) -> str:
@@ -27,34 +27,36 @@ class Command:
     """One command."""
 
     name: str  # as typed, and of the module that runs it
-    words: str  # what it does, in one line
-    story: str  # what it does, in its help
+    summary: str  # what it does, in one line
+    description: str  # what it does, in its help
     examples: str  # lines to copy
     arguments: Sequence[CommandArgument]
 
 
-def path(*names: str, **settings: Any) -> CommandArgument:
+def file_argument(*names: str, **settings: Any) -> CommandArgument:
     """Declare an argument that names a file."""
-    return CommandArgument(names, settings, of_files=True)
+    return CommandArgument(names, settings, is_file=True)
 
 
-def word(*names: str, **settings: Any) -> CommandArgument:
+def argument(*names: str, **settings: Any) -> CommandArgument:
     """Declare any other argument."""
     return CommandArgument(names, settings)
 
 
 def number_option(name: str, metavar: str, words: str) -> CommandArgument:
     """Declare an option that is a number."""
-    return word(name, type=_reads(float, "a number such as 1.5"), metavar=metavar, help=words)
+    return argument(
+        name, type=_number_reader(float, "a number such as 1.5"), metavar=metavar, help=words
+    )
 
 
-def whole_option(name: str, words: str, usual: int | None = None) -> CommandArgument:
+def integer_option(name: str, words: str, default: int | None = None) -> CommandArgument:
     """Declare an option that is a whole number."""
-    read = _reads(int, "a whole number such as 100")
-    return word(name, type=read, metavar="N", help=words, default=usual)
+    read = _number_reader(int, "a whole number such as 100")
+    return argument(name, type=read, metavar="N", help=words, default=default)
 
 
-def _reads(kind: type[float], expected: str) -> Callable[[str], float]:
+def _number_reader(kind: type[float], expected: str) -> Callable[[str], float]:
     """Return a function that reads an argument that is a number."""
 
     def read(typed: str) -> float:
@@ -67,103 +69,109 @@ def _reads(kind: type[float], expected: str) -> Callable[[str], float]:
     return read
 
 
-EVERYWHERE: Final = (
-    word(
+COMMON_OPTIONS: Final = (
+    argument(
         "-q",
         "--quiet",
         action="store_true",
         help="print the answer only, without warnings and progress",
     ),
-    word("-v", "--verbose", action="store_true", help="print all numbers of the answer too"),
-    word("--json", action="store_true", help="print the answer as JSON, for programs"),
-    word("--debug", action="store_true", help="show the whole traceback of an error"),
+    argument("-v", "--verbose", action="store_true", help="print all numbers of the answer too"),
+    argument("--json", action="store_true", help="print the answer as JSON, for programs"),
+    argument("--debug", action="store_true", help="show the whole traceback of an error"),
 )
 """Options of all commands, before or after the name of the command."""
-SCENE: Final = path(
+SCENE_FILE: Final = file_argument(
     "scene", metavar="scene.toml", help="the scene; 'template' writes one; - for standard input"
 )
-DATASET: Final = path(
+RESULT_FILE: Final = file_argument(
     "dataset", metavar="out.nc", help="a result that another command wrote with -o; or -"
 )
-OVERWRITE: Final = word(
+OVERWRITE_OPTION: Final = argument(
     "--overwrite",
     action="store_true",
     help="replace existing files, also those that rockframe did not write; never a file that is "
     "read",
 )
-UNITS: Final = word(
+UNITS_OPTION: Final = argument(
     "--units",
     nargs="+",
     metavar="NAME=UNIT",
     help="units of all numbers, such as force=kN angle=deg acceleration=g_0",
 )
-RESULT: Final = path(
+OUTPUT_OPTION: Final = file_argument(
     "-o", "--output", metavar="out.nc", help="write all results to this file; - for standard output"
 )
-PICTURE: Final = path("--picture", metavar="x.png", help=f"write {PICTURES}")
-FROM_FILES: Final = (
-    word("--unit", help="unit of the samples, such as g or cm/s^2, where the file has none"),
-    word(
+PICTURE_OPTION: Final = file_argument("--picture", metavar="x.png", help=f"write {PICTURE_HELP}")
+SAMPLE_OPTIONS: Final = (
+    argument("--unit", help="unit of the samples, such as g or cm/s^2, where the file has none"),
+    argument(
         "--time-step", metavar="TIME", help="time step of samples without times, such as '0.01 s'"
     ),
 )
-READING: Final = (
-    word("--component", metavar="NAME", help="component of a record that has several, such as NS"),
-    *FROM_FILES,
+READING_OPTIONS: Final = (
+    argument(
+        "--component", metavar="NAME", help="component of a record that has several, such as NS"
+    ),
+    *SAMPLE_OPTIONS,
 )
-ACCURACY: Final = word(
+ACCURACY_OPTION: Final = argument(
     "--accuracy",
     metavar="LEVEL",
     help="fast, standard, reference, or a tolerance such as 1e-6; for fragility, ida and map also "
     "screen",
 )
-LENGTH: Final = (
-    word(
+DURATION_OPTIONS: Final = (
+    argument(
         "--free-vibration",
         metavar="TIME",
         help="time after the motion with the ground at rest, such as '20 s'",
     ),
-    word("--duration", metavar="TIME", help="duration of the run, independent of the motion's"),
+    argument("--duration", metavar="TIME", help="duration of the run, independent of the motion's"),
 )
-RUNNING: Final = (
-    path("-m", "--motion", metavar="FILE", help="a record, instead of the motion of the scene"),
-    *READING,
+RUN_OPTIONS: Final = (
+    file_argument(
+        "-m", "--motion", metavar="FILE", help="a record, instead of the motion of the scene"
+    ),
+    *READING_OPTIONS,
     number_option("--scale", "FACTOR", "multiply the motion by this"),
-    ACCURACY,
-    *LENGTH,
+    ACCURACY_OPTION,
+    *DURATION_OPTIONS,
 )
-INTENSITY: Final = (
-    word(
+INTENSITY_OPTIONS: Final = (
+    argument(
         "--intensity",
         metavar="MEASURE",
         help="intensity measure of the motion: PGA, PGV, PGD, CAV, SA (with --period) or a name "
         "that 'motion' lists (default: PGA)",
     ),
-    word("--period", metavar="TIME", help="period of the oscillator of SA, such as '0.5 s'"),
+    argument("--period", metavar="TIME", help="period of the oscillator of SA, such as '0.5 s'"),
 )
-STORE: Final = path(
+STORE_OPTION: Final = file_argument(
     "--store", metavar="FOLDER", help="keep finished cases in this folder, and reuse them"
 )
-OVER_MOTIONS: Final = (
-    path("scene", metavar="scene.toml", help="a scene, or a study with motions and axes; or -"),
-    path("records", nargs="*", metavar="RECORD", help="records, archives or folders"),
-    *FROM_FILES,
-    word(
+ANALYSIS_ARGUMENTS: Final = (
+    file_argument(
+        "scene", metavar="scene.toml", help="a scene, or a study with motions and axes; or -"
+    ),
+    file_argument("records", nargs="*", metavar="RECORD", help="records, archives or folders"),
+    *SAMPLE_OPTIONS,
+    argument(
         "--scales",
         metavar="VALUES",
         help="scale factors of the motions, such as 0.5,1,2, or from:to:step, such as 0.25:4:0.25",
     ),
-    *INTENSITY,
-    word(
+    *INTENSITY_OPTIONS,
+    argument(
         "--limits",
         metavar="STATES",
         help="limit states besides overturning: uplift, a rotation divided by the overturning "
         "angle, or a variable of runs, such as uplift,0.5,'peak_slip=5 cm'",
     ),
-    ACCURACY,
-    *LENGTH,
-    STORE,
-    RESULT,
-    PICTURE,
+    ACCURACY_OPTION,
+    *DURATION_OPTIONS,
+    STORE_OPTION,
+    OUTPUT_OPTION,
+    PICTURE_OPTION,
 )
 """Arguments of analyses of one scene under many motions."""

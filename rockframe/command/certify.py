@@ -5,8 +5,8 @@ from dataclasses import replace
 from textwrap import fill
 
 from rockframe.command.answer import Answer
-from rockframe.command.run import finished
-from rockframe.command.shared import RUN, Outputs, scene_from, simulated, typed_options
+from rockframe.command.run import is_finished
+from rockframe.command.shared import RUN_KIND, Outputs, scene_from, simulate_scene, typed_options
 from rockframe.errors import ComponentError
 from rockframe.simulation.run_arguments import PROVED, Certification
 
@@ -14,28 +14,28 @@ from rockframe.simulation.run_arguments import PROVED, Certification
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Simulate with all runs of the certificate, and report their outcome."""
     found = scene_from(arguments)
-    outputs = Outputs(arguments, found.files, answer, output=RUN)
-    wanted = _wanted(found.run.get("certify"), arguments)
-    response = simulated(found, certify=wanted)
-    answer.says("Verdict", response.attrs["verdict"])
-    kind = "proof" if wanted == PROVED else "certificate"
+    outputs = Outputs(arguments, found.files, answer, output=RUN_KIND)
+    certification = _certification_of(found.run.get("certify"), arguments)
+    response = simulate_scene(found, certify=certification)
+    answer.add_result("Verdict", response.attrs["verdict"])
+    kind = "proof" if certification == PROVED else "certificate"
     sentence = response.attrs[kind]
-    answer.text(fill(f"{kind.capitalize()}: {sentence}", 100), **{kind: sentence})
-    if wanted != PROVED:
-        sure = {
+    answer.add_text(fill(f"{kind.capitalize()}: {sentence}", 100), **{kind: sentence})
+    if certification != PROVED:
+        checks = {
             "verdict_converged": "at higher accuracy",
             "verdict_robust": "with slightly changed parameters",
         }
-        for name, words in sure.items():
-            answer.text(f"  same verdict {words}: {'yes' if bool(response[name]) else 'no'}")
+        for name, words in checks.items():
+            answer.add_text(f"  same verdict {words}: {'yes' if bool(response[name]) else 'no'}")
         count = int(response.attrs["certificate_runs"])
-        answer.text(f"  further runs: {count}", certificate_runs=count)
-    answer.numbers(response)
-    outputs.result(response)
-    return 0 if finished(response) else 1
+        answer.add_text(f"  further runs: {count}", certificate_runs=count)
+    answer.add_numbers(response)
+    outputs.write_result(response)
+    return 0 if is_finished(response) else 1
 
 
-def _wanted(of_file: object, arguments: argparse.Namespace) -> Certification | str:
+def _certification_of(of_file: object, arguments: argparse.Namespace) -> Certification | str:
     """Return the settings of the certificate; options replace those of the file."""
     typed = typed_options(arguments, "nudge", "reach", "runs")
     if arguments.proved and typed:

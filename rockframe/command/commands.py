@@ -3,25 +3,25 @@
 from typing import Final
 
 from rockframe.command.arguments import (
-    ACCURACY,
-    DATASET,
-    INTENSITY,
-    LENGTH,
-    OVER_MOTIONS,
-    OVERWRITE,
-    PICTURE,
-    PICTURES,
-    READING,
-    RESULT,
-    RUNNING,
-    SCENE,
-    STORE,
-    UNITS,
+    ACCURACY_OPTION,
+    ANALYSIS_ARGUMENTS,
+    DURATION_OPTIONS,
+    INTENSITY_OPTIONS,
+    OUTPUT_OPTION,
+    OVERWRITE_OPTION,
+    PICTURE_HELP,
+    PICTURE_OPTION,
+    READING_OPTIONS,
+    RESULT_FILE,
+    RUN_OPTIONS,
+    SCENE_FILE,
+    STORE_OPTION,
+    UNITS_OPTION,
     Command,
+    argument,
+    file_argument,
+    integer_option,
     number_option,
-    path,
-    whole_option,
-    word,
 )
 
 COMMANDS: Final = (
@@ -36,7 +36,7 @@ COMMANDS: Final = (
   rockframe template study > study.toml      many runs of one scene
   rockframe template all                     every table and key, with its meaning""",
         (
-            word(
+            argument(
                 "kind",
                 nargs="?",
                 default="block",
@@ -51,7 +51,7 @@ COMMANDS: Final = (
         "Check the file of a scene, and describe its model: the equations, the frequencies and "
         "what the model neglects. Nothing is simulated.",
         "  rockframe describe scene.toml",
-        (SCENE,),
+        (SCENE_FILE,),
     ),
     Command(
         "motion",
@@ -63,15 +63,19 @@ COMMANDS: Final = (
   rockframe motion record.AT2 --picture record.png
   rockframe motion PEERNGARecords.zip --csv measures.csv""",
         (
-            path("files", nargs="+", metavar="FILE", help="records, archives or folders; or -"),
-            *READING,
-            path(
+            file_argument(
+                "files", nargs="+", metavar="FILE", help="records, archives or folders; or -"
+            ),
+            *READING_OPTIONS,
+            file_argument(
                 "--picture",
                 metavar="x.png",
-                help=f"write {PICTURES}; of several motions one each, numbered",
+                help=f"write {PICTURE_HELP}; of several motions one each, numbered",
             ),
-            path("--csv", metavar="x.csv", help="write the table of measures, for a spreadsheet"),
-            OVERWRITE,
+            file_argument(
+                "--csv", metavar="x.csv", help="write the table of measures, for a spreadsheet"
+            ),
+            OVERWRITE_OPTION,
         ),
     ),
     Command(
@@ -87,21 +91,23 @@ COMMANDS: Final = (
   rockframe convert PEERNGARecords.zip -o suite.nc             all of them in one file
   rockframe convert - --to csv -o - < record.AT2""",
         (
-            path("files", nargs="+", metavar="FILE", help="records, archives or folders; or -"),
-            path(
+            file_argument(
+                "files", nargs="+", metavar="FILE", help="records, archives or folders; or -"
+            ),
+            file_argument(
                 "-o",
                 "--output",
                 required=True,
                 metavar="x.AT2",
                 help="the file, ending in .AT2, .csv or .nc; with --to, a folder or -",
             ),
-            word(
+            argument(
                 "--to",
                 choices=("at2", "csv", "nc"),
                 help="the format, where the ending of the file does not give it",
             ),
-            *READING,
-            OVERWRITE,
+            *READING_OPTIONS,
+            OVERWRITE_OPTION,
         ),
     ),
     Command(
@@ -113,7 +119,7 @@ COMMANDS: Final = (
   rockframe run scene.toml                                 the motion is in the scene
   rockframe run scene.toml --motion record.AT2 -o out.nc
   rockframe run scene.toml --motion record.AT2 --scale 1.5 --accuracy fast""",
-        (SCENE, *RUNNING, RESULT, OVERWRITE),
+        (SCENE_FILE, *RUN_OPTIONS, OUTPUT_OPTION, OVERWRITE_OPTION),
     ),
     Command(
         "certify",
@@ -126,22 +132,22 @@ COMMANDS: Final = (
   rockframe certify scene.toml --motion record.AT2 --nudge 0.01 -o out.nc
   rockframe certify scene.toml --motion record.AT2 --proved""",
         (
-            SCENE,
-            *RUNNING,
+            SCENE_FILE,
+            *RUN_OPTIONS,
             number_option(
                 "--nudge", "SHARE", "largest relative change of each parameter (default: 0.001)"
             ),
             number_option(
                 "--reach", "SHARE", "largest relative change of the scale (default: 0.5)"
             ),
-            word(
+            argument(
                 "--proved",
                 action="store_true",
                 help="prove the verdict instead (of a block alone; needs python-flint)",
             ),
-            whole_option("--runs", "largest number of further runs (default: 200)"),
-            RESULT,
-            OVERWRITE,
+            integer_option("--runs", "largest number of further runs (default: 200)"),
+            OUTPUT_OPTION,
+            OVERWRITE_OPTION,
         ),
     ),
     Command(
@@ -154,18 +160,18 @@ COMMANDS: Final = (
   rockframe critical scene.toml --motion record.AT2 --picture critical.png
   rockframe critical scene.toml --motion record.AT2 --intensity SA --period '0.5 s' --json""",
         (
-            SCENE,
-            *RUNNING,
+            SCENE_FILE,
+            *RUN_OPTIONS,
             number_option("--largest", "FACTOR", "largest scale that is tried (default: 4)"),
-            whole_option(
+            integer_option(
                 "--runs",
                 "largest number of runs of the scan; more of them find narrower ranges that "
                 "overturn (default: 400)",
             ),
-            *INTENSITY,
-            RESULT,
-            PICTURE,
-            OVERWRITE,
+            *INTENSITY_OPTIONS,
+            OUTPUT_OPTION,
+            PICTURE_OPTION,
+            OVERWRITE_OPTION,
         ),
     ),
     Command(
@@ -179,13 +185,15 @@ COMMANDS: Final = (
   rockframe study study.toml --store kept -o runs.nc
   rockframe study study.toml --csv runs.csv""",
         (
-            path(
+            file_argument(
                 "study", metavar="study.toml", help="the study; 'template study' writes one; or -"
             ),
-            STORE,
-            RESULT,
-            path("--csv", metavar="x.csv", help="write a table with one row for each case"),
-            OVERWRITE,
+            STORE_OPTION,
+            OUTPUT_OPTION,
+            file_argument(
+                "--csv", metavar="x.csv", help="write a table with one row for each case"
+            ),
+            OVERWRITE_OPTION,
         ),
     ),
     Command(
@@ -199,7 +207,7 @@ COMMANDS: Final = (
   rockframe fragility scene.toml records --intensity SA --period '0.5 s' --scales 0.5:4:0.5
   rockframe fragility study.toml --store kept -o fragility.nc
   rockframe fragility runs.nc --limits uplift,0.5 --json""",
-        (*OVER_MOTIONS, OVERWRITE),
+        (*ANALYSIS_ARGUMENTS, OVERWRITE_OPTION),
     ),
     Command(
         "ida",
@@ -211,9 +219,11 @@ COMMANDS: Final = (
   rockframe ida scene.toml PEERNGARecords.zip --picture ida.png
   rockframe ida scene.toml records --scales 0.1:6:0.1 --csv capacities.csv -o ida.nc""",
         (
-            *OVER_MOTIONS,
-            path("--csv", metavar="x.csv", help="write the capacities, one row for each record"),
-            OVERWRITE,
+            *ANALYSIS_ARGUMENTS,
+            file_argument(
+                "--csv", metavar="x.csv", help="write the capacities, one row for each record"
+            ),
+            OVERWRITE_OPTION,
         ),
     ),
     Command(
@@ -226,25 +236,27 @@ COMMANDS: Final = (
   rockframe map scene.toml --amplitude '0.1,0.2,0.4 g' --frequency '1,2 Hz' --picture map.png
   rockframe map scene.toml --pulse cosine_pulse --amplitude '1:9:2 m/s^2' --frequency '1,2 Hz'""",
         (
-            SCENE,
-            word(
+            SCENE_FILE,
+            argument(
                 "--amplitude",
                 required=True,
                 metavar="VALUES",
                 help="values with their unit: '1:10:0.5 m/s^2', from:to:step, or '1,2,4 m/s^2'",
             ),
-            word("--frequency", required=True, metavar="VALUES", help="likewise '0.5:4:0.25 Hz'"),
-            word(
+            argument(
+                "--frequency", required=True, metavar="VALUES", help="likewise '0.5:4:0.25 Hz'"
+            ),
+            argument(
                 "--pulse",
                 metavar="NAME",
                 help="sine_pulse or cosine_pulse (default: that of the scene, else sine_pulse)",
             ),
-            ACCURACY,
-            *LENGTH,
-            STORE,
-            RESULT,
-            PICTURE,
-            OVERWRITE,
+            ACCURACY_OPTION,
+            *DURATION_OPTIONS,
+            STORE_OPTION,
+            OUTPUT_OPTION,
+            PICTURE_OPTION,
+            OVERWRITE_OPTION,
         ),
     ),
     Command(
@@ -256,17 +268,19 @@ COMMANDS: Final = (
   rockframe plot out.nc -o forces.png --panels base_shear left_reaction --units force=kN
   rockframe plot map.nc -o map.pdf --title 'A pulse on blocks of marble'""",
         (
-            DATASET,
-            path("-o", "--output", required=True, metavar="x.png", help=f"write {PICTURES}"),
-            word(
+            RESULT_FILE,
+            file_argument(
+                "-o", "--output", required=True, metavar="x.png", help=f"write {PICTURE_HELP}"
+            ),
+            argument(
                 "--format",
                 choices=("png", "svg", "pdf"),
                 help="format of a picture that goes to the standard output (default: png)",
             ),
-            OVERWRITE,
-            word("--title", help="title of the figure, instead of the verdict"),
-            UNITS,
-            word(
+            OVERWRITE_OPTION,
+            argument("--title", help="title of the figure, instead of the verdict"),
+            UNITS_OPTION,
+            argument(
                 "--panels",
                 nargs="+",
                 metavar="NAME",
@@ -285,25 +299,27 @@ COMMANDS: Final = (
   rockframe animate scene.toml --motion record.AT2 -o run.html
   rockframe animate out.nc -o run.gif --window '2 s' '8 s' --speed 0.5""",
         (
-            path("dataset", metavar="out.nc", help="a result of 'run', or a scene; or -"),
-            path(
+            file_argument("dataset", metavar="out.nc", help="a result of 'run', or a scene; or -"),
+            file_argument(
                 "-o",
                 "--output",
                 required=True,
                 metavar="x.html",
                 help="the file, ending in .html, .gif or .mp4 (which needs ffmpeg)",
             ),
-            word(
+            argument(
                 "--format",
                 choices=("html", "gif", "mp4"),
                 help="format of what goes to the standard output (default: html)",
             ),
-            word("--window", nargs=2, metavar=("START", "END"), help="times of the run to show"),
+            argument(
+                "--window", nargs=2, metavar=("START", "END"), help="times of the run to show"
+            ),
             number_option("--speed", "FACTOR", "time in the run over time in the film"),
             number_option("--magnify", "FACTOR", "multiply displacements in the drawing by this"),
-            word("--title", help="title of the animation, instead of the verdict"),
-            *RUNNING,
-            OVERWRITE,
+            argument("--title", help="title of the animation, instead of the verdict"),
+            *RUN_OPTIONS,
+            OVERWRITE_OPTION,
         ),
     ),
     Command(
@@ -322,33 +338,33 @@ COMMANDS: Final = (
   rockframe report runs.nc --motions records --target eurocode_8 'ground_acceleration=0.2 g_0'
   rockframe report out.nc --check circolare_2019 confidence_factor=1.35""",
         (
-            DATASET,
-            path(
+            RESULT_FILE,
+            file_argument(
                 "-o", "--output", metavar="x.html", help="the file (default: out.html for out.nc)"
             ),
-            OVERWRITE,
-            word(
+            OVERWRITE_OPTION,
+            argument(
                 "--case",
                 nargs="+",
                 action="extend",
                 metavar="NAME=VALUE",
                 help="the case of a study, by its value along every axis of several values",
             ),
-            word("--title", help="title of the page"),
-            UNITS,
-            path(
+            argument("--title", help="title of the page"),
+            UNITS_OPTION,
+            file_argument(
                 "--motion",
                 metavar="RECORD",
                 help="the record of the run, for its certificate, if the result does not hold it",
             ),
-            path(
+            file_argument(
                 "--motions",
                 nargs="+",
                 metavar="FILE",
                 help="the records of a study, for their spectra and its worst case, if the result "
                 "does not hold them; archives and folders too",
             ),
-            word(
+            argument(
                 "--target",
                 nargs="+",
                 metavar=("SPECTRUM", "NAME=VALUE"),
@@ -357,7 +373,7 @@ COMMANDS: Final = (
                 "table x.csv with the columns period [s], acceleration [g_0], and "
                 "damping_ratio=0.08",
             ),
-            word(
+            argument(
                 "--check",
                 nargs="+",
                 action="append",
@@ -365,7 +381,7 @@ COMMANDS: Final = (
                 help="add a check by a code, for the motions of the result: circolare_2019 "
                 "confidence_factor=1.35, or asce_7_22 spectral_acceleration=1.2",
             ),
-            word(
+            argument(
                 "--no-certificate",
                 action="store_true",
                 help="do not certify a run that has no certificate",
@@ -383,10 +399,14 @@ COMMANDS: Final = (
   rockframe serve record.AT2 --browse
   rockframe serve --port 8123""",
         (
-            path("record", nargs="?", metavar="FILE", help="a record to offer on the page"),
-            *READING,
-            whole_option("--port", "port of this machine; 0 for a free one (default: 8000)", 8000),
-            word("--browse", action="store_true", help="open the page in the browser"),
+            file_argument(
+                "record", nargs="?", metavar="FILE", help="a record to offer on the page"
+            ),
+            *READING_OPTIONS,
+            integer_option(
+                "--port", "port of this machine; 0 for a free one (default: 8000)", 8000
+            ),
+            argument("--browse", action="store_true", help="open the page in the browser"),
         ),
     ),
     Command(
@@ -397,6 +417,6 @@ COMMANDS: Final = (
   bash   source <(rockframe completion bash)         in ~/.bashrc
   zsh    source <(rockframe completion zsh)          in ~/.zshrc
   fish   rockframe completion fish | source          in ~/.config/fish/config.fish""",
-        (word("shell", choices=("bash", "zsh", "fish"), help="the shell"),),
+        (argument("shell", choices=("bash", "zsh", "fish"), help="the shell"),),
     ),
 )

@@ -4,7 +4,7 @@ import argparse
 from typing import Final
 
 from rockframe.command.answer import Answer
-from rockframe.command.arguments import EVERYWHERE, Command, CommandArgument
+from rockframe.command.arguments import COMMON_OPTIONS, Command, CommandArgument
 from rockframe.command.commands import COMMANDS
 
 _BASH: Final = """\
@@ -45,7 +45,7 @@ compdef _rockframe rockframe
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Write the script for a shell."""
     text = script(arguments.shell)
-    answer.text(text.removesuffix("\n"), text=text)
+    answer.add_text(text.removesuffix("\n"), text=text)
     return 0
 
 
@@ -56,7 +56,7 @@ def script(shell: str) -> str:
 
 def _options(command: Command) -> list[tuple[CommandArgument, str]]:
     """Return the options of a command, each by its long name."""
-    values = (*command.arguments, *EVERYWHERE)
+    values = (*command.arguments, *COMMON_OPTIONS)
     return [(one, one.names[-1]) for one in values if one.names[0].startswith("-")]
 
 
@@ -76,30 +76,32 @@ def _bash() -> str:
 def _zsh() -> str:
     cases = []
     for command in COMMANDS:
-        words = [f"'{name}[{_quoted(one)}]{_value(one)}'" for one, name in _options(command)]
+        words = [
+            f"'{name}[{_unquoted_help(one)}]{_zsh_value(one)}'" for one, name in _options(command)
+        ]
         choices = _choices(command)
         places = f"'*:choice:({' '.join(choices)})'" if choices else "'*:file:_files'"
         cases.append(f"        {command.name}) _arguments {' '.join([*words, places])} ;;")
-    names = "\n".join(f"        '{one.name}:{one.words}'" for one in COMMANDS)
+    names = "\n".join(f"        '{one.name}:{one.summary}'" for one in COMMANDS)
     return _ZSH.replace("@COMMANDS@", names).replace("@CASES@", "\n".join(cases))
 
 
-def _value(one: CommandArgument) -> str:
+def _zsh_value(one: CommandArgument) -> str:
     if "action" in one.settings:
         return ""
-    return ":file:_files" if one.of_files else ":value:"
+    return ":file:_files" if one.is_file else ":value:"
 
 
 def _fish() -> str:
     unseen = "not __fish_seen_subcommand_from " + " ".join(one.name for one in COMMANDS)
     lines = [
-        f"complete -c rockframe -f -n '{unseen}' -a {command.name} -d '{command.words}'"
+        f"complete -c rockframe -f -n '{unseen}' -a {command.name} -d '{command.summary}'"
         for command in COMMANDS
     ]
     for command in COMMANDS:
         seen = f"complete -c rockframe -n '__fish_seen_subcommand_from {command.name}'"
         lines += [
-            f"{seen} -l {name.removeprefix('--')} -d '{_quoted(one)}'"
+            f"{seen} -l {name.removeprefix('--')} -d '{_unquoted_help(one)}'"
             f"{'' if 'action' in one.settings else ' -r'}"
             for one, name in _options(command)
         ]
@@ -109,7 +111,7 @@ def _fish() -> str:
     return "\n".join(lines) + "\n"
 
 
-def _quoted(one: CommandArgument) -> str:
+def _unquoted_help(one: CommandArgument) -> str:
     """Return the help text of an option without characters that shells interpret."""
     words = str(one.settings.get("help", ""))
     for mark in "'[]:":

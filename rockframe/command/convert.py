@@ -16,44 +16,46 @@ from rockframe.suites import MotionSuite
 from rockframe.units import Unit
 
 _ENDINGS: Final = {"at2": ".AT2", "csv": ".csv", "nc": ".nc"}
-_TABLE: Final = table_kind(
+_TABLE_KIND: Final = table_kind(
     "a motion as a table",
     also=(f"time [{Unit.SECOND}]", f"acceleration [{Unit.METRE_PER_SECOND_SQUARED}]"),
 )
-_NETCDF: Final = dataset_kind(
+_NETCDF_KIND: Final = dataset_kind(
     "a motion or a set of motions",
     lambda found: "motion_sha256" in {*found.attrs, *found.variables},
 )
-_KINDS: Final = {"csv": _TABLE, "nc": _NETCDF}
-_UNSAFE: Final = re.compile(r"[^\w.+-]+")
-_LISTED: Final = 8
+_KINDS: Final = {"csv": _TABLE_KIND, "nc": _NETCDF_KIND}
+_UNSAFE_CHARACTERS: Final = re.compile(r"[^\w.+-]+")
+_MAX_LISTED: Final = 8
 
 
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Read records, and write them."""
     outputs = Outputs(arguments, arguments.files, answer)
     target = Path(arguments.output).expanduser()
-    form = arguments.to or _form_of(arguments.output)
+    file_format = arguments.to or _format_from_ending(arguments.output)
     into_folder = arguments.output != STREAM and (
         target.is_dir() or target.suffix.lower() not in map(str.lower, _ENDINGS.values())
     )
-    if not into_folder and form in _KINDS:
-        outputs.check(arguments.output, _KINDS[form])
+    if not into_folder and file_format in _KINDS:
+        outputs.check(arguments.output, _KINDS[file_format])
     motions = motions_from(arguments)
     if into_folder:
-        _make(target, arguments.output)
-        for name, path in _names(motions, target, _ENDINGS[form]).items():
-            _write(motions[name], form, path, outputs, arguments)
-    elif form == "nc" and len(motions) > 1:
+        _make_folder(target, arguments.output)
+        for name, path in _file_names(motions, target, _ENDINGS[file_format]).items():
+            _write(motions[name], file_format, path, outputs, arguments)
+    elif file_format == "nc" and len(motions) > 1:
         suite = motions if isinstance(motions, MotionSuite) else MotionSuite(motions)
-        outputs.write(arguments.output, _NETCDF, "Motions", suite.to_dataset().to_netcdf)
+        outputs.write(arguments.output, _NETCDF_KIND, "Motions", suite.to_dataset().to_netcdf)
     else:
-        _write(_only(motions, arguments), form, arguments.output, outputs, arguments)
-    answer.subject("Motions", _listed(motions))
+        _write(
+            _single_motion(motions, arguments), file_format, arguments.output, outputs, arguments
+        )
+    answer.add_context("Motions", _motion_list(motions))
     return 0
 
 
-def _form_of(output: str) -> str:
+def _format_from_ending(output: str) -> str:
     """Return the format by the ending of a file."""
     ending = Path(output).suffix.lower()
     found = next((form for form, one in _ENDINGS.items() if one.lower() == ending), None)
@@ -67,7 +69,7 @@ def _form_of(output: str) -> str:
     return found
 
 
-def _make(folder: Path, named: str) -> None:
+def _make_folder(folder: Path, named: str) -> None:
     try:
         folder.mkdir(exist_ok=True)
     except OSError as problem:
@@ -75,11 +77,11 @@ def _make(folder: Path, named: str) -> None:
         raise FileError(named, words) from problem
 
 
-def _names(motions: Mapping[str, GroundMotion], folder: Path, ending: str) -> dict[str, Path]:
+def _file_names(motions: Mapping[str, GroundMotion], folder: Path, ending: str) -> dict[str, Path]:
     """Give each motion a path of its own."""
     found: dict[str, Path] = {}
     for name in motions:
-        stem = _UNSAFE.sub("_", name).strip("._") or "motion"
+        stem = _UNSAFE_CHARACTERS.sub("_", name).strip("._") or "motion"
         taken = {path.stem.casefold() for path in found.values()}
         number = 1
         unique = stem
@@ -90,39 +92,41 @@ def _names(motions: Mapping[str, GroundMotion], folder: Path, ending: str) -> di
     return found
 
 
-def _only(motions: Mapping[str, GroundMotion], arguments: argparse.Namespace) -> GroundMotion:
+def _single_motion(
+    motions: Mapping[str, GroundMotion], arguments: argparse.Namespace
+) -> GroundMotion:
     if len(motions) == 1:
         return next(iter(motions.values()))
     words = (
-        f"{len(motions)} motions do not fit into one file of this format: {_listed(motions)}; name "
-        "one with --component, or a folder with --to, or a file ending in .nc"
+        f"{len(motions)} motions do not fit into one file of this format: {_motion_list(motions)}; "
+        "name one with --component, or a folder with --to, or a file ending in .nc"
     )
     raise FileError(arguments.output, words)
 
 
-def _listed(motions: Mapping[str, GroundMotion]) -> str:
-    more = "" if len(motions) <= _LISTED else f" and {len(motions) - _LISTED} more"
-    return f"{', '.join(list(motions)[:_LISTED])}{more}"
+def _motion_list(motions: Mapping[str, GroundMotion]) -> str:
+    more = "" if len(motions) <= _MAX_LISTED else f" and {len(motions) - _MAX_LISTED} more"
+    return f"{', '.join(list(motions)[:_MAX_LISTED])}{more}"
 
 
 def _write(
     motion: GroundMotion,
-    form: str,
+    file_format: str,
     path: str | Path,
     outputs: Outputs,
     arguments: argparse.Namespace,
 ) -> None:
     """Write one motion."""
-    if form == "nc":
-        outputs.write(path, _NETCDF, "Motion", motion.to_dataset().to_netcdf)
-    elif form == "csv":
+    if file_format == "nc":
+        outputs.write(path, _NETCDF_KIND, "Motion", motion.to_dataset().to_netcdf)
+    elif file_format == "csv":
         values = table(motion.to_dataset(), "histories")
-        outputs.write(path, _TABLE, "Motion", lambda part: values.to_csv(part))
+        outputs.write(path, _TABLE_KIND, "Motion", lambda part: values.to_csv(part))
     else:
         if motion.si.vertical is not None:
             words = "the vertical component is left out; a file ending in .nc or .csv has it"
             warn(f"{path}: {words}", RockframeWarning)
-        outputs.written_by(
-            path, _ENDINGS[form], "Motion",
+        outputs.save_by(
+            path, _ENDINGS[file_format], "Motion",
             lambda place: motion.to_at2(place, overwrite=arguments.overwrite),
         )  # fmt: skip

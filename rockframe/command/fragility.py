@@ -6,33 +6,33 @@ from typing import Any, Final
 
 import xarray as xr
 
+from rockframe.command.analysis_inputs import SCALE, scene_and_motions, typed_intensity
 from rockframe.command.answer import Answer
 from rockframe.command.files.studies import AXES, CASES
-from rockframe.command.over_motions import SCALE, scene_and_motions, typed_intensity
-from rockframe.command.plot import PICTURE, concluded
+from rockframe.command.plot import PICTURE_KIND, finish_analysis
 from rockframe.command.shared import (
     Outputs,
-    amount,
-    analysed,
+    amount_text,
     analysis_kind,
     is_result,
+    part_names,
     read_result,
-    system_words,
+    run_analysis,
     with_project,
 )
 from rockframe.errors import FileError, StudyError
-from rockframe.reports.project import ATTRIBUTE
+from rockframe.reports.project import PROJECT_ATTRIBUTE
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.variable import flag_words
 from rockframe.studies import fragility, open_study, sweep
 from rockframe.studies.sweeps.case import NOT_GIVEN
 
-_RESULT: Final = analysis_kind("a fragility", "exceedance_probability", "fragility_status")
-_IN_STORE: Final = (
+_RESULT_KIND: Final = analysis_kind("a fragility", "exceedance_probability", "fragility_status")
+_MOTION_MISSING: Final = (
     "is not in this result; name the store of the study, which keeps its records, instead of the "
     "result, or run it again with --store"
 )
-_USUAL: Final = [0.25 * k for k in range(1, 17)]
+_DEFAULT_SCALES: Final = [0.25 * k for k in range(1, 17)]
 """Scales of the motions, if neither the file nor the command line has any."""
 
 
@@ -41,15 +41,15 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     known = is_result(arguments.scene)
     found = None if known else scene_and_motions(arguments)
     read = [arguments.scene, *arguments.records] if found is None else found.files
-    outputs = Outputs(arguments, read, answer, output=_RESULT, picture=PICTURE)
+    outputs = Outputs(arguments, read, answer, output=_RESULT_KIND, picture=PICTURE_KIND)
     if found is None:
         runs = _runs_of_study(arguments)
     else:
         values: dict[str, Any] = {"store": found.store, **found.arguments}
         if AXES not in values and CASES not in values:
-            values[AXES] = {SCALE: _USUAL}
+            values[AXES] = {SCALE: _DEFAULT_SCALES}
         try:
-            runs = analysed(sweep, found, found.motions, values, arguments)
+            runs = run_analysis(sweep, found, found.motions, values, arguments)
         except StudyError as problem:
             raise found.at_lines(problem) from problem
     try:
@@ -57,17 +57,19 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     except StudyError as problem:
         if not known or NOT_GIVEN not in str(problem):
             raise
-        words = str(problem).removeprefix(f"{fragility.__name__}: ").replace(NOT_GIVEN, _IN_STORE)
+        words = (
+            str(problem).removeprefix(f"{fragility.__name__}: ").replace(NOT_GIVEN, _MOTION_MISSING)
+        )
         raise FileError(arguments.scene, words) from problem
-    dataset = with_project(dataset, str(runs.attrs.get(ATTRIBUTE, "")))
-    answer.says("Verdict", dataset.attrs["verdict"])
+    dataset = with_project(dataset, str(runs.attrs.get(PROJECT_ATTRIBUTE, "")))
+    answer.add_result("Verdict", dataset.attrs["verdict"])
     if "median_intensity" in dataset and dataset["median_intensity"].dims == ("limit_state",):
         for state, row in dataset.groupby("limit_state", squeeze=False):
-            answer.text(_line(str(state), row.squeeze("limit_state")))
+            answer.add_text(_limit_state_line(str(state), row.squeeze("limit_state")))
     if found is not None:
-        answer.subject("Scene", system_words(found.system))
-    answer.subject("Runs", str(runs.attrs["verdict"]))
-    return concluded(dataset, arguments, answer, outputs, runs)
+        answer.add_context("Scene", part_names(found.system))
+    answer.add_context("Runs", str(runs.attrs["verdict"]))
+    return finish_analysis(dataset, arguments, answer, outputs, runs)
 
 
 def _runs_of_study(arguments: argparse.Namespace) -> xr.Dataset:
@@ -83,7 +85,7 @@ def _runs_of_study(arguments: argparse.Namespace) -> xr.Dataset:
     return read_result(arguments.scene)
 
 
-def _line(state: str, row: xr.Dataset) -> str:
+def _limit_state_line(state: str, row: xr.Dataset) -> str:
     """Write the median and dispersion of a limit state."""
     median = row["median_intensity"]
     status = row["fragility_status"]
@@ -91,6 +93,8 @@ def _line(state: str, row: xr.Dataset) -> str:
     if bool(median.isnull()):
         return f"  {state}: no fit, {words}"
     if int(status) != FragilityStatus.FITTED:
-        return f"  {state}: median about {amount(float(median), median.attrs)}, {words}"
+        return f"  {state}: median about {amount_text(float(median), median.attrs)}, {words}"
     dispersion = float(row["dispersion"])
-    return f"  {state}: median {amount(float(median), median.attrs)}, dispersion {dispersion:.3g}"
+    return (
+        f"  {state}: median {amount_text(float(median), median.attrs)}, dispersion {dispersion:.3g}"
+    )

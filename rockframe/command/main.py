@@ -13,8 +13,13 @@ from importlib import import_module
 from types import FrameType
 from typing import TYPE_CHECKING, Any, Final
 
-from rockframe.command.parser import WrongLineError, as_typed, build_parser, misspelt
-from rockframe.command.streams import StandardInput, tell
+from rockframe.command.parser import (
+    UsageError,
+    build_parser,
+    rewrite_for_command_line,
+    unknown_word_message,
+)
+from rockframe.command.streams import StandardInput, print_message
 from rockframe.errors import RockframeError, RockframeWarning, SolverError
 
 if TYPE_CHECKING:
@@ -28,17 +33,17 @@ INTERRUPTED: Final = 130
 def main(values: Sequence[str] | None = None) -> int:
     """Run the command line, and give its exit code."""
     typed = list(sys.argv[1:] if values is None else values)
-    StandardInput.taken_by = ""
-    problem = misspelt(typed)
+    StandardInput.read_as = ""
+    problem = unknown_word_message(typed)
     if problem is not None:
-        who, _, words = problem.partition(": ")
-        tell(who, words)
-        return _wrong(typed, words)
+        program, _, words = problem.partition(": ")
+        print_message(program, words)
+        return _report_usage_error(typed, words)
     parser = build_parser()
     try:
         arguments = parser.parse_args(typed)
-    except WrongLineError as problem:
-        return _wrong(typed, str(problem))
+    except UsageError as problem:
+        return _report_usage_error(typed, str(problem))
     except SystemExit:  # after help or version
         return 0
     if arguments.command is None:
@@ -47,27 +52,27 @@ def main(values: Sequence[str] | None = None) -> int:
     arguments.typed = typed
     for name in ("quiet", "verbose", "json", "debug"):
         setattr(arguments, name, getattr(arguments, name, False))
-    who = f"rockframe {arguments.command}"
-    with _interrupts() as heard:
+    program = f"rockframe {arguments.command}"
+    with _recorded_interrupts() as interrupts:
         try:
-            return _carried_out(arguments, who, heard)
+            return _run_command(arguments, program, interrupts)
         except KeyboardInterrupt:  # also while libraries are loaded
-            tell(who, "interrupted")
+            print_message(program, "interrupted")
             return INTERRUPTED
 
 
-def _wrong(typed: Sequence[str], words: str) -> int:
+def _report_usage_error(typed: Sequence[str], words: str) -> int:
     """Report a wrong command line as JSON as well, where that is required."""
     if "--json" in typed:
         from rockframe.command.answer import Answer
 
         name = next((word for word in typed if not word.startswith("-")), "")
         answer = Answer(name, quiet=True, verbose=False, as_json=True)
-        _print(answer, WRONG_INPUT, words, "rockframe")
+        _print_answer(answer, WRONG_INPUT, words, "rockframe")
     return WRONG_INPUT
 
 
-def _carried_out(arguments: Namespace, who: str, heard: list[int]) -> int:
+def _run_command(arguments: Namespace, program: str, interrupts: list[int]) -> int:
     """Run a command, and print its results once all of its files are written."""
     from rockframe.command.answer import Answer
 
@@ -80,29 +85,32 @@ def _carried_out(arguments: Namespace, who: str, heard: list[int]) -> int:
     error = ""
     with warnings.catch_warnings():
         warnings.simplefilter("default", RockframeWarning)
-        warnings.showwarning = _say_warning(who, answer)
+        warnings.showwarning = _warning_printer(program, answer)
         try:
             # each command imports the libraries it needs only when it runs
             module: Any = import_module(f"rockframe.command.{arguments.command}")
             code = int(module.execute(arguments, answer))
-            if heard:  # the results up to the interruption are in the answer
+            if interrupts:  # the results up to the interruption are in the answer
                 code = INTERRUPTED
         except KeyboardInterrupt:
             code, error = INTERRUPTED, "interrupted"
         except (RockframeError, OSError, MemoryError) as problem:
             code = UNFINISHED if isinstance(problem, SolverError) else WRONG_INPUT
-            error = as_typed(str(problem), arguments.command) or "there is not enough memory"
+            error = (
+                rewrite_for_command_line(str(problem), arguments.command)
+                or "there is not enough memory"
+            )
             if arguments.debug:
                 traceback.print_exc()
-        written = _print(answer, code, error, who)
+        written = _print_answer(answer, code, error, program)
     if error and not arguments.debug:
-        tell(who, error)
+        print_message(program, error)
     return code if written or error else WRONG_INPUT
 
 
-def _print(answer: "Answer", code: int, error: str, who: str) -> bool:
+def _print_answer(answer: "Answer", code: int, error: str, program: str) -> bool:
     """Print the results of a command; false where they could not be written."""
-    text = answer.json(code, error) if answer.as_json else answer.printed(error)
+    text = answer.as_json_text(code, error) if answer.as_json else answer.as_text(error)
     if sys.stdout is None:  # closed before the command began
         return True
     try:
@@ -118,37 +126,37 @@ def _print(answer: "Answer", code: int, error: str, who: str) -> bool:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         if isinstance(problem, BrokenPipeError):
             return True
-        tell(who, f"the output cannot be written ({problem.strerror})")
+        print_message(program, f"the output cannot be written ({problem.strerror})")
         return False
     return True
 
 
 @contextmanager
-def _interrupts() -> Generator[list[int]]:
+def _recorded_interrupts() -> Generator[list[int]]:
     """Record Ctrl-C, also where an analysis then returns its results so far."""
-    heard: list[int] = []
+    interrupts: list[int] = []
     if threading.current_thread() is not threading.main_thread():
-        yield heard
+        yield interrupts
         return
 
-    def hear(number: int, frame: FrameType | None) -> None:
-        heard.append(number)
+    def handler(number: int, frame: FrameType | None) -> None:
+        interrupts.append(number)
         signal.default_int_handler(number, frame)
 
-    before = signal.signal(signal.SIGINT, hear)
+    before = signal.signal(signal.SIGINT, handler)
     try:
-        yield heard
+        yield interrupts
     finally:
         signal.signal(signal.SIGINT, before)
 
 
-def _say_warning(who: str, answer: "Answer") -> Any:
+def _warning_printer(program: str, answer: "Answer") -> Any:
     def say(message: object, category: type[Warning], *_: object, **__: object) -> None:
         if not issubclass(category, RockframeWarning):
             return
-        words = as_typed(str(message), who.split()[-1])
-        answer.warned(words)
+        words = rewrite_for_command_line(str(message), program.split()[-1])
+        answer.add_warning(words)
         if not answer.quiet:
-            tell(who, f"warning: {words}", "warning")
+            print_message(program, f"warning: {words}", "warning")
 
     return say

@@ -7,18 +7,18 @@ import numpy as np
 import xarray as xr
 
 from rockframe.command.answer import Answer
-from rockframe.command.files.scenes import Described, read_scene
+from rockframe.command.files.scenes import SceneDescription, read_scene
 from rockframe.command.files.tables import arguments_of
-from rockframe.command.plot import PICTURE, concluded
+from rockframe.command.plot import PICTURE_KIND, finish_analysis
 from rockframe.command.shared import (
     Outputs,
-    analysed,
     analysis_kind,
+    arguments_accepted_by,
+    part_names,
+    read_numbers,
+    run_analysis,
     run_from,
     store_from,
-    system_words,
-    taken_by,
-    values_of,
 )
 from rockframe.errors import ComponentError
 from rockframe.motion import GroundMotion
@@ -27,32 +27,32 @@ from rockframe.shared_arguments import suggestion
 from rockframe.studies import overturning_map
 from rockframe.studies.limit_states import overturns
 
-_RESULT: Final = analysis_kind("a map of overturning", "impacts_before_overturning")
-_USUAL: Final = "sine_pulse"
+_RESULT_KIND: Final = analysis_kind("a map of overturning", "impacts_before_overturning")
+_DEFAULT_PULSE: Final = "sine_pulse"
 _AXES: Final = ("amplitude", "frequency")
-_KIND: Final = ("type", "constructor")
+_CONSTRUCTOR_KEYS: Final = ("type", "constructor")
 
 
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Run pulses of all amplitudes and frequencies, and report which of them overturn."""
     found = read_scene(arguments.scene)
-    outputs = Outputs(arguments, found.files, answer, output=_RESULT, picture=PICTURE)
+    outputs = Outputs(arguments, found.files, answer, output=_RESULT_KIND, picture=PICTURE_KIND)
     values: dict[str, Any] = {
         "store": store_from(arguments),
-        **taken_by(overturning_map, run_from(found.run, arguments)),
-        "amplitude": values_of(arguments.amplitude, "--amplitude", "1:10:0.5 m/s^2"),
-        "frequency": values_of(arguments.frequency, "--frequency", "0.5:4:0.25 Hz"),
+        **arguments_accepted_by(overturning_map, run_from(found.run, arguments)),
+        "amplitude": read_numbers(arguments.amplitude, "--amplitude", "1:10:0.5 m/s^2"),
+        "frequency": read_numbers(arguments.frequency, "--frequency", "0.5:4:0.25 Hz"),
     }
     pulse, words = _pulse(found, arguments.pulse)
-    dataset = analysed(overturning_map, found, pulse, values, arguments)
-    answer.says("Verdict", dataset.attrs["verdict"])
-    answer.subject("Scene", f"{system_words(found.system)} ({dataset.attrs['model']})")
-    answer.subject("Pulse", words)
-    answer.text("\n".join(_lines(dataset)))
-    return concluded(dataset, arguments, answer, outputs)
+    dataset = run_analysis(overturning_map, found, pulse, values, arguments)
+    answer.add_result("Verdict", dataset.attrs["verdict"])
+    answer.add_context("Scene", f"{part_names(found.system)} ({dataset.attrs['model']})")
+    answer.add_context("Pulse", words)
+    answer.add_text("\n".join(_boundary_lines(dataset)))
+    return finish_analysis(dataset, arguments, answer, outputs)
 
 
-def _pulse(found: Described, name: str | None) -> tuple[Any, str]:
+def _pulse(found: SceneDescription, name: str | None) -> tuple[Any, str]:
     """Return the pulse that was typed, else that of the scene, and its name."""
     known = [one for one in CONSTRUCTORS if _has_axes(one)]
     if name is not None and name not in known:
@@ -62,10 +62,14 @@ def _pulse(found: Described, name: str | None) -> tuple[Any, str]:
     motion = found.motion
     described = {} if motion is None else motion.to_dict()
     if name is None and set(_AXES) <= set(described):
-        others = {key: value for key, value in described.items() if key not in (*_AXES, *_KIND)}
+        others = {
+            key: value
+            for key, value in described.items()
+            if key not in (*_AXES, *_CONSTRUCTOR_KEYS)
+        }
         words = str(described["constructor"]).replace("_", " ")
         return motion, ", ".join([words, *(f"{key}: {value:g}" for key, value in others.items())])
-    name = name or _USUAL
+    name = name or _DEFAULT_PULSE
     return getattr(GroundMotion, name), name.replace("_", " ")
 
 
@@ -77,24 +81,24 @@ def _has_axes(name: str) -> bool:
     )
 
 
-def _lines(dataset: xr.Dataset) -> list[str]:
+def _boundary_lines(dataset: xr.Dataset) -> list[str]:
     """Write the boundaries of overturning for each frequency."""
     unit = dataset["amplitude"].attrs["units"]
     lines = [f"  frequency [Hz]   boundaries of overturning [{unit}]"]
     for number, frequency in enumerate(dataset["frequency"].to_numpy()):
         one = dataset.isel(frequency=number)
         ends = zip(one["amplitude_above"].to_numpy(), one["impacts_above"].to_numpy(), strict=True)
-        text = [f"{at:.4g} {_way(impacts)}" for at, impacts in ends if at == at]
-        falls = overturns(one).to_numpy()
-        lacking = int(np.isnan(falls).sum())
-        ways = "overturns" if (falls == 1.0).any() else "stands"
-        text = text or [f"none: {ways} throughout" if lacking < falls.size else "none"]
-        text += [f"{lacking} of {falls.size} without a verdict"] if lacking else []
+        text = [f"{at:.4g} {_boundary_label(impacts)}" for at, impacts in ends if at == at]
+        overturned = overturns(one).to_numpy()
+        missing = int(np.isnan(overturned).sum())
+        verdict = "overturns" if (overturned == 1.0).any() else "stands"
+        text = text or [f"none: {verdict} throughout" if missing < overturned.size else "none"]
+        text += [f"{missing} of {overturned.size} without a verdict"] if missing else []
         lines.append(f"  {frequency:<16.4g} {', '.join(text)}")
     return lines
 
 
-def _way(impacts: float) -> str:
+def _boundary_label(impacts: float) -> str:
     if impacts != impacts:
         return "stands"
     return f"overturns after {impacts:.0f} impact{'' if impacts == 1 else 's'}"

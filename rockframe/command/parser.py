@@ -5,24 +5,24 @@ import re
 from collections.abc import Sequence
 from typing import Any, Final, NoReturn
 
-from rockframe.command.arguments import EVERYWHERE, Command
+from rockframe.command.arguments import COMMON_OPTIONS, Command
 from rockframe.command.commands import COMMANDS
 from rockframe.command.streams import STREAM
 from rockframe.errors import did_you_mean
 from rockframe.shared_arguments import suggestion
 from rockframe.version import __version__
 
-_VALUE: Final = re.compile(r"-[\d.]|-.* ")
+_HYPHENED_VALUE: Final = re.compile(r"-[\d.]|-.* ")
 """Values that begin with a hyphen: a number, or a quantity with its unit."""
-_EXAMPLE: Final = re.compile(r"\b(\w+)='([^']*)'")
-_OWNER: Final = re.compile(
+_KEYWORD_EXAMPLE: Final = re.compile(r"\b(\w+)='([^']*)'")
+_FUNCTION_PREFIX: Final = re.compile(
     r"^(case|critical_scale|fragility|incremental_dynamic_analysis|overturning_map|report|sweep|"
     r"simulate|rf\.plot\.\w+): "
 )
 """Names of functions at the head of messages, which do not help on the command line."""
-_OF_SCENES: Final = "scene"
+_SCENE_ARGUMENT: Final = "scene"
 """Argument of the commands that read the file of a scene."""
-_CHOICE: Final = re.compile(r"invalid choice: '(.*?)'")
+_INVALID_CHOICE: Final = re.compile(r"invalid choice: '(.*?)'")
 
 EXIT_CODES: Final = """\
 exit codes:
@@ -31,7 +31,7 @@ exit codes:
   2    the command line or a file is wrong; the message says what is wrong, and where
   130  interrupted (Ctrl-C)
 """
-_STORY: Final = """\
+_DESCRIPTION: Final = """\
 Simulate rigid blocks and frames that rock on the ground, on pads or on soil.
 
 A scene is a text file with units:
@@ -53,11 +53,11 @@ Questions:
 def build_parser() -> argparse.ArgumentParser:
     """Build the parser of the whole command line."""
     everywhere = argparse.ArgumentParser(add_help=False)
-    for one in EVERYWHERE:
+    for one in COMMON_OPTIONS:
         everywhere.add_argument(*one.names, **one.settings, default=argparse.SUPPRESS)
     parser = _Parser(
         prog="rockframe",
-        description=_STORY,
+        description=_DESCRIPTION,
         epilog=f"'rockframe COMMAND --help' explains a command, with examples.\n\n{EXIT_CODES}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
         parents=[everywhere],
@@ -70,8 +70,8 @@ def build_parser() -> argparse.ArgumentParser:
     for command in COMMANDS:
         one = commands.add_parser(
             command.name,
-            help=command.words,
-            description=command.story,
+            help=command.summary,
+            description=command.description,
             epilog=f"examples:\n{command.examples}\n\n{EXIT_CODES}",
             formatter_class=_Formatter,
             parents=[everywhere],
@@ -82,31 +82,31 @@ def build_parser() -> argparse.ArgumentParser:
     return parser
 
 
-def misspelt(typed: Sequence[str]) -> str | None:
+def unknown_word_message(typed: Sequence[str]) -> str | None:
     """Return a message on a word that is neither a command nor an option, with a proposal."""
     known = {command.name: command for command in COMMANDS}
-    place = next((k for k, word in enumerate(typed) if not word.startswith("-")), len(typed))
-    first = typed[place] if place < len(typed) else None
-    foreign = [word for word in typed[:place] if not _is_option(word, _options(None))]
-    if foreign:
-        return _no_option(foreign[0].split("=")[0], None, _options(None))
+    position = next((k for k, word in enumerate(typed) if not word.startswith("-")), len(typed))
+    first = typed[position] if position < len(typed) else None
+    unknown = [word for word in typed[:position] if not _is_option(word, _options(None))]
+    if unknown:
+        return _unknown_option_message(unknown[0].split("=")[0], None, _options(None))
     if first is not None and first not in known:
-        near = did_you_mean(first, known)
+        proposal = did_you_mean(first, known)
         listed = ", ".join(known)
-        return f"rockframe: invalid choice: {first!r} is no command{near} There are {listed}"
+        return f"rockframe: invalid choice: {first!r} is no command{proposal} There are {listed}"
     command = None if first is None else known[first]
     options = _options(command)
-    for word in typed[place + 1 :]:
+    for word in typed[position + 1 :]:
         if word == "--":
             break
         # neither a number, nor a value with a unit, nor the standard input
-        option = word.startswith("-") and word != STREAM and not _VALUE.match(word)
+        option = word.startswith("-") and word != STREAM and not _HYPHENED_VALUE.match(word)
         if option and not _is_option(word, options):
-            return _no_option(word.split("=")[0], command, options)
+            return _unknown_option_message(word.split("=")[0], command, options)
     return None
 
 
-def as_typed(words: str, name: str) -> str:
+def rewrite_for_command_line(words: str, name: str) -> str:
     """Rewrite a message of a Python function for the command line and the file of a scene."""
     command = next(one for one in COMMANDS if one.name == name)
     options = _options(command)
@@ -115,8 +115,8 @@ def as_typed(words: str, name: str) -> str:
         option = f"--{match[1].replace('_', '-')}"
         return f"{option} '{match[2]}'" if option in options else match[0]
 
-    words = _EXAMPLE.sub(typed, _OWNER.sub("", words))
-    if not any(_OF_SCENES in argument.names for argument in command.arguments):
+    words = _KEYWORD_EXAMPLE.sub(typed, _FUNCTION_PREFIX.sub("", words))
+    if not any(_SCENE_ARGUMENT in argument.names for argument in command.arguments):
         return words
     from rockframe.command.files.notation import in_toml
 
@@ -125,7 +125,7 @@ def as_typed(words: str, name: str) -> str:
 
 def _options(command: Command | None) -> list[str]:
     """Return all options of a command, or those that are allowed before the command."""
-    declared = [*EVERYWHERE, *(() if command is None else command.arguments)]
+    declared = [*COMMON_OPTIONS, *(() if command is None else command.arguments)]
     names = [name for one in declared for name in one.names if name.startswith("-")]
     return [*names, "-h", "--help", *(["--version"] if command is None else [])]
 
@@ -135,18 +135,20 @@ def _is_option(word: str, options: Sequence[str]) -> bool:
     return word.split("=")[0] in options or (word[1] != "-" and word[:2] in options)
 
 
-def _no_option(word: str, command: Command | None, options: Sequence[str]) -> str:
-    who = "rockframe" if command is None else f"rockframe {command.name}"
+def _unknown_option_message(word: str, command: Command | None, options: Sequence[str]) -> str:
+    program = "rockframe" if command is None else f"rockframe {command.name}"
     near = suggestion(word, [name for name in options if name.startswith("--")])
     also = [one.name for one in COMMANDS if word in _options(one)]
     if also:
         others = f"{', '.join(also)} {'takes' if len(also) == 1 else 'take'} it"
         place = "before the command" if command is None else "here"
-        return f"{who}: there is no option {word} {place}; {others}. '{who} --help' lists all"
-    return f"{who}: there is no option {word}{near} '{who} --help' lists all"
+        return (
+            f"{program}: there is no option {word} {place}; {others}. '{program} --help' lists all"
+        )
+    return f"{program}: there is no option {word}{near} '{program} --help' lists all"
 
 
-class WrongLineError(Exception):
+class UsageError(Exception):
     """A wrong command line; the message has been written."""
 
 
@@ -158,7 +160,7 @@ class _Parser(argparse.ArgumentParser):
         try:
             super().error(message)
         except SystemExit as left:
-            raise WrongLineError(message) from left
+            raise UsageError(message) from left
 
 
 class _CommandParser(_Parser):
@@ -180,7 +182,7 @@ class _CommandParser(_Parser):
 
     def error(self, message: str) -> NoReturn:
         """Add the choice that was probably meant to the message."""
-        found = _CHOICE.search(message)
+        found = _INVALID_CHOICE.search(message)
         if found is not None:
             choices = [
                 choice for action in self._actions for choice in action.choices or ()

@@ -11,19 +11,25 @@ import xarray as xr
 from rockframe.command.answer import Answer
 from rockframe.command.files.tables import arguments_of
 from rockframe.command.shared import Outputs, read_result
-from rockframe.command.streams import INPUT, STREAM
-from rockframe.command.typed_calls import CODES, called, check_of, target_from, values_by_name
+from rockframe.command.streams import STANDARD_INPUT_NAME, STREAM
+from rockframe.command.typed_calls import (
+    CODES,
+    call_typed,
+    parse_check,
+    target_from,
+    values_by_name,
+)
 from rockframe.errors import ComponentError, FileError, SchemaError
 from rockframe.motion import GroundMotion
 from rockframe.reports import report
 from rockframe.reports.checks import CodeCheck
-from rockframe.reports.motions import motions_of
-from rockframe.reports.project import ATTRIBUTE, CHECKS
+from rockframe.reports.motions import available_motions
+from rockframe.reports.project import CHECKS, PROJECT_ATTRIBUTE
 from rockframe.simulation.system import System
 from rockframe.studies import case, open_study
 from rockframe.suites import TargetSpectrum, read_suite
 
-_CHECK: Final = "--check"
+_CHECK_OPTION: Final = "--check"
 
 
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
@@ -31,27 +37,30 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     path = arguments.output
     if path is None and arguments.dataset == STREAM:
         words = "a result from the standard input has no name; name the report with -o report.html"
-        raise FileError(INPUT, words)
-    place = Path(arguments.dataset)
-    folder = place.expanduser().is_dir()
-    dataset = open_study(arguments.dataset) if folder else read_result(arguments.dataset)
+        raise FileError(STANDARD_INPUT_NAME, words)
+    source = Path(arguments.dataset)
+    is_store = source.expanduser().is_dir()
+    dataset = open_study(arguments.dataset) if is_store else read_result(arguments.dataset)
     if path is None:
-        if folder:  # its name may contain points, or be '.' or '..'
-            place = place if place.name.strip(".") else place.resolve()
-            place = place.with_name(f"{place.name}.nc")
-        path = str(place.with_suffix(".html"))
+        if is_store:  # its name may contain points, or be '.' or '..'
+            source = source if source.name.strip(".") else source.resolve()
+            source = source.with_name(f"{source.name}.nc")
+        path = str(source.with_suffix(".html"))
     records = arguments.motions
     motions = None if records is None else read_suite(records[0] if len(records) == 1 else records)
     if arguments.case is not None:
-        dataset, motions = _case_of(dataset, arguments, motions), None  # a case holds its motion
+        dataset, motions = (
+            _simulate_case(dataset, arguments, motions),
+            None,
+        )  # a case holds its motion
     outputs = Outputs(arguments, [arguments.dataset], answer)
-    outputs.written_by(
-        path, ".html", "Report", lambda place: _write(dataset, place, arguments, motions)
+    outputs.save_by(
+        path, ".html", "Report", lambda source: _write_report(dataset, source, arguments, motions)
     )
     return 0
 
 
-def _write(
+def _write_report(
     dataset: xr.Dataset,
     place: Path,
     arguments: argparse.Namespace,
@@ -59,7 +68,7 @@ def _write(
 ) -> None:
     motion = None if arguments.motion is None else GroundMotion.read(arguments.motion)
     target = None if arguments.target is None else target_from(arguments.target, "--target")
-    checks = _checks(dataset, arguments.check or (), motion or motions, target)
+    checks = _code_checks(dataset, arguments.check or (), motion or motions, target)
     if checks and "motions_json" not in dataset.attrs:  # a run, checked under further motions
         motions = None
     report(
@@ -76,7 +85,7 @@ def _write(
     )
 
 
-def _checks(
+def _code_checks(
     dataset: xr.Dataset, typed: Any, motions: object, target: TargetSpectrum | None
 ) -> list[CodeCheck]:
     """Check the scene of a result by codes, under its motions or by a spectrum.
@@ -84,9 +93,9 @@ def _checks(
     Checks that were typed replace those in the file of the scene. The latter are left out where
     the motions are missing; the report mentions this.
     """
-    run_options = json.loads(str(dataset.attrs.get(ATTRIBUTE, "{}"))).get(CHECKS, ())
+    listed = json.loads(str(dataset.attrs.get(PROJECT_ATTRIBUTE, "{}"))).get(CHECKS, ())
     required = bool(typed)
-    typed = typed or [check_of(one, CHECKS) for one in run_options]
+    typed = typed or [parse_check(one, CHECKS) for one in listed]
     if not typed:
         return []
     try:
@@ -94,27 +103,31 @@ def _checks(
     except SchemaError as problem:
         if not required:
             return []
-        msg = f"{_CHECK}: the result does not hold the scene that is to be checked ({problem})"
+        msg = (
+            f"{_CHECK_OPTION}: the result does not hold the scene that is to be checked ({problem})"
+        )
         raise ComponentError(msg) from problem
-    held = motions_of(dataset, motions, _CHECK)
-    if not held and system.motion is not None:
-        held = {system.motion.name: system.motion}
+    motions_of_result = available_motions(dataset, motions, _CHECK_OPTION)
+    if not motions_of_result and system.motion is not None:
+        motions_of_result = {system.motion.name: system.motion}
     found: list[CodeCheck] = []
     for words in typed:
-        demand = held or (target if words[0] == "circolare_2019" else None)
+        demand = motions_of_result or (target if words[0] == "circolare_2019" else None)
         if demand is None and words[0] == "circolare_2019":
             if not required:
                 continue
             msg = (
-                f"{_CHECK}: circolare_2019 needs the motions of the result, by --motions or "
+                f"{_CHECK_OPTION}: circolare_2019 needs the motions of the result, by --motions or "
                 "--motion, or a spectrum, by --target"
             )
             raise ComponentError(msg)
-        found.append(called(CODES, words, _CHECK, system, demand))
+        found.append(call_typed(CODES, words, _CHECK_OPTION, system, demand))
     return found
 
 
-def _case_of(dataset: xr.Dataset, arguments: argparse.Namespace, motions: object) -> xr.Dataset:
+def _simulate_case(
+    dataset: xr.Dataset, arguments: argparse.Namespace, motions: object
+) -> xr.Dataset:
     """Simulate the case of a study that was named."""
     if "axes_json" not in dataset.attrs:
         words = f"found --case {' '.join(arguments.case)}; expected a study, which has axes"

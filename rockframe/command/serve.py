@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from rockframe.command.answer import Answer
-from rockframe.command.shared import motion_from, reading_options, refuse_of_record
-from rockframe.command.streams import STREAM, tell
+from rockframe.command.shared import motion_from, reading_options, refuse_reading_options
+from rockframe.command.streams import STREAM, print_message
 from rockframe.errors import FileError
 from rockframe.serve import Server
 from rockframe.serve.controls import NamedRecord
@@ -16,15 +16,15 @@ from rockframe.serve.controls import NamedRecord
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Serve the page until Ctrl-C."""
     if arguments.record is None:
-        refuse_of_record(arguments, "name one, too")
+        refuse_reading_options(arguments, "name one, too")
     record = None if arguments.record is None else _record(arguments)
     with Server(arguments.port, record) as server:
         words = f"the page is at {server.address}, for this machine alone; Ctrl-C ends it"
-        tell("rockframe serve", words, "label")
+        print_message("rockframe serve", words, "label")
         if arguments.browse:
             webbrowser.open(server.address)
         server.serve_forever()
-    answer.says("Page", "ended")
+    answer.add_result("Page", "ended")
     return 0
 
 

@@ -14,14 +14,20 @@ from typing import TYPE_CHECKING, Any, Final
 import xarray as xr
 
 from rockframe.command.answer import Answer
-from rockframe.command.arguments import READING
-from rockframe.command.files.scenes import Described, read_scene
+from rockframe.command.arguments import READING_OPTIONS
+from rockframe.command.files.scenes import SceneDescription, read_scene
 from rockframe.command.files.tables import arguments_of
-from rockframe.command.streams import INPUT, STREAM, StandardInput, bar_for, opened
+from rockframe.command.streams import (
+    STANDARD_INPUT_NAME,
+    STREAM,
+    StandardInput,
+    open_input,
+    progress_bar,
+)
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, FileError, RecordError, SolverError, short_repr
 from rockframe.motion import GroundMotion
-from rockframe.reports.project import ATTRIBUTE
+from rockframe.reports.project import PROJECT_ATTRIBUTE
 from rockframe.results.table import head_of
 from rockframe.results.variables.variable import unit_suffix
 from rockframe.simulation.system import System
@@ -35,25 +41,25 @@ from rockframe.writing import Content, FileKind, check_not_read, checked_path, w
 if TYPE_CHECKING:
     import pandas as pd
 
-_OF_RESULTS: Final = "name a file that 'rockframe run' or 'study' wrote with -o"
+_RESULT_HINT: Final = "name a file that 'rockframe run' or 'study' wrote with -o"
 _NO_MOTION: Final = (
     "there is no motion; name a record with --motion, or describe one in the file, in [motion]"
 )
-_SCREENING: Final = ("fragility", "ida", "map")
+_SCREENING_COMMANDS: Final = ("fragility", "ida", "map")
 """Commands whose runs are those of sweeps, which may screen."""
-_MOST_VALUES: Final = 100_000
-_LONGEST_HEAD: Final = 65536
+_MAX_VALUES: Final = 100_000
+_MAX_HEADER_SIZE: Final = 65536
 """Largest part of the first line of a table that is read [bytes]."""
 
 
 def motion_from(path: str, arguments: argparse.Namespace) -> GroundMotion:
     """Read the file of a motion with the options for reading."""
-    return GroundMotion.read(opened(path, "a record"), **reading_options(arguments))
+    return GroundMotion.read(open_input(path, "a record"), **reading_options(arguments))
 
 
 def suite_from(paths: Sequence[str], arguments: argparse.Namespace) -> MotionSuite:
     """Read all records of files, archives and folders."""
-    files = [opened(path, "a record") for path in paths]
+    files = [open_input(path, "a record") for path in paths]
     value = files[0] if len(files) == 1 else files
     return read_suite(value, unit=arguments.unit, time_step=arguments.time_step)
 
@@ -75,16 +81,16 @@ def motions_from(arguments: argparse.Namespace) -> Mapping[str, GroundMotion]:
         raise
 
 
-def scene_from(arguments: argparse.Namespace, *, moved: bool = False) -> Described:
+def scene_from(arguments: argparse.Namespace, *, needs_motion: bool = False) -> SceneDescription:
     """Read the scene; options replace its motion and arguments of its run."""
     found = read_scene(arguments.scene)
     motion, files = found.motion, found.files
     if arguments.motion is None:
-        refuse_of_record(arguments, "name one with --motion")
+        refuse_reading_options(arguments, "name one with --motion")
     else:
         motion = motion_from(arguments.motion, arguments)
         files += (Path(arguments.motion),)
-    if moved and motion is None:
+    if needs_motion and motion is None:
         raise FileError(arguments.scene, _NO_MOTION)
     if arguments.scale is not None:
         if motion is None:
@@ -94,12 +100,12 @@ def scene_from(arguments: argparse.Namespace, *, moved: bool = False) -> Describ
     return replace(found, motion=motion, run=run_from(found.run, arguments), files=files)
 
 
-def refuse_of_record(arguments: argparse.Namespace, way: str) -> None:
+def refuse_reading_options(arguments: argparse.Namespace, advice: str) -> None:
     """Refuse options on how a record is read, where no record is named."""
-    for one in READING:
+    for one in READING_OPTIONS:
         value = getattr(arguments, one.attribute, None)
         if value is not None:
-            msg = f"{one.names[-1]} {value}: this says how a record is read; {way}"
+            msg = f"{one.names[-1]} {value}: this says how a record is read; {advice}"
             raise ComponentError(msg)
 
 
@@ -117,7 +123,7 @@ def run_from(of_file: Mapping[str, Any], arguments: argparse.Namespace) -> dict[
     """Return the arguments of a run: those of a file, replaced by options that were typed."""
     run = {**of_file, **typed_options(arguments, "duration", "free_vibration")}
     if arguments.accuracy is not None:
-        run["accuracy"] = _accuracy(arguments.accuracy, arguments.command)
+        run["accuracy"] = _read_accuracy(arguments.accuracy, arguments.command)
     if arguments.duration is not None and arguments.free_vibration is None:
         run.pop("free_vibration", None)
     if arguments.free_vibration is not None and arguments.duration is None:
@@ -125,7 +131,7 @@ def run_from(of_file: Mapping[str, Any], arguments: argparse.Namespace) -> dict[
     return run
 
 
-def taken_by(function: Callable[..., Any], run: Mapping[str, Any]) -> dict[str, Any]:
+def arguments_accepted_by(function: Callable[..., Any], run: Mapping[str, Any]) -> dict[str, Any]:
     """Return the arguments of a run that an analysis takes too."""
     known = arguments_of(function)
     return {name: value for name, value in run.items() if name in known}
@@ -133,7 +139,7 @@ def taken_by(function: Callable[..., Any], run: Mapping[str, Any]) -> dict[str, 
 
 def reading_options(arguments: argparse.Namespace) -> dict[str, Any]:
     """Return the typed options on how a record is read."""
-    return typed_options(arguments, *(one.attribute for one in READING))
+    return typed_options(arguments, *(one.attribute for one in READING_OPTIONS))
 
 
 def typed_options(arguments: argparse.Namespace, *names: str) -> dict[str, Any]:
@@ -150,7 +156,7 @@ def store_from(arguments: argparse.Namespace) -> Path | None:
     return None if arguments.store is None else Path(arguments.store).expanduser()
 
 
-def values_of(words: str, option: str, example: str) -> tuple[list[float], str]:
+def read_numbers(words: str, option: str, example: str) -> tuple[list[float], str]:
     """Read numbers but zero, listed or from:to:step, with a unit where the example has one."""
     numbers, _, unit = words.strip().partition(" ")
     unit = unit.strip()
@@ -158,7 +164,7 @@ def values_of(words: str, option: str, example: str) -> tuple[list[float], str]:
         if ":" not in numbers:
             found = [float(one) for one in numbers.split(",")]
         else:
-            found = _steps(*map(float, numbers.split(":")))
+            found = _range_values(*map(float, numbers.split(":")))
         if (" " in example) != bool(unit):
             raise ValueError
     except (TypeError, ValueError, ZeroDivisionError):
@@ -177,20 +183,20 @@ def values_of(words: str, option: str, example: str) -> tuple[list[float], str]:
     return found, unit
 
 
-def _steps(start: float, end: float, step: float) -> list[float]:
+def _range_values(start: float, end: float, step: float) -> list[float]:
     count = (end - start) / step
-    if not 0.0 <= count <= _MOST_VALUES:
+    if not 0.0 <= count <= _MAX_VALUES:
         raise ValueError
     # a step such as 0.1 has no exact binary form
     return [round(start + k * step, 12) for k in range(1 + floor(count + 1e-9))]
 
 
-def simulated(found: Described, **more: Any) -> xr.Dataset:
+def simulate_scene(found: SceneDescription, **more: Any) -> xr.Dataset:
     """Simulate what a file describes."""
     return with_project(found.system.simulate(found.motion, **{**found.run, **more}), found.project)
 
 
-def analysed(
+def run_analysis(
     analysis: Callable[..., xr.Dataset],
     found: Any,
     motions: object,
@@ -198,23 +204,23 @@ def analysed(
     arguments: argparse.Namespace,
 ) -> xr.Dataset:
     """Analyse what a file describes, with a progress bar."""
-    with bar_for(arguments.command, quiet=arguments.quiet) as bar:
+    with progress_bar(arguments.command, quiet=arguments.quiet) as bar:
         dataset = analysis(found.system, motions, **values, progress=bar)
     return with_project(dataset, found.project)
 
 
 def with_project(dataset: xr.Dataset, project: str) -> xr.Dataset:
     """Keep the project of the scene's file in a result."""
-    return dataset.assign_attrs({ATTRIBUTE: project}) if project else dataset
+    return dataset.assign_attrs({PROJECT_ATTRIBUTE: project}) if project else dataset
 
 
-def in_words(value: xr.DataArray, of: xr.Dataset) -> str:
+def intensity_text(value: xr.DataArray, of: xr.Dataset) -> str:
     """Write an intensity measure: its name, value and unit; of an acceleration also in g."""
     name = measure_words(str(value.name), of.attrs.get(PERIOD_ATTRIBUTE))
-    return f"{name} {amount(float(value), value.attrs)}"
+    return f"{name} {amount_text(float(value), value.attrs)}"
 
 
-def amount(value: float, attributes: Mapping[Any, Any]) -> str:
+def amount_text(value: float, attributes: Mapping[Any, Any]) -> str:
     """Write a number with its unit; of an acceleration also in g."""
     text = f"{value:.4g}{unit_suffix(attributes)}"
     if attributes.get("units") == Unit.METRE_PER_SECOND_SQUARED:
@@ -232,49 +238,49 @@ class Outputs:
         answer: Answer,
         **kinds: FileKind,  # of the files that options name, checked before the work begins
     ) -> None:
-        self._given: dict[str, Any] = {"overwrite": arguments.overwrite, "read": list(read)}
+        self._write_options: dict[str, Any] = {"overwrite": arguments.overwrite, "read": list(read)}
         self._answer = answer
-        self._named = {name: (getattr(arguments, name), kind) for name, kind in kinds.items()}
-        for path, kind in self._named.values():
+        self._named_files = {name: (getattr(arguments, name), kind) for name, kind in kinds.items()}
+        for path, kind in self._named_files.values():
             self.check(path, kind)
 
     def check(self, path: str | Path | None, kind: FileKind) -> None:
         """Raise if a file must not be written."""
         if path is not None and str(path) != STREAM:
-            checked_path(path, kind, **self._given)
+            checked_path(path, kind, **self._write_options)
 
     def write(self, path: str | Path | None, kind: FileKind, title: str, content: Content) -> None:
         """Write a file, if one was named, and report it."""
         if path is None:
             return
         if str(path) == STREAM:
-            self._answer.hands_on(_bytes_of(content, kind.suffixes[0]))
+            self._answer.set_stdout_file(_content_bytes(content, kind.suffixes[0]))
             return
-        write_file(path, kind, content, **self._given)
-        self._answer.wrote(title, path)
+        write_file(path, kind, content, **self._write_options)
+        self._answer.add_file(title, path)
 
-    def result(self, dataset: xr.Dataset) -> None:
+    def write_result(self, dataset: xr.Dataset) -> None:
         """Write a result to the file of ``--output``, if there is one, and report it."""
-        self.write(*self._named["output"], "Results", dataset.to_netcdf)
+        self.write(*self._named_files["output"], "Results", dataset.to_netcdf)
 
-    def written_by(
+    def save_by(
         self, path: str | Path, ending: str, title: str, save: Callable[[Path], object]
     ) -> None:
         """Write by a function of a path to a file, or to the standard output; report the file."""
         if str(path) == STREAM:
-            self._answer.hands_on(_bytes_of(save, ending))
+            self._answer.set_stdout_file(_content_bytes(save, ending))
             return
         if Path(path).suffix.lower() == ending.lower():  # `save` refuses other endings
-            check_not_read(path, self._given["read"])
+            check_not_read(path, self._write_options["read"])
         save(Path(path))
-        self._answer.wrote(title, path)
+        self._answer.add_file(title, path)
 
-    def table(self, values: "pd.DataFrame") -> None:
+    def write_table(self, values: "pd.DataFrame") -> None:
         """Write a table to the file of ``--csv``, if there is one, and report it."""
-        self.write(*self._named["csv"], "Table", lambda part: values.to_csv(part))
+        self.write(*self._named_files["csv"], "Table", lambda part: values.to_csv(part))
 
 
-def _bytes_of(content: Content, ending: str) -> bytes:
+def _content_bytes(content: Content, ending: str) -> bytes:
     """Return the bytes of a file whose name has an ending."""
     if isinstance(content, bytes):
         return content
@@ -294,21 +300,21 @@ def read_result(path: str) -> xr.Dataset:
     """Read a result."""
     if path == STREAM:
         with TemporaryDirectory() as folder:
-            kept = Path(folder) / "result.nc"
-            kept.write_bytes(StandardInput.read_for("a result").getvalue())
-            return _result_in(kept, INPUT)
-    return _result_in(Path(path).expanduser(), path)
+            copy = Path(folder) / "result.nc"
+            copy.write_bytes(StandardInput.read_for("a result").getvalue())
+            return _open_result(copy, STANDARD_INPUT_NAME)
+    return _open_result(Path(path).expanduser(), path)
 
 
-def _result_in(place: Path, path: str) -> xr.Dataset:
+def _open_result(place: Path, path: str) -> xr.Dataset:
     if not place.is_file():
         found = "this is a folder" if place.is_dir() else "there is no such file"
-        raise FileError(path, f"{found}; {_OF_RESULTS}")
+        raise FileError(path, f"{found}; {_RESULT_HINT}")
     try:
         with xr.open_dataset(place) as dataset:
             return dataset.load()
     except (OSError, ValueError) as problem:
-        raise FileError(path, f"this is no netCDF file; {_OF_RESULTS}") from problem
+        raise FileError(path, f"this is no netCDF file; {_RESULT_HINT}") from problem
 
 
 def result_kind(words: str, *, axes: bool) -> FileKind:
@@ -344,7 +350,7 @@ def table_kind(words: str, *names: str, also: Iterable[str] = ()) -> FileKind:
 
     def is_own(path: Path) -> bool:
         with path.open("rb") as file:
-            head = file.readline(_LONGEST_HEAD).decode("utf-8", "replace")
+            head = file.readline(_MAX_HEADER_SIZE).decode("utf-8", "replace")
         columns = next(csv.reader([head]), [])
         return all(head in columns for head in heads)
 
@@ -356,17 +362,17 @@ def analysis_kind(words: str, *names: str) -> FileKind:
     return dataset_kind(words, lambda found: _is_computed(found) and {*names} <= {*found.variables})
 
 
-RUN: Final = result_kind("the result of a run", axes=False)
-STUDY: Final = result_kind("the result of a study", axes=True)
+RUN_KIND: Final = result_kind("the result of a run", axes=False)
+STUDY_KIND: Final = result_kind("the result of a study", axes=True)
 
 
-def system_words(system: System) -> str:
+def part_names(system: System) -> str:
     """Name the parts of a system in one line."""
     return ", ".join(type(part).__name__ for part in system.parts.structural())
 
 
-def _accuracy(text: str, command: str) -> str | float:
-    if text == SCREEN and command in _SCREENING:
+def _read_accuracy(text: str, command: str) -> str | float:
+    if text == SCREEN and command in _SCREENING_COMMANDS:
         return text
     try:
         value: str | float = float(text)

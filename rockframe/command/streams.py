@@ -13,52 +13,54 @@ from rockframe.errors import FileError
 
 STREAM: Final = "-"
 """Typed instead of the name of a file for the standard input or output."""
-INPUT: Final = "standard input"
+STANDARD_INPUT_NAME: Final = "standard input"
 """Name of the standard input in messages."""
 
 _COLOURS: Final = {"error": "1;31", "warning": "33", "label": "1"}
-_CLEAR: Final = "\r\x1b[K"
+_CLEAR_LINE: Final = "\r\x1b[K"
 _DELAY: Final = 1.0
 """Time before a bar is shown [s]."""
-_BETWEEN: Final = 0.1
+_UPDATE_INTERVAL: Final = 0.1
 """Shortest time between two updates of the bar [s]."""
 
 
 class StandardInput(BytesIO):
     """The contents of the standard input, as an open file with a name."""
 
-    name = INPUT
-    taken_by = ""
+    name = STANDARD_INPUT_NAME
+    read_as = ""
     """What was read from the standard input, which can be read only once."""
 
     @classmethod
-    def read_for(cls, what: str) -> "StandardInput":
+    def read_for(cls, content: str) -> "StandardInput":
         """Read the whole standard input."""
-        if cls.taken_by:
+        if cls.read_as:
             words = (
-                f"{cls.taken_by} is read from it already, and {what} cannot be too; name a file "
+                f"{cls.read_as} is read from it already, and {content} cannot be too; name a file "
                 "for one of them"
             )
-            raise FileError(INPUT, words)
+            raise FileError(STANDARD_INPUT_NAME, words)
         if sys.stdin is None or sys.stdin.closed:
-            raise FileError(INPUT, f"it is closed; name the file of {what} instead of '-'")
-        cls.taken_by = what
+            raise FileError(
+                STANDARD_INPUT_NAME, f"it is closed; name the file of {content} instead of '-'"
+            )
+        cls.read_as = content
         return cls(sys.stdin.buffer.read())
 
     def __repr__(self) -> str:
         return self.name
 
 
-def opened(path: str, what: str) -> "str | IO[bytes]":
+def open_input(path: str, content: str) -> "str | IO[bytes]":
     """Return a path, or the standard input where it is ``-``."""
-    return StandardInput.read_for(what) if path == STREAM else path
+    return StandardInput.read_for(content) if path == STREAM else path
 
 
-def tell(who: str, words: str, kind: str = "error") -> None:
+def print_message(program: str, words: str, kind: str = "error") -> None:
     """Write a message to the standard error, after the name of the command."""
     # without colours if the user wants none, https://no-color.org
     plain = os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
-    head = f"{who}:"
+    head = f"{program}:"
     if not plain and is_terminal(sys.stderr):
         head = f"\x1b[{_COLOURS[kind]}m{head}\x1b[0m"
     print(f"{head} {words}", file=sys.stderr)
@@ -72,14 +74,14 @@ def is_terminal(stream: object) -> bool:
         return False
 
 
-class Bar:
+class TerminalProgressBar:
     """Progress in one line of the standard error, if that is a terminal."""
 
-    def __init__(self, what: str, *, wanted: bool) -> None:
-        self._shown = wanted and is_terminal(sys.stderr) and os.environ.get("TERM") != "dumb"
+    def __init__(self, what: str, *, enabled: bool) -> None:
+        self._shown = enabled and is_terminal(sys.stderr) and os.environ.get("TERM") != "dumb"
         self._what, self._part = what, ""
         self._total = self._done = 0
-        self._begun, self._last = monotonic(), 0.0
+        self._started, self._last = monotonic(), 0.0
 
     def name(self, part: str) -> None:
         """Set the name of the part that comes next."""
@@ -94,26 +96,26 @@ class Bar:
         """Add finished cases, and show the bar."""
         self._done += count
         now = monotonic()
-        if self._shown and now - self._begun > _DELAY and now - self._last > _BETWEEN:
+        if self._shown and now - self._started > _DELAY and now - self._last > _UPDATE_INTERVAL:
             self._last = now
             share = 100.0 * self._done / max(self._total, 1)
             words = (
                 f"{self._what}{self._part}: {self._done} of {self._total} runs ({share:.0f} %), "
-                f"{now - self._begun:.0f} s"
+                f"{now - self._started:.0f} s"
             )
             width = shutil.get_terminal_size().columns
-            print(f"{_CLEAR}{words[: width - 1]}", end="", file=sys.stderr, flush=True)
+            print(f"{_CLEAR_LINE}{words[: width - 1]}", end="", file=sys.stderr, flush=True)
 
     def close(self) -> None:
         """Clear the line."""
         if self._last > 0.0:
-            print(_CLEAR, end="", file=sys.stderr, flush=True)
+            print(_CLEAR_LINE, end="", file=sys.stderr, flush=True)
 
 
 @contextmanager
-def bar_for(what: str, *, quiet: bool) -> Generator[Bar]:
+def progress_bar(what: str, *, quiet: bool) -> Generator[TerminalProgressBar]:
     """Show a progress bar during an analysis."""
-    bar = Bar(what, wanted=not quiet)
+    bar = TerminalProgressBar(what, enabled=not quiet)
     try:
         yield bar
     finally:

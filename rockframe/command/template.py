@@ -3,11 +3,11 @@
 import argparse
 
 from rockframe.command.answer import Answer
-from rockframe.command.files.templates import TEMPLATES, every_key
+from rockframe.command.files.templates import TEMPLATES, all_keys_template
 
 
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Print a file to begin with."""
-    text = every_key() if arguments.kind == "all" else TEMPLATES[arguments.kind]
-    answer.text(text.removesuffix("\n"), text=text)
+    text = all_keys_template() if arguments.kind == "all" else TEMPLATES[arguments.kind]
+    answer.add_text(text.removesuffix("\n"), text=text)
     return 0

@@ -16,12 +16,11 @@ CODES: Final[Mapping[str, Callable[..., CodeCheck]]] = {
     "circolare_2019": circolare_2019,
     "asce_7_22": asce_7_22,
 }
-_SPECTRA: Final = {
-    "eurocode_8": TargetSpectrum.eurocode_8,
-    "asce_7": TargetSpectrum.asce_7,
-}
-_HEAD: Final = re.compile(r"\s*(period|acceleration)\s*\[(.+)\]\s*")
-_TABLE: Final = "columns 'period [s]' and 'acceleration [g_0]', with units in their heads"
+_SPECTRA: Final = {"eurocode_8": TargetSpectrum.eurocode_8, "asce_7": TargetSpectrum.asce_7}
+_COLUMN_TITLE: Final = re.compile(r"\s*(period|acceleration)\s*\[(.+)\]\s*")
+_EXPECTED_COLUMNS: Final = (
+    "columns 'period [s]' and 'acceleration [g_0]', with units in their heads"
+)
 
 
 def values_by_name(words: Iterable[str], option: str, example: str) -> dict[str, str]:
@@ -39,15 +38,15 @@ def values_by_name(words: Iterable[str], option: str, example: str) -> dict[str,
     return {name: value for name, _, value in found}
 
 
-def called(
+def call_typed(
     functions: Mapping[str, Callable[..., Made]], words: Sequence[str], option: str, *before: object
 ) -> Made:
     """Call a function by its name, with the arguments `before` and then those that were typed."""
-    function, value = call_of(functions, words, option, len(before))
+    function, value = parse_call(functions, words, option, len(before))
     return function(*before, **value)
 
 
-def call_of(
+def parse_call(
     functions: Mapping[str, Callable[..., Made]], words: Sequence[str], option: str, before: int
 ) -> tuple[Callable[..., Made], dict[str, Any]]:
     """Read a function and its typed arguments, which follow `before` others."""
@@ -61,53 +60,53 @@ def call_of(
     known = arguments_of(function, without=first)
     value = values_by_name(typed, option, f"{next(iter(known))}=...")
     unknown = [one for one in value if one not in known]
-    lacking = [one for one, needed in known.items() if needed and one not in value]
-    if unknown or lacking:
+    missing = [one for one, needed in known.items() if needed and one not in value]
+    if unknown or missing:
         message = f"has no {unknown[0]!r}{did_you_mean(unknown[0], known)}" if unknown else ""
-        message = message or f"needs {lacking[0]}=..."
+        message = message or f"needs {missing[0]}=..."
         msg = f"{option}: {name} {message}; it takes {', '.join(known)}"
         raise ComponentError(msg)
-    return function, {one: _value(text) for one, text in value.items()}
+    return function, {one: _parse_value(text) for one, text in value.items()}
 
 
-def check_of(text: str, option: str) -> list[str]:
+def parse_check(text: str, option: str) -> list[str]:
     """Split a check in a file into words as typed with --check, and raise if it is none."""
     words = split(text)
     if not words:
         msg = f"{option}: found an empty check; expected such as 'circolare_2019'"
         raise ComponentError(msg)
-    call_of(CODES, words, option, 2)  # the scene and its motions
+    parse_call(CODES, words, option, 2)  # the scene and its motions
     return words
 
 
 def target_from(words: Sequence[str], option: str) -> TargetSpectrum:
     """Make the target spectrum that was typed: by a code, or from a table in a file."""
     if words[0].lower().endswith(".csv"):
-        columns = _columns_of(words[0])
+        columns = _read_spectrum(words[0])
         named = [*words, f"name={Path(words[0]).stem}"]
-        return called({words[0]: TargetSpectrum.from_table}, named, option, *columns)
-    return called(_SPECTRA, words, option)
+        return call_typed({words[0]: TargetSpectrum.from_table}, named, option, *columns)
+    return call_typed(_SPECTRA, words, option)
 
 
-def _columns_of(path: str) -> tuple[tuple[Any, str], tuple[Any, str]]:
+def _read_spectrum(path: str) -> tuple[tuple[Any, str], tuple[Any, str]]:
     """Read the periods and accelerations of a table, with their units."""
     columns: dict[str, tuple[Any, str]] = {}
     try:
         frame = read_columns(Path(path).expanduser())
         for head in frame.columns:
-            match = _HEAD.fullmatch(str(head))
+            match = _COLUMN_TITLE.fullmatch(str(head))
             if match is not None:
                 columns[match[1]] = (frame[head].to_numpy(float), match[2])
     except (OSError, ValueError) as problem:
-        words = f"the table cannot be read ({problem}); expected {_TABLE}"
+        words = f"the table cannot be read ({problem}); expected {_EXPECTED_COLUMNS}"
         raise FileError(path, words) from problem
     if len(columns) != 2:
         found = ", ".join(map(str, frame.columns))
-        raise FileError(path, [(1, f"found the columns {found}; expected {_TABLE}")])
+        raise FileError(path, [(1, f"found the columns {found}; expected {_EXPECTED_COLUMNS}")])
     return columns["period"], columns["acceleration"]
 
 
-def _value(text: str) -> float | str:
+def _parse_value(text: str) -> float | str:
     """Read a pure number; a quantity with a unit, or a word, remains text."""
     try:
         return float(text)

@@ -33,19 +33,21 @@ _PELICUN: Final = "to_pelicun"
 _OPENQUAKE: Final = "to_openquake"
 _NAMESPACE: Final = "http://openquake.org/xmlns/nrml/0.5"
 _PROLOGUE: Final = "<?xml version='1.0' encoding='UTF-8'?>\n"
-_MARK: Final = "fragility model by rockframe "
-_KIND: Final = FileKind.marked("a fragility model", (".xml",), _MARK)
-_LOSSES: Final = ("structural", "nonstructural", "contents", "business_interruption")
-_WORD: Final = re.compile(r"[A-Za-z0-9_-]{1,100}")
+_SIGNATURE: Final = "fragility model by rockframe "
+_FILE_KIND: Final = FileKind.marked("a fragility model", (".xml",), _SIGNATURE)
+_LOSS_CATEGORIES: Final = ("structural", "nonstructural", "contents", "business_interruption")
+_IDENTIFIER: Final = re.compile(r"[A-Za-z0-9_-]{1,100}")
 
-_MOST_STOREYS: Final = 1000
+_MAX_STOREYS: Final = 1000
 _PELICUN_MEASURES: Final = {
     # (demand type, unit, SI units in it)
     MEASURE_ABBREVIATIONS["PGA"]: ("Peak Ground Acceleration", "g", STANDARD_GRAVITY),
     MEASURE_ABBREVIATIONS["PGV"]: ("Peak Ground Velocity", "mps", 1.0),
     MEASURE_ABBREVIATIONS["SA"]: ("Peak Spectral Acceleration", "g", STANDARD_GRAVITY),
 }
-_QUANTITIES: Final = frozenset({"spectral", "acceleration", "velocity", "displacement", "drift"})
+_DEMAND_QUANTITIES: Final = frozenset(
+    {"spectral", "acceleration", "velocity", "displacement", "drift"}
+)
 """Words that identify the quantity in the type of a demand."""
 _OPENQUAKE_MEASURES: Final = {
     # (intensity measure type, SI units in its unit)
@@ -113,9 +115,9 @@ def to_pelicun(
     import pandas as pd
 
     identifier = checked_text(component, owner=_PELICUN, name="component")
-    storeys = checked_integer(offset, owner=_PELICUN, name="offset", lowest=-_MOST_STOREYS)
+    storeys = checked_integer(offset, owner=_PELICUN, name="offset", lowest=-_MAX_STOREYS)
     checked_bool(directional, owner=_PELICUN, name="directional")
-    measure, states = _fits(fragility, _PELICUN_MEASURES, owner=_PELICUN)
+    measure, states = _fitted_limit_states(fragility, _PELICUN_MEASURES, owner=_PELICUN)
     kind, unit, size = _PELICUN_MEASURES[measure]
     if demand is not None:
         _check_demand(checked_text(demand, owner=_PELICUN, name="demand"), measure, kind)
@@ -141,7 +143,7 @@ def to_pelicun(
 def _check_demand(demand: str, measure: str, kind: str) -> None:
     """Raise on a demand whose words name another quantity than that of the fragility."""
     stated, own = (
-        _QUANTITIES.intersection(re.findall("[a-z]+", of.lower())) for of in (demand, kind)
+        _DEMAND_QUANTITIES.intersection(re.findall("[a-z]+", of.lower())) for of in (demand, kind)
     )
     if stated and stated != own:
         msg = (
@@ -216,10 +218,10 @@ def to_openquake(
     >>> rf.export.to_openquake({"bookcase": found}, f"{tempfile.mkdtemp()}/model.xml").name
     'model.xml'
     """
-    checked_name(loss, _LOSSES, owner=_OPENQUAKE, name="loss")
-    for what, wanted in (("description", description), ("category", category)):
-        checked_text(wanted, owner=_OPENQUAKE, name=what)
-    limit_given = None if no_damage_limit is None else to_ratio(
+    checked_name(loss, _LOSS_CATEGORIES, owner=_OPENQUAKE, name="loss")
+    for what, label in (("description", description), ("category", category)):
+        checked_text(label, owner=_OPENQUAKE, name=what)
+    no_damage = None if no_damage_limit is None else to_ratio(
         no_damage_limit, owner=_OPENQUAKE, name="no_damage_limit", condition=POSITIVE
     )  # fmt: skip
     fragilities = checked_mapping(
@@ -229,12 +231,12 @@ def to_openquake(
         msg = f"{_OPENQUAKE}: found no fragilities; expected one at least"
         raise ComponentError(msg)
     for word in (name, *fragilities):
-        _check_word(word)
-    fits = {
-        taxonomy: _fits(one, _OPENQUAKE_MEASURES, owner=_OPENQUAKE)
+        _check_identifier(word)
+    fitted = {
+        taxonomy: _fitted_limit_states(one, _OPENQUAKE_MEASURES, owner=_OPENQUAKE)
         for taxonomy, one in fragilities.items()
     }
-    names = {tuple(state for state, _, _ in states) for _, states in fits.values()}
+    names = {tuple(state for state, _, _ in states) for _, states in fitted.values()}
     if len(names) > 1:
         msg = f"{_OPENQUAKE}: the fragilities must have the same limit states, got {sorted(names)}"
         raise ComponentError(msg)
@@ -244,7 +246,7 @@ def to_openquake(
     )
     Tree.SubElement(model, "description").text = description
     Tree.SubElement(model, "limitStates").text = " ".join(map(_state_name, next(iter(names))))
-    for taxonomy, (measure, states) in fits.items():
+    for taxonomy, (measure, states) in fitted.items():
         kind, size = _OPENQUAKE_MEASURES[measure]
         if measure == MEASURE_ABBREVIATIONS["SA"]:
             kind = f"SA({_period(fragilities[taxonomy], _OPENQUAKE):g})"
@@ -253,7 +255,7 @@ def to_openquake(
         )
         levels = in_own_units(fragilities[taxonomy], measure, owner=_OPENQUAKE)[measure] / size
         levels = levels.to_numpy()
-        limit = float(levels[0]) if limit_given is None else limit_given
+        limit = float(levels[0]) if no_damage is None else no_damage
         # intensities below minIML count as minIML, so the limit must be above it
         least = min(float(levels[0]), 0.5 * limit)
         range_of = {"minIML": least, "maxIML": levels[-1], "noDamageLimit": limit}
@@ -270,11 +272,12 @@ def to_openquake(
                 stddev=f"{deviation:.10g}",
             )
     Tree.indent(root)
-    page = f"{_PROLOGUE}<!-- {_MARK}{__version__} -->\n{Tree.tostring(root, encoding='unicode')}\n"
-    return write_file(path, _KIND, page.encode(), overwrite=overwrite)
+    model_xml = Tree.tostring(root, encoding="unicode")
+    document = f"{_PROLOGUE}<!-- {_SIGNATURE}{__version__} -->\n{model_xml}\n"
+    return write_file(path, _FILE_KIND, document.encode(), overwrite=overwrite)
 
 
-def _fits(
+def _fitted_limit_states(
     value: object, measures: Mapping[str, Any], *, owner: str
 ) -> tuple[str, list[tuple[str, float, float]]]:
     """Return measure of a fragility, and the name, median and dispersion of its limit states."""
@@ -287,19 +290,21 @@ def _fits(
         )
         raise SchemaError(msg)
     dataset = in_own_units(dataset, known[0], owner=owner)
-    several = dataset if LIMIT_STATE[0] in dataset.dims else dataset.expand_dims(*LIMIT_STATE)
-    structures = [str(dim) for dim in several["fragility_status"].dims if dim not in LIMIT_STATE]
-    wide = [dim for dim in structures if several.sizes[dim] > 1]
-    if wide:
+    with_states = dataset if LIMIT_STATE[0] in dataset.dims else dataset.expand_dims(*LIMIT_STATE)
+    structures = [
+        str(dim) for dim in with_states["fragility_status"].dims if dim not in LIMIT_STATE
+    ]
+    several_dims = [dim for dim in structures if with_states.sizes[dim] > 1]
+    if several_dims:
         msg = (
-            f"{owner}: found fragilities of several structures, by {', '.join(wide)}; pick one, "
-            f"for example fragility.isel({wide[0]}=0)"
+            f"{owner}: found fragilities of several structures, by {', '.join(several_dims)}; pick "
+            f"one, for example fragility.isel({several_dims[0]}=0)"
         )
         raise ComponentError(msg)
-    several = several.isel(dict.fromkeys(structures, 0))
+    with_states = with_states.isel(dict.fromkeys(structures, 0))
     found: list[tuple[str, float, float]] = []
-    for number in range(several.sizes["limit_state"]):
-        one = several.isel(limit_state=number)
+    for number in range(with_states.sizes["limit_state"]):
+        one = with_states.isel(limit_state=number)
         name = str(one["limit_state"].item()) if "limit_state" in one.coords else "counted"
         if int(one["fragility_status"]) != FragilityStatus.FITTED:
             msg = (
@@ -318,8 +323,8 @@ def _period(dataset: xr.Dataset, owner: str) -> float:
     return float(dataset.attrs[PERIOD_ATTRIBUTE])
 
 
-def _check_word(value: object) -> None:
-    if not isinstance(value, str) or not _WORD.fullmatch(value):
+def _check_identifier(value: object) -> None:
+    if not isinstance(value, str) or not _IDENTIFIER.fullmatch(value):
         msg = (
             f"{_OPENQUAKE}: names have up to 100 letters, digits, '-' and '_', got "
             f"{short_repr(value)}"

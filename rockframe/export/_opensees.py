@@ -11,13 +11,7 @@ from typing import Any, Final, NamedTuple, cast
 import numpy as np
 
 from rockframe.arguments import checked_choice, checked_integer
-from rockframe.components import (
-    Block,
-    FrameEquivalent,
-    RigidGround,
-    TwoSpringSupport,
-    WinklerSoil,
-)
+from rockframe.components import Block, FrameEquivalent, RigidGround, TwoSpringSupport, WinklerSoil
 from rockframe.errors import ComponentError, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.simulation.system import System
@@ -28,15 +22,15 @@ from rockframe.version import __version__
 from rockframe.writing import FileKind, checked_path, write_file
 
 _OWNER: Final = "to_opensees"
-_MARK: Final = "Written by rockframe "
-_KIND: Final = FileKind.marked("a model for OpenSees", (".py",), _MARK)
-_BODY: Final = Path(__file__).with_name("_opensees_model.py")
+_SIGNATURE: Final = "Written by rockframe "
+_FILE_KIND: Final = FileKind.marked("a model for OpenSees", (".py",), _SIGNATURE)
+_MODEL_FILE: Final = Path(__file__).with_name("_opensees_model.py")
 _OUTPUT_STEP: Final = 0.01
 _STEPS_PER_PERIOD: Final = 80
 """Steps in a period of the block bouncing on its springs; a quarter for rigid ground."""
-_BARS_OVER_SPRINGS: Final = 1e5
+_BAR_STIFFNESS_RATIO: Final = 1e5
 _TOLERANCE: Final = 1e-9
-_RIGID: Final = (400.0, 0.7)
+_RIGID_GROUND_RATIOS: Final = (400.0, 0.7)
 """Frequency ratio and damping ratio of the springs that model rigid ground."""
 
 
@@ -53,7 +47,7 @@ class SpringsOfBase(NamedTuple):
     places: list[float]  # along the base [m]
     stiffness: float  # of one spring [N/m]
     damping: float  # of one dashpot [N s/m]
-    words: str  # the model, and differences to expect
+    note: str  # the model, and differences to expect
 
 
 @with_hints()
@@ -122,17 +116,17 @@ def to_opensees(
         if not isinstance(cast("object", one), kind):
             msg = f"{_OWNER} needs a {kind.__name__}, got {short_repr(one)}"
             raise ComponentError(msg)
-    _check(system)
-    count = checked_integer(springs, owner=_OWNER, name="springs", lowest=2)
-    held = checked_choice(Dashpots, dashpots, owner=_OWNER, name="dashpots")
-    checked_path(path, _KIND, overwrite=overwrite)
-    base = _springs(system, count)
+    _check_supported(system)
+    spring_count = checked_integer(springs, owner=_OWNER, name="springs", lowest=2)
+    dashpot_behaviour = checked_choice(Dashpots, dashpots, owner=_OWNER, name="dashpots")
+    checked_path(path, _FILE_KIND, overwrite=overwrite)
+    base = _base_springs(system, spring_count)
     run = system.simulate(
         motion, free_vibration=free_vibration, output_step=f"{_OUTPUT_STEP} s", outputs=()
     )
     body = system.setting.body
     # a run that overturns ends between two outputs; its last rotation is left out
-    whole = np.isclose(
+    on_output_step = np.isclose(
         run["time"] / _OUTPUT_STEP, np.arange(run.sizes["time"]), rtol=0.0, atol=1e-6
     )
     period = 2.0 * math.pi / math.sqrt(len(base.places) * base.stiffness / body.mass)
@@ -147,8 +141,8 @@ def to_opensees(
         "springs_at": base.places,
         "stiffness": base.stiffness,
         "damping": base.damping,
-        "dashpots": held.value,
-        "bars_over_springs": _BARS_OVER_SPRINGS,
+        "dashpots": dashpot_behaviour.value,
+        "bars_over_springs": _BAR_STIFFNESS_RATIO,
         "tolerance": _TOLERANCE,
         "output_step": _OUTPUT_STEP,
         "outputs": run.sizes["time"],
@@ -164,15 +158,15 @@ def to_opensees(
             None if motion.si.vertical is None else motion.si.vertical.samples,
             17,
         ),
-        "rotation": (run["rotation"].to_numpy()[whole], 9),
+        "rotation": (run["rotation"].to_numpy()[on_output_step], 9),
     }
-    text = _file(_head(system, motion, base, held), values, arrays)
-    return write_file(path, _KIND, text.encode(), overwrite=overwrite)
+    text = _file_text(_docstring(system, motion, base, dashpot_behaviour), values, arrays)
+    return write_file(path, _FILE_KIND, text.encode(), overwrite=overwrite)
 
 
-def _check(system: System) -> None:
+def _check_supported(system: System) -> None:
     """Raise on parts and options without a counterpart in the model of OpenSees."""
-    others = [part for part in system.parts.structural() if type(part) not in _KNOWN]
+    others = [part for part in system.parts.structural() if type(part) not in _SUPPORTED_PARTS]
     faults = [f"a {type(part).__name__}" for part in others]
     if not faults:
         setting = system.setting
@@ -188,10 +182,10 @@ def _check(system: System) -> None:
         raise ComponentError(msg)
 
 
-_KNOWN: Final = (Block, FrameEquivalent, TwoSpringSupport, WinklerSoil, RigidGround)
+_SUPPORTED_PARTS: Final = (Block, FrameEquivalent, TwoSpringSupport, WinklerSoil, RigidGround)
 
 
-def _springs(system: System, count: int) -> SpringsOfBase:
+def _base_springs(system: System, count: int) -> SpringsOfBase:
     """Return the springs that model the base."""
     setting: Any = system.setting
     body = setting.body
@@ -201,61 +195,65 @@ def _springs(system: System, count: int) -> SpringsOfBase:
         places = [(k + 0.5) * share - body.half_width for k in range(count)]
         return SpringsOfBase(
             places, share * setting.support.stiffness, share * setting.support.damping,
-            f"The bed is {count} springs. {_SOIL}",
+            f"The bed is {count} springs. {_SOIL_NOTE}",
         )  # fmt: skip
     if system.parts.pads is not None:
-        return SpringsOfBase(corners, setting.support.stiffness, setting.support.damping, _PADS)
-    ratio, damping_ratio = _RIGID
-    frequency = ratio * math.sqrt(body.mass * setting.gravity * math.hypot(*_centre(body)) / (
-        body.inertia + body.mass * sum(one**2 for one in _centre(body))
-    ))  # fmt: skip
+        return SpringsOfBase(
+            corners, setting.support.stiffness, setting.support.damping, _PADS_NOTE
+        )
+    ratio, damping_ratio = _RIGID_GROUND_RATIOS
+    radius = math.hypot(*_centre_from_corner(body))
+    inertia = body.inertia + body.mass * sum(one**2 for one in _centre_from_corner(body))
+    frequency = ratio * math.sqrt(body.mass * setting.gravity * radius / inertia)
     return SpringsOfBase(
-        corners, 0.5 * body.mass * frequency**2, damping_ratio * body.mass * frequency, _GROUND
+        corners, 0.5 * body.mass * frequency**2, damping_ratio * body.mass * frequency, _GROUND_NOTE
     )
 
 
-def _centre(body: Any) -> tuple[float, float]:
+def _centre_from_corner(body: Any) -> tuple[float, float]:
     return body.half_width, body.centre_height
 
 
-_SOIL: Final = (
+_SOIL_NOTE: Final = (
     "If dashpots let go, they do so as with separation='displacement' in rockframe, and both "
     "programs solve the same equations: in tests with restraint='centre' peaks differed by 0.2 % "
     "and histories by 1 % of the peak."
 )
-_PADS: Final = (
+_PADS_NOTE: Final = (
     "A pad of rockframe lets go when its force, dashpot included, falls to zero, and its corner "
     "lands with a coefficient of restitution; OpenSees has neither. In tests in which dashpots let "
     "go, peaks differed by 0.3 % at most, and histories after many impacts by 25 % of the peak. "
     "Without damping, with restitution=1 and restraint='centre', both solve the same equations, "
     "and peaks under a pulse differed by 0.003 %."
 )
-_GROUND: Final = (
+_GROUND_NOTE: Final = (
     "OpenSees has no law of impacts: rigid ground is modelled by two stiff pads whose dashpots "
     "almost stop a corner that lands. The energy lost in an impact depends on them, and each "
     "impact adds an error: expect a few per cent of the peak under pulses, and a third of it after "
     "many impacts, when verdicts may differ. This is not a check of either program."
 )
-_ATTACHED: Final = (
+_ATTACHED_NOTE: Final = (
     "Dashpots remain attached to a base that lifts, and pull it down: expect peaks that are "
     "smaller by 5 to 20 % than those of rockframe, whose dashpots let go."
 )
-_HELD: Final = (
+_RESTRAINT_NOTE: Final = (
     "OpenSees fixes the middle of the base horizontally; the system has restraint={!r}, which "
     "fixes the base at other points. Write System(..., restraint='centre') for the same in both."
 )
 
 
-def _head(system: System, motion: GroundMotion, base: SpringsOfBase, dashpots: Dashpots) -> str:
+def _docstring(
+    system: System, motion: GroundMotion, base: SpringsOfBase, dashpots: Dashpots
+) -> str:
     """Return the docstring of the file."""
-    elsewhere = base.words is not _GROUND and system.restraint is not Restraint.CENTRE
+    elsewhere = base.note is not _GROUND_NOTE and system.restraint is not Restraint.CENTRE
     rows = [
-        f"{_MARK}{__version__}: {system.setting.model} under {motion.name}, in OpenSees.",
+        f"{_SIGNATURE}{__version__}: {system.setting.model} under {motion.name}, in OpenSees.",
         "Run it with numpy and openseespy installed. It writes both histories of the rotation "
         "to a CSV file of the same name, and prints both peaks.",
-        base.words,
-        _ATTACHED if dashpots is Dashpots.ATTACHED and base.damping > 0.0 else "",
-        _HELD.format(str(system.restraint)) if elsewhere else "",
+        base.note,
+        _ATTACHED_NOTE if dashpots is Dashpots.ATTACHED and base.damping > 0.0 else "",
+        _RESTRAINT_NOTE.format(str(system.restraint)) if elsewhere else "",
         "Steps of integration are fixed, and events within them are not located. After many "
         "impacts two runs that were close at first may differ: compare peaks before histories.",
     ]
@@ -263,22 +261,23 @@ def _head(system: System, motion: GroundMotion, base: SpringsOfBase, dashpots: D
     return lines.replace("\\", "/").replace('"""', "'''")
 
 
-def _file(head: str, arguments: dict[str, Any], arrays: dict[str, Any]) -> str:
-    body = _BODY.read_text().split('"""\n', 1)[1]
+def _file_text(head: str, arguments: dict[str, Any], arrays: dict[str, Any]) -> str:
+    body = _MODEL_FILE.read_text().split('"""\n', 1)[1]
     numbers = pprint.pformat(arguments, width=95, sort_dicts=False)
     columns = "".join(
-        f"GIVEN[{name!r}] = {_array(values, digits)}\n" for name, (values, digits) in arrays.items()
+        f"PARAMETERS[{name!r}] = {_array_text(values, digits)}\n"
+        for name, (values, digits) in arrays.items()
     )
     return (
-        f'"""{head}\n"""\n{body}\n\nGIVEN: dict[str, Any] = {numbers}\n'
+        f'"""{head}\n"""\n{body}\n\nPARAMETERS: dict[str, Any] = {numbers}\n'
         f"# at every {arguments['time_step']:g} s, and at every "
         f"{arguments['output_step']:g} s\n{columns}\n"
         'if __name__ == "__main__":\n'
-        '    compare_peaks(GIVEN, Path(__file__).with_suffix(".csv"))\n'
+        '    compare_peaks(PARAMETERS, Path(__file__).with_suffix(".csv"))\n'
     )
 
 
-def _array(values: np.ndarray | None, digits: int) -> str:
+def _array_text(values: np.ndarray | None, digits: int) -> str:
     if values is None:
         return "None"
     words = [f"{value:.{digits}g}" for value in values]

@@ -39,18 +39,18 @@ def build(ops: Any, arguments: dict[str, Any]) -> tuple[int, int, float]:
     half = 0.5 * (h**2 + 0.5 * b**2 - square)
     top = h + (math.sqrt(half**2 + square * h**2) - half) / h
     base = mass * (1.0 - h / top)
-    across, stiffness, damping = (
+    springs_at, stiffness, damping = (
         arguments["springs_at"],
         arguments["stiffness"],
         arguments["damping"],
     )
-    weight, count = mass * arguments["gravity"], len(across)
+    weight, count = mass * arguments["gravity"], len(springs_at)
     ops.wipe()
     ops.model("basic", "-ndm", 2, "-ndf", 2)
     # the two nodes connected to all others come last, for a narrow profile of the equations
     nodes = list(range(1, count + 1))  # above the springs
     left, right, middle, above = range(count + 1, count + 5)
-    places = {tag: (x, 0.0) for tag, x in zip(nodes, across, strict=True)}
+    places = {tag: (x, 0.0) for tag, x in zip(nodes, springs_at, strict=True)}
     places |= {left: (-b, 0.0), right: (b, 0.0), middle: (0.0, 0.0), above: (0.0, top)}
     for tag, place in places.items():
         ops.node(tag, *place)
@@ -65,13 +65,13 @@ def build(ops: Any, arguments: dict[str, Any]) -> tuple[int, int, float]:
         length = math.dist(places[start], places[end])
         ops.element("corotTruss", number, start, end, length, 1)
     # springs without tension, which carry the weight from the start, and dashpots
-    sunk = -weight / (count * stiffness)
+    initial_strain = -weight / (count * stiffness)
     if arguments["dashpots"] == "let go" and damping > 0.0:
         ops.uniaxialMaterial("ViscoelasticGap", 2, stiffness, damping, -1e-12)
-        ops.uniaxialMaterial("InitStrainMaterial", 5, 2, sunk)
+        ops.uniaxialMaterial("InitStrainMaterial", 5, 2, initial_strain)
     else:
         ops.uniaxialMaterial("ENT", 2, stiffness)
-        ops.uniaxialMaterial("InitStrainMaterial", 3, 2, sunk)
+        ops.uniaxialMaterial("InitStrainMaterial", 3, 2, initial_strain)
         ops.uniaxialMaterial("Viscous", 4, max(damping, 1e-12), 1.0)
         ops.uniaxialMaterial("Parallel", 5, 3, 4)
     for number, tag in enumerate(nodes):

@@ -9,14 +9,14 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import FileError
-from rockframe.plot._artists import CONTACT, SceneArtist
-from rockframe.plot._axes import BLUE, GREY, units_of
-from rockframe.plot._checks import RUN, above_zero, checked_run, draws
-from rockframe.plot._panels import AxesLike, Figure, Panels, sheet
-from rockframe.plot._player import KIND, Player, player
-from rockframe.plot._response import response, strips_of
-from rockframe.plot._runs import Window, runs_of, verdict_of_case
-from rockframe.plot._scene import Moving, figure_size
+from rockframe.plot._artists import CONTACT_COLOUR, SceneArtist
+from rockframe.plot._axes import BLUE, GREY, figure_units
+from rockframe.plot._checks import RUN, checked_run, draws, read_positive
+from rockframe.plot._panels import AxesLike, Figure, Panels, make_sheet
+from rockframe.plot._player import FILE_KIND, Player, player
+from rockframe.plot._response import contact_strips, response
+from rockframe.plot._runs import Window, read_runs, verdict_of_case
+from rockframe.plot._scene import SceneHistory, figure_size
 from rockframe.suggestions import suggests_names
 from rockframe.units import LENGTH
 from rockframe.units.display import UnitsLike
@@ -27,16 +27,18 @@ if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation
 
 
-_USUAL_FRAMES: Final = 200
+_MAX_FRAMES: Final = 200
 """Largest number of frames unless the speed is given."""
-_FRAMED: Final = 60
+_SAMPLES_FOR_LIMITS: Final = 60
 """Number of instants from which the limits of the drawing follow."""
-_MARK: Final = "animation by rockframe "
-_SIGNED: Final = f"{_MARK}{__version__}".encode()
-_COMMENT: Final = b"\x21\xfe%c%b\x00" % (len(_SIGNED), _SIGNED)  # a block of GIF89a
+_SIGNATURE: Final = "animation by rockframe "
+_STAMP: Final = f"{_SIGNATURE}{__version__}".encode()
+_COMMENT: Final = b"\x21\xfe%c%b\x00" % (len(_STAMP), _STAMP)  # a block of GIF89a
 _TRAILER: Final = b"\x3b"
 """The last byte of a GIF."""
-_PICTURES: Final = FileKind.marked("an animation", (".gif", ".mp4", *KIND.suffixes), _MARK)
+_FILE_KIND: Final = FileKind.marked(
+    "an animation", (".gif", ".mp4", *FILE_KIND.suffixes), _SIGNATURE
+)
 
 
 @suggests_names
@@ -65,11 +67,11 @@ class Animation:
     >>> import rockframe as rf
     >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
     >>> run = system.simulate(rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz"))
-    >>> moving = rf.plot.animation(run)
-    >>> moving.save(f"{tempfile.mkdtemp()}/run.html").name, moving.to_html()[:15]
+    >>> movie = rf.plot.animation(run)
+    >>> movie.save(f"{tempfile.mkdtemp()}/run.html").name, movie.to_html()[:15]
     ('run.html', '<!doctype html>')
-    >>> moving.play()  # in a window  # doctest: +SKIP
-    >>> moving.close()
+    >>> movie.play()  # in a window  # doctest: +SKIP
+    >>> movie.close()
     """
 
     def __init__(
@@ -117,28 +119,28 @@ class Animation:
         from matplotlib.animation import FFMpegWriter, PillowWriter
 
         ending = Path(str(path)).suffix.lower()
-        if ending in KIND.suffixes:
+        if ending in FILE_KIND.suffixes:
             return self._player().save(path, overwrite=overwrite)
-        dots = above_zero(dpi, "animation", "dpi")
+        pixels = read_positive(dpi, "animation", "dpi")
         # checked before the frames are drawn, which takes a while
-        checked_path(path, _PICTURES, overwrite=overwrite)
+        checked_path(path, _FILE_KIND, overwrite=overwrite)
         if ending == ".mp4" and not FFMpegWriter.isAvailable():
-            words = "needs the program ffmpeg, which was not found; '.gif' and '.html' do without"
-            raise FileError(str(path), words)
+            reason = "needs the program ffmpeg, which was not found; '.gif' and '.html' do without"
+            raise FileError(str(path), reason)
 
         def write(part: Path) -> None:
             if ending == ".mp4":
-                note = {"comment": _SIGNED.decode()}
+                note = {"comment": _STAMP.decode()}
                 writer: Any = FFMpegWriter(fps=cast("Any", self._rate), metadata=note)
                 # the height and the width of a film are even
                 writer.extra_args = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-f", "mp4"]
-                self._animated().save(part, writer=writer, dpi=dots)
+                self._film().save(part, writer=writer, dpi=pixels)
                 return
-            self._animated().save(part, writer=PillowWriter(cast("Any", self._rate)), dpi=dots)
+            self._film().save(part, writer=PillowWriter(cast("Any", self._rate)), dpi=pixels)
             drawn = part.read_bytes()
             part.write_bytes(drawn.removesuffix(_TRAILER) + _COMMENT + _TRAILER)
 
-        return write_file(path, _PICTURES, write, overwrite=overwrite)
+        return write_file(path, _FILE_KIND, write, overwrite=overwrite)
 
     def to_html(self) -> str:
         """Return the page of :func:`player`.
@@ -151,7 +153,7 @@ class Animation:
 
     def play(self) -> None:
         """Play it in the window of ``figure.show()``, as long as this object exists."""
-        self._playing = self._animated()
+        self._playing = self._film()
 
     def close(self) -> None:
         """Close the figure."""
@@ -159,7 +161,7 @@ class Animation:
 
         pyplot.close(self.figure)
 
-    def _animated(self) -> "FuncAnimation":
+    def _film(self) -> "FuncAnimation":
         from matplotlib.animation import FuncAnimation
 
         def draw(number: int) -> list[Any]:
@@ -230,39 +232,41 @@ def animation(
     >>> import rockframe as rf
     >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
     >>> run = system.simulate(rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz"))
-    >>> moving = rf.plot.animation(run)
-    >>> moving
+    >>> movie = rf.plot.animation(run)
+    >>> movie
     <animation of 21 frames, 1.1 s; save('run.gif')>
-    >>> moving.save("run.gif")  # doctest: +SKIP
+    >>> movie.save("run.gif")  # doctest: +SKIP
     """
     run = checked_run(run, "animation")
-    (drawn,) = runs_of(run, "animation", window)
-    rate = above_zero(frames_per_second, "animation", "frames_per_second")
-    length = float(drawn.time[-1] - drawn.time[0])
-    fitting = max(1.0, length * rate / _USUAL_FRAMES)
-    faster = fitting if speed is None else above_zero(speed, "animation", "speed")
-    count = max(2, 1 + round(length * rate / faster))
-    times = np.linspace(drawn.time[0], drawn.time[-1], count)
-    chosen = units_of(units, "animation")
-    trace_in = chosen.rotations(rotation)
-    moving = Moving(drawn.dataset, "animation", magnify, chosen)
-    shown_at = drawn.nearest(times)
-    width, height = figure_size(moving.drawer, wide=False)
-    names = ["scene", "rotation", *strips_of([drawn])]
+    (shown_run,) = read_runs(run, "animation", window)
+    rate = read_positive(frames_per_second, "animation", "frames_per_second")
+    length = float(shown_run.time[-1] - shown_run.time[0])
+    needed_speed = max(1.0, length * rate / _MAX_FRAMES)
+    playback_speed = needed_speed if speed is None else read_positive(speed, "animation", "speed")
+    count = max(2, 1 + round(length * rate / playback_speed))
+    times = np.linspace(shown_run.time[0], shown_run.time[-1], count)
+    axis_units = figure_units(units, "animation")
+    rotation_unit = axis_units.rotation_unit(rotation)
+    history = SceneHistory(shown_run.dataset, "animation", magnify, axis_units)
+    samples = shown_run.nearest(times)
+    width, height = figure_size(history.builder, wide=False)
+    names = ["scene", "rotation", *contact_strips([shown_run])]
     heights = [height, 1.3, *[0.42] * (len(names) - 2)]
-    on = sheet(
+    sheet = make_sheet(
         ax, "animation", names, (max(width, 5.4), 0.6 + sum(heights)),
         lambda figure: figure.subplots(len(names), 1, height_ratios=heights),
     )  # fmt: skip
-    above, trace, *strips = on.panels
-    response(drawn.dataset, panels=("rotation", "contact"), rotation=trace_in, units=units,
+    above, trace, *strips = sheet.panels
+    response(shown_run.dataset, panels=("rotation", "contact"), rotation=rotation_unit, units=units,
              ax=[trace, *strips])  # fmt: skip
     trace.tick_params(labelbottom=False)
-    artist = SceneArtist(above, moving.drawer, length=chosen.of(LENGTH))
-    spread = shown_at[np.linspace(0, count - 1, min(count, _FRAMED)).astype(int)]
-    artist.mark(moving.points)
-    artist.frame([moving.upright, *(moving.at(int(place)) for place in spread)])
-    artist.rest(moving.upright)
+    artist = SceneArtist(above, history.builder, length=axis_units.axis_unit(LENGTH))
+    for_limits = samples[np.linspace(0, count - 1, min(count, _SAMPLES_FOR_LIMITS)).astype(int)]
+    artist.set_points(history.points)
+    artist.set_limits(
+        [history.upright, *(history.placement_at(int(place)) for place in for_limits)]
+    )
+    artist.draw_at_rest(history.upright)
     cursors = [axes.axvline(times[0], color=GREY, linewidth=1.0) for axes in (trace, *strips)]
     line = trace.get_lines()[0]
     across, up = (np.asarray(values, np.float64) for values in line.get_data())
@@ -270,22 +274,22 @@ def animation(
     clock = above.set_title("", fontsize="medium")
 
     def draw(number: int) -> None:
-        place = int(shown_at[number])
-        artist.draw(moving.at(place))
-        now = float(drawn.time[place])
+        sample = int(samples[number])
+        artist.draw(history.placement_at(sample))
+        now = float(shown_run.time[sample])
         for cursor in cursors:
             cursor.set_xdata([now, now])
-        dot.set_data([across[place]], [up[place]])
-        touches = any(moving.at(place).bearing())
-        dot.set_color(BLUE if touches else CONTACT)
-        clock.set_text(moving.words(place))
+        dot.set_data([across[sample]], [up[sample]])
+        in_contact = any(history.placement_at(sample).bearing())
+        dot.set_color(BLUE if in_contact else CONTACT_COLOUR)
+        clock.set_text(history.caption(sample))
 
     draw(0)
-    on.entitle(verdict_of_case(run, chosen.reader), title)
+    sheet.set_title(verdict_of_case(run, axis_units.reader), title)
     if ax is None:  # the layout is computed once, not for every frame
-        on.panels.figure.canvas.draw()
-        on.panels.figure.set_layout_engine("none")
+        sheet.panels.figure.canvas.draw()
+        sheet.panels.figure.set_layout_engine("none")
     page = partial(
         player, run, window=window, magnify=magnify, rotation=rotation, units=units, title=title
     )  # fmt: skip
-    return Animation(on.panels, draw, rate, drawn.time[shown_at], page)
+    return Animation(sheet.panels, draw, rate, shown_run.time[samples], page)

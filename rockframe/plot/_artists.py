@@ -19,8 +19,8 @@ from rockframe.plot._axes import (
     VERMILLION,
     DisplayUnit,
     as_label,
-    ink,
-    measured_in,
+    set_length_unit,
+    text_colour,
 )
 from rockframe.plot._panels import NO_BREAK, Axes
 from rockframe.results.points import Placement
@@ -33,11 +33,11 @@ from rockframe.units.display import DisplayUnits, with_superscripts
 _PAD_WIDTH: Final = 0.17
 """Width of a pad over that of the base."""
 _PAD_THICKNESS: Final = 0.06
-_LEAST_THICKNESS: Final = 0.15
+_MIN_THICKNESS: Final = 0.15
 """Least thickness of a compressed pad over that at rest, at any magnification."""
-_SPRINGS: Final = 81
+_SURFACE_POINTS: Final = 81
 """Number of points of the surface of the soil beneath a base."""
-_NOWHERE: Final = np.full((1, 2), np.nan)
+_NO_POINT: Final = np.full((1, 2), np.nan)
 
 
 @dataclass(frozen=True)
@@ -49,23 +49,24 @@ class Layout:
     members: tuple[Array, ...]  # of a frame
     centres: Array  # centres of mass of the bodies, the block's first
     pads: tuple[Array, ...]  # left and right, or none
-    pads_bear: tuple[bool, ...]  # whether each of them is in contact
+    pads_in_contact: tuple[bool, ...]  # whether each of them is in contact
     soil: Array | None  # its surface, from the left edge of the drawing to the right one
     # contacts of each base, or of each end of pads: a point, shape (1, 2), or a line; else NaN
-    touching: tuple[Array, ...]
+    contacts: tuple[Array, ...]
     ground: Array  # surface of rigid ground, where there is no soil
-    lower: tuple[Array, ...]  # outlines of the bodies of a stack beneath the block
-    ties: tuple[Array, ...]  # both ends of each restrainer, shape (2, 2); NaN once it broke
-    others: tuple[Array, ...]  # outlines of a frame's other columns and of its beam
+    lower_bodies: tuple[Array, ...]  # outlines of the bodies of a stack beneath the block
+    restrainers: tuple[Array, ...]  # both ends of each restrainer, shape (2, 2); NaN once it broke
+    frame_parts: tuple[Array, ...]  # outlines of a frame's other columns and of its beam
 
     @property
     def bodies(self) -> tuple[Array, ...]:
         """Outlines of all bodies."""
-        return (self.block, *self.others, *self.lower, *(() if self.cap is None else (self.cap,)))
+        cap = () if self.cap is None else (self.cap,)
+        return (self.block, *self.frame_parts, *self.lower_bodies, *cap)
 
 
 @dataclass(frozen=True)
-class Drawer:
+class LayoutBuilder:
     """Lays out a scene for drawing."""
 
     geometry: Geometry  # of the scene
@@ -86,99 +87,110 @@ class Drawer:
         size = max(2.0 * self.geometry.base_half_width, 0.5 * self.geometry.height)
         return max(self.geometry.base_half_width + 0.6 * size, self.least_reach)
 
-    def lay_out(self, at: Placement) -> Layout:
+    def layout_at(self, placement: Placement) -> Layout:
         """Lay out a scene at an instant."""
-        geometry, lift = self.geometry, self._lift(at)
-        block = self._moved(at.block, geometry.block) + lift
+        geometry, lift = self.geometry, self._pad_offset(placement)
+        block = self._displaced(placement.block, geometry.block) + lift
         level = geometry.base_position
-        members = tuple(self._moved(at.block, one + level) + lift for one in geometry.members)
-        centres = self._moved(at.block, np.array([geometry.centre]) + level) + lift
+        members = tuple(
+            self._displaced(placement.block, one + level) + lift for one in geometry.members
+        )
+        centres = self._displaced(placement.block, np.array([geometry.centre]) + level) + lift
         outline = geometry.cap_outline
-        cap = None if outline is None else self._moved(at.cap, outline)
-        pads, bear = self._pads(at)
-        soil, touching = self._soil(at)
+        cap = None if outline is None else self._displaced(placement.cap, outline)
+        pads, in_contact = self._pad_outlines(placement)
+        soil, contacts = self._soil_surface(placement)
         columns = tuple(block + np.array([x, 0.0]) for x in geometry.columns)
-        others: tuple[Array, ...] = ()
+        frame_parts: tuple[Array, ...] = ()
         if geometry.beam is not None:
-            block, others = columns[0], (*columns[1:], self._moved(at.beam, geometry.beam))
-            moves = (at.values["horizontal_displacement"], at.values["vertical_displacement"])
-            centres = np.array([geometry.response_centre]) + self.magnify * np.array([moves])
+            beam = self._displaced(placement.beam, geometry.beam)
+            block, frame_parts = columns[0], (*columns[1:], beam)
+            components = ("horizontal_displacement", "vertical_displacement")
+            displacement = np.array([[placement.values[name] for name in components]])
+            centres = np.array([geometry.response_centre]) + self.magnify * displacement
         floor = 0.0 if geometry.stacked else -self.pad_thickness
         ground = np.array([(-self.reach, floor), (self.reach, floor)])
         lower = tuple(
-            self._moved(partial(at.lower, k), one.outline) for k, one in enumerate(geometry.lower)
+            self._displaced(partial(placement.lower, k), one.outline)
+            for k, one in enumerate(geometry.lower)
         )
         of_lower = [
-            self._moved(partial(at.lower, k), np.array([one.centre]))
+            self._displaced(partial(placement.lower, k), np.array([one.centre]))
             for k, one in enumerate(geometry.lower)
         ]
         if geometry.stacked and geometry.cap is not None:
-            of_lower.append(self._moved(at.cap, np.array([(0.0, 0.5 * geometry.cap[1])])))
+            of_lower.append(
+                self._displaced(placement.cap, np.array([(0.0, 0.5 * geometry.cap[1])]))
+            )
         centres = np.vstack([centres, *of_lower])
         if pads:
-            touching += tuple(
-                one[k : k + 1] if at.bearing()[k] else _NOWHERE
+            contacts += tuple(
+                one[k : k + 1] if placement.bearing()[k] else _NO_POINT
                 for one in columns or (block,)
                 for k in (0, 1)
             )
         else:
-            on_rigid = [block, *lower][: None if soil is None else -1]
-            touching += tuple(
-                _contact(one, at.bearing_of(k))
-                for k, body in enumerate(on_rigid)
+            rigid_bases = [block, *lower][: None if soil is None else -1]
+            contacts += tuple(
+                _contact_points(one, placement.bearing_of(k))
+                for k, body in enumerate(rigid_bases)
                 for one in columns or (body,)
             )
-        ties = tuple(
-            np.full((2, 2), np.nan) if number in at.broken else self._tie(at, one)
+        restrainers = tuple(
+            np.full((2, 2), np.nan)
+            if number in placement.broken
+            else self._restrainer_ends(placement, one)
             for number, one in enumerate(geometry.links)
         )
-        laid_out = (block, cap, members, centres, pads, bear, soil, touching, ground)
-        return self._inclined(Layout(*laid_out, lower, ties, others))
+        fields = (block, cap, members, centres, pads, in_contact, soil, contacts, ground)
+        return self._rotated_layout(Layout(*fields, lower, restrainers, frame_parts))
 
-    def _tie(self, at: Placement, tie: LinkedPoints) -> Array:
+    def _restrainer_ends(self, placement: Placement, tie: LinkedPoints) -> Array:
         """Lay out a restrainer, from one body to another or to the ground."""
         ends = list[Array]()
         for point, k in zip(tie.points, tie.bodies, strict=True):
-            place = at.block if k == 0 else partial(at.lower, k - 1)
+            transform = placement.block if k == 0 else partial(placement.lower, k - 1)
             if self.geometry.columns:  # tendons of a frame end in the beam
-                place = at.beam
-            ends.append(point if k < 0 else self._moved(place, point[None])[0])
+                transform = placement.beam
+            ends.append(point if k < 0 else self._displaced(transform, point[None])[0])
         return np.array(ends)
 
-    def points(self, at: Placement, places: Array) -> Array:
+    def points_at(self, placement: Placement, places: Array) -> Array:
         """Lay out points of the body to which results refer, from the middle of its base."""
         geometry = self.geometry
         below = geometry.base_position if geometry.stacked or geometry.lower else np.zeros(2)
-        drawn = self._moved(at.block, places + below) + self._lift(at)
+        drawn = self._displaced(placement.block, places + below) + self._pad_offset(placement)
         if geometry.columns:  # points of a column are drawn on the first column
             beside = np.where(places[:, 1:] > geometry.height, 0.0, geometry.columns[0])
             drawn = drawn + beside * np.array([1.0, 0.0])
-        return self._turned(drawn)
+        return self._rotated(drawn)
 
-    def _moved(self, place: object, points: Array) -> Array:
-        moved: Array = place(points)  # type: ignore[operator]
-        return points + self.magnify * (moved - points)
+    def _displaced(self, transform: object, points: Array) -> Array:
+        displaced: Array = transform(points)  # type: ignore[operator]
+        return points + self.magnify * (displaced - points)
 
-    def _lift(self, at: Placement) -> Array:
+    def _pad_offset(self, placement: Placement) -> Array:
         """Return the displacement of the block in the drawing by the thickness of pads on a cap."""
         if not self.geometry.stacked:
             return np.zeros(2)
-        angle = self.magnify * at.cap_rotation
+        angle = self.magnify * placement.cap_rotation
         return self.pad_thickness * np.array([np.sin(angle), np.cos(angle)])
 
-    def _pads(self, at: Placement) -> tuple[tuple[Array, ...], tuple[bool, ...]]:
+    def _pad_outlines(self, placement: Placement) -> tuple[tuple[Array, ...], tuple[bool, ...]]:
         geometry, thick = self.geometry, self.pad_thickness
         if geometry.pad_settlement is None:
             return (), ()
         half, level = geometry.half_width, geometry.base_level if geometry.stacked else 0.0
         width = 2.0 * _PAD_WIDTH * half
-        base = self._moved(at.block, np.array([(-half, level), (half, level)])) + self._lift(at)
+        base = self._displaced(
+            placement.block, np.array([(-half, level), (half, level)])
+        ) + self._pad_offset(placement)
         free = self.magnify * geometry.pad_settlement
         found: list[Array] = []
         for side in (-1.0, 1.0):
             outer, inner = side * half, side * (half - width)
             feet = np.array([(outer, level), (inner, level)])
-            feet = self._moved(at.cap, feet) if geometry.stacked else feet - (0.0, thick)
+            feet = self._displaced(placement.cap, feet) if geometry.stacked else feet - (0.0, thick)
             along = (feet[0] - feet[1]) * side / width
             normal = np.array([-along[1], along[0]])
             # heights of the block's base above the feet, up to that of a free pad
@@ -186,62 +198,62 @@ class Drawer:
             heights = [float((base[0] + share * (base[1] - base[0]) - foot) @ normal)
                        for share, foot in zip(shares, feet, strict=True)]  # fmt: skip
             tops = [
-                foot + normal * min(max(height, _LEAST_THICKNESS * thick), thick + free)
+                foot + normal * min(max(height, _MIN_THICKNESS * thick), thick + free)
                 for height, foot in zip(heights, feet, strict=True)
             ]
             found.append(np.array([feet[0], feet[1], tops[1], tops[0]]))
-        return tuple(found), at.bearing()
+        return tuple(found), placement.bearing()
 
-    def _soil(self, at: Placement) -> tuple[Array | None, tuple[Array, ...]]:
+    def _soil_surface(self, placement: Placement) -> tuple[Array | None, tuple[Array, ...]]:
         """Return the surface of the soil, which follows the base up to its free level."""
         geometry = self.geometry
         if geometry.soil_settlement is None:
             return None, ()
         half, free = geometry.base_half_width, self.magnify * geometry.soil_settlement
         ends = np.array([(-half, 0.0), (half, 0.0)])
-        place = at.block if geometry.cap is None else at.cap
+        transform = placement.block if geometry.cap is None else placement.cap
         if geometry.lower:
-            place = partial(at.lower, len(geometry.lower) - 1)
-        left, right = self._moved(place, ends)
-        share = np.linspace(0.0, 1.0, _SPRINGS)[:, None]
+            transform = partial(placement.lower, len(geometry.lower) - 1)
+        left, right = self._displaced(transform, ends)
+        share = np.linspace(0.0, 1.0, _SURFACE_POINTS)[:, None]
         base = left + share * (right - left)
-        bears = at.bearing_of(len(geometry.lower))
+        bearing = placement.bearing_of(len(geometry.lower))
         if geometry.cap is not None:
-            bears = at.bearing("soil_contact_state")
-        flies = not any(bears)
-        below = np.full(_SPRINGS, False) if flies else base[:, 1] <= free
+            bearing = placement.bearing("soil_contact_state")
+        separated = not any(bearing)
+        below = np.full(_SURFACE_POINTS, False) if separated else base[:, 1] <= free
         surface = np.column_stack([base[:, 0], np.where(below, base[:, 1], free)])
         edges = [
             np.array([(min(-self.reach, surface[0, 0]), free), (surface[0, 0], free)]),
             surface,
             np.array([(surface[-1, 0], free), (max(self.reach, surface[-1, 0]), free)]),
         ]
-        return np.vstack(edges), (surface[below] if below.any() else _NOWHERE,)
+        return np.vstack(edges), (surface[below] if below.any() else _NO_POINT,)
 
-    def _turned(self, points: Array) -> Array:
+    def _rotated(self, points: Array) -> Array:
         """Rotate points by the inclination of the base, which rises to the right."""
         sine, cosine = np.sin(self.geometry.inclination), np.cos(self.geometry.inclination)
         return points @ np.array([(cosine, sine), (-sine, cosine)])
 
-    def _inclined(self, found: Layout) -> Layout:
-        def turned(part: Any) -> Any:
+    def _rotated_layout(self, layout: Layout) -> Layout:
+        def rotated(part: Any) -> Any:
             if isinstance(part, tuple):
-                return tuple(map(turned, part))
-            return self._turned(part) if isinstance(part, np.ndarray) else part
+                return tuple(map(rotated, part))
+            return self._rotated(part) if isinstance(part, np.ndarray) else part
 
-        return Layout(**{name: turned(part) for name, part in vars(found).items()})
+        return Layout(**{name: rotated(part) for name, part in vars(layout).items()})
 
 
-def _contact(outline: Array, bears: tuple[bool, bool]) -> Array:
-    """Return the part of a rigid base that bears: the whole, an end, or none."""
-    if all(bears):
+def _contact_points(outline: Array, in_contact: tuple[bool, bool]) -> Array:
+    """Return the part of a rigid base in contact: the whole, an end, or none."""
+    if all(in_contact):
         return outline[:2]
-    return outline[[bears.index(True)]] if any(bears) else _NOWHERE
+    return outline[[in_contact.index(True)]] if any(in_contact) else _NO_POINT
 
 
-CONTACT: Final = VERMILLION
-SOIL: Final = "#a6794f"
-_DEPTH: Final = 0.3
+CONTACT_COLOUR: Final = VERMILLION
+SOIL_COLOUR: Final = "#a6794f"
+_GROUND_DEPTH: Final = 0.3
 """Depth of the ground in the drawing, over half its width."""
 
 
@@ -251,80 +263,83 @@ class SceneArtist:
     def __init__(
         self,
         axes: Axes,
-        drawer: Drawer,
+        builder: LayoutBuilder,
         names: Mapping[str, str] | None = None,
         length: DisplayUnit = METRES,
     ) -> None:
-        self.axes, self.drawer, self._names = axes, drawer, names or {}
+        self.axes, self.builder, self._legend_names = axes, builder, names or {}
         self._artists: dict[str, Any] = {}
-        self._marked: dict[str, Array] = {}
+        self._points: dict[str, Array] = {}
         axes.set_aspect("equal")
-        measured_in(axes, length)
+        set_length_unit(axes, length)
         for side in ("top", "right"):
             axes.spines[side].set_visible(False)
 
-    def frame(self, shown: Iterable[Placement]) -> None:
-        """Set limits that hold the scene, and the points that are marked, at all instants."""
-        wall = self.drawer.geometry.wall
+    def set_limits(self, shown: Iterable[Placement]) -> None:
+        """Set limits that contain the scene and the marked points at all instants."""
+        wall = self.builder.geometry.wall
         shown_parts = [] if wall is None else [wall]
-        for at in shown:
-            one = self.drawer.lay_out(at)
-            shown_parts += (one.block, one.ground, *one.lower, *one.ties, *one.others)
-            shown_parts += (self.drawer.points(at, place) for place in self._marked.values())
+        for placement in shown:
+            one = self.builder.layout_at(placement)
+            shown_parts += (one.block, one.ground, *one.lower_bodies)
+            shown_parts += (*one.restrainers, *one.frame_parts)
+            places = self._points.values()
+            shown_parts += (self.builder.points_at(placement, place) for place in places)
         corners = np.vstack(shown_parts)
         low, high = np.nanmin(corners, axis=0), np.nanmax(corners, axis=0)
         widest = float(max(-low[0], high[0]))
-        if widest > self.drawer.reach:
-            self.drawer = replace(self.drawer, least_reach=1.08 * widest)
-        reach, depth = self.drawer.reach, _DEPTH * self.drawer.reach
+        if widest > self.builder.reach:
+            self.builder = replace(self.builder, least_reach=1.08 * widest)
+        reach, depth = self.builder.reach, _GROUND_DEPTH * self.builder.reach
         self.axes.set_xlim(-reach, reach)
         self.axes.set_ylim(low[1] - depth, high[1] + 0.06 * (high[1] - low[1]))
 
-    def rest(self, at: Placement) -> None:
+    def draw_at_rest(self, placement: Placement) -> None:
         """Draw the bodies at rest behind everything."""
         from matplotlib.patches import Polygon
 
-        for outline in self.drawer.lay_out(at).bodies:
+        for outline in self.builder.layout_at(placement).bodies:
             dashed = Polygon(outline, fill=False, edgecolor=GREY, linestyle="--", linewidth=0.8)
             self.axes.add_patch(dashed).set_zorder(1)
 
-    def mark(self, points: Mapping[str, tuple[float, ...]]) -> None:
+    def set_points(self, points: Mapping[str, tuple[float, ...]]) -> None:
         """Set the points of the body that are marked, by their names."""
-        self._marked = {name: np.array([place]) for name, place in points.items()}
+        self._points = {name: np.array([place]) for name, place in points.items()}
 
-    def draw(self, at: Placement) -> None:
+    def draw(self, placement: Placement) -> None:
         """Draw all artists, or move them."""
-        found = self.drawer.lay_out(at)
-        self._ground(found)
-        if self.drawer.geometry.wall is not None:
-            wall = self._polygon("wall", self.drawer.geometry.wall, GREY, 2)
+        layout = self.builder.layout_at(placement)
+        self._draw_ground(layout)
+        if self.builder.geometry.wall is not None:
+            wall = self._draw_polygon("wall", self.builder.geometry.wall, GREY, 2)
             wall.set(hatch="///")
-        if found.cap is not None:
-            self._polygon("cap", found.cap, ORANGE, 3)
-        for number, body in enumerate(found.lower):
-            self._polygon(f"stack {number}", body, ORANGE, 3, alpha=0.22)
-        for number, (pad, bears) in enumerate(zip(found.pads, found.pads_bear, strict=True)):
-            artist = self._polygon(f"pads {number}", pad, GREY, 3)
-            artist.set(facecolor=CONTACT if bears else GREY, alpha=0.75)
-        self._polygon("block", found.block, BLUE, 4, alpha=0.08 if found.members else 0.22)
-        for number, member in enumerate(found.members):
-            self._polygon(f"member {number}", member, BLUE, 4, alpha=0.3)
-        for number, other in enumerate(found.others):
-            self._polygon(f"other {number}", other, BLUE, 4, alpha=0.22)
-        for number, ends in enumerate(found.ties):
-            self._line(
+        if layout.cap is not None:
+            self._draw_polygon("cap", layout.cap, ORANGE, 3)
+        for number, body in enumerate(layout.lower_bodies):
+            self._draw_polygon(f"stack {number}", body, ORANGE, 3, alpha=0.22)
+        for number, pad in enumerate(layout.pads):
+            artist = self._draw_polygon(f"pads {number}", pad, GREY, 3)
+            pressed = layout.pads_in_contact[number]
+            artist.set(facecolor=CONTACT_COLOUR if pressed else GREY, alpha=0.75)
+        self._draw_polygon("block", layout.block, BLUE, 4, alpha=0.08 if layout.members else 0.22)
+        for number, member in enumerate(layout.members):
+            self._draw_polygon(f"member {number}", member, BLUE, 4, alpha=0.3)
+        for number, other in enumerate(layout.frame_parts):
+            self._draw_polygon(f"other {number}", other, BLUE, 4, alpha=0.22)
+        for number, ends in enumerate(layout.restrainers):
+            self._draw_line(
                 f"tie {number}", ends, color=VERMILLION, linewidth=1.4, zorder=5, marker="."
             )  # which shows one without a length
-        self._dots("centre", found.centres, marker="P", color=ink(), markersize=6.0)
-        self._touching(found)
-        for name, place in self._marked.items():
-            self._point(name, self.drawer.points(at, place))
+        self._draw_dots("centre", layout.centres, marker="P", color=text_colour(), markersize=6.0)
+        self._draw_contacts(layout)
+        for name, place in self._points.items():
+            self._draw_point(name, self.builder.points_at(placement, place))
 
-    def legend(self) -> None:
+    def draw_legend(self) -> None:
         """Write the names of the parts next to the drawing."""
         handles = [
             (self._artists[key], words)
-            for slot, words in self._names.items()
+            for slot, words in self._legend_names.items()
             for key in (slot, f"{slot} 0")
             if key in self._artists
         ]
@@ -333,29 +348,30 @@ class SceneArtist:
             frameon=False, fontsize="small",
         )  # fmt: skip
 
-    def _ground(self, found: Layout) -> None:
+    def _draw_ground(self, layout: Layout) -> None:
         floor = self.axes.get_ylim()[0]
-        surface = found.ground if found.soil is None else found.soil
+        surface = layout.ground if layout.soil is None else layout.soil
         band = np.vstack([surface, [(surface[-1, 0], floor), (surface[0, 0], floor)]])
-        if found.soil is not None:
-            self._polygon("soil", band, SOIL, 2, alpha=0.3)
+        if layout.soil is not None:
+            self._draw_polygon("soil", band, SOIL_COLOUR, 2, alpha=0.3)
             return
-        artist = self._polygon("ground", band, GREY, 2, alpha=0.35)
+        artist = self._draw_polygon("ground", band, GREY, 2, alpha=0.35)
         artist.set(hatch="///", linewidth=0.0)
-        self._line("surface", found.ground, color=ink(), linewidth=1.0, zorder=2)
+        self._draw_line("surface", layout.ground, color=text_colour(), linewidth=1.0, zorder=2)
 
-    def _touching(self, found: Layout) -> None:
-        dots = [one for one in found.touching if len(one) == 1]
-        lines = [one for one in found.touching if len(one) > 1]
-        self._dots("touching", np.vstack(dots or [_NOWHERE]), color=CONTACT, markersize=6.0)
-        apart = [part for one in lines for part in (one, _NOWHERE)] or [_NOWHERE]
-        self._line(
-            "bearing", np.vstack(apart), color=CONTACT, linewidth=3.0, zorder=5,
+    def _draw_contacts(self, layout: Layout) -> None:
+        dots = [one for one in layout.contacts if len(one) == 1]
+        lines = [one for one in layout.contacts if len(one) > 1]
+        points = np.vstack(dots or [_NO_POINT])
+        self._draw_dots("touching", points, color=CONTACT_COLOUR, markersize=6.0)
+        apart = [part for one in lines for part in (one, _NO_POINT)] or [_NO_POINT]
+        self._draw_line(
+            "bearing", np.vstack(apart), color=CONTACT_COLOUR, linewidth=3.0, zorder=5,
             solid_capstyle="butt",
         )  # fmt: skip
 
-    def _point(self, name: str, place: Array) -> None:
-        self._dots(f"point {name}", place, color=GREEN, marker="D", markersize=4.5)
+    def _draw_point(self, name: str, place: Array) -> None:
+        self._draw_dots(f"point {name}", place, color=GREEN, marker="D", markersize=4.5)
         key = f"name of {name}"
         if key not in self._artists:
             self._artists[key] = self.axes.annotate(
@@ -364,7 +380,7 @@ class SceneArtist:
             )  # fmt: skip
         self._artists[key].xy = tuple(place[0])
 
-    def _polygon(
+    def _draw_polygon(
         self, key: str, corners: Array, colour: str, order: int, alpha: float = 0.35
     ) -> Any:
         from matplotlib.colors import to_rgba
@@ -377,18 +393,18 @@ class SceneArtist:
         self._artists[key].set_xy(corners)
         return self._artists[key]
 
-    def _dots(self, key: str, places: Array, **style: Any) -> None:
-        self._line(key, places, **{"linestyle": "none", "marker": "o", "zorder": 6, **style})
+    def _draw_dots(self, key: str, places: Array, **style: Any) -> None:
+        self._draw_line(key, places, **{"linestyle": "none", "marker": "o", "zorder": 6, **style})
 
-    def _line(self, key: str, places: Array, **style: Any) -> None:
+    def _draw_line(self, key: str, places: Array, **style: Any) -> None:
         if key not in self._artists:
             (self._artists[key],) = self.axes.plot([], [], **style)
         self._artists[key].set_data(places[:, 0], places[:, 1])
 
 
-_LETTERS: Final = 32
+_LINE_LENGTH: Final = 32
 """Longest line on a body of a stack, or on a load [characters]."""
-_DRAWN: Final = ("name", "on", "to", "on_body", "to_body", "depth")
+_DRAWN_ARGUMENTS: Final = ("name", "on", "to", "on_body", "to_body", "depth")
 """Arguments of links that the drawing shows, and which the names omit."""
 
 
@@ -398,38 +414,44 @@ def part_labels(parts: Parts, geometry: Geometry, units: DisplayUnits) -> dict[s
     for slot in ("block", "wall", "pads", "cap", "soil"):
         part = parts.components.get(slot)
         if part is not None:
-            found[slot] = [type(part).__name__, *_numbers(part, units)]
+            found[slot] = [type(part).__name__, *_parameter_texts(part, units)]
     if parts.frame is not None:
-        column = [f"column {one}" for one in _numbers(parts.frame.column, units)]
-        found["block"] = [type(parts.frame).__name__, *column, *_numbers(parts.frame, units)]
+        column = [f"column {one}" for one in _parameter_texts(parts.frame.column, units)]
+        own = _parameter_texts(parts.frame, units)
+        found["block"] = [type(parts.frame).__name__, *column, *own]
     if parts.stack is not None:
         bases = [*parts.stack.interfaces, None]
         for k, (body, base) in enumerate(zip(parts.stack.bodies, bases, strict=True)):
-            lines = [f"body {k + 1}: {type(body).__name__}", *_in_lines(_numbers(body, units))]
+            parameters = _wrapped_lines(_parameter_texts(body, units))
+            lines = [f"body {k + 1}: {type(body).__name__}", *parameters]
             if base is not None:
-                lines += _in_lines([f"on {type(base).__name__}", *_numbers(base, units)])
+                lines += _wrapped_lines(
+                    [f"on {type(base).__name__}", *_parameter_texts(base, units)]
+                )
             found[f"stack {k - 1}" if k else "block"] = lines
     if parts.stack is not None and "pads" in found:  # pads are not drawn below a stack
         found["ground"] = found.pop("pads")
     elif geometry.soil_settlement is None:
-        found["ground"] = ["rigid ground", *_numbers(parts.components.get("ground"), units)]
+        found["ground"] = ["rigid ground", *_parameter_texts(parts.components.get("ground"), units)]
     for number, (name, link) in enumerate(zip(link_labels(parts.links), parts.links, strict=True)):
-        lines = [as_label(name), *_numbers(link, units, _DRAWN)]
+        lines = [as_label(name), *_parameter_texts(link, units, _DRAWN_ARGUMENTS)]
         if number < len(geometry.links):
             found[f"tie {number}"] = lines[:1] if link is parts.wall else lines
         elif isinstance(link, Load):  # not drawn, therefore listed with its body
             body = link.si.on_body - 1
-            found[f"stack {body - 1}" if body else "block"] += _in_lines(lines)
+            found[f"stack {body - 1}" if body else "block"] += _wrapped_lines(lines)
     words = {slot: with_superscripts("\n   ".join(lines)) for slot, lines in found.items()}
     return {**words, "centre": "centre of mass", "touching": "contact"}
 
 
-def _in_lines(words: Sequence[str]) -> list[str]:
+def _wrapped_lines(words: Sequence[str]) -> list[str]:
     whole = ", ".join(words).replace(" ", NO_BREAK).replace(f",{NO_BREAK}", ", ")
-    return [line.replace(NO_BREAK, " ") for line in wrap(whole, _LETTERS)]
+    return [line.replace(NO_BREAK, " ") for line in wrap(whole, _LINE_LENGTH)]
 
 
-def _numbers(part: Component | None, units: DisplayUnits, without: Sequence[str] = ()) -> list[str]:
+def _parameter_texts(
+    part: Component | None, units: DisplayUnits, without: Sequence[str] = ()
+) -> list[str]:
     """Write the parameters of a part, in the reader's units if these are chosen."""
     if part is None:
         return []

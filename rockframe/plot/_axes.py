@@ -31,60 +31,60 @@ SKY: Final = "#8cccf0"
 COLOURS: Final = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
 STYLES: Final[tuple[Any, ...]] = ("-", "--", "-.", (0, (1, 1)))
 """Dashes of lines that are compared, so that they differ without colours too."""
-STANDS: Final = "#dfe7ef"
-_LEAST_TICKS: Final = 3
+PALE_BLUE: Final = "#dfe7ef"
+_MIN_TICKS: Final = 3
 """Least number of labels of an axis."""
-_OF_NOTHING: Final = (1.0, 10.0)
+_EMPTY_LIMITS: Final = (1.0, 10.0)
 """Ends of a logarithmic axis without data."""
-_MANY_DECADES: Final = 200.0
+_WIDE_RATIO: Final = 200.0
 """Ratio of the ends of an axis above which only powers of ten have room as labels."""
 GREY: Final = "0.5"
 """Colour of the background of a figure's data, legible on white and on black."""
 
 
-_LETTER, _LINE, _HANDLE = 0.07, 0.19, 0.55
+_LETTER_WIDTH, _LINE_HEIGHT, _HANDLE_WIDTH = 0.07, 0.19, 0.55
 """Sizes of a legend in small letters: width of a letter, height of a line, and width of the handle
 before the words [in]."""
 
 
-_MOST_LETTERS: Final = 52
+_MAX_LABEL_LENGTH: Final = 52
 """Of names in legends."""
-_LEAST_LETTERS: Final = 12
-_FEW: Final = 4
+_MIN_LABEL_LENGTH: Final = 12
+_MAX_FULL_LABELS: Final = 4
 """Number of labels up to which all are written in full."""
 
 
-def key(axes: "Axes", named: tuple[Any, Any] | None = None, **style: Any) -> None:
+def add_legend(axes: "Axes", entries: tuple[Any, Any] | None = None, **style: Any) -> None:
     """Write a legend above the data, and extend the axis to make room for it."""
-    handles, words = axes.get_legend_handles_labels() if named is None else named
+    handles, words = axes.get_legend_handles_labels() if entries is None else entries
     if not words:
         return
     width, height = np.divide(axes.get_window_extent().size, axes.figure.dpi)
-    if len(words) > _FEW and "title" not in style:
-        common, words = apart(words)
+    if len(words) > _MAX_FULL_LABELS and "title" not in style:
+        common, words = split_common_parts(words)
         style |= {"title": common, "title_fontsize": "small"} if common else {}
     title = str(style.get("title", ""))
-    room = int((0.95 * width - _HANDLE) / _LETTER)
-    words = [one if "$" in one else as_label(one, max(room, _LEAST_LETTERS)) for one in words]
-    entry = _HANDLE + _LETTER * max(map(len, words))
+    length = int((0.95 * width - _HANDLE_WIDTH) / _LETTER_WIDTH)
+    words = [one if "$" in one else as_label(one, max(length, _MIN_LABEL_LENGTH)) for one in words]
+    entry = _HANDLE_WIDTH + _LETTER_WIDTH * max(map(len, words))
     columns = int(np.clip((0.95 * width) // entry, 1, max(1, len(words))))
     rows = -(-len(words) // columns) + bool(title)
-    share = min(0.6, (0.08 + _LINE * rows) / height)
+    legend_share = min(0.6, (0.08 + _LINE_HEIGHT * rows) / height)
     linear = axes.get_yscale() == "linear"
     low, top = axes.get_ylim()
     # data beyond the end of the axis stay outside
     high = min(top, axes.dataLim.y1 + (0.05 * axes.dataLim.height if linear else 0.0))
     if linear and high > low:
-        axes.set_ylim(low, low + (high - low) / (1.0 - share))
+        axes.set_ylim(low, low + (high - low) / (1.0 - legend_share))
     elif high > low > 0.0:
-        axes.set_ylim(low, low * (1.05 * high / low) ** (1.0 / (1.0 - share)))
+        axes.set_ylim(low, low * (1.05 * high / low) ** (1.0 / (1.0 - legend_share)))
     axes.legend(
         handles, words, loc="upper right", ncols=columns, fontsize="small", frameon=False,
         borderaxespad=0.2, handlelength=1.8, columnspacing=1.2, **style,
     )  # fmt: skip
 
 
-def apart(words: list[str]) -> tuple[str, list[str]]:
+def split_common_parts(words: list[str]) -> tuple[str, list[str]]:
     """Split labels at commas into the parts that they have in common, and the other parts."""
     parts = [one.split(", ") for one in words]
     common = [one for one in parts[0] if all(one in other for other in parts)]
@@ -92,59 +92,59 @@ def apart(words: list[str]) -> tuple[str, list[str]]:
     return (", ".join(common), rest) if all(rest) else ("", words)
 
 
-def escaped(text: str) -> str:
+def escape_mathtext(text: str) -> str:
     """Return a text so that matplotlib writes it letter by letter."""
     return text.replace("$", r"\$")
 
 
-def as_label(name: str, most: int = _MOST_LETTERS) -> str:
+def as_label(name: str, max_length: int = _MAX_LABEL_LENGTH) -> str:
     """Return a name without the meaning of ``$`` and ``_`` in matplotlib, in legends too.
 
     Long names are shortened in the middle, to leave room for the data.
     """
-    if len(name) > most:
-        name = f"{name[: most - most // 3 - 3]}...{name[-(most // 3) :]}"
+    if len(name) > max_length:
+        name = f"{name[: max_length - max_length // 3 - 3]}...{name[-(max_length // 3) :]}"
     # legends omit names that begin with an underscore
-    return escaped(f" {name}" if name.startswith("_") else name)
+    return escape_mathtext(f" {name}" if name.startswith("_") else name)
 
 
-def labels_of_names(names: Iterable[str], most: int = _MOST_LETTERS) -> list[str]:
+def unique_labels(names: Iterable[str], max_length: int = _MAX_LABEL_LENGTH) -> list[str]:
     """Return names as :func:`as_label` does, numbered if they would be equal."""
-    found = [as_label(name, most) for name in names]
-    alike = len(set(found)) < len(found)
-    return [f"{k}: {one}" for k, one in enumerate(found, 1)] if alike else found
+    found = [as_label(name, max_length) for name in names]
+    has_duplicates = len(set(found)) < len(found)
+    return [f"{k}: {one}" for k, one in enumerate(found, 1)] if has_duplicates else found
 
 
-def ink() -> Any:
+def text_colour() -> Any:
     """Return the colour of text in matplotlib's style."""
     from matplotlib import rcParams
 
     return rcParams["text.color"]
 
 
-def colour_of(number: int) -> str:
+def line_colour(number: int) -> str:
     """Return the colour of a line by its number."""
     return COLOURS[number % len(COLOURS)]
 
 
-def style_of(number: int) -> Any:
+def line_style(number: int) -> Any:
     """Return the dashes of a line by its number."""
     return STYLES[number % len(STYLES)]
 
 
-def label_of(values: xr.DataArray) -> str:
+def variable_label(values: xr.DataArray) -> str:
     """Return the name and unit of values, for an axis."""
     return axis_label(str(values.name).replace("_", " "), str(values.attrs.get("units", "1")))
 
 
-def label_of_value(value: xr.DataArray) -> str:
+def value_label(value: xr.DataArray) -> str:
     """Return a value along an axis with its unit, for a legend."""
     unit = str(value.attrs.get("units", "1"))
     text = f"{value.item():.4g}" if value.dtype.kind == "f" else as_label(str(value.item()))
-    return text if unit == "1" else f"{text} {powers_in_mathtext(unit)}"
+    return text if unit == "1" else f"{text} {superscript_powers(unit)}"
 
 
-def label_of_intensity(values: xr.DataArray, study: xr.Dataset) -> str:
+def intensity_label(values: xr.DataArray, study: xr.Dataset) -> str:
     """Return the name, period and unit of an intensity measure of a study, for an axis."""
     words = measure_words(str(values.name), study.attrs.get(PERIOD_ATTRIBUTE))
     return axis_label(words, str(values.attrs.get("units", "1")))
@@ -153,10 +153,10 @@ def label_of_intensity(values: xr.DataArray, study: xr.Dataset) -> str:
 def axis_label(words: str, unit: str) -> str:
     """Append a unit to words, for an axis."""
     blank = "" if words.endswith("\n") else " "
-    return f"{words}{blank}[{'-' if unit == '1' else powers_in_mathtext(unit)}]"
+    return f"{words}{blank}[{'-' if unit == '1' else superscript_powers(unit)}]"
 
 
-def powers_in_mathtext(unit: str) -> str:
+def superscript_powers(unit: str) -> str:
     """Write the powers of a unit as superscripts of mathtext."""
     return re.sub(r"\^(-?\d+)", r"$^{\1}$", unit)
 
@@ -176,19 +176,19 @@ def label_log_ticks(axes: "Axes", which: str = "xy") -> None:
     """Label logarithmic axes at powers of ten; short ones at more numbers, at least three."""
     from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
 
-    both = (("x", axes.xaxis, axes.get_xscale()), ("y", axes.yaxis, axes.get_yscale()))
-    for name, axis, scale in both:
+    scales = (("x", axes.xaxis, axes.get_xscale()), ("y", axes.yaxis, axes.get_yscale()))
+    for name, axis, scale in scales:
         if scale == "log" and name in which:
             low, high = axis.get_view_interval()
             if not low > 0.0:  # nothing is drawn, such as the intensities of what never overturns
-                low, high = _OF_NOTHING
+                low, high = _EMPTY_LIMITS
                 axis.set_view_interval(low, high, ignore=True)
-            wide = high > _MANY_DECADES * low
-            for subs in ((1.0,) if wide else (1.0, 2.0, 5.0), tuple(range(1, 10)), ()):
+            many_decades = high > _WIDE_RATIO * low
+            for subs in ((1.0,) if many_decades else (1.0, 2.0, 5.0), tuple(range(1, 10)), ()):
                 locator = LogLocator(subs=subs) if subs else MaxNLocator(5)
                 axis.set_major_locator(locator)
-                places = np.asarray(locator.tick_values(low, high))
-                if np.count_nonzero((places >= low) & (places <= high)) >= _LEAST_TICKS:
+                ticks = np.asarray(locator.tick_values(low, high))
+                if np.count_nonzero((ticks >= low) & (ticks <= high)) >= _MIN_TICKS:
                     break
             axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
             axis.set_minor_locator(NullLocator())
@@ -204,7 +204,7 @@ def colour_steps(along: xr.DataArray) -> Any:
 METRES: Final = DisplayUnit(str(LENGTH.unit), 1.0)
 
 
-def measured_in(axes: "Axes", length: DisplayUnit) -> None:
+def set_length_unit(axes: "Axes", length: DisplayUnit) -> None:
     """Label axes drawn in metres in another unit of length."""
     from matplotlib.ticker import FuncFormatter, MaxNLocator
 
@@ -212,8 +212,8 @@ def measured_in(axes: "Axes", length: DisplayUnit) -> None:
         """Ticks at round numbers in the unit."""
 
         def tick_values(self, vmin: float, vmax: float) -> Any:
-            places = super().tick_values(vmin / length.size, vmax / length.size)
-            return length.size * np.asarray(places)
+            ticks = super().tick_values(vmin / length.size, vmax / length.size)
+            return length.size * np.asarray(ticks)
 
     if length.size != 1.0:
         for axis in (axes.xaxis, axes.yaxis):
@@ -233,30 +233,30 @@ class FigureUnits:
     owner: str
     reader: DisplayUnits
 
-    def of(self, measure: Measure, usual: str = "", **values: object) -> DisplayUnit:
+    def axis_unit(self, measure: Measure, default: str = "", **values: object) -> DisplayUnit:
         """Return the unit of an axis; `values` has the axis's own argument by its name."""
         for name, unit in values.items():
             if unit is not None:
                 return display_unit(unit, measure, owner=self.owner, name=name)
-        usual = usual or str(measure.unit)
+        default = default or str(measure.unit)
         return self.reader.chosen_unit(measure) or display_unit(
-            usual, measure, owner=self.owner, name=""
+            default, measure, owner=self.owner, name=""
         )
 
-    def unless_relative(self, measure: Measure, **items: object) -> DisplayUnit | None:
+    def unit_or_relative(self, measure: Measure, **items: object) -> DisplayUnit | None:
         """Return the unit of an axis; None where values are relative to a scale of the body."""
         (unit,) = items.values()
         if unit is None and self.reader.chosen_unit(measure) is None:
             return None
-        told_relative = isinstance(unit, str) and unit == RELATIVE
-        return None if told_relative else self.of(measure, "", **items)
+        is_relative = isinstance(unit, str) and unit == RELATIVE
+        return None if is_relative else self.axis_unit(measure, "", **items)
 
-    def rotations(self, rotation: str | None) -> str | None:
+    def rotation_unit(self, rotation: str | None) -> str | None:
         """Return the unit of a history of rotations: the given one, that of `units`, or degrees."""
         return "deg" if rotation is None and self.reader.chosen_unit(ANGLE) is None else rotation
 
 
-def units_of(units: object, function: str) -> FigureUnits:
+def figure_units(units: object, function: str) -> FigureUnits:
     """Read the units of a figure."""
     owner = f"rf.plot.{function}"
     return FigureUnits(owner, display_units(units, owner=owner))

@@ -27,22 +27,22 @@ from rockframe.units import POSITIVE, Unit, to_ratio
 from rockframe.units.display import KINDS as SHOWN_KINDS
 from rockframe.units.display import UnitsLike, display_units
 
-Drawing = TypeVar("Drawing", bound=Callable[..., Any])
+FigureFunction = TypeVar("FigureFunction", bound=Callable[..., Any])
 
 
 @dataclass(frozen=True)
 class DatasetKind:
     """A kind of dataset that a function draws."""
 
-    what: str  # its name in messages
+    name: str  # in messages
     call: str  # the call that gives it
-    known: tuple[str, ...]  # variables by which it is recognised
-    needed: tuple[str, ...] = ()  # further variables that are drawn
+    identifying: tuple[str, ...]  # variables by which it is recognised
+    required: tuple[str, ...] = ()  # further variables that are drawn
 
     @property
-    def words(self) -> str:
+    def description(self) -> str:
         """Its name, and the call that gives it."""
-        return f"{self.what}, as {self.call} gives it" if self.call else self.what
+        return f"{self.name}, as {self.call} gives it" if self.call else self.name
 
 
 RUN: Final = DatasetKind(
@@ -59,16 +59,16 @@ RUN: Final = DatasetKind(
 )
 KINDS: Final[dict[str, DatasetKind]] = {}
 """Kinds recognised by their variables, by the function that draws them; the first match counts."""
-_NEEDED: Final[dict[str, str]] = {}
+_REQUIRED_DATA: Final[dict[str, str]] = {}
 """The kind that each function draws, in words."""
-OF_SWEEP: Final = "axes_json"
+SWEEP_ATTRIBUTE: Final = "axes_json"
 """Attribute of sweeps and of their cases."""
-_NO_HISTORIES: Final = ("overturned", "peak_rotation")
-_NOT_BY_KIND: Final = (
+_RUN_SCALARS: Final = ("overturned", "peak_rotation")
+_UNDRAWN_KINDS: Final = (
     # (variables, their name in messages, how to draw them); the first match counts
-    (RUN.known, "the result of a run", "rf.plot.response draws it"),
+    (RUN.identifying, "the result of a run", "rf.plot.response draws it"),
     (
-        _NO_HISTORIES,
+        _RUN_SCALARS,
         "the result of a run without histories",
         "simulate with outputs=() instead of None",
     ),
@@ -90,7 +90,7 @@ _NOT_BY_KIND: Final = (
 )
 
 
-_UNITS: Final = (
+_UNITS_DOC: Final = (
     "Units by quantity, such as ``{'acceleration': 'g', 'force': 'kN'}``: of "
     f"{', '.join(SHOWN_KINDS)}. An argument for the unit of a single axis overrides it; "
     "dimensionless values remain as they are."
@@ -98,18 +98,18 @@ _UNITS: Final = (
 
 
 def draws(
-    what: str | DatasetKind, call: str = "", known: tuple[str, ...] = (),
+    data: str | DatasetKind, call: str = "", known: tuple[str, ...] = (),
     needed: tuple[str, ...] = (), *, ax: str = "Axes", title: str = "",
-) -> Callable[[Drawing], Drawing]:  # fmt: skip
+) -> Callable[[FigureFunction], FigureFunction]:  # fmt: skip
     """Register what a figure is drawn from, for a dataset by a `DatasetKind`.
 
     Add to the docstring what figures share: `dataset`, `run`, `window`, `units`, `ax`, `title`,
     what is returned, and errors. The words `ax` and `title` describe the Axes and the default title
     in the manual.
     """
-    kind = what if isinstance(what, DatasetKind) else DatasetKind(what, call, known, needed)
-    usual = f"; {title} unless given" if title else ""
-    within = "" if ax == "Axes" else " A figure or subfigure gets new panels."
+    kind = data if isinstance(data, DatasetKind) else DatasetKind(data, call, known, needed)
+    default_title = f"; {title} unless given" if title else ""
+    in_figure = "" if ax == "Axes" else " A figure or subfigure gets new panels."
     shared = {
         "dataset": Argument(
             None, "xarray.Dataset", f"Result of :func:`rockframe.{call[3:].partition('(')[0]}`."
@@ -120,45 +120,47 @@ def draws(
             "(str or Quantity or None, str or Quantity or None), optional",
             "Start and end of what is drawn; the whole run unless given [s].",
         ),
-        "units": Argument(None, "mapping of str to str, optional", _UNITS),
+        "units": Argument(None, "mapping of str to str, optional", _UNITS_DOC),
         "ax": Argument(
-            None, f"{ax}, optional", f"Axes to draw in; a new figure unless given.{within}"
+            None, f"{ax}, optional", f"Axes to draw in; a new figure unless given.{in_figure}"
         ),
-        "title": Argument(None, "str, optional", f"Title of the figure{usual}."),
+        "title": Argument(None, "str, optional", f"Title of the figure{default_title}."),
     }
-    refused = (
-        f"SchemaError\n    The dataset is not {kind.what}; the message names the function that "
+    raises = (
+        f"SchemaError\n    The dataset is not {kind.name}; the message names the function that "
         "draws\n    what was given."
     )
 
-    def decorate(drawing: Drawing) -> Drawing:
+    def decorate(drawing: FigureFunction) -> FigureFunction:
         name, text = drawing.__name__, drawing.__doc__ or ""
         text = completed_docstring(text, signature(drawing).parameters, shared)
         drawn = "matplotlib.axes.Axes" if ax == "Axes" else "Panels"
         text = with_section(text, "Returns", drawn, ("Raises", "Notes", "Examples"))
-        _NEEDED[name] = kind.words
+        _REQUIRED_DATA[name] = kind.description
         if known:
             KINDS[name] = kind
-            text = with_raises_section(text, refused)
+            text = with_raises_section(text, raises)
         drawing.__doc__ = text
         return with_hints()(drawing)
 
     return decorate
 
 
-def _known_by(dataset: xr.Dataset) -> str | None:
-    return next((name for name, kind in KINDS.items() if _holds(dataset, kind.known)), None)
+def _function_for(dataset: xr.Dataset) -> str | None:
+    return next(
+        (name for name, kind in KINDS.items() if _has_variables(dataset, kind.identifying)), None
+    )
 
 
-def drawn_by(dataset: xr.Dataset) -> str:
+def figure_function_name(dataset: xr.Dataset) -> str:
     """Return the function that draws a dataset."""
-    if (known := _known_by(dataset)) is not None:
+    if (known := _function_for(dataset)) is not None:
         return known
-    if _holds(dataset, ("relative_rotation", "time", "contact_state")):
+    if _has_variables(dataset, ("relative_rotation", "time", "contact_state")):
         return "response"
     if "peak_relative_rotation" in dataset and dataset["peak_relative_rotation"].ndim > 0:
         return "sweep"
-    if (found := _other_kind(dataset)) is not None:
+    if (found := _describe_undrawn(dataset)) is not None:
         msg = f"no function of rf.plot draws {found[0]}; {found[1]}"
         raise SchemaError(msg)
     msg = (
@@ -169,51 +171,55 @@ def drawn_by(dataset: xr.Dataset) -> str:
 
 
 def checked_run(value: object, function: str) -> xr.Dataset:
-    """Raise unless given the result of one run with histories; give it up to its end.
+    """Return the result of one run with histories up to its end; raise on anything else.
 
     The histories of a case of a sweep are padded with NaN to the length of the longest case.
     """
     owner = f"rf.plot.{function}"
-    value = in_units_of_schema(_checked(value, function, RUN), owner=owner)
+    value = in_units_of_schema(_checked_kind(value, function, RUN), owner=owner)
     value = value.assign_coords(
         time=labels_in_unit(value["time"], Unit.SECOND, owner=owner).variable
     )
-    for name in (*RUN.known, *RUN.needed):
+    for name in (*RUN.identifying, *RUN.required):
         if value[name].dtype.kind not in "fiub":
-            raise _got(function, f"one whose {name!r} holds no numbers")
+            raise _mismatch_error(function, f"one whose {name!r} holds no numbers")
     more = [str(name) for name in value["relative_rotation"].dims if name != "time"]
     if more:
         way = f"pick one, for example with dataset.isel({more[0]}=0)"
-        raise _got(function, f"several runs over {', '.join(more)}; {way}")
+        raise _mismatch_error(function, f"several runs over {', '.join(more)}; {way}")
     known = np.flatnonzero(~np.isnan(value["relative_rotation"].to_numpy()))
     if not len(known):
-        raise _got(function, "a case without a result")
+        raise _mismatch_error(function, "a case without a result")
     if known[-1] < 1:
         way = "simulate for longer, or with a shorter output_step"
-        raise _got(function, f"one of a single instant; {way}")
+        raise _mismatch_error(function, f"one of a single instant; {way}")
     return value.isel(time=slice(int(known[-1]) + 1))
 
 
-def drawable(value: object, function: str, units: UnitsLike = None) -> xr.Dataset:
+def figure_data(value: object, function: str, units: UnitsLike = None) -> xr.Dataset:
     """Return the dataset that a function draws, in the chosen units; raise on anything else."""
-    dataset = _checked(value, function, KINDS[function])
+    dataset = _checked_kind(value, function, KINDS[function])
     return display_units(units, owner=f"rf.plot.{function}").convert_dataset(dataset)
 
 
-def _checked(value: object, function: str, kind: DatasetKind) -> xr.Dataset:
-    if not isinstance(value, xr.Dataset) or not _holds(value, kind.known):
-        raise SchemaError(refuse(function, value))
-    missing = [repr(name) for name in (*kind.known, *kind.needed) if name not in value.variables]
+def _checked_kind(value: object, function: str, kind: DatasetKind) -> xr.Dataset:
+    if not isinstance(value, xr.Dataset) or not _has_variables(value, kind.identifying):
+        raise SchemaError(mismatch_message(function, value))
+    missing = [
+        repr(name) for name in (*kind.identifying, *kind.required) if name not in value.variables
+    ]
     if missing:
-        raise _got(function, f"one that lacks {', '.join(missing)}; give it the whole dataset")
+        raise _mismatch_error(
+            function, f"one that lacks {', '.join(missing)}; give it the whole dataset"
+        )
     return value
 
 
-def _got(function: str, what: str) -> SchemaError:
-    return SchemaError(f"rf.plot.{function} needs {_needed(function)}, got {what}")
+def _mismatch_error(function: str, what: str) -> SchemaError:
+    return SchemaError(f"rf.plot.{function} needs {_required_data(function)}, got {what}")
 
 
-def above_zero(value: object, function: str, name: str) -> float:
+def read_positive(value: object, function: str, name: str) -> float:
     """Read a number greater than zero."""
     return to_ratio(value, owner=f"rf.plot.{function}", name=name, condition=POSITIVE, example="2")
 
@@ -221,7 +227,7 @@ def above_zero(value: object, function: str, name: str) -> float:
 def system_of_run(run: xr.Dataset, function: str) -> System:
     """Build the system of a run, without its motion."""
     text = run.attrs.get("system_json")
-    of_function = OF_SWEEP in run.attrs and "function" in run.attrs
+    of_function = SWEEP_ATTRIBUTE in run.attrs and "function" in run.attrs
     if not isinstance(text, str) and not of_function:
         msg = (
             f"rf.plot.{function}: the dataset has no attribute 'system_json'; expected the result "
@@ -230,18 +236,20 @@ def system_of_run(run: xr.Dataset, function: str) -> System:
         raise SchemaError(msg)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RockframeWarning)  # issued already by the run
-        if OF_SWEEP in run.attrs:
+        if SWEEP_ATTRIBUTE in run.attrs:
             return system_of_case(run, owner=f"rf.plot.{function}")
         return System.from_dict(json.loads(str(text)))
 
 
-def refuse(function: str, value: object) -> str:
+def mismatch_message(function: str, value: object) -> str:
     """Write what a function draws, what was given, and how the latter can be drawn."""
-    what, way = _words(function, value)
-    return f"rf.plot.{function} needs {_needed(function)}, got {what}" + (f"; {way}" if way else "")
+    what, way = _describe_value(function, value)
+    return f"rf.plot.{function} needs {_required_data(function)}, got {what}" + (
+        f"; {way}" if way else ""
+    )
 
 
-def _words(function: str, value: object) -> tuple[str, str]:
+def _describe_value(function: str, value: object) -> tuple[str, str]:
     """Describe what was given, and how it can be drawn."""
     if isinstance(value, str | PathLike):
         name = str(cast("object", value))
@@ -259,37 +267,37 @@ def _words(function: str, value: object) -> tuple[str, str]:
         return "a case of a sweep", "rf.plot.response(case.simulate()) draws its response"
     if not isinstance(value, xr.Dataset):
         return f"{value!r}" if value is None else f"a value of type {type(value).__name__}", ""
-    if (known := _known_by(value)) is not None:
-        return f"a Dataset with {KINDS[known].what}", f"rf.plot.{known} draws it"
+    if (known := _function_for(value)) is not None:
+        return f"a Dataset with {KINDS[known].name}", f"rf.plot.{known} draws it"
     if "overturned" in value and value["overturned"].ndim > 0:
         way = "rf.plot.sweep draws it"
-        if OF_SWEEP in value.attrs and _needed(function) == RUN.words:
+        if SWEEP_ATTRIBUTE in value.attrs and _required_data(function) == RUN.description:
             way += ", rf.case(dataset, ...).simulate() runs one of them with histories"
         return "a Dataset with many runs", way
-    if (found := _other_kind(value)) is not None:
+    if (found := _describe_undrawn(value)) is not None:
         return found
     title = value.attrs.get("title")
     return "a Dataset" + (f" with the title {title!r}" if title else " of another kind"), ""
 
 
-def _other_kind(dataset: xr.Dataset) -> tuple[str, str] | None:
+def _describe_undrawn(dataset: xr.Dataset) -> tuple[str, str] | None:
     """Describe a dataset that no function draws, and what is drawn instead."""
-    for names, what, way in _NOT_BY_KIND:
-        if not _holds(dataset, names):
+    for names, what, way in _UNDRAWN_KINDS:
+        if not _has_variables(dataset, names):
             continue
-        if names == _NO_HISTORIES and OF_SWEEP in dataset.attrs:
+        if names == _RUN_SCALARS and SWEEP_ATTRIBUTE in dataset.attrs:
             what = "a case of a sweep without the histories of its response"
             way = "rf.case(dataset).simulate() runs the case with them"
         return f"a Dataset with {what}", way
     return None
 
 
-def _needed(function: str) -> str:
+def _required_data(function: str) -> str:
     """Name what a function draws; all others draw runs, as in notebooks."""
-    return _NEEDED.get(function, RUN.words)
+    return _REQUIRED_DATA.get(function, RUN.description)
 
 
-def _holds(dataset: xr.Dataset, names: tuple[str, ...]) -> bool:
+def _has_variables(dataset: xr.Dataset, names: tuple[str, ...]) -> bool:
     return all(name in dataset.variables for name in names)
 
 

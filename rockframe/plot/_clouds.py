@@ -8,14 +8,14 @@ from rockframe.plot._axes import (
     COLOURS,
     GREY,
     as_label,
-    colour_of,
     grid,
+    intensity_label,
     label_log_ticks,
-    label_of,
-    label_of_intensity,
+    line_colour,
+    variable_label,
 )
-from rockframe.plot._checks import drawable, draws
-from rockframe.plot._panels import Axes, AxesLike, single
+from rockframe.plot._checks import draws, figure_data
+from rockframe.plot._panels import Axes, AxesLike, make_single_panel
 from rockframe.units.display import UnitsLike, with_superscripts
 
 
@@ -43,43 +43,57 @@ def cloud(
     >>> rf.plot.cloud(found).get_ylabel()
     'peak relative rotation [-]'
     """
-    data = drawable(dataset, "cloud", units)
-    on = single(ax, "cloud", (6.0, 4.3))
-    axes = on.axes
+    data = figure_data(dataset, "cloud", units)
+    sheet = make_single_panel(ax, "cloud", (6.0, 4.3))
+    axes = sheet.axes
     name = str(data.attrs["intensity"])
-    along, response = (data[f"cloud_{one}"].to_numpy() for one in ("intensity", "response"))
-    fell, still = np.isinf(response), response == 0.0
-    between = ~fell & ~still
+    intensity, response = (data[f"cloud_{one}"].to_numpy() for one in ("intensity", "response"))
+    overturned, at_rest = np.isinf(response), response == 0.0
+    finite_response = ~overturned & ~at_rest
     limits = data["response_limit"].to_numpy()
     limits = limits[np.isfinite(limits)]
-    shown = np.concatenate([response[between], limits])
+    shown = np.concatenate([response[finite_response], limits])
     low, high = (shown.min() / 1.6, shown.max() * 1.6) if len(shown) else (0.1, 1.0)
-    axes.plot(along[between], response[between], "o", color=GREY, ms=3.5, label="runs")
     axes.plot(
-        along[fell], np.full(fell.sum(), high), "^", color=COLOURS[1], ms=5, label="overturned"
+        intensity[finite_response], response[finite_response], "o", color=GREY, ms=3.5, label="runs"
     )
-    axes.plot(along[still], np.full(still.sum(), low), "v", color=COLOURS[2], ms=5, label="at rest")
-    x = np.geomspace(along.min(), along.max(), 101)
+    axes.plot(
+        intensity[overturned],
+        np.full(overturned.sum(), high),
+        "^",
+        color=COLOURS[1],
+        ms=5,
+        label="overturned",
+    )
+    axes.plot(
+        intensity[at_rest],
+        np.full(at_rest.sum(), low),
+        "v",
+        color=COLOURS[2],
+        ms=5,
+        label="at rest",
+    )
+    x = np.geomspace(intensity.min(), intensity.max(), 101)
     # the line was fitted in SI units; in any units it passes through the mean of the runs
-    logs = np.log(along[between])
+    logs = np.log(intensity[finite_response])
     slope, spread = float(data["regression_slope"]), float(data["residual_dispersion"])
     if np.isfinite(slope):
-        middle = np.log(response[between]).mean() + slope * (np.log(x) - logs.mean())
-        axes.plot(x, np.exp(middle), color=COLOURS[0], lw=1.6, label="median")
+        log_median = np.log(response[finite_response]).mean() + slope * (np.log(x) - logs.mean())
+        axes.plot(x, np.exp(log_median), color=COLOURS[0], lw=1.6, label="median")
         for size in (1.0, 2.0):
-            ends = (np.exp(middle + sign * size * spread) for sign in (-1.0, 1.0))
+            ends = (np.exp(log_median + sign * size * spread) for sign in (-1.0, 1.0))
             axes.fill_between(x, *ends, color=COLOURS[0], alpha=0.12, linewidth=0.0)
     for one in limits:
         axes.axhline(one, color="0.3", lw=0.8, ls=":")
     response_name = data["cloud_response"].rename(str(data.attrs["response"]))
     axes.set(
         xscale="log", yscale="log", ylim=(low / 1.3, high * 1.3),
-        xlabel=label_of_intensity(data[name], data), ylabel=label_of(response_name),
+        xlabel=intensity_label(data[name], data), ylabel=variable_label(response_name),
     )  # fmt: skip
     label_log_ticks(axes)
     grid(axes)
-    on.name_lines()
-    on.entitle(with_superscripts(str(data.attrs["verdict"])), title)
+    sheet.add_common_legend()
+    sheet.set_title(with_superscripts(str(data.attrs["verdict"])), title)
     return axes
 
 
@@ -108,7 +122,7 @@ def annual_rate(
     >>> rf.plot.annual_rate(rates).get_ylabel()
     'share of the rate [%]'
     """
-    data = drawable(dataset, "annual_rate", units)
+    data = figure_data(dataset, "annual_rate", units)
     several = [str(dim) for dim in data["annual_rate"].dims if dim != "limit_state"]
     data = data.isel({dim: 0 for dim in several if data.sizes[dim] == 1})
     wide = [dim for dim in several if dim in data.dims]
@@ -120,8 +134,8 @@ def annual_rate(
         raise SchemaError(msg)
     if "limit_state" not in data.dims:
         data = data.expand_dims("limit_state")
-    on = single(ax, "annual_rate", (6.0, 4.0))
-    axes = on.axes
+    sheet = make_single_panel(ax, "annual_rate", (6.0, 4.0))
+    axes = sheet.axes
     middle = data["contributing_intensity"]
     logs = np.log(middle.to_numpy())
     step = logs[1] - logs[0]
@@ -135,16 +149,16 @@ def annual_rate(
         if np.isnan(rate):
             continue
         axes.stairs(
-            100.0 * one["rate_share"].to_numpy(), edges, color=colour_of(number), lw=1.4, fill=True,
-            alpha=0.35, label=f"{state}: {rate:.3g} a year",
+            100.0 * one["rate_share"].to_numpy(), edges, color=line_colour(number), lw=1.4,
+            fill=True, alpha=0.35, label=f"{state}: {rate:.3g} a year",
         )  # fmt: skip
     axes.set(
         xscale="log", ylabel="share of the rate [%]",
-        xlabel=label_of_intensity(middle.rename(str(data.attrs["intensity"])), data),
+        xlabel=intensity_label(middle.rename(str(data.attrs["intensity"])), data),
     )  # fmt: skip
     axes.set_ylim(bottom=0.0)
     label_log_ticks(axes)
     grid(axes)
-    on.name_lines()
-    on.entitle(with_superscripts(str(data.attrs["verdict"])), title)
+    sheet.add_common_legend()
+    sheet.set_title(with_superscripts(str(data.attrs["verdict"])), title)
     return axes

@@ -10,35 +10,35 @@ from rockframe.plot._axes import (
     COLOURS,
     GREY,
     DisplayUnit,
+    add_legend,
     axis_label,
+    figure_units,
     grid,
-    ink,
-    key,
-    units_of,
+    text_colour,
     zero_line,
 )
 from rockframe.plot._checks import (
-    OF_SWEEP,
     RUN,
-    above_zero,
+    SWEEP_ATTRIBUTE,
     draws,
+    mismatch_message,
     overturning_angles,
-    refuse,
+    read_positive,
     system_of_run,
 )
-from rockframe.plot._panels import Axes, AxesLike, single
-from rockframe.plot._response import of_rotation, relative
-from rockframe.plot._runs import Run, RunsLike, Window, runs_of, runs_title
+from rockframe.plot._panels import Axes, AxesLike, make_single_panel
+from rockframe.plot._response import relative_rotation, rotation_values
+from rockframe.plot._runs import Run, RunsLike, Window, read_runs, runs_title
 from rockframe.results.schema import ENERGIES, SCHEMA
 from rockframe.simulation.system import System
 from rockframe.units import ANGLE
 from rockframe.units.display import UnitsLike
 from rockframe.units.kinds import ENERGY, MOMENT
 
-_STATES: Final = ("kinetic_energy", "potential_energy", "elastic_energy")
-_FAR: Final = 0.2
+_STATE_ENERGIES: Final = ("kinetic_energy", "potential_energy", "elastic_energy")
+_ZOOM_RATIO: Final = 0.2
 """Peak over the rotation of unstable equilibrium below which a phase diagram omits the latter."""
-_ANGLES: Final = 401
+_ANGLE_COUNT: Final = 401
 """Number of rotations at which a body is held for a curve of moments."""
 
 
@@ -86,33 +86,33 @@ def phase(
     'rotation [°]'
     >>> axes.figure.savefig("phase.png")  # doctest: +SKIP
     """
-    data = runs_of(runs, "phase", window)
-    chosen = units_of(units, "phase")
-    unit = chosen.unless_relative(ANGLE, rotation=rotation)
-    on = single(ax, "phase", (5.6, 4.4))
+    data = read_runs(runs, "phase", window)
+    axis_units = figure_units(units, "phase")
+    unit = axis_units.unit_or_relative(ANGLE, rotation=rotation)
+    sheet = make_single_panel(ax, "phase", (5.6, 4.4))
     reach, end = 0.0, np.inf
     for run in data:
-        across, up = of_rotation(run, unit), _rate(run, unit)
-        on.axes.plot(across, up, color=run.colour, ls=run.style, lw=0.9, label=run.label)
-        on.axes.plot(across[:1], up[:1], "o", color=run.colour, markersize=5.0)
+        across, up = rotation_values(run, unit), _angular_velocity(run, unit)
+        sheet.axes.plot(across, up, color=run.colour, ls=run.style, lw=0.9, label=run.label)
+        sheet.axes.plot(across[:1], up[:1], "o", color=run.colour, markersize=5.0)
         left, right = overturning_angles(run.dataset)
         ends = np.array([-left, right])
-        ends = relative(ends, left, right) if unit is None else unit.of(ends)
-        on.axes.plot(ends, [0.0, 0.0], "x", color=ink(), markersize=6.0)
+        ends = relative_rotation(ends, left, right) if unit is None else unit.of(ends)
+        sheet.axes.plot(ends, [0.0, 0.0], "x", color=text_colour(), markersize=6.0)
         reach, end = max(reach, float(np.abs(across).max())), min(end, float(np.abs(ends).min()))
-    if 0.0 < reach < _FAR * end:  # otherwise the data would be almost a vertical line
-        on.axes.set_xlim(-1.1 * reach, 1.1 * reach)
-    _about_zero(on.axes)
+    if 0.0 < reach < _ZOOM_RATIO * end:  # otherwise the data would be almost a vertical line
+        sheet.axes.set_xlim(-1.1 * reach, 1.1 * reach)
+    _draw_zero_lines(sheet.axes)
     if unit is None:
-        on.axes.set(xlabel=r"rotation $\alpha/\theta$ [-]")
-        on.axes.set(ylabel=axis_label(r"rate $\dot\alpha/\theta$", "s^-1"))
+        sheet.axes.set(xlabel=r"rotation $\alpha/\theta$ [-]")
+        sheet.axes.set(ylabel=axis_label(r"rate $\dot\alpha/\theta$", "s^-1"))
     else:
-        on.axes.set(xlabel=axis_label("rotation", unit.words))
-        on.axes.set(ylabel=axis_label("rate of the rotation", f"{unit.words} s^-1"))
+        sheet.axes.set(xlabel=axis_label("rotation", unit.words))
+        sheet.axes.set(ylabel=axis_label("rate of the rotation", f"{unit.words} s^-1"))
     if len(data) > 1:
-        key(on.axes)
-    on.entitle(runs_title(data, chosen.reader), title)
-    return on.axes
+        add_legend(sheet.axes)
+    sheet.set_title(runs_title(data, axis_units.reader), title)
+    return sheet.axes
 
 
 @draws(RUN, title="the verdict of a run")
@@ -165,31 +165,32 @@ def moment_rotation(
     >>> axes.get_xlabel()
     'rotation [°]'
     """
-    chosen = units_of(units, "moment_rotation")
-    angle = chosen.of(ANGLE, "deg", rotation=rotation)
-    size = chosen.of(MOMENT, "kN*m", moment=moment)
+    axis_units = figure_units(units, "moment_rotation")
+    angle_unit = axis_units.axis_unit(ANGLE, "deg", rotation=rotation)
+    moment_unit = axis_units.axis_unit(MOMENT, "kN*m", moment=moment)
     if isinstance(given, System):
-        held = _held(given, largest)
-        on = single(ax, "moment_rotation", (5.6, 4.2))
-        _draw_held(on.axes, held, angle, size)
-        on.entitle("", title)
+        equilibrium = _static_moments(given, largest)
+        sheet = make_single_panel(ax, "moment_rotation", (5.6, 4.2))
+        _draw_static_moments(sheet.axes, equilibrium, angle_unit, moment_unit)
+        sheet.set_title("", title)
     else:
-        runs = runs_of(given, "moment_rotation", window)
-        _need(runs, ("base_overturning_moment",), "moment_rotation")
-        on = single(ax, "moment_rotation", (5.6, 4.2))
-        if len(runs) == 1 and _on_base(runs[0].dataset).name == "rotation":
-            _draw_beneath(on.axes, runs[0], angle, size)
+        runs = read_runs(given, "moment_rotation", window)
+        _require_variables(runs, ("base_overturning_moment",), "moment_rotation")
+        sheet = make_single_panel(ax, "moment_rotation", (5.6, 4.2))
+        if len(runs) == 1 and _rotation_on_support(runs[0].dataset).name == "rotation":
+            _draw_equilibrium_moment(sheet.axes, runs[0], angle_unit, moment_unit)
         for run in runs:
-            on.axes.plot(
-                angle.of(_on_base(run.dataset)), size.of(run.dataset["base_overturning_moment"]),
+            sheet.axes.plot(
+                angle_unit.of(_rotation_on_support(run.dataset)),
+                moment_unit.of(run.dataset["base_overturning_moment"]),
                 color=run.colour, linestyle=run.style, linewidth=0.9, label=run.label,
             )  # fmt: skip
-        key(on.axes)
-        on.entitle(runs_title(runs, chosen.reader), title)
-    _about_zero(on.axes)
-    on.axes.set_xlabel(axis_label("rotation", angle.words))
-    on.axes.set_ylabel(axis_label("moment of the base", size.words))
-    return on.axes
+        add_legend(sheet.axes)
+        sheet.set_title(runs_title(runs, axis_units.reader), title)
+    _draw_zero_lines(sheet.axes)
+    sheet.axes.set_xlabel(axis_label("rotation", angle_unit.words))
+    sheet.axes.set_ylabel(axis_label("moment of the base", moment_unit.words))
+    return sheet.axes
 
 
 @draws(RUN, title="the verdict")
@@ -235,48 +236,51 @@ def energies(
     'energy [kJ]'
     >>> axes.figure.savefig("energies.png")  # doctest: +SKIP
     """
-    data = runs_of(run, "energies", None)
+    data = read_runs(run, "energies", None)
     if len(data) > 1:
-        raise SchemaError(refuse("energies", run))
-    _need(data, ENERGIES, "energies")
-    chosen = units_of(units, "energies")
-    unit = chosen.of(ENERGY, "kJ", energy=energy)
-    (whole,) = data
-    from_start = {
-        name: unit.of(whole.dataset[name] - (whole.dataset[name][0] if name in _STATES else 0.0))
+        raise SchemaError(mismatch_message("energies", run))
+    _require_variables(data, ENERGIES, "energies")
+    axis_units = figure_units(units, "energies")
+    unit = axis_units.axis_unit(ENERGY, "kJ", energy=energy)
+    (whole_run,) = data
+    changes = {
+        name: unit.of(
+            whole_run.dataset[name]
+            - (whole_run.dataset[name][0] if name in _STATE_ENERGIES else 0.0)
+        )
         for name in ENERGIES
     }
-    (part,) = runs_of(run, "energies", window)
-    first = int(np.searchsorted(whole.time, part.time[0]))
-    kept = slice(first, first + part.time.size)
-    on = single(ax, "energies", (7.2, 3.9))
+    (part,) = read_runs(run, "energies", window)
+    first = int(np.searchsorted(whole_run.time, part.time[0]))
+    window_slice = slice(first, first + part.time.size)
+    sheet = make_single_panel(ax, "energies", (7.2, 3.9))
     order = [name for name in ENERGIES if name != "input_energy"]
-    areas = [name for name in reversed(order) if np.any(from_start[name] != 0.0)]
+    areas = [name for name in reversed(order) if np.any(changes[name] != 0.0)]
     names = {name: name.removesuffix("_energy").replace("_", " ") for name in ENERGIES}
     colours = {name: COLOURS[number % len(COLOURS)] for number, name in enumerate(order)}
     # energies below zero, such as that of gravity of a leaning body, are stacked below zero
     for sign in (1.0, -1.0):
         below = np.zeros(part.time.size)
         for name in areas:
-            values = sign * np.maximum(sign * from_start[name][kept], 0.0)
+            values = sign * np.maximum(sign * changes[name][window_slice], 0.0)
             if sign < 0.0 and not values.any():
                 continue
-            on.axes.fill_between(
+            sheet.axes.fill_between(
                 part.time, below, below + values, color=colours[name], alpha=0.6, linewidth=0.0,
                 label=names[name] if sign > 0.0 else None,
             )  # fmt: skip
             below = below + values
-    given_in = from_start["input_energy"][kept]
-    on.axes.plot(part.time, given_in, color=ink(), linewidth=1.1, label="input")
-    zero_line(on.axes)
-    on.axes.set(xlabel="time [s]", ylabel=axis_label("energy", unit.words))
-    on.axes.set_xlim(part.time[0], part.time[-1])
-    on.legend(*on.axes.get_legend_handles_labels(), columns=4)
-    on.entitle(runs_title(data, chosen.reader), title)
-    return on.axes
+    energy_input = changes["input_energy"][window_slice]
+    sheet.axes.plot(part.time, energy_input, color=text_colour(), linewidth=1.1, label="input")
+    zero_line(sheet.axes)
+    sheet.axes.set(xlabel="time [s]", ylabel=axis_label("energy", unit.words))
+    sheet.axes.set_xlim(part.time[0], part.time[-1])
+    sheet.add_legend(*sheet.axes.get_legend_handles_labels(), columns=4)
+    sheet.set_title(runs_title(data, axis_units.reader), title)
+    return sheet.axes
 
 
-def _rate(run: Run, unit: DisplayUnit | None) -> Any:
+def _angular_velocity(run: Run, unit: DisplayUnit | None) -> Any:
     """Return the angular velocity; without a unit over the overturning angle of its side."""
     rate = run.dataset["angular_velocity"].to_numpy()
     if unit is not None:
@@ -285,50 +289,63 @@ def _rate(run: Run, unit: DisplayUnit | None) -> Any:
     return rate / np.where(run.dataset["rotation"].to_numpy() < 0.0, left, right)
 
 
-def _held(system: System, largest: float) -> xr.Dataset:
+def _static_moments(system: System, largest: float) -> xr.Dataset:
     left, right = system.setting.overturning_angles
-    largest = above_zero(largest, "moment_rotation", "largest")
+    largest = read_positive(largest, "moment_rotation", "largest")
     wall = system.parts.wall
     if wall is not None and not wall.elastic:  # the body is held to the other side only
         left, right = (left, 0.0) if wall.direction > 0.0 else (0.0, right)
-    angles = np.linspace(-largest * left, largest * right, _ANGLES)
+    angles = np.linspace(-largest * left, largest * right, _ANGLE_COUNT)
     return system.moment_rotation((angles, str(ANGLE.unit)))
 
 
-def _draw_held(axes: Axes, held: xr.Dataset, angle: DisplayUnit, size: DisplayUnit) -> None:
+def _draw_static_moments(
+    axes: Axes, moments: xr.Dataset, angle_unit: DisplayUnit, moment_unit: DisplayUnit
+) -> None:
     for name, words, colour, style in (
         ("base_moment", "of the base", COLOURS[0], "-"),
         ("restoring_moment", "that holds the body", COLOURS[1], "--"),
     ):
-        axes.plot(angle.of(held["angle"]), size.of(held[name]), style, color=colour, label=words)
-    key(axes, title="moment", title_fontsize="small")
+        axes.plot(
+            angle_unit.of(moments["angle"]),
+            moment_unit.of(moments[name]),
+            style,
+            color=colour,
+            label=words,
+        )
+    add_legend(axes, title="moment", title_fontsize="small")
 
 
-def _on_base(run: xr.Dataset) -> xr.DataArray:
+def _rotation_on_support(run: xr.Dataset) -> xr.DataArray:
     """Return the rotation of the body relative to its support."""
     if "body" in run.dims:
         return run["body_rotation_on_base"].isel(body=0)
     return run["rotation_on_cap" if "rotation_on_cap" in run else "rotation"]
 
 
-def _draw_beneath(axes: Axes, run: Run, angle: DisplayUnit, size: DisplayUnit) -> None:
+def _draw_equilibrium_moment(
+    axes: Axes, run: Run, angle_unit: DisplayUnit, moment_unit: DisplayUnit
+) -> None:
     """Draw the moment in equilibrium over the range of rotations of a run."""
     system = system_of_run(run.dataset, "moment_rotation")
     rotation = run.dataset["rotation"].to_numpy()
-    angles = np.linspace(rotation.min(), rotation.max(), _ANGLES)
-    held = system.moment_rotation((angles, str(ANGLE.unit)))
-    along, moments = angle.of(held["angle"]), size.of(held["base_moment"])
-    axes.plot(along, moments, "--", color=GREY, linewidth=1.2, label="in equilibrium")
+    angles = np.linspace(rotation.min(), rotation.max(), _ANGLE_COUNT)
+    equilibrium = system.moment_rotation((angles, str(ANGLE.unit)))
+    rotations, moments = (
+        angle_unit.of(equilibrium["angle"]),
+        moment_unit.of(equilibrium["base_moment"]),
+    )
+    axes.plot(rotations, moments, "--", color=GREY, linewidth=1.2, label="in equilibrium")
 
 
-def _need(runs: list[Run], names: tuple[str, ...], function: str) -> None:
+def _require_variables(runs: list[Run], names: tuple[str, ...], function: str) -> None:
     for run in runs:
         missing = [name for name in names if name not in run.dataset]
         if missing:
             requested = "energy" if missing[0] in ENERGIES else missing[0]
             text = SCHEMA[missing[0]].long_name
             call = f"system.simulate(motion, outputs=({requested!r},))"
-            if OF_SWEEP in run.dataset.attrs:
+            if SWEEP_ATTRIBUTE in run.dataset.attrs:
                 call = f"rf.case(dataset).simulate(outputs=({requested!r},))"
             msg = (
                 f"rf.plot.{function} needs {missing[0]!r}, the {text}, which runs have on request: "
@@ -337,7 +354,7 @@ def _need(runs: list[Run], names: tuple[str, ...], function: str) -> None:
             raise SchemaError(msg)
 
 
-def _about_zero(axes: Axes) -> None:
+def _draw_zero_lines(axes: Axes) -> None:
     grid(axes)
     zero_line(axes)
     axes.axvline(0.0, color=GREY, alpha=0.6, linewidth=0.5, zorder=0)

@@ -10,47 +10,55 @@ from rockframe.plot._axes import (
     GREY,
     VERMILLION,
     as_label,
-    colour_of,
+    figure_units,
     grid,
-    label_of,
-    label_of_intensity,
-    style_of,
-    units_of,
+    intensity_label,
+    line_colour,
+    line_style,
+    variable_label,
 )
-from rockframe.plot._checks import drawable, draws
-from rockframe.plot._panels import Axes, AxesLike, Panels, chosen_panels, sheet, single
+from rockframe.plot._checks import draws, figure_data
+from rockframe.plot._panels import (
+    Axes,
+    AxesLike,
+    Panels,
+    chosen_panels,
+    make_sheet,
+    make_single_panel,
+)
 from rockframe.studies.dynamic_analysis import verdict_of_analysis
 from rockframe.studies.fragility.trials import at_scales
 from rockframe.units.display import UnitsLike, with_superscripts
 
 _PANELS: Final = {"peaks": 1.4, "shares": 1.0}
 """Panels, which are side by side, and their relative widths."""
-_LEAST_FRACTILES: Final = 4
+_MIN_FRACTILE_MOTIONS: Final = 4
 _FRACTILES: Final = (0.16, 0.5, 0.84)
-_STYLED: Final = (1, 0, 2)
+_FRACTILE_STYLES: Final = (1, 0, 2)
 """Dashes of each fractile, by their numbers."""
-_HEIGHTS: Final = 400
-_ROOM: Final = 1.15
+_INTENSITY_COUNT: Final = 400
+_AXIS_MARGIN: Final = 1.15
 """End of the axis over the highest intensity at which a verdict changes."""
-_END: Final = "all were run up to here"
-_CAPPED: Final = 1.0
+_END_LABEL: Final = "all were run up to here"
+_PEAK_CAP: Final = 1.0
 """Peaks over the overturning angle above this are drawn at this value."""
 _ROUNDING: Final = 1e-9
 """By which the peak of a run that ends at the overturning angle may lie below it."""
 
 
-def of_one_structure(dataset: xr.Dataset) -> xr.Dataset:
+def single_structure(dataset: xr.Dataset) -> xr.Dataset:
     """Return an analysis without axes of a single value; raise on several structures."""
     dims = dataset["capacity_scale"].dims
-    beside = [dim for dim in dims if dim not in ("limit_state", "motion")]
-    several = [f"{dim} ({dataset.sizes[dim]})" for dim in beside if dataset.sizes[dim] > 1]
+    structure_dims = [dim for dim in dims if dim not in ("limit_state", "motion")]
+    several = [f"{dim} ({dataset.sizes[dim]})" for dim in structure_dims if dataset.sizes[dim] > 1]
     if several:
         msg = (
             f"rf.plot.dynamic_analysis draws one structure, this analysis is of several, by "
-            f"{', '.join(several)}; choose one, for example with analysis.isel({beside[0]}=0)"
+            f"{', '.join(several)}; choose one, for example with "
+            f"analysis.isel({structure_dims[0]}=0)"
         )
         raise SchemaError(msg)
-    return dataset.squeeze(beside)
+    return dataset.squeeze(structure_dims)
 
 
 @draws(
@@ -95,39 +103,39 @@ def dynamic_analysis(
     >>> panels[0].get_ylabel()
     'peak ground acceleration [g]'
     """
-    data = of_one_structure(drawable(dataset, "dynamic_analysis", units))
+    data = single_structure(figure_data(dataset, "dynamic_analysis", units))
     names = chosen_panels(panels, _PANELS, "dynamic_analysis")
     widths = [_PANELS[name] for name in names]
-    on = sheet(
+    sheet = make_sheet(
         ax, "dynamic_analysis", names, (0.8 + 2.83 * sum(widths), 4.4),
         lambda figure: figure.subplots(1, len(names), width_ratios=widths, sharey=True),
         choice=True,
     )  # fmt: skip
-    drawn = dict(zip(names, on.panels, strict=True))
+    drawn = dict(zip(names, sheet.panels, strict=True))
     measure = data[str(data.attrs.get("intensity", "scale"))]
     intensity = measure.broadcast_like(data["peak_relative_rotation"])
-    flips = _flips(data, intensity)
+    flips = _flip_intensities(data, intensity)
     if "peaks" in drawn:
-        _peaks(drawn["peaks"], data, intensity, flips)
+        _draw_peaks(drawn["peaks"], data, intensity, flips)
     if "shares" in drawn:
-        _shares(drawn["shares"], data, intensity)
+        _draw_shares(drawn["shares"], data, intensity)
     # if all motions have overturned, nothing changes above the last change of a verdict
     highest = [float(places.max(initial=0.0)) for places in flips]
-    above = _ROOM * max(highest) if min(highest) > 0.0 else np.inf
-    top = min(max(axes.get_ylim()[1] for axes in on.panels), above)
-    for axes in on.panels:
+    above = _AXIS_MARGIN * max(highest) if min(highest) > 0.0 else np.inf
+    top = min(max(axes.get_ylim()[1] for axes in sheet.panels), above)
+    for axes in sheet.panels:
         axes.set_ylim(0.0, top)
         grid(axes)
     # given panels may be anywhere in a figure, so each has its label
-    for axes in on.panels if on.own is None else on.panels[:1]:
-        axes.set_ylabel(label_of_intensity(measure, data))
-    on.name_lines()
-    verdict = verdict_of_analysis(of_one_structure(dataset))
-    on.entitle(units_of(units, "dynamic_analysis").reader.convert_text(verdict), title)
-    return on.panels
+    for axes in sheet.panels if sheet.own_figure is None else sheet.panels[:1]:
+        axes.set_ylabel(intensity_label(measure, data))
+    sheet.add_common_legend()
+    verdict = verdict_of_analysis(single_structure(dataset))
+    sheet.set_title(figure_units(units, "dynamic_analysis").reader.convert_text(verdict), title)
+    return sheet.panels
 
 
-def _flips(dataset: xr.Dataset, intensity: xr.DataArray) -> list[np.ndarray]:
+def _flip_intensities(dataset: xr.Dataset, intensity: xr.DataArray) -> list[np.ndarray]:
     """Return the intensities at which the verdict on each motion changes."""
     scales = dataset["scale"].to_numpy()
     above = dataset["scale_above"].isel(limit_state=-1).transpose("motion", ...).to_numpy()
@@ -135,34 +143,34 @@ def _flips(dataset: xr.Dataset, intensity: xr.DataArray) -> list[np.ndarray]:
     return [at_scales(along, scales, flips[~np.isnan(flips)]) for flips, along in each]
 
 
-def _peaks(
+def _draw_peaks(
     axes: Axes, dataset: xr.Dataset, intensity: xr.DataArray, flips: list[np.ndarray]
 ) -> None:
     """Draw the peaks of the motions, and the fractiles of four motions or more."""
-    several, lines = dataset.sizes["motion"] >= _LEAST_FRACTILES, list[tuple[Any, Any]]()
+    several, lines = dataset.sizes["motion"] >= _MIN_FRACTILE_MOTIONS, list[tuple[Any, Any]]()
     for number, places in enumerate(flips):
         one, along = dataset.isel(motion=number), intensity.isel(motion=number).to_numpy()
-        line = _until_flips(along, one["peak_relative_rotation"].to_numpy(), places)
-        colour = GREY if several else colour_of(number)
+        line = _peaks_with_flips(along, one["peak_relative_rotation"].to_numpy(), places)
+        colour = GREY if several else line_colour(number)
         words = (
             ("motions" if number == 0 else None) if several else as_label(str(one["motion"].item()))
         )
         axes.plot(line[1], line[0], color=colour, lw=0.7, label=words)
         for some, face in ((places[:1], colour), (places[1:], "none")):
-            axes.plot(np.full(len(some), _CAPPED), some, "o", mfc=face, color=colour, ms=3)
+            axes.plot(np.full(len(some), _PEAK_CAP), some, "o", mfc=face, color=colour, ms=3)
         lines.append(line)
     if several:
-        up = np.linspace(0.0, min(along[-1] for along, _ in lines), _HEIGHTS)
-        fractiles = _fractiles(lines, up)
+        up = np.linspace(0.0, min(along[-1] for along, _ in lines), _INTENSITY_COUNT)
+        fractiles = _peak_fractiles(lines, up)
         for number, (share, values) in enumerate(fractiles):
-            words, style = f"{100.0 * share:.0f} %", style_of(_STYLED[number])
+            words, style = f"{100.0 * share:.0f} %", line_style(_FRACTILE_STYLES[number])
             axes.plot(values, up, color=VERMILLION, ls=style, lw=1.6, label=words)
-        if np.min([one[-1] for _, one in fractiles]) < _CAPPED:
-            axes.axhline(up[-1], color=VERMILLION, ls=":", lw=0.8, label=_END)
+        if np.min([one[-1] for _, one in fractiles]) < _PEAK_CAP:
+            axes.axhline(up[-1], color=VERMILLION, ls=":", lw=0.8, label=_END_LABEL)
     axes.set(xlabel=r"peak of $|\alpha|/\theta$ [-]", xlim=(0.0, 1.03))
 
 
-def _shares(axes: Axes, dataset: xr.Dataset, intensity: xr.DataArray) -> None:
+def _draw_shares(axes: Axes, dataset: xr.Dataset, intensity: xr.DataArray) -> None:
     """Draw the share of the motions whose capacity is below an intensity."""
     scales = dataset["scale"].to_numpy()
     each = intensity.transpose("motion", "scale").to_numpy()
@@ -175,19 +183,21 @@ def _shares(axes: Axes, dataset: xr.Dataset, intensity: xr.DataArray) -> None:
         ]
         ordered = np.sort(np.array([0.0, *places]))
         shares = np.arange(len(ordered)) / max(1, len(capacity))
-        axes.step(shares, ordered, where="pre", color=colour_of(number), label=as_label(str(state)))
+        axes.step(
+            shares, ordered, where="pre", color=line_colour(number), label=as_label(str(state))
+        )
     axes.set(xlabel="share of the motions [-]", xlim=(0.0, 1.02))
 
 
-def _until_flips(along: Any, peaks: Any, flips: Any) -> tuple[Any, Any]:
+def _peaks_with_flips(along: Any, peaks: Any, flips: Any) -> tuple[Any, Any]:
     """Return the intensities and peaks of a motion, also where the verdict changes."""
     up = np.concatenate([along, flips])
     order = np.argsort(up, kind="stable")
-    capped = np.where(peaks >= _CAPPED - _ROUNDING, _CAPPED, peaks)
-    return up[order], np.concatenate([capped, np.full(len(flips), _CAPPED)])[order]
+    capped = np.where(peaks >= _PEAK_CAP - _ROUNDING, _PEAK_CAP, peaks)
+    return up[order], np.concatenate([capped, np.full(len(flips), _PEAK_CAP)])[order]
 
 
-def _fractiles(lines: list[tuple[Any, Any]], up: Any) -> list[tuple[float, Any]]:
+def _peak_fractiles(lines: list[tuple[Any, Any]], up: Any) -> list[tuple[float, Any]]:
     """Return shares of the motions, and the fractiles of the peaks at intensities."""
     peaks = np.sort(
         [np.interp(up, np.append(0.0, along), np.append(0.0, peak)) for along, peak in lines],
@@ -197,7 +207,7 @@ def _fractiles(lines: list[tuple[Any, Any]], up: Any) -> list[tuple[float, Any]]
     below, above = (peaks[rounded(places).astype(int)] for rounded in (np.floor, np.ceil))
     within = below + (places % 1.0)[:, None] * (above - below)
     # no interpolation between the peak of one motion and overturning under another
-    return list(zip(_FRACTILES, np.where(above >= _CAPPED, _CAPPED, within), strict=True))
+    return list(zip(_FRACTILES, np.where(above >= _PEAK_CAP, _PEAK_CAP, within), strict=True))
 
 
 @draws(
@@ -224,26 +234,26 @@ def fractile_curves(
     >>> rf.plot.fractile_curves(rf.fractile_curves(runs, "PGA")).get_xlabel()
     'peak relative rotation [-]'
     """
-    data = drawable(dataset, "fractile_curves", units)
-    on = single(ax, "fractile_curves", (6.0, 4.3))
-    axes = on.axes
+    data = figure_data(dataset, "fractile_curves", units)
+    sheet = make_single_panel(ax, "fractile_curves", (6.0, 4.3))
+    axes = sheet.axes
     name = str(data.attrs["intensity"])
     up, levels = data[name].to_numpy(), data["response_level"].to_numpy()
     runs = data["motion_response"].transpose("motion", name).to_numpy()
     finite = runs[np.isfinite(runs)]
-    right = _ROOM * max(float(levels[-1]), float(finite.max(initial=0.0)))
+    right = _AXIS_MARGIN * max(float(levels[-1]), float(finite.max(initial=0.0)))
     for number, one in enumerate(runs):
         words = "motions" if number == 0 else None
         axes.plot(np.where(np.isfinite(one), one, np.nan), up, color=GREY, lw=0.7, label=words)
-        fallen = np.isinf(one)
-        starts = np.flatnonzero(fallen[1:] & ~fallen[:-1])
+        overturned = np.isinf(one)
+        starts = np.flatnonzero(overturned[1:] & ~overturned[:-1])
         axes.plot(one[starts], up[starts + 1], "o", color=GREY, ms=3)
     shares = data["quantile"].to_numpy().round(9).tolist()
     for number, share in enumerate(shares):
-        colour, words = colour_of(number), f"{100.0 * share:.3g} %"
+        colour, words = line_colour(number), f"{100.0 * share:.3g} %"
         # a high fractile of the response corresponds to a low one of the intensity
-        rest = round(1.0 - share, 9)
-        paired = colour_of(shares.index(rest)) if rest in shares else colour
+        complement = round(1.0 - share, 9)
+        paired = line_colour(shares.index(complement)) if complement in shares else colour
         one = data.isel(quantile=number)
         of_response = np.minimum(one["response_fractile"].to_numpy(), 2.0 * right)
         axes.plot(of_response, up, color=colour, lw=1.6, label=f"{words} of responses")
@@ -251,13 +261,16 @@ def fractile_curves(
         axes.plot(levels, reached, color=paired, lw=1.4, ls="--", label=f"{words} of intensities")
     words = str(data.attrs["response"])
     axes.set(
-        xlabel=label_of(data["response_level"].rename(words)),
-        ylabel=label_of_intensity(data[name], data),
+        xlabel=variable_label(data["response_level"].rename(words)),
+        ylabel=intensity_label(data[name], data),
         xlim=(0.0, right),
         # nothing is drawn above the intensity at which the last motion overturns
-        ylim=(0.0, min(up[-1], _ROOM * up[np.isfinite(runs).any(axis=0)].max(initial=up[0]))),
+        ylim=(
+            0.0,
+            min(up[-1], _AXIS_MARGIN * up[np.isfinite(runs).any(axis=0)].max(initial=up[0])),
+        ),
     )
     grid(axes)
-    on.name_lines()
-    on.entitle(with_superscripts(str(data.attrs["verdict"])), title)
+    sheet.add_common_legend()
+    sheet.set_title(with_superscripts(str(data.attrs["verdict"])), title)
     return axes

@@ -9,17 +9,17 @@ from rockframe.errors import SchemaError
 from rockframe.plot._axes import (
     COLOURS,
     as_label,
-    colour_of,
+    figure_units,
     grid,
-    label_of,
-    label_of_intensity,
-    label_of_value,
-    labels_of_names,
-    style_of,
-    units_of,
+    intensity_label,
+    line_colour,
+    line_style,
+    unique_labels,
+    value_label,
+    variable_label,
 )
-from rockframe.plot._checks import drawable, draws
-from rockframe.plot._panels import Axes, AxesLike, Panels, Sheet, sheet, single
+from rockframe.plot._checks import draws, figure_data
+from rockframe.plot._panels import Axes, AxesLike, Panels, Sheet, make_sheet, make_single_panel
 from rockframe.results.outcome import overturns
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.studies.fragility.words import measures_of, verdict_of_fragility
@@ -45,9 +45,9 @@ def ensemble(
     >>> rf.plot.ensemble(found).get_xlabel()
     'peak rotation [rad]'
     """
-    data = drawable(dataset, "ensemble", units)
-    on = single(ax, "ensemble", (5.6, 3.9))
-    axes = on.axes
+    data = figure_data(dataset, "ensemble", units)
+    sheet = make_single_panel(ax, "ensemble", (5.6, 3.9))
+    axes = sheet.axes
     values = data["ordered_value"].rename(str(data.attrs["variable"]))
     for name, alpha, words in (
         ("simultaneous", 0.12, "bounds everywhere at once"),
@@ -59,10 +59,10 @@ def ensemble(
             values, low, high, step="post", color=COLOURS[0], alpha=alpha, lw=0.0, label=label
         )
     axes.step(values, data["cumulative_probability"], where="post", color=COLOURS[0])
-    axes.set(xlabel=label_of(values), ylabel="share of the ensemble [-]", ylim=(0.0, 1.02))
+    axes.set(xlabel=variable_label(values), ylabel="share of the ensemble [-]", ylim=(0.0, 1.02))
     grid(axes)
-    on.name_lines()
-    on.entitle(with_superscripts(str(data.attrs["verdict"])), title)
+    sheet.add_common_legend()
+    sheet.set_title(with_superscripts(str(data.attrs["verdict"])), title)
     return axes
 
 
@@ -91,10 +91,10 @@ def probability(
     >>> [axes.get_xlabel() for axes in rf.plot.probability(found)]
     ['first-order index [-]', 'width [m]']
     """
-    data = drawable(dataset, "probability", units)
+    data = figure_data(dataset, "probability", units)
     names = ("indices", "shares")
-    on = sheet(ax, "probability", names, (7.6, 3.6), lambda figure: figure.subplots(1, 2))
-    left, right = on.panels
+    sheet = make_sheet(ax, "probability", names, (7.6, 3.6), lambda figure: figure.subplots(1, 2))
+    left, right = sheet.panels
     names = [str(name).replace("_", " ") for name in data["parameter"].to_numpy()]
     indices = data["first_order_index"].fillna(0.0).to_numpy()
     left.barh(names[::-1], indices[::-1], color=COLOURS[0])
@@ -110,21 +110,21 @@ def probability(
         place = np.clip(np.searchsorted(cuts, first.to_numpy()[known], side="right") - 1, 0, 11)
         shares = [verdict[known][place == k].mean() for k in range(12)]
         right.stairs(shares, cuts, fill=True, color=COLOURS[1], alpha=0.6)
-        right.set(xlabel=label_of(first))
+        right.set(xlabel=variable_label(first))
     else:
         labels, place = np.unique(first.to_numpy()[known].astype(str), return_inverse=True)
         shares = [verdict[known][place == k].mean() for k in range(len(labels))]
         right.bar(range(len(labels)), shares, color=COLOURS[1], alpha=0.6)
         right.set(xlabel="motion")
-        if len(labels) <= _MOST_NAMED:
-            ticks = labels_of_names(labels, 20)
+        if len(labels) <= _MAX_NAMED:
+            ticks = unique_labels(labels, 20)
             right.set_xticks(range(len(labels)), ticks, rotation=90, fontsize="x-small")
     right.set(ylabel="share that overturns [-]", ylim=(0.0, 1.02))
-    for axes in on.panels:
+    for axes in sheet.panels:
         grid(axes)
-    sentence = units_of(units, "probability").reader.convert_text(cases_verdict(dataset))
-    on.entitle(sentence, title)
-    return on.panels
+    sentence = figure_units(units, "probability").reader.convert_text(cases_verdict(dataset))
+    sheet.set_title(sentence, title)
+    return sheet.panels
 
 
 @draws(
@@ -151,9 +151,9 @@ def subset_simulation(
     >>> rf.plot.subset_simulation(found).get_ylabel()
     'probability of reaching it [-]'
     """
-    data = drawable(dataset, "subset_simulation", units)
-    on = single(ax, "subset_simulation", (6.0, 4.1))
-    axes = on.axes
+    data = figure_data(dataset, "subset_simulation", units)
+    sheet = make_single_panel(ax, "subset_simulation", (6.0, 4.1))
+    axes = sheet.axes
     known = data["demand"].notnull().to_numpy()
     demand = data["demand"].to_numpy()[known]
     order = np.argsort(-demand, kind="stable")
@@ -163,38 +163,42 @@ def subset_simulation(
     # the last of several samples with equal demand has the weight of all of them
     last = np.flatnonzero(finite & np.append(demand[1:] != demand[:-1], True))
     for number in data["sampling_level"].to_numpy():
-        those = last[level[last] == number]
+        of_level = last[level[last] == number]
         # near a threshold there are samples of both levels
-        axes.plot(demand[those], reached[those], ".", ms=3.5, color=colour_of(int(number) - 1))
+        axes.plot(
+            demand[of_level], reached[of_level], ".", ms=3.5, color=line_colour(int(number) - 1)
+        )
     for threshold in data["demand_threshold"].to_numpy():
         if np.isfinite(threshold):
             axes.axvline(threshold, color="0.3", lw=0.8, ls=":")
     limit = float(data["demand_threshold"][-1])
-    most = float(demand[finite].max(initial=0.0)) or 1.0
-    place = limit if np.isfinite(limit) else 1.08 * most
-    probability = float(data[_NAME])
-    ends = [float(data[f"{_NAME}_{end}_bound"]) for end in ("lower", "upper")]
+    largest = float(demand[finite].max(initial=0.0)) or 1.0
+    plotted_at = limit if np.isfinite(limit) else 1.08 * largest
+    probability = float(data[_PROBABILITY])
+    bounds = [float(data[f"{_PROBABILITY}_{end}_bound"]) for end in ("lower", "upper")]
     if probability > 0.0:
-        reach = np.abs(np.array(ends) - probability)[:, None]
-        axes.errorbar(place, probability, yerr=reach, fmt="D", ms=5.0, capsize=3.0, color="0.1")
+        errors = np.abs(np.array(bounds) - probability)[:, None]
+        axes.errorbar(
+            plotted_at, probability, yerr=errors, fmt="D", ms=5.0, capsize=3.0, color="0.1"
+        )
     else:
-        axes.plot(place, ends[1], "v", ms=6.0, color="0.1")
+        axes.plot(plotted_at, bounds[1], "v", ms=6.0, color="0.1")
     axes.set(
         yscale="log", xlabel="response over its limit [-]", xlim=(0.0, None),
         ylabel="probability of reaching it [-]",
     )  # fmt: skip
     grid(axes)
-    on.entitle(with_superscripts(str(data.attrs["verdict"])), title)
+    sheet.set_title(with_superscripts(str(data.attrs["verdict"])), title)
     return axes
 
 
-_MOST_NAMED: Final = 30
+_MAX_NAMED: Final = 30
 """Motions whose names stand below their bars."""
-_NAME: Final = "exceedance_probability"
-_LEVELS: Final = (0.05, 0.16, 0.5, 0.84, 0.95)
-_MOST_STRUCTURES: Final = 12
+_PROBABILITY: Final = "exceedance_probability"
+_CONTOUR_LEVELS: Final = (0.05, 0.16, 0.5, 0.84, 0.95)
+_MAX_STRUCTURES: Final = 12
 """Largest number of structures that colours and dashes can distinguish."""
-_KNOWN: Final = (FragilityStatus.FITTED, FragilityStatus.SEPARATED)
+_FITTED_STATUSES: Final = (FragilityStatus.FITTED, FragilityStatus.SEPARATED)
 
 
 @draws(
@@ -232,7 +236,7 @@ def fragility(
     >>> rf.plot.fragility(rf.fragility(counts, "PGA"), units={"acceleration": "g"}).get_xlabel()
     'peak ground acceleration [g]'
     """
-    data = drawable(dataset, "fragility", units)
+    data = figure_data(dataset, "fragility", units)
     if "limit_state" not in data.dims:
         data = data.expand_dims("limit_state")
     alone = [dim for dim, size in data["fragility_status"].sizes.items() if size == 1]
@@ -240,52 +244,53 @@ def fragility(
     measures = measures_of(data)
     states = [data.isel(limit_state=k) for k in range(data.sizes["limit_state"])]
     structures = [str(dim) for dim in states[0]["fragility_status"].dims]
-    _check_structures(states[0], structures, 1 if len(measures) > 1 else _MOST_STRUCTURES)
+    _check_structures(states[0], structures, 1 if len(measures) > 1 else _MAX_STRUCTURES)
     if len(measures) == 1 and not structures:
-        on = single(ax, "fragility", (6.0, 4.1))
-        _curves(on.axes, [(_name(one), one) for one in states], measures[0])
+        sheet = make_single_panel(ax, "fragility", (6.0, 4.1))
+        _draw_curves(sheet.axes, [(_limit_state_label(one), one) for one in states], measures[0])
     elif structures:
-        on = _sheet(ax, states)
-        for axes, one in zip(on.panels, states, strict=True):
-            _curves(axes, _each(one, structures), measures[0])
-            axes.set_title(_name(one))
+        sheet = _limit_state_panels(ax, states)
+        for axes, one in zip(sheet.panels, states, strict=True):
+            _draw_curves(axes, _labelled_structures(one, structures), measures[0])
+            axes.set_title(_limit_state_label(one))
     else:
         fitted = FragilityStatus.FITTED
         drawn = [one for one in states if int(one["fragility_status"]) == fitted] or states[-1:]
-        on = _sheet(ax, drawn)
-        for axes, one in zip(on.panels, drawn, strict=True):
-            _contours(axes, one, measures)
+        sheet = _limit_state_panels(ax, drawn)
+        for axes, one in zip(sheet.panels, drawn, strict=True):
+            _draw_contours(axes, one, measures)
     if len(measures) == 1:
-        on.name_lines()
-    on.entitle(with_superscripts(verdict_of_fragility(data)), title)
-    return on.axes if len(measures) == 1 and not structures else on.panels
+        sheet.add_common_legend()
+    sheet.set_title(with_superscripts(verdict_of_fragility(data)), title)
+    return sheet.axes if len(measures) == 1 and not structures else sheet.panels
 
 
-def _check_structures(one: xr.Dataset, structures: list[str], most: int) -> None:
+def _check_structures(one: xr.Dataset, structures: list[str], max_count: int) -> None:
     count = int(np.prod([one.sizes[dim] for dim in structures]))
-    if count > most:
+    if count > max_count:
         msg = (
             f"rf.plot.fragility: found {count} structures, by {', '.join(structures)}; a figure "
-            f"shows {most}: pick some, for example with fragility.isel({structures[0]}=0)"
+            f"shows {max_count}: pick some, for example with fragility.isel({structures[0]}=0)"
         )
         raise SchemaError(msg)
 
 
-def _sheet(ax: AxesLike, states: list[xr.Dataset]) -> Sheet:
+def _limit_state_panels(ax: AxesLike, states: list[xr.Dataset]) -> Sheet:
     """Return a panel for each limit state."""
-    return sheet(
-        ax, "fragility", [_name(one) for one in states], (0.8 + 3.6 * len(states), 3.8),
+    return make_sheet(
+        ax, "fragility", [_limit_state_label(one) for one in states],
+        (0.8 + 3.6 * len(states), 3.8),
         lambda figure: figure.subplots(1, len(states)),
     )  # fmt: skip
 
 
-def _each(one: xr.Dataset, structures: list[str]) -> list[tuple[str, xr.Dataset]]:
+def _labelled_structures(one: xr.Dataset, structures: list[str]) -> list[tuple[str, xr.Dataset]]:
     """Return each structure with its label."""
     found: list[tuple[str, xr.Dataset]] = []
     for place in np.ndindex(*(one.sizes[dim] for dim in structures)):
         part = one.isel(dict(zip(structures, place, strict=True)))
         words = [
-            f"{str(name).replace('_', ' ')} {label_of_value(part[name])}"
+            f"{str(name).replace('_', ' ')} {value_label(part[name])}"
             for name in one.coords
             if set(one[name].dims) & set(structures)
         ]
@@ -293,41 +298,47 @@ def _each(one: xr.Dataset, structures: list[str]) -> list[tuple[str, xr.Dataset]
     return found
 
 
-def _curves(axes: Axes, named: list[tuple[str, xr.Dataset]], measure: str) -> None:
+def _draw_curves(axes: Axes, named: list[tuple[str, xr.Dataset]], measure: str) -> None:
     for number, (name, one) in enumerate(named):
-        colour, dashes = colour_of(number), style_of(number // len(COLOURS))
+        colour, dashes = line_colour(number), line_style(number // len(COLOURS))
         along = one[measure].to_numpy()
-        if int(one["fragility_status"]) in _KNOWN:
-            low, high = (one[f"{_NAME}_{end}_bound"].to_numpy() for end in ("lower", "upper"))
+        if int(one["fragility_status"]) in _FITTED_STATUSES:
+            low, high = (
+                one[f"{_PROBABILITY}_{end}_bound"].to_numpy() for end in ("lower", "upper")
+            )
             axes.fill_between(along, low, high, color=colour, alpha=0.15, linewidth=0.0)
-            parted = int(one["fragility_status"]) == FragilityStatus.SEPARATED
-            words = f"{name}: separated" if parted else name
-            axes.plot(along, one[_NAME].to_numpy(), color=colour, linestyle=dashes, label=words)
+            separated = int(one["fragility_status"]) == FragilityStatus.SEPARATED
+            words = f"{name}: separated" if separated else name
+            axes.plot(
+                along, one[_PROBABILITY].to_numpy(), color=colour, linestyle=dashes, label=words
+            )
         else:
             axes.plot([], [], color=colour, label=f"{name}: no fit")
         fraction = one["stripe_fraction"].to_numpy()
-        ends = [one[f"stripe_fraction_{end}_bound"].to_numpy() for end in ("lower", "upper")]
-        reach = np.abs(np.stack(ends) - fraction)
-        reach[:, one["stripe_trials"].to_numpy() < 2] = np.nan  # no bounds from a single trial
+        bounds = [one[f"stripe_fraction_{end}_bound"].to_numpy() for end in ("lower", "upper")]
+        errors = np.abs(np.stack(bounds) - fraction)
+        errors[:, one["stripe_trials"].to_numpy() < 2] = np.nan  # no bounds from a single trial
         # side by side, since limit states are counted at the same intensities
-        place = one["stripe_intensity"].to_numpy() * 1.012 ** (number - 0.5 * (len(named) - 1))
-        axes.errorbar(place, fraction, yerr=reach, fmt="o", color=colour, ms=3.0, lw=0.8, alpha=0.7)
-    axes.set_xlabel(label_of_intensity(named[0][1][measure], named[0][1]))
+        intensity = one["stripe_intensity"].to_numpy() * 1.012 ** (number - 0.5 * (len(named) - 1))
+        axes.errorbar(
+            intensity, fraction, yerr=errors, fmt="o", color=colour, ms=3.0, lw=0.8, alpha=0.7
+        )
+    axes.set_xlabel(intensity_label(named[0][1][measure], named[0][1]))
     axes.set(ylabel="probability of exceedance [-]", ylim=(-0.02, 1.02), xlim=(0.0, None))
     grid(axes)
 
 
-def _contours(axes: Axes, one: xr.Dataset, measures: list[str]) -> None:
+def _draw_contours(axes: Axes, one: xr.Dataset, measures: list[str]) -> None:
     across, up = measures
-    drawn = one[across], one[up], one[_NAME].transpose(up, across)
+    drawn = one[across], one[up], one[_PROBABILITY].transpose(up, across)
     axes.contourf(*drawn, levels=np.linspace(0.0, 1.0, 21), cmap="Blues", alpha=0.5)
-    lines = axes.contour(*drawn, levels=_LEVELS, colors=COLOURS[0], linewidths=0.9)
+    lines = axes.contour(*drawn, levels=_CONTOUR_LEVELS, colors=COLOURS[0], linewidths=0.9)
     for label in axes.clabel(lines, fontsize="small", fmt="%.2f", inline_spacing=2, colors="black"):
         label.set_bbox({"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 0.6})
         label.set_rotation(0.0)
-    axes.set(xlabel=label_of_intensity(one[across], one), title=_name(one))
-    axes.set_ylabel(label_of_intensity(one[up], one))
+    axes.set(xlabel=intensity_label(one[across], one), title=_limit_state_label(one))
+    axes.set_ylabel(intensity_label(one[up], one))
 
 
-def _name(one: xr.Dataset) -> str:
+def _limit_state_label(one: xr.Dataset) -> str:
     return as_label(str(one["limit_state"].item())) if "limit_state" in one.coords else "counted"

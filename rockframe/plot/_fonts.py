@@ -1,4 +1,4 @@
-"""Fonts for letters that those of a figure lack, such as the letters of Chinese names."""
+"""Fallback fonts for letters that the fonts of a figure do not have, such as Chinese ones."""
 
 from collections.abc import Callable, Iterable
 from contextvars import ContextVar
@@ -13,73 +13,76 @@ if TYPE_CHECKING:
 
 _LAST_RESORT: Final = "Last Resort"
 """Fonts that have a box in the place of every letter."""
-_LISTED: Final = 12
+_MAX_LISTED: Final = 12
 """Letters that a warning lists."""
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
-_gathered: ContextVar[dict[str, None] | None] = ContextVar("letters without a font", default=None)
+_missing_letters: ContextVar[dict[str, None] | None] = ContextVar(
+    "letters without a font", default=None
+)
 """Letters that no font has, of several figures that are drawn together."""
 
 
-def warning_once(drawing: Callable[_P, _T]) -> Callable[_P, _T]:
-    """Let a function that draws several figures warn once of the letters that no font has."""
+def warn_of_letters_once(drawing: Callable[_P, _T]) -> Callable[_P, _T]:
+    """Decorate a function of several figures, to warn once of letters that no font has."""
 
     @wraps(drawing)
-    def drawn(*args: _P.args, **kwargs: _P.kwargs) -> _T:
+    def wrapped(*args: _P.args, **kwargs: _P.kwargs) -> _T:
         lost = dict[str, None]()
-        token = _gathered.set(lost)
+        token = _missing_letters.set(lost)
         try:
             found = drawing(*args, **kwargs)
         finally:
-            _gathered.reset(token)
+            _missing_letters.reset(token)
         _warn(lost, "the figures")
         return found
 
-    return drawn
+    return wrapped
 
 
-def make_legible(artists: "Iterable[Axes | Figure | SubFigure]") -> None:
-    """Give texts another installed font for the letters that theirs lack.
+def add_fallback_fonts(artists: "Iterable[Axes | Figure | SubFigure]") -> None:
+    """Add installed fonts to texts, for the letters that their own fonts do not have.
 
     Letters that no installed font has are written as question marks, with one warning.
     """
     from matplotlib.font_manager import fontManager
 
-    lost = dict[str, None]()
-    for text in _texts(artists):
+    unsupported = dict[str, None]()
+    for text in _non_ascii_texts(artists):
         words, families = str(text.get_text()), list(text.get_fontfamily())
-        paths = _paths(families)
+        paths = _font_files(families)
         missing = frozenset(
-            one for one in words if not one.isspace() and not any(_has(p, one) for p in paths)
+            one for one in words if not one.isspace() and not any(_has_glyph(p, one) for p in paths)
         )
         if not missing:
             continue
-        found = _fonts_of(missing, len(fontManager.ttflist))
-        text.set_fontfamily([*families, *dict.fromkeys(found.values())])
-        without = [one for one in words if one in missing and one not in found]
+        fonts = _fallback_fonts(missing, len(fontManager.ttflist))
+        text.set_fontfamily([*families, *dict.fromkeys(fonts.values())])
+        without = [one for one in words if one in missing and one not in fonts]
         text.set_text("".join("?" if one in without else one for one in words))
-        lost |= dict.fromkeys(without)
-    several = _gathered.get()
-    if several is None:
-        _warn(lost, "the figure")
+        unsupported |= dict.fromkeys(without)
+    collected = _missing_letters.get()
+    if collected is None:
+        _warn(unsupported, "the figure")
     else:
-        several |= lost
+        collected |= unsupported
 
 
-def _warn(lost: Iterable[str], where: str) -> None:
+def _warn(unsupported: Iterable[str], where: str) -> None:
     """Warn of letters that no font has."""
-    letters = [*lost]
+    letters = [*unsupported]
     if not letters:
         return
-    more = "" if len(letters) <= _LISTED else f" and {len(letters) - _LISTED} more"
+    more = "" if len(letters) <= _MAX_LISTED else f" and {len(letters) - _MAX_LISTED} more"
     msg = (
-        f"no installed font has {' '.join(letters[:_LISTED])}{more}, written as '?' in {where}; "
-        "install a font with these letters, such as Noto Sans CJK for Chinese, Japanese and Korean"
+        f"no installed font has {' '.join(letters[:_MAX_LISTED])}{more}, written as '?' in "
+        f"{where}; install a font with these letters, such as Noto Sans CJK for Chinese, Japanese "
+        "and Korean"
     )
     warn(msg, RockframeWarning)
 
 
-def _texts(artists: "Iterable[Axes | Figure | SubFigure]") -> list[Any]:
+def _non_ascii_texts(artists: "Iterable[Axes | Figure | SubFigure]") -> list[Any]:
     """Return the texts with letters beyond ASCII."""
     from matplotlib.text import Text
 
@@ -87,7 +90,7 @@ def _texts(artists: "Iterable[Axes | Figure | SubFigure]") -> list[Any]:
     return [one for one in found if not str(one.get_text()).isascii()]
 
 
-def _paths(families: Iterable[str]) -> list[str]:
+def _font_files(families: Iterable[str]) -> list[str]:
     """Return the files of those fonts that are installed."""
     from matplotlib.font_manager import FontProperties, findfont
 
@@ -101,7 +104,7 @@ def _paths(families: Iterable[str]) -> list[str]:
 
 
 @lru_cache(maxsize=64)
-def _fonts_of(letters: frozenset[str], installed: int) -> dict[str, str]:
+def _fallback_fonts(letters: frozenset[str], installed: int) -> dict[str, str]:
     """Find installed fonts that have letters: upright, regular, without serifs if possible."""
     from matplotlib.font_manager import fontManager
 
@@ -113,14 +116,16 @@ def _fonts_of(letters: frozenset[str], installed: int) -> dict[str, str]:
     for font in sorted(fontManager.ttflist[:installed], key=rank):
         if font.name.startswith(_LAST_RESORT):
             continue
-        found |= {one: font.name for one in letters if one not in found and _has(font.fname, one)}
+        found |= {
+            one: font.name for one in letters if one not in found and _has_glyph(font.fname, one)
+        }
         if len(found) == len(letters):
             break
     return found
 
 
 @lru_cache(maxsize=4096)
-def _has(path: str, letter: str) -> bool:
+def _has_glyph(path: str, letter: str) -> bool:
     from matplotlib.font_manager import get_font
 
     try:

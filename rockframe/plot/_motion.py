@@ -17,19 +17,19 @@ from rockframe.plot._axes import (
     GREY,
     VERMILLION,
     DisplayUnit,
+    add_legend,
     axis_label,
-    colour_of,
+    figure_units,
     grid,
-    ink,
-    key,
-    labels_of_names,
-    style_of,
-    units_of,
+    line_colour,
+    line_style,
+    text_colour,
+    unique_labels,
     zero_line,
 )
-from rockframe.plot._checks import draws, refuse
-from rockframe.plot._panels import Axes, AxesLike, Panels, sheet
-from rockframe.plot._runs import Window, window_of
+from rockframe.plot._checks import draws, mismatch_message
+from rockframe.plot._panels import Axes, AxesLike, Panels, make_sheet
+from rockframe.plot._runs import Window, read_window
 from rockframe.units import ACCELERATION, LENGTH, VELOCITY
 from rockframe.units.display import UnitsLike
 
@@ -37,7 +37,7 @@ MotionsLike: TypeAlias = GroundMotion | Sequence[GroundMotion] | Mapping[Any, Gr
 
 
 @dataclass(frozen=True)
-class Drawn:
+class LabelledMotion:
     """A motion with its label, colour and dashes; a single motion has no label."""
 
     motion: GroundMotion
@@ -46,7 +46,7 @@ class Drawn:
     style: Any
 
 
-def motions_title(values: list[Drawn]) -> str:
+def motions_title(values: list[LabelledMotion]) -> str:
     """Return the title of a figure: the name of a single motion, otherwise none."""
     if len(values) != 1:
         return ""
@@ -54,34 +54,34 @@ def motions_title(values: list[Drawn]) -> str:
     return display_name(one.motion.name, one.motion.history)
 
 
-def drawn_motions(value: object, function: str) -> list[Drawn]:
+def labelled_motions(value: object, function: str) -> list[LabelledMotion]:
     """Read one or several motions."""
-    labelled: dict[str, Any] = {}
+    by_label: dict[str, Any] = {}
     if isinstance(value, Mapping):
-        labelled = {str(key): one for key, one in value.items()}
+        by_label = {str(key): one for key, one in value.items()}
     elif isinstance(value, list | tuple):
         names = [
             display_name(str(getattr(one, "name", "")), getattr(one, "history", ()))
             for one in value
         ]
-        alike = len(set(names)) < len(names)
-        labelled = {
-            f"{name} ({number})" if alike else name: one
+        has_duplicates = len(set(names)) < len(names)
+        by_label = {
+            f"{name} ({number})" if has_duplicates else name: one
             for number, (name, one) in enumerate(zip(names, value, strict=True), start=1)
         }
-    if labelled and all(isinstance(one, GroundMotion) for one in labelled.values()):
+    if by_label and all(isinstance(one, GroundMotion) for one in by_label.values()):
         return [
-            Drawn(one, label, colour_of(number), style_of(number))
+            LabelledMotion(one, label, line_colour(number), line_style(number))
             for number, (label, one) in enumerate(
-                zip(labels_of_names(labelled), labelled.values(), strict=True)
+                zip(unique_labels(by_label), by_label.values(), strict=True)
             )
         ]
     if not isinstance(value, GroundMotion):
-        raise ComponentError(refuse(function, value))
-    return [Drawn(value, None, colour_of(0), "-")]
+        raise ComponentError(mismatch_message(function, value))
+    return [LabelledMotion(value, None, line_colour(0), "-")]
 
 
-_ROWS: Final = ("acceleration", "velocity", "displacement")
+_QUANTITIES: Final = ("acceleration", "velocity", "displacement")
 
 
 @draws("a GroundMotion", ax="three Axes", title="the motion's name")
@@ -129,25 +129,29 @@ def motion(
     >>> panels[-1].get_xlabel()
     'time [s]'
     """
-    data = drawn_motions(motion, "motion")
-    cut = window_of(window, "motion")
-    chosen = units_of(units, "motion")
-    shown_in = (
-        chosen.of(ACCELERATION, acceleration=acceleration),
-        chosen.of(VELOCITY, velocity=velocity),
-        chosen.of(LENGTH, displacement=displacement),
+    data = labelled_motions(motion, "motion")
+    limits = read_window(window, "motion")
+    axis_units = figure_units(units, "motion")
+    row_units = (
+        axis_units.axis_unit(ACCELERATION, acceleration=acceleration),
+        axis_units.axis_unit(VELOCITY, velocity=velocity),
+        axis_units.axis_unit(LENGTH, displacement=displacement),
     )
-    found = [_part(velocity_and_displacement(one.motion), cut) for one in data]
-    upwards = None
+    histories = [_within_window(velocity_and_displacement(one.motion), limits) for one in data]
+    vertical_history = None
     if len(data) == 1 and data[0].motion.si.vertical is not None:
-        upwards = _part(velocity_and_displacement(data[0].motion, component="vertical"), cut)
-    on = sheet(ax, "motion", _ROWS, (7.2, 5.4), lambda figure: figure.subplots(3, 1, sharex=True))
-    colours = (ink(), BLUE, GREEN)
-    for axes, name, unit, colour in zip(on.panels, _ROWS, shown_in, colours, strict=True):
-        if upwards is not None:
-            values = unit.of(upwards[f"vertical_ground_{name}"])
-            axes.plot(upwards["time"], values, color=GREY, lw=0.8, label="vertical")
-        for one, history in zip(data, found, strict=True):
+        vertical_history = _within_window(
+            velocity_and_displacement(data[0].motion, component="vertical"), limits
+        )
+    sheet = make_sheet(
+        ax, "motion", _QUANTITIES, (7.2, 5.4), lambda figure: figure.subplots(3, 1, sharex=True)
+    )
+    colours = (text_colour(), BLUE, GREEN)
+    for axes, name, unit, colour in zip(sheet.panels, _QUANTITIES, row_units, colours, strict=True):
+        if vertical_history is not None:
+            values = unit.of(vertical_history[f"vertical_ground_{name}"])
+            axes.plot(vertical_history["time"], values, color=GREY, lw=0.8, label="vertical")
+        for one, history in zip(data, histories, strict=True):
             single = one.label is None
             axes.plot(
                 history["time"], unit.of(history[f"ground_{name}"]), linestyle=one.style, lw=0.8,
@@ -159,34 +163,34 @@ def motion(
         axes.set_ylabel(axis_label(f"{name}\n", unit.words))
         axes.margins(y=0.15)
         axes.set_xlim(
-            min(float(history["time"][0]) for history in found),
-            max(float(history["time"][-1]) for history in found),
+            min(float(history["time"][0]) for history in histories),
+            max(float(history["time"][-1]) for history in histories),
         )
-    if upwards is not None:
-        key(on.axes)
+    if vertical_history is not None:
+        add_legend(sheet.axes)
     elif len(data) > 1:
-        on.legend(*on.axes.get_legend_handles_labels(), fontsize="small")
-    on.panels[-1].set_xlabel("time [s]")
-    if on.own is not None:
-        on.own.align_ylabels(on.panels)
-    on.entitle(motions_title(data), title)
-    return on.panels
+        sheet.add_legend(*sheet.axes.get_legend_handles_labels(), fontsize="small")
+    sheet.panels[-1].set_xlabel("time [s]")
+    if sheet.own_figure is not None:
+        sheet.own_figure.align_ylabels(sheet.panels)
+    sheet.set_title(motions_title(data), title)
+    return sheet.panels
 
 
-def _part(history: xr.Dataset, cut: tuple[float, float]) -> xr.Dataset:
-    return history.sel(time=slice(*cut)) if np.isfinite(cut).any() else history
+def _within_window(history: xr.Dataset, limits: tuple[float, float]) -> xr.Dataset:
+    return history.sel(time=slice(*limits)) if np.isfinite(limits).any() else history
 
 
 def _mark_peak(axes: Axes, dataset: xr.Dataset, name: str, unit: DisplayUnit, colour: Any) -> None:
     values = unit.of(dataset[name])
-    place = int(np.argmax(np.abs(values)))
-    time, peak = float(dataset["time"][place]), float(values[place])
+    sample = int(np.argmax(np.abs(values)))
+    time, peak = float(dataset["time"][sample]), float(values[sample])
     axes.plot([time], [peak], marker="o", markersize=4.0, color=colour)
-    late = place > 0.8 * values.size
-    beside, side = (-6.0, "right") if late else (6.0, "left")
+    near_end = sample > 0.8 * values.size
+    offset, alignment = (-6.0, "right") if near_end else (6.0, "left")
     axes.annotate(
-        f"{abs(peak):.3g}", (time, peak), xytext=(beside, 0.0), textcoords="offset points", ha=side,
-        va="bottom" if peak > 0.0 else "top", fontsize="small", color=colour,
+        f"{abs(peak):.3g}", (time, peak), xytext=(offset, 0.0), textcoords="offset points",
+        ha=alignment, va="bottom" if peak > 0.0 else "top", fontsize="small", color=colour,
     )  # fmt: skip
 
 
@@ -228,30 +232,33 @@ def velocity_pulse(
     'time [s]'
     """
     if not isinstance(cast("object", pulse), VelocityPulse):
-        raise ComponentError(refuse("velocity_pulse", pulse))
-    unit = units_of(units, "velocity_pulse").of(VELOCITY)
-    on = sheet(
+        raise ComponentError(mismatch_message("velocity_pulse", pulse))
+    unit = figure_units(units, "velocity_pulse").axis_unit(VELOCITY)
+    sheet = make_sheet(
         ax, "velocity_pulse", ("the motion", "the residual motion"), (8.0, 4.6),
         lambda figure: figure.subplots(2, 1, sharex=True, sharey=True),
     )  # fmt: skip
-    on.entitle(f"{pulse.extracted.name}: {pulse}", title)
-    above, below = on.panels
+    sheet.set_title(f"{pulse.extracted.name}: {pulse}", title)
+    above, below = sheet.panels
     extracted, residual = (
         velocity_and_displacement(motion) for motion in (pulse.extracted, pulse.residual)
     )
     time = extracted["time"].to_numpy() - float(pulse.lead.m_as("s"))
-    of_pulse = unit.of(extracted["ground_velocity"])
-    left = unit.of(residual["ground_velocity"])
-    above.plot(time, of_pulse + left, color=GREY, linewidth=1.0, label="motion")
+    pulse_velocity = unit.of(extracted["ground_velocity"])
+    residual_velocity = unit.of(residual["ground_velocity"])
+    above.plot(time, pulse_velocity + residual_velocity, color=GREY, linewidth=1.0, label="motion")
     words = f"pulse, $T_p$ = {pulse.period.m_as('s'):.3g} s"
-    above.plot(time, of_pulse, color=VERMILLION, linewidth=1.8, label=words)
-    below.plot(time, left, color=BLUE, linewidth=1.0, label="residual motion")
-    reach = 1.1 * max(float(np.abs(of_pulse + left).max()), float(np.abs(left).max()))
+    above.plot(time, pulse_velocity, color=VERMILLION, linewidth=1.8, label=words)
+    below.plot(time, residual_velocity, color=BLUE, linewidth=1.0, label="residual motion")
+    limit = 1.1 * max(
+        float(np.abs(pulse_velocity + residual_velocity).max()),
+        float(np.abs(residual_velocity).max()),
+    )
     for axes in (above, below):
         axes.axhline(0.0, color="0.8", linewidth=0.5, zorder=0)
         axes.set(ylabel=axis_label("ground\nvelocity", unit.words), xlim=(time[0], time[-1]))
-        axes.set_ylim(-reach, reach)
+        axes.set_ylim(-limit, limit)
         grid(axes)
-    on.name_lines()
+    sheet.add_common_legend()
     below.set_xlabel("time [s]")
-    return on.panels
+    return sheet.panels

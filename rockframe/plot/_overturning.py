@@ -7,30 +7,30 @@ import xarray as xr
 from rockframe.plot._axes import (
     BLUE,
     GREEN,
+    PALE_BLUE,
     PURPLE,
     SKY,
-    STANDS,
     VERMILLION,
     colour_steps,
+    figure_units,
     grid,
+    intensity_label,
     label_log_ticks,
-    label_of,
-    label_of_intensity,
-    labels_of_names,
-    units_of,
+    unique_labels,
+    variable_label,
 )
-from rockframe.plot._checks import drawable, draws
-from rockframe.plot._panels import Axes, AxesLike, Panels, Sheet, sheet, single
+from rockframe.plot._checks import draws, figure_data
+from rockframe.plot._panels import Axes, AxesLike, Panels, Sheet, make_sheet, make_single_panel
 from rockframe.results.outcome import overturns
 from rockframe.units import ACCELERATION
 from rockframe.units.display import UnitsLike
 
-_MOST_NAMED: Final = 8
+_MAX_NAMED: Final = 8
 """Largest number of motions that are named in the legend."""
-_WAYS: Final = (VERMILLION, BLUE, SKY, PURPLE, GREEN)
-MAP_COLOURS: Final = (STANDS, *_WAYS)
+_IMPACT_COLOURS: Final = (VERMILLION, BLUE, SKY, PURPLE, GREEN)
+MAP_COLOURS: Final = (PALE_BLUE, *_IMPACT_COLOURS)
 """Colours of runs that stand, and of those that overturn after no, one and more impacts."""
-_CAPPED: Final = 1.0
+_PEAK_CAP: Final = 1.0
 """Peaks over the overturning angle above this are drawn at this value."""
 
 
@@ -65,16 +65,19 @@ def overturning_map(
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
 
-    data = drawable(dataset, "overturning_map", units)
-    shown = units_of(units, "overturning_map").reader.chosen_unit(ACCELERATION) is not None
+    data = figure_data(dataset, "overturning_map", units)
+    shown = figure_units(units, "overturning_map").reader.chosen_unit(ACCELERATION) is not None
     relative = "relative_peak_ground_acceleration" in data.coords and not shown
     across = data["relative_pulse_frequency" if relative else "frequency"]
     up = data["relative_peak_ground_acceleration" if relative else "amplitude"]
     impact_count = int(data.attrs["impacts_told_apart"])
     count = data["impacts_before_overturning"].transpose("amplitude", "frequency")
-    colours = [STANDS, *(_WAYS[min(k, len(_WAYS) - 1)] for k in range(impact_count + 1))]
-    on = single(ax, "overturning_map", (6.0, 4.3))
-    axes = on.axes
+    colours = [
+        PALE_BLUE,
+        *(_IMPACT_COLOURS[min(k, len(_IMPACT_COLOURS) - 1)] for k in range(impact_count + 1)),
+    ]
+    sheet = make_single_panel(ax, "overturning_map", (6.0, 4.3))
+    axes = sheet.axes
     known = overturns(data).transpose(*count.dims).notnull()
     axes.pcolormesh(
         across, up, count.fillna(-1.0).where(known), cmap=ListedColormap(colours), vmin=-1.5,
@@ -85,16 +88,18 @@ def overturning_map(
     for number in range(data.sizes.get("boundary", 0)):
         axes.plot(across, size * middle.isel(boundary=number), ".", color="black", ms=2.0)
     axes.set(
-        xlabel=r"frequency over the block's, $\omega_p/p$ [-]" if relative else label_of(across),
-        ylabel=r"peak acceleration over that of uplift [-]" if relative else label_of(up),
+        xlabel=r"frequency over the block's, $\omega_p/p$ [-]"
+        if relative
+        else variable_label(across),
+        ylabel=r"peak acceleration over that of uplift [-]" if relative else variable_label(up),
     )
-    words = ["stands", *(_after(k, impact_count) for k in range(impact_count + 1))]
+    words = ["stands", *(_impact_label(k, impact_count) for k in range(impact_count + 1))]
     patches = [Patch(color=one, label=text) for one, text in zip(colours, words, strict=True)]
     if not known.all():
         words.append("no verdict")
         patches.append(Patch(facecolor="none", edgecolor="0.6", label=words[-1]))
-    on.legend(patches, words, columns=2)
-    on.entitle("Overturning; dots are boundaries found by bisection", title)
+    sheet.add_legend(patches, words, columns=2)
+    sheet.set_title("Overturning; dots are boundaries found by bisection", title)
     return axes
 
 
@@ -119,16 +124,16 @@ def rocking_spectrum(
     >>> panels[0].get_title()
     'H/B = 5'
     """
-    data = drawable(dataset, "rocking_spectrum", units)
-    peaks = data["peak_relative_rotation"].clip(max=_CAPPED)
-    on = _by_slenderness(ax, "rocking_spectrum", peaks, ylim=(0.0, 1.06))
-    for axes in on.panels:
-        axes.axhline(_CAPPED, color="0.5", lw=0.8, ls=":")
-    on.axes.set_ylabel(r"peak of $|\alpha|/\theta$ [-]")
-    if data.sizes["motion"] <= _MOST_NAMED:
-        on.name_lines()
-    on.entitle("Rocking spectrum", title)
-    return on.panels
+    data = figure_data(dataset, "rocking_spectrum", units)
+    peaks = data["peak_relative_rotation"].clip(max=_PEAK_CAP)
+    sheet = _draw_by_slenderness(ax, "rocking_spectrum", peaks, ylim=(0.0, 1.06))
+    for axes in sheet.panels:
+        axes.axhline(_PEAK_CAP, color="0.5", lw=0.8, ls=":")
+    sheet.axes.set_ylabel(r"peak of $|\alpha|/\theta$ [-]")
+    if data.sizes["motion"] <= _MAX_NAMED:
+        sheet.add_common_legend()
+    sheet.set_title("Rocking spectrum", title)
+    return sheet.panels
 
 
 @draws(
@@ -154,35 +159,35 @@ def overturning_spectrum(
     >>> panels[0].get_ylabel()
     'peak ground acceleration [g]'
     """
-    data = drawable(dataset, "overturning_spectrum", units)
+    data = figure_data(dataset, "overturning_spectrum", units)
     measure = data["capacity_intensity"].rename(str(data.attrs["intensity"]))
-    on = _by_slenderness(ax, "overturning_spectrum", measure, yscale="log")
-    on.axes.set_ylabel(label_of_intensity(measure, data))
-    if data.sizes["motion"] <= _MOST_NAMED:
-        on.name_lines()
-    on.entitle("Least intensity that overturns", title)
-    return on.panels
+    sheet = _draw_by_slenderness(ax, "overturning_spectrum", measure, yscale="log")
+    sheet.axes.set_ylabel(intensity_label(measure, data))
+    if data.sizes["motion"] <= _MAX_NAMED:
+        sheet.add_common_legend()
+    sheet.set_title("Least intensity that overturns", title)
+    return sheet.panels
 
 
-def _after(count: int, told: int) -> str:
-    words = "after 1 impact" if count == 1 else f"after {count} impacts"
-    words = "without an impact" if count == 0 else words
-    return f"overturns {words}{' or more' if count == told else ''}"
+def _impact_label(count: int, counted: int) -> str:
+    text = "after 1 impact" if count == 1 else f"after {count} impacts"
+    text = "without an impact" if count == 0 else text
+    return f"overturns {text}{' or more' if count == counted else ''}"
 
 
-def _by_slenderness(ax: AxesLike, function: str, values: xr.DataArray, **style: Any) -> Sheet:
+def _draw_by_slenderness(ax: AxesLike, function: str, values: xr.DataArray, **style: Any) -> Sheet:
     """Draw a line for each motion over the size of the block, in a panel for each slenderness."""
     names = [f"H/B = {float(value):.3g}" for value in values["slenderness"]]
-    on = sheet(
+    sheet = make_sheet(
         ax, function, names, (1.2 + 3.2 * len(names), 3.9),
         lambda figure: figure.subplots(1, len(names), sharey=True),
     )  # fmt: skip
-    for place, axes in enumerate(on.panels):
-        motions = labels_of_names(map(str, values["motion"].to_numpy()))
+    for place, axes in enumerate(sheet.panels):
+        motions = unique_labels(map(str, values["motion"].to_numpy()))
         for number, colour in enumerate(colour_steps(values["motion"])):
             one, label = values.isel(slenderness=place, motion=number), motions[number]
             axes.plot(one["rocking_period"], one, color=colour, lw=1.0, label=label)
         axes.set(xscale="log", xlabel=r"$2\pi/p$ [s]", title=names[place], **style)
         grid(axes)
         label_log_ticks(axes)
-    return on
+    return sheet

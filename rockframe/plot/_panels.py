@@ -10,8 +10,8 @@ import numpy as np
 
 from rockframe.arguments import checked_text
 from rockframe.errors import ComponentError, did_you_mean, short_repr
-from rockframe.plot._axes import escaped, key
-from rockframe.plot._fonts import make_legible
+from rockframe.plot._axes import add_legend, escape_mathtext
+from rockframe.plot._fonts import add_fallback_fonts
 from rockframe.suggestions import suggests_names
 
 if TYPE_CHECKING:
@@ -25,41 +25,47 @@ else:  # matplotlib is imported when something is drawn, not for type hints
 
 _LETTERS_PER_INCH: Final = 12.0
 """At matplotlib's default size of letters, with a margin of about a fifteenth on both sides."""
-_USUAL_SIZE: Final = 10.0
+_DEFAULT_FONT_SIZE: Final = 10.0
 
 
 NO_BREAK: Final = "\N{NO-BREAK SPACE}"
-_FACTOR: Final = r"(?:[kMGmc]?(?:m|N|Pa|J|g|rad|Hz|s)|t|°|%|deg|mm|ft|lbf)(?:\^-?\d+)?(?![\w^])"
-_NUMBER: Final = re.compile(rf"(?<![\w.])-?\d[\d.e+-]*(?: {_FACTOR}(?:/{_FACTOR})?)+")
+_UNIT_FACTOR: Final = (
+    r"(?:[kMGmc]?(?:m|N|Pa|J|g|rad|Hz|s)|t|°|%|deg|mm|ft|lbf)(?:\^-?\d+)?(?![\w^])"
+)
+_NUMBER_WITH_UNIT: Final = re.compile(
+    rf"(?<![\w.])-?\d[\d.e+-]*(?: {_UNIT_FACTOR}(?:/{_UNIT_FACTOR})?)+"
+)
 """A number with its unit, which lines of a title do not separate."""
 
 
-def set_title(figure: "Figure | SubFigure", words: str) -> None:
+def set_figure_title(figure: "Figure | SubFigure", words: str) -> None:
     """Write a title above a figure, in as many lines as it needs."""
     from matplotlib import rcParams
 
-    letters = _LETTERS_PER_INCH * _USUAL_SIZE / float(rcParams["font.size"])
+    letters = _LETTERS_PER_INCH * _DEFAULT_FONT_SIZE / float(rcParams["font.size"])
     width = int(letters * figure.bbox.width / figure.get_dpi())
     lines = [
-        line.replace(NO_BREAK, " ") for given in words.splitlines() for line in _lines(given, width)
+        line.replace(NO_BREAK, " ")
+        for given in words.splitlines()
+        for line in _broken_lines(given, width)
     ]
     # matplotlib breaks lines that still do not fit, as those of wide letters
     figure.suptitle("\n".join(lines), fontsize="medium", wrap=True)
 
 
-def _lines(words: str, width: int) -> list[str]:
+def _broken_lines(words: str, width: int) -> list[str]:
     """Break lines after semicolons and sentences, and otherwise between words."""
     if len(words) <= width:
         return [words]
-    words = _NUMBER.sub(lambda one: one[0].replace(" ", NO_BREAK), words)
+    words = _NUMBER_WITH_UNIT.sub(lambda one: one[0].replace(" ", NO_BREAK), words)
     for mark in ("; ", ". "):
         for place in range(width - 1, width // 3, -1):
             if words.startswith(mark, place):
-                return [words[: place + 1], *_lines(words[place + 2 :], width)]
+                return [words[: place + 1], *_broken_lines(words[place + 2 :], width)]
     return wrap(words, width)
 
 
-_LETTERS_OF_HANDLE: Final = 7
+_HANDLE_LETTERS: Final = 7
 
 
 @suggests_names
@@ -89,7 +95,7 @@ class Panels(tuple[Any, ...]):
         return self[0].figure.figure
 
     def __repr__(self) -> str:
-        names = ", ".join(repr(_called(axes)) for axes in self)
+        names = ", ".join(repr(_panel_name(axes)) for axes in self)
         return f"<{len(self)} panels: {names}>"
 
 
@@ -98,49 +104,49 @@ class Sheet:
     """Panels to draw in, and their figure if the panels were made here."""
 
     panels: Panels
-    own: "Figure | SubFigure | None"
+    own_figure: "Figure | SubFigure | None"
 
     @property
     def axes(self) -> "Axes":
         """The panel, or the first of several."""
         return self.panels[0]
 
-    def entitle(self, usual: str, title: str | None) -> None:
+    def set_title(self, default: str, title: str | None) -> None:
         """Write the title above a new figure; above given panels only if the caller set one."""
         if title is not None:
             checked_text(title, owner="rf.plot", name="title")
-        if self.own is not None:
-            set_title(self.own, title or escaped(usual))
+        if self.own_figure is not None:
+            set_figure_title(self.own_figure, title or escape_mathtext(default))
         elif title:
             self.axes.set_title(title, fontsize="medium", wrap=True)
-        make_legible(self.panels if self.own is None else [self.own])
+        add_fallback_fonts(self.panels if self.own_figure is None else [self.own_figure])
 
-    def legend(
+    def add_legend(
         self, handles: Sequence[Any], labels: Sequence[str], *, columns: int = 12, **style: Any
     ) -> None:
         """Write a legend below a new figure, or above the data of the last given panel.
 
         It has as many columns as there is room for, at most `columns`.
         """
-        if self.own is None or not labels:
-            key(self.panels[-1], (handles, labels))
+        if self.own_figure is None or not labels:
+            add_legend(self.panels[-1], (handles, labels))
             return
-        width = _LETTERS_PER_INCH * self.own.bbox.width / self.panels.figure.get_dpi()
-        fitting = int(width // (_LETTERS_OF_HANDLE + max(map(len, labels))))
+        width = _LETTERS_PER_INCH * self.own_figure.bbox.width / self.panels.figure.get_dpi()
+        fitting = int(width // (_HANDLE_LETTERS + max(map(len, labels))))
         style |= {"ncols": max(1, min(len(labels), columns, fitting))}
-        self.own.legend(handles, labels, loc="outside lower center", frameon=False, **style)
+        self.own_figure.legend(handles, labels, loc="outside lower center", frameon=False, **style)
 
-    def name_lines(self) -> None:
+    def add_common_legend(self) -> None:
         """Write one legend of the labels of all panels."""
         named = {
             label: handle
             for axes in self.panels
             for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
         }
-        self.legend(list(named.values()), list(named), fontsize="small")
+        self.add_legend(list(named.values()), list(named), fontsize="small")
 
 
-def sheet(
+def make_sheet(
     ax: "AxesLike",
     function: str,
     names: Sequence[str],
@@ -182,27 +188,27 @@ def chosen_panels(panels: object, known: Iterable[str], function: str) -> tuple[
     return tuple(chosen)
 
 
-def single(ax: "AxesLike", function: str, size: tuple[float, float]) -> Sheet:
-    """Take the given panel, or make a figure with one; see :func:`sheet`."""
-    return sheet(ax, function, ("the figure",), size, lambda figure: figure.subplots())
+def make_single_panel(ax: "AxesLike", function: str, size: tuple[float, float]) -> Sheet:
+    """Take the given panel, or make a figure with one; see :func:`make_sheet`."""
+    return make_sheet(ax, function, ("the figure",), size, lambda figure: figure.subplots())
 
 
 def _checked_axes(ax: Any, function: str, names: Sequence[str], *, choice: bool) -> "list[Axes]":
     from matplotlib.axes import Axes
 
-    several = isinstance(ax, Sequence | np.ndarray) and not isinstance(ax, str | Axes)
-    found = list(np.ravel(np.array(ax, dtype=object))) if several else [ax]
-    wanted = "one Axes" if len(names) == 1 else f"{len(names)} Axes, for {', '.join(names)}"
-    for one in found:
+    is_sequence = isinstance(ax, Sequence | np.ndarray) and not isinstance(ax, str | Axes)
+    panels = list(np.ravel(np.array(ax, dtype=object))) if is_sequence else [ax]
+    expected = "one Axes" if len(names) == 1 else f"{len(names)} Axes, for {', '.join(names)}"
+    for one in panels:
         if not isinstance(one, Axes):
-            msg = f"rf.plot.{function}: ax must be {wanted}, got {short_repr(one)}"
+            msg = f"rf.plot.{function}: ax must be {expected}, got {short_repr(one)}"
             raise ComponentError(msg)
-    if len(found) != len(names):
-        msg = f"rf.plot.{function}: ax must be {wanted}, got {len(found)} Axes"
+    if len(panels) != len(names):
+        msg = f"rf.plot.{function}: ax must be {expected}, got {len(panels)} Axes"
         if choice and len(names) > 1:
             msg += f"; panels={names[0]!r} draws one of them"
         raise ComponentError(msg)
-    return cast("list[Axes]", found)
+    return cast("list[Axes]", panels)
 
 
 def _is_figure(ax: object) -> bool:
@@ -211,5 +217,5 @@ def _is_figure(ax: object) -> bool:
     return isinstance(ax, FigureBase)
 
 
-def _called(axes: "Axes") -> str:
+def _panel_name(axes: "Axes") -> str:
     return " ".join((axes.get_ylabel() or axes.get_title() or axes.get_xlabel()).split())

@@ -13,19 +13,19 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import checked_text
-from rockframe.plot._artists import CONTACT, SOIL, Layout
-from rockframe.plot._axes import BLUE, GREEN, ORANGE, VERMILLION, units_of
+from rockframe.plot._artists import CONTACT_COLOUR, SOIL_COLOUR, Layout
+from rockframe.plot._axes import BLUE, GREEN, ORANGE, VERMILLION, figure_units
 from rockframe.plot._checks import RUN, checked_run, draws
 from rockframe.plot._response import (
+    BODY_SLIP,
+    CAP_SLIP,
     CONTACT_COLOURS,
-    OF_BODIES,
-    OF_CAP,
     SLIP,
-    of_rotation,
-    strips_of,
+    contact_strips,
+    rotation_values,
 )
-from rockframe.plot._runs import Window, runs_of, verdict_of_case
-from rockframe.plot._scene import Moving
+from rockframe.plot._runs import Window, read_runs, verdict_of_case
+from rockframe.plot._scene import SceneHistory
 from rockframe.results.outcome import MIN_REPORTED_SLIP
 from rockframe.results.variables.variable import flag_words
 from rockframe.signals.arrays import Array
@@ -36,23 +36,23 @@ from rockframe.version import __version__
 from rockframe.writing import FileKind, generator_tag, write_file
 
 _FRAMES_PER_SECOND: Final = 25.0
-_MOST_FRAMES: Final = 900
+_MAX_FRAMES: Final = 900
 """Largest number of instants of a page; the browser interpolates between them."""
-_TRACE: Final = 700
-"""Number of intervals of time of which a trace keeps the least and the largest value."""
-_MOST_SLIPS: Final = 4
+_TRACE_INTERVALS: Final = 700
+"""Number of intervals of time; of each, a trace has the least and the largest value."""
+_MAX_SLIP_TRACES: Final = 4
 """Largest number of traces of slip."""
 _ROUNDING: Final = 1e-9
 """Ends of a trace below this share of its range are rounding, and set to zero."""
-_LEVELS: Final = 30000
+_STEP_COUNT: Final = 30000
 """Steps between the least and the largest number of a kind in a page."""
-_NOWHERE: Final = -32768
+_MISSING: Final = -32768
 _TEMPLATE: Final = Path(__file__).with_name("player.html")
 _TITLE: Final = "player"
-KIND: Final = FileKind.marked(
+FILE_KIND: Final = FileKind.marked(
     "a player", (".html", ".htm"), generator_tag(_TITLE), generator_tag("animation")
 )
-_HEIGHT: Final = 640
+_FRAME_HEIGHT: Final = 640
 """Height of the player in a notebook [pixels]."""
 
 
@@ -112,7 +112,7 @@ class Player:
         FileError
             Another ending, or a file that cannot be written or is not replaced.
         """
-        return write_file(path, KIND, self._html.encode(), overwrite=overwrite)
+        return write_file(path, FILE_KIND, self._html.encode(), overwrite=overwrite)
 
     def to_html(self) -> str:
         """Return the page.
@@ -124,7 +124,7 @@ class Player:
         return self._html
 
     def _repr_html_(self) -> str:
-        style = f"width:100%;height:{_HEIGHT}px;border:0"
+        style = f"width:100%;height:{_FRAME_HEIGHT}px;border:0"
         return f'<iframe title="player" style="{style}" srcdoc="{escape(self._html)}"></iframe>'
 
     def __repr__(self) -> str:
@@ -179,49 +179,51 @@ def player(
     >>> player.save("run.html")  # doctest: +SKIP
     """
     run = checked_run(run, "player")
-    (drawn,) = runs_of(run, "player", window)
-    chosen = units_of(units, "player")
-    unit = chosen.unless_relative(ANGLE, rotation=chosen.rotations(rotation))
-    ground = chosen.of(ACCELERATION)
-    moving = Moving(drawn.dataset, "player", magnify, chosen)
-    start, end = float(drawn.time[0]), float(drawn.time[-1])
-    count = int(np.clip(1 + round((end - start) * _FRAMES_PER_SECOND), 2, _MOST_FRAMES))
-    shown_at = drawn.nearest(np.linspace(start, end, count))
-    store = _Numbers()
-    layers = _layers(moving, shown_at, store)
-    whose = " of body 1" if "body" in drawn.dataset.dims else ""
-    label = _label(f"rotation{whose}", "-" if unit is None else unit.words)
-    length = chosen.of(LENGTH)
+    (shown_run,) = read_runs(run, "player", window)
+    axis_units = figure_units(units, "player")
+    unit = axis_units.unit_or_relative(ANGLE, rotation=axis_units.rotation_unit(rotation))
+    ground = axis_units.axis_unit(ACCELERATION)
+    history = SceneHistory(shown_run.dataset, "player", magnify, axis_units)
+    start, end = float(shown_run.time[0]), float(shown_run.time[-1])
+    count = int(np.clip(1 + round((end - start) * _FRAMES_PER_SECOND), 2, _MAX_FRAMES))
+    samples = shown_run.nearest(np.linspace(start, end, count))
+    store = _PackedNumbers()
+    layers = _layers(history, samples, store)
+    of_body = " of body 1" if "body" in shown_run.dataset.dims else ""
+    label = _label_with_unit(f"rotation{of_body}", "-" if unit is None else unit.words)
+    length = axis_units.axis_unit(LENGTH)
     traces = [
-        _trace(of_rotation(drawn, unit), label, BLUE, store),
-        *(_trace(length.of(slip), _label(name, length.words), ORANGE, store)
-          for name, slip in _slips(drawn.dataset)),
-        _trace(ground.of(drawn.dataset["ground_acceleration"]),
-               _label("ground acceleration", ground.words), "ink", store),
+        _trace_data(rotation_values(shown_run, unit), label, BLUE, store),
+        *(_trace_data(length.of(slip), _label_with_unit(name, length.words), ORANGE, store)
+          for name, slip in _largest_slips(shown_run.dataset)),
+        _trace_data(ground.of(shown_run.dataset["ground_acceleration"]),
+               _label_with_unit("ground acceleration", ground.words), "ink", store),
     ]  # fmt: skip
     sentence = (
-        verdict_of_case(run, chosen.reader)
+        verdict_of_case(run, axis_units.reader)
         if title is None
         else checked_text(title, owner="rf.plot.player", name="title")
     )
     data = {
-        "times": [round(float(one), 6) for one in drawn.time[shown_at]],
+        "times": [round(float(one), 6) for one in shown_run.time[samples]],
         "layers": layers,
         "traces": traces,
-        "strips": [_strip(state, words) for state, words in strips_of([drawn]).values()],
+        "strips": [
+            _strip_data(state, words) for state, words in contact_strips([shown_run]).values()
+        ],
         "colours": CONTACT_COLOURS,
-        "pressed": CONTACT,
+        "pressed": CONTACT_COLOUR,
         "magnify": float(magnify),
         "length": {"words": with_superscripts(length.words), "size": length.size},
-        "levels": _LEVELS,
-        "nowhere": _NOWHERE,
+        "levels": _STEP_COUNT,
+        "nowhere": _MISSING,
         "numbers": store.packed(),
     }
-    html = _page(sentence, str(run.attrs.get("motion", "")), data)
+    html = _fill_template(sentence, str(run.attrs.get("motion", "")), data)
     return Player(html, end - start)
 
 
-class _Numbers:
+class _PackedNumbers:
     """Columns of numbers as integer multiples of steps, one after another."""
 
     def __init__(self) -> None:
@@ -229,8 +231,8 @@ class _Numbers:
 
     def add(self, values: np.ndarray, low: float, high: float) -> int:
         """Add columns, with NaN for missing values, and give the place of the first."""
-        step = (high - low) / _LEVELS or 1.0
-        whole = np.where(np.isnan(values), _NOWHERE, np.rint((values - low) / step))
+        step = (high - low) / _STEP_COUNT or 1.0
+        whole = np.where(np.isnan(values), _MISSING, np.rint((values - low) / step))
         before = sum(column.size for column in self._columns)
         self._columns.append(whole.astype(np.int64).T.ravel())
         return before
@@ -244,20 +246,20 @@ class _Numbers:
         return base64.b64encode(zlib.compress(halves, 9)).decode()
 
 
-def _layers(moving: Moving, shown_at: np.ndarray, store: _Numbers) -> dict[str, Any]:
+def _layers(history: SceneHistory, shown_at: np.ndarray, store: _PackedNumbers) -> dict[str, Any]:
     """Return everything that is drawn, at all instants."""
-    placements = [moving.at(int(place)) for place in shown_at]
-    found = [moving.drawer.lay_out(at) for at in placements]
-    layers = [*_of_parts(moving, found), *_of_contacts(found)]
+    placements = [history.placement_at(int(place)) for place in shown_at]
+    found = [history.builder.layout_at(at) for at in placements]
+    layers = [*_part_layers(history, found), *_contact_layers(found)]
     layers += [
         _Layer(name, "point", GREEN, 1.0,
-               np.array([moving.drawer.points(at, np.array([place])) for at in placements]))
-        for name, place in moving.points.items()
+               np.array([history.builder.points_at(at, np.array([place])) for at in placements]))
+        for name, place in history.points.items()
     ]  # fmt: skip
     corners = np.concatenate([one.points for one in layers if one.shape != "ground"], axis=1)
     low, high = np.nanmin(corners, axis=(0, 1)), np.nanmax(corners, axis=(0, 1))
-    reach = max(moving.drawer.reach, 1.08 * float(max(-low[0], high[0])))
-    depth, air = 0.3 * moving.drawer.reach, 0.06 * float(high[1] - low[1])
+    reach = max(history.builder.reach, 1.08 * float(max(-low[0], high[0])))
+    depth, air = 0.3 * history.builder.reach, 0.06 * float(high[1] - low[1])
     left, bottom = -reach, min(float(low[1]), 0.0) - depth
     width, height = 2.0 * reach, float(high[1]) + air - bottom
     listed = list[dict[str, Any]]()
@@ -269,15 +271,15 @@ def _layers(moving: Moving, shown_at: np.ndarray, store: _Numbers) -> dict[str, 
             "name": name, "shape": shape, "colour": colour, "fill": fill,
             "points": points.shape[1], "first": store.add(columns, 0.0, max(width, height)),
         })  # fmt: skip
-    pads = np.array([one.pads_bear for one in found], np.float64)
+    pads = np.array([one.pads_in_contact for one in found], np.float64)
     pressed = store.add(pads, 0.0, 1.0) if found[0].pads else None
     return {"left": left, "bottom": bottom, "width": width, "height": height, "pressed": pressed,
             "list": listed}  # fmt: skip
 
 
-def _of_parts(moving: Moving, found: Sequence[Layout]) -> Iterator[_Layer]:
+def _part_layers(history: SceneHistory, found: Sequence[Layout]) -> Iterator[_Layer]:
     """Return the parts of a scene, from the back to the front."""
-    upright, first = moving.drawer.lay_out(moving.upright), found[0]
+    upright, first = history.builder.layout_at(history.upright), found[0]
 
     def still(points: Array) -> Array:
         return np.repeat(points[None], len(found), axis=0)
@@ -290,58 +292,64 @@ def _of_parts(moving: Moving, found: Sequence[Layout]) -> Iterator[_Layer]:
     if first.soil is None:
         yield _Layer("ground", "ground", "soft", 0.35, np.array([one.ground for one in found]))
     else:
-        yield _Layer("soil", "ground", SOIL, 0.35, np.array([_surface(one) for one in found]))
+        yield _Layer(
+            "soil", "ground", SOIL_COLOUR, 0.35, np.array([_surface_corners(one) for one in found])
+        )
     for outline in upright.bodies:
         yield _Layer("at rest", "dashes", "soft", 0.0, still(outline))
-    if moving.geometry.wall is not None:
-        yield _Layer("wall", "outline", "soft", 0.35, still(moving.geometry.wall))
+    if history.geometry.wall is not None:
+        yield _Layer("wall", "outline", "soft", 0.35, still(history.geometry.wall))
     if first.cap is not None:
         yield _Layer("cap", "outline", ORANGE, 0.3, np.array([one.cap for one in found]))
-    yield from each("lower", "outline", ORANGE, 0.25)
+    yield from each("lower_bodies", "outline", ORANGE, 0.25)
     yield from each("pads", "outline", "soft", 0.7)
-    yield from each("others", "outline", BLUE, 0.25)
+    yield from each("frame_parts", "outline", BLUE, 0.25)
     block = np.array([one.block for one in found])
     yield _Layer("block", "outline", BLUE, 0.08 if first.members else 0.25, block)
     yield from each("members", "outline", BLUE, 0.3)
-    yield from each("ties", "line", VERMILLION, 0.0)
+    yield from each("restrainers", "line", VERMILLION, 0.0)
     yield _Layer("centre of mass", "cross", "ink", 1.0, np.array([one.centres for one in found]))
 
 
-def _of_contacts(found: Sequence[Layout]) -> Iterator[_Layer]:
+def _contact_layers(found: Sequence[Layout]) -> Iterator[_Layer]:
     """Return the contacts: both ends of each line; a point is a line of zero length."""
-    for k in range(len(found[0].touching)):
-        points = np.array([one.touching[k][[0, -1]] for one in found])
-        yield _Layer("contact", "contact", CONTACT, 0.0, points)
+    for k in range(len(found[0].contacts)):
+        points = np.array([one.contacts[k][[0, -1]] for one in found])
+        yield _Layer("contact", "contact", CONTACT_COLOUR, 0.0, points)
 
 
-def _slips(run: xr.Dataset) -> list[tuple[str, xr.DataArray]]:
+def _largest_slips(run: xr.Dataset) -> list[tuple[str, xr.DataArray]]:
     """Return the slips of the bodies that slid farthest, with their names."""
-    found = {SLIP: run[SLIP]} if SLIP in run else {}
-    if OF_BODIES in run:
-        found = {
-            f"slip of body {int(one.body)}": one for one in run[OF_BODIES].transpose("body", ...)
+    slips = {SLIP: run[SLIP]} if SLIP in run else {}
+    if BODY_SLIP in run:
+        slips = {
+            f"slip of body {int(one.body)}": one for one in run[BODY_SLIP].transpose("body", ...)
         }
-    elif OF_CAP in run:
-        found |= {"slip of the cap": run[OF_CAP]}
-    far = {name: float(np.abs(one).max()) for name, one in found.items()}
-    shown = sorted((name for name in far if far[name] >= MIN_REPORTED_SLIP), key=far.__getitem__)
-    return [(name, one) for name, one in found.items() if name in shown[-_MOST_SLIPS:]]
+    elif CAP_SLIP in run:
+        slips |= {"slip of the cap": run[CAP_SLIP]}
+    largest = {name: float(np.abs(one).max()) for name, one in slips.items()}
+    shown = sorted(
+        (name for name in largest if largest[name] >= MIN_REPORTED_SLIP), key=largest.__getitem__
+    )
+    return [(name, one) for name, one in slips.items() if name in shown[-_MAX_SLIP_TRACES:]]
 
 
-def _surface(found: Layout) -> Array:
+def _surface_corners(found: Layout) -> Array:
     """Return the corners of the surface of the soil, which is straight between them."""
     surface = cast("Array", found.soil)
     bend = int(np.argmax(np.abs(np.diff(surface[:, 1], 2)[2:-2]))) + 3
     return surface[[0, 1, 2, bend, -3, -2, -1]]
 
 
-def _label(words: str, unit: str) -> str:
+def _label_with_unit(words: str, unit: str) -> str:
     return f"{words} [{with_superscripts(unit)}]"
 
 
-def _trace(values: np.ndarray, label: str, colour: str, store: _Numbers) -> dict[str, Any]:
+def _trace_data(
+    values: np.ndarray, label: str, colour: str, store: _PackedNumbers
+) -> dict[str, Any]:
     """Return the least and the largest value in equal intervals of time."""
-    edges = np.linspace(0, values.size, min(_TRACE, values.size) + 1).astype(int)
+    edges = np.linspace(0, values.size, min(_TRACE_INTERVALS, values.size) + 1).astype(int)
     least = np.minimum.reduceat(values, edges[:-1])
     most = np.maximum.reduceat(values, edges[:-1])
     low, high = min(0.0, float(least.min())), max(0.0, float(most.max()))
@@ -352,7 +360,7 @@ def _trace(values: np.ndarray, label: str, colour: str, store: _Numbers) -> dict
             "high": high}  # fmt: skip
 
 
-def _strip(state: xr.DataArray, words: str) -> dict[str, Any]:
+def _strip_data(state: xr.DataArray, words: str) -> dict[str, Any]:
     """Return the instants at which contact changes, and the state after each."""
     values, time = state.to_numpy(), state["time"].to_numpy()
     changes = np.flatnonzero(np.diff(values, prepend=values[0] - 1))
@@ -361,7 +369,7 @@ def _strip(state: xr.DataArray, words: str) -> dict[str, Any]:
             "states": [names[int(values[k])] for k in changes]}  # fmt: skip
 
 
-def _page(sentence: str, motion: str, data: dict[str, Any]) -> str:
+def _fill_template(sentence: str, motion: str, data: dict[str, Any]) -> str:
     # otherwise "</script>" in a text would end the script
     written = json.dumps(data, separators=(",", ":")).replace("</", "<\\/")
     page = _TEMPLATE.read_text(encoding="utf-8")

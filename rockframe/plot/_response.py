@@ -23,17 +23,17 @@ from rockframe.plot._axes import (
     PURPLE,
     VERMILLION,
     DisplayUnit,
+    add_legend,
     as_label,
     axis_label,
-    colour_of,
-    ink,
-    key,
-    units_of,
+    figure_units,
+    line_colour,
+    text_colour,
     zero_line,
 )
 from rockframe.plot._checks import RUN, draws, overturning_angles
-from rockframe.plot._panels import Axes, AxesLike, Panels, sheet
-from rockframe.plot._runs import Run, RunsLike, Window, runs_of, runs_title
+from rockframe.plot._panels import Axes, AxesLike, Panels, make_sheet
+from rockframe.plot._runs import Run, RunsLike, Window, read_runs, runs_title
 from rockframe.results.outcome import MIN_REPORTED_SLIP
 from rockframe.results.variables.variable import flag_words
 from rockframe.units import ACCELERATION, ANGLE, LENGTH
@@ -47,7 +47,7 @@ CONTACT_COLOURS: Final = {
 }
 """Colour of each state, by its name in the schema; the colours differ as shades of grey too."""
 
-_COLUMNS: Final = 1 << 14
+_COLOUR_COLUMNS: Final = 1 << 14
 """More than the pixels of a figure: the colours within a pixel are then averaged well."""
 
 
@@ -58,7 +58,7 @@ def draw_contact(axes: Axes, state: xr.DataArray, name: str) -> None:
     bars would show only the one that was drawn last.
     """
     time = state["time"].to_numpy()
-    colours, ends = mixed_colours(state, _COLUMNS)[np.newaxis], (time[0], time[-1], 0.0, 1.0)
+    colours, ends = mean_colours(state, _COLOUR_COLUMNS)[np.newaxis], (time[0], time[-1], 0.0, 1.0)
     axes.imshow(colours, extent=ends, aspect="auto", interpolation="antialiased")
     axes.set_ylim(0.0, 1.0)
     axes.set_yticks([])
@@ -77,7 +77,7 @@ def draw_contact_legend(axes: Axes, state: xr.DataArray) -> None:
     )  # fmt: skip
 
 
-def mixed_colours(state: xr.DataArray, columns: int) -> Any:
+def mean_colours(state: xr.DataArray, columns: int) -> Any:
     """Return the mean colour in equal intervals of time."""
     from matplotlib.colors import to_rgb
 
@@ -85,13 +85,13 @@ def mixed_colours(state: xr.DataArray, columns: int) -> Any:
     edges = np.linspace(time[0], time[-1], columns + 1)
     colours = np.zeros((columns, 3))
     for value, name in flag_words(state.attrs).items():
-        held = np.concatenate([[0.0], np.cumsum(np.diff(time) * (values[:-1] == value))])
-        share = np.diff(np.interp(edges, time, held)) / np.diff(edges)
+        duration = np.concatenate([[0.0], np.cumsum(np.diff(time) * (values[:-1] == value))])
+        share = np.diff(np.interp(edges, time, duration)) / np.diff(edges)
         colours += share[:, np.newaxis] * np.array(to_rgb(CONTACT_COLOURS[name]))
     return np.clip(colours, 0.0, 1.0)
 
 
-MARKS: Final = {
+EVENT_MARKERS: Final = {
     "uplift": ("^", GREEN),
     "separation": ("^", ORANGE),
     "impact": ("o", VERMILLION),
@@ -116,51 +116,51 @@ horizontal restraint are not drawn: they coincide with a separation or a contact
 
 def draw_events(axes: Axes, runs: list[Run], unit: DisplayUnit | None) -> None:
     """Mark events on the history of the rotation, and name them in the legend."""
-    named: set[str] = set()
+    labelled: set[str] = set()
     for run in runs:
         dataset = run.dataset
         if "event_kind" not in dataset:
             continue
         rotation = dataset["event_rotation"].to_numpy()
         angles = overturning_angles(dataset)
-        drawn = relative(rotation, *angles) if unit is None else unit.of(rotation)
-        when = dataset["event_time"].to_numpy()
+        rotations = relative_rotation(rotation, *angles) if unit is None else unit.of(rotation)
+        times = dataset["event_time"].to_numpy()
         kinds = dataset["event_kind"].to_numpy()
         for value, name in flag_words(dataset["event_kind"].attrs).items():
-            chosen = kinds == value
-            if name not in MARKS or not chosen.any():
+            of_kind = kinds == value
+            if name not in EVENT_MARKERS or not of_kind.any():
                 continue
-            marker, colour = MARKS[name]
-            label = None if name in named else name.replace("_", " ")
-            named.add(name)
+            marker, colour = EVENT_MARKERS[name]
+            label = None if name in labelled else name.replace("_", " ")
+            labelled.add(name)
             face = "none" if marker in "^v" else colour
             axes.plot(
-                when[chosen], drawn[chosen], marker, color=colour, markerfacecolor=face,
+                times[of_kind], rotations[of_kind], marker, color=colour, markerfacecolor=face,
                 markersize=4.5, markeredgewidth=0.9, label=label, zorder=3,
             )  # fmt: skip
-    if named:
+    if labelled:
         several = any("event_body" in run.dataset for run in runs)
-        key(axes, title="events of all bodies" if several else "", title_fontsize="small")
+        add_legend(axes, title="events of all bodies" if several else "", title_fontsize="small")
 
 
-CONTACTS: Final = {"contact_state": "pads", "soil_contact_state": "soil"}
+CONTACT_NAMES: Final = {"contact_state": "pads", "soil_contact_state": "soil"}
 """Histories drawn as strips of contact states, and their names where there are two."""
-CONTACT_OF_BODIES: Final = "body_contact_state"
-_MOST_STRIPS: Final = 4
+BODY_CONTACT_STATE: Final = "body_contact_state"
+_MAX_STRIPS: Final = 4
 """Largest number of bodies of a stack with a strip of contact states."""
 _HEIGHTS: Final = {"ground": 1.0, "rotation": 2.0, "vertical": 1.6, "contact": 0.35}
-_NEAR: Final = 5.0
+_MAX_UPLIFT_RATIO: Final = 5.0
 """Uplift angle over the peak rotation above which its line is omitted, to leave room for runs."""
-_AT_REST: Final = 1e-12
+_ZERO_ROTATION: Final = 1e-12
 """Rotations below this are rounding [rad]."""
-_MOST_OF_PART: Final = 24
-"""Letters of the name of a point or a restrainer."""
+_MAX_NAME_LENGTH: Final = 24
+"""Longest name of a point or a restrainer [characters]."""
 SLIP: Final = "slip"
-OF_BODIES: Final = "body_slip"
-OF_CAP: Final = "cap_slip"
-SLIPS: Final = (SLIP, OF_BODIES, OF_CAP)
+BODY_SLIP: Final = "body_slip"
+CAP_SLIP: Final = "cap_slip"
+SLIP_HISTORIES: Final = (SLIP, BODY_SLIP, CAP_SLIP)
 """Histories of slip; one panel shows those that a run has."""
-_STACKED: Final = "rotation_on_cap"
+_ROTATION_ON_CAP: Final = "rotation_on_cap"
 
 
 @draws(RUN, ax="sequence of Axes, one for each panel", title="the verdict")
@@ -226,18 +226,18 @@ def response(
     'rotation [°]'
     >>> axes.figure.savefig("rotation.png")  # doctest: +SKIP
     """
-    data = runs_of(runs, "response", window)
-    chosen = units_of(units, "response")
+    data = read_runs(runs, "response", window)
+    axis_units = figure_units(units, "response")
     shown_in = {
-        "ground": chosen.of(ACCELERATION, acceleration=acceleration),
-        "rotation": chosen.unless_relative(ANGLE, rotation=rotation),
-        "vertical": chosen.unless_relative(LENGTH, vertical=vertical),
+        "ground": axis_units.axis_unit(ACCELERATION, acceleration=acceleration),
+        "rotation": axis_units.unit_or_relative(ANGLE, rotation=rotation),
+        "vertical": axis_units.unit_or_relative(LENGTH, vertical=vertical),
     }
     marked = checked_bool(events, owner="rf.plot.response", name="events")
-    strips = strips_of(data)
+    strips = contact_strips(data)
     names = [
         name
-        for panel in (usual_panels(data) if panels is None else _chosen(panels, data))
+        for panel in (default_panels(data) if panels is None else _read_panels(panels, data))
         for name in (strips if panel == "contact" else {panel: None})
     ]
     heights = [
@@ -245,78 +245,78 @@ def response(
         for name in names
     ]
 
-    on = sheet(
+    sheet = make_sheet(
         ax, "response", names, (8.0, 1.0 + 1.15 * sum(heights)),
         lambda figure: figure.subplots(len(names), 1, sharex=True, height_ratios=heights),
         choice=True,
     )  # fmt: skip
-    drawn = dict(zip(names, on.panels, strict=True))
+    drawn = dict(zip(names, sheet.panels, strict=True))
     for name, axes in drawn.items():
         if name in strips:
             state, words = strips[name]
             draw_contact(axes, state, words)
-        elif name not in _DRAW:
-            _history(axes, data, name, chosen.reader)
+        elif name not in _PANEL_FUNCTIONS:
+            _draw_history(axes, data, name, axis_units.reader)
         else:
-            _DRAW[name](axes, data, shown_in[name])
+            _PANEL_FUNCTIONS[name](axes, data, shown_in[name])
     if marked and "rotation" in drawn:
         draw_events(drawn["rotation"], data, shown_in["rotation"])
     below = [axes for name, axes in drawn.items() if name in strips]
     if below:
         draw_contact_legend(below[-1], next(iter(strips.values()))[0])
-    on.panels[-1].set_xlabel("time [s]")
+    sheet.panels[-1].set_xlabel("time [s]")
     ends = [run.time[[0, -1]] for run in data]
-    for axes in on.panels:
+    for axes in sheet.panels:
         axes.set_xlim(min(start for start, _ in ends), max(end for _, end in ends))
-    on.entitle(runs_title(data, chosen.reader), title)
-    return on.panels
+    sheet.set_title(runs_title(data, axis_units.reader), title)
+    return sheet.panels
 
 
-def of_rotation(run: Run, unit: DisplayUnit | None, name: str = "rotation") -> Any:
+def rotation_values(run: Run, unit: DisplayUnit | None, name: str = "rotation") -> Any:
     """Return a rotation in a unit; without a unit over the overturning angle of its side."""
     values = run.dataset[name].to_numpy()
     if unit is not None:
         return unit.of(values)
-    return relative(values, *overturning_angles(run.dataset))
+    return relative_rotation(values, *overturning_angles(run.dataset))
 
 
-def relative(rotation: Any, left: float, right: float) -> Any:
+def relative_rotation(rotation: Any, left: float, right: float) -> Any:
     """Return rotations over the overturning angle of their side."""
     return np.asarray(rotation) / np.where(np.asarray(rotation) < 0.0, left, right)
 
 
 def has_slid(run: xr.Dataset) -> bool:
     """Whether any body of a run slid enough for a panel of its slip."""
-    slips = (run[name] for name in SLIPS if name in run)
+    slips = (run[name] for name in SLIP_HISTORIES if name in run)
     return any(float(np.abs(slip).max()) >= MIN_REPORTED_SLIP for slip in slips)
 
 
-def usual_panels(runs: list[Run]) -> tuple[str, ...]:
+def default_panels(runs: list[Run]) -> tuple[str, ...]:
     """Return the default panels of runs."""
     slid = any(has_slid(run.dataset) for run in runs)
-    of_bodies = len(runs) == 1 and OF_BODIES in runs[0].dataset
+    of_bodies = len(runs) == 1 and BODY_SLIP in runs[0].dataset
     *above, contact = _HEIGHTS
-    return (*above, *([OF_BODIES if of_bodies else SLIP] if slid else []), contact)
+    return (*above, *([BODY_SLIP if of_bodies else SLIP] if slid else []), contact)
 
 
-def _chosen(panels: object, runs: list[Run]) -> tuple[str, ...]:
+def _read_panels(panels: object, runs: list[Run]) -> tuple[str, ...]:
     chosen: tuple[object, ...] = tuple(panels) if isinstance(panels, tuple | list) else (panels,)
-    histories = list(dict.fromkeys(name for run in runs for name in histories_of(run.dataset)))
+    histories = list(dict.fromkeys(name for run in runs for name in history_names(run.dataset)))
     known_names = [*_HEIGHTS, *histories]
     unknown = [one for one in chosen if not isinstance(one, str) or one not in known_names]
     if not chosen or unknown:
         known = ", ".join(repr(name) for name in _HEIGHTS)
-        found = unknown[0] if unknown else panels
-        near = did_you_mean(found, [*_HEIGHTS, *histories]) or "."
+        wrong = unknown[0] if unknown else panels
+        proposal = did_you_mean(wrong, [*_HEIGHTS, *histories]) or "."
         msg = (
             f"rf.plot.response: panels are some of {known}, and histories of the runs, got "
-            f"{short_repr(found)}{near} They hold {', '.join(map(repr, histories))}"
+            f"{short_repr(wrong)}{proposal} They hold {', '.join(map(repr, histories))}"
         )
         raise ComponentError(msg)
     return tuple(map(str, chosen))
 
 
-def histories_of(run: xr.Dataset) -> list[str]:
+def history_names(run: xr.Dataset) -> list[str]:
     """Return the names of the histories of a run, also of those of several points or bodies."""
     return [
         str(name)
@@ -325,51 +325,51 @@ def histories_of(run: xr.Dataset) -> list[str]:
     ]
 
 
-def strips_of(runs: list[Run]) -> dict[str, tuple[xr.DataArray, str]]:
+def contact_strips(runs: list[Run]) -> dict[str, tuple[xr.DataArray, str]]:
     """Return the strips of contact states with their labels."""
-    found: dict[str, tuple[xr.DataArray, str]] = {}
+    strips: dict[str, tuple[xr.DataArray, str]] = {}
     for run in runs:
-        for whose, state in _contacts_of(run.dataset, alone=len(runs) == 1).items():
-            text = ", ".join(filter(None, (run.label, whose)))
-            found[f"contact of {text}" if text else "contact"] = state, text or "contact"
-    return found
+        for owner, state in _contact_states(run.dataset, single=len(runs) == 1).items():
+            label = ", ".join(filter(None, (run.label, owner)))
+            strips[f"contact of {label}" if label else "contact"] = state, label or "contact"
+    return strips
 
 
-def _contacts_of(run: xr.Dataset, *, alone: bool) -> dict[str, xr.DataArray]:
+def _contact_states(run: xr.Dataset, *, single: bool) -> dict[str, xr.DataArray]:
     """Return the contact states of a run, by the name of the body or base."""
     if "body" in run.dims:
-        if not alone or CONTACT_OF_BODIES not in run:
+        if not single or BODY_CONTACT_STATE not in run:
             return {"body 1": run["contact_state"]}
-        states = run[CONTACT_OF_BODIES].transpose("body", "time")
+        states = run[BODY_CONTACT_STATE].transpose("body", "time")
         # those that are longest without full contact, of a high stack
-        open_for = (states != ContactState.FULL).sum("time").to_numpy()
-        shown = np.sort(np.argsort(-open_for, kind="stable")[:_MOST_STRIPS])
+        open_count = (states != ContactState.FULL).sum("time").to_numpy()
+        shown = np.sort(np.argsort(-open_count, kind="stable")[:_MAX_STRIPS])
         return {f"body {int(one['body'])}": one for one in states.isel(body=shown)}
-    names = [name for name in CONTACTS if name in run]
-    if _STACKED not in run:  # one body: the soil's contact is the only one
+    names = [name for name in CONTACT_NAMES if name in run]
+    if _ROTATION_ON_CAP not in run:  # one body: the soil's contact is the only one
         return {"": run[names[0]]}
-    return {CONTACTS[name]: run[name] for name in names}
+    return {CONTACT_NAMES[name]: run[name] for name in names}
 
 
-def _ground(axes: Axes, runs: list[Run], unit: DisplayUnit) -> None:
+def _draw_ground(axes: Axes, runs: list[Run], unit: DisplayUnit) -> None:
     across, upwards = "ground_acceleration", "vertical_ground_acceleration"
-    moved = [
+    ground_motions = [
         run.dataset[[name for name in (across, upwards) if name in run.dataset]] for run in runs
     ]
-    alike = all(one.equals(moved[0]) for one in moved)
-    for run in runs[:1] if alike else runs:
-        for name, style, width in ((upwards, "-" if alike else ":", 0.6), (across, "-", 0.8)):
+    all_equal = all(one.equals(ground_motions[0]) for one in ground_motions)
+    for run in runs[:1] if all_equal else runs:
+        for name, style, width in ((upwards, "-" if all_equal else ":", 0.6), (across, "-", 0.8)):
             if name not in run.dataset:
                 continue
-            colour = run.colour if not alike else ink() if name == across else GREY
+            colour = run.colour if not all_equal else text_colour() if name == across else GREY
             label = "vertical" if name == upwards else None
             values = unit.of(run.dataset[name])
             axes.plot(run.time, values, style, color=colour, linewidth=width, label=label)
-    key(axes)
+    add_legend(axes)
     axes.set_ylabel(axis_label("ground\n", unit.words))
 
 
-def _history(axes: Axes, runs: list[Run], name: str, units: DisplayUnits) -> None:
+def _draw_history(axes: Axes, runs: list[Run], name: str, units: DisplayUnits) -> None:
     """Draw any other history, of the runs that have it, with one line for each point."""
     runs = [run for run in runs if name in run.dataset]
     unit = units.of(str(runs[0].dataset[name].attrs.get("units", "1")))
@@ -378,41 +378,41 @@ def _history(axes: Axes, runs: list[Run], name: str, units: DisplayUnits) -> Non
         rows = values if values.ndim > 1 else values.expand_dims("row")
         first = str(rows.dims[0])
         for number, row in enumerate(rows):
-            part = as_label(str(row[first].item()), _MOST_OF_PART) if first in row.coords else ""
+            part = as_label(str(row[first].item()), _MAX_NAME_LENGTH) if first in row.coords else ""
             label = ", ".join(filter(None, (run.label, part))) or None
-            colour = run.colour if len(rows) == 1 else colour_of(number)
+            colour = run.colour if len(rows) == 1 else line_colour(number)
             axes.plot(run.time, unit.of(row), color=colour, linestyle=run.style, linewidth=0.9,
                       label=label)  # fmt: skip
-    if name == SLIP and len(runs) == 1 and OF_CAP in runs[0].dataset:
+    if name == SLIP and len(runs) == 1 and CAP_SLIP in runs[0].dataset:
         axes.lines[-1].set_label("block")
-        cap = unit.of(runs[0].dataset[OF_CAP])
+        cap = unit.of(runs[0].dataset[CAP_SLIP])
         axes.plot(runs[0].time, cap, color=ORANGE, linewidth=0.9, label="cap")
-    key(axes)
+    add_legend(axes)
     zero_line(axes)
     words = "\n".join(wrap(name.replace("_", " "), 16))
     axes.set_ylabel(axis_label(f"{words}\n", unit.words))
 
 
-def _rotation(axes: Axes, runs: list[Run], unit: DisplayUnit | None) -> None:
+def _draw_rotation(axes: Axes, runs: list[Run], unit: DisplayUnit | None) -> None:
     several = len(runs) > 1
     for run in runs:
         dataset = run.dataset
         axes.plot(
-            run.time, of_rotation(run, unit), color=run.colour, linestyle=run.style, linewidth=1.1,
-            label=run.label or ("body 1" if "body" in dataset.dims else "block"),
+            run.time, rotation_values(run, unit), color=run.colour, linestyle=run.style,
+            linewidth=1.1, label=run.label or ("body 1" if "body" in dataset.dims else "block"),
         )  # fmt: skip
-        if _STACKED in dataset and not several:
-            cap = of_rotation(run, unit, "cap_rotation")
+        if _ROTATION_ON_CAP in dataset and not several:
+            cap = rotation_values(run, unit, "cap_rotation")
             axes.plot(run.time, cap, color=ORANGE, linewidth=0.9, label="cap")
         elif not several and "body" not in dataset.dims:  # of a stack it is that on the base
-            _uplift(axes, dataset, unit)
+            _draw_uplift_angles(axes, dataset, unit)
         if bool(dataset["overturned"]):
             colour = run.colour if several else VERMILLION
             axes.axvline(float(dataset["overturning_time"]), color=colour, linestyle=":")
     if axes.get_legend_handles_labels()[1] != ["block"]:
-        key(axes)
+        add_legend(axes)
     zero_line(axes)
-    if max(float(np.abs(run.dataset["rotation"]).max()) for run in runs) < _AT_REST:
+    if max(float(np.abs(run.dataset["rotation"]).max()) for run in runs) < _ZERO_ROTATION:
         axes.set_ylim(-1e-3, 1e-3)  # otherwise the axis would show rounding errors
     if unit is not None:
         axes.set_ylabel(axis_label("rotation", unit.words))
@@ -420,21 +420,21 @@ def _rotation(axes: Axes, runs: list[Run], unit: DisplayUnit | None) -> None:
     axes.set_ylabel(r"rotation $\alpha/\theta$ [-]")
     angles = {overturning_angles(run.dataset) for run in runs}
     if len(angles) == 1:
-        _degrees_on_the_right(axes, *angles.pop())
+        _add_degree_axis(axes, *angles.pop())
 
 
-def _uplift(axes: Axes, dataset: xr.Dataset, unit: DisplayUnit | None) -> None:
+def _draw_uplift_angles(axes: Axes, dataset: xr.Dataset, unit: DisplayUnit | None) -> None:
     """Draw the rotations at which contact is first lost, if the run comes near them."""
     uplift, peak = float(dataset["uplift_angle"]), float(np.abs(dataset["rotation"]).max())
-    if not (np.isfinite(uplift) and 0.0 < uplift < _NEAR * peak):
+    if not (np.isfinite(uplift) and 0.0 < uplift < _MAX_UPLIFT_RATIO * peak):
         return
     both = np.array([-uplift, uplift])
-    drawn = relative(both, *overturning_angles(dataset)) if unit is None else unit.of(both)
+    drawn = relative_rotation(both, *overturning_angles(dataset)) if unit is None else unit.of(both)
     for place, label in zip(drawn, (None, "uplift"), strict=True):
         axes.axhline(place, color=GREEN, linewidth=0.7, linestyle="--", label=label)
 
 
-def _degrees_on_the_right(axes: Axes, left: float, right: float) -> None:
+def _add_degree_axis(axes: Axes, left: float, right: float) -> None:
     """Add degrees on the right of an axis of rotations over the overturning angle."""
 
     def degrees(share: Any) -> Any:
@@ -442,18 +442,18 @@ def _degrees_on_the_right(axes: Axes, left: float, right: float) -> None:
         return np.degrees(share * np.where(share < 0.0, left, right))
 
     def share(angle: Any) -> Any:
-        return relative(np.radians(np.asarray(angle, np.float64)), left, right)
+        return relative_rotation(np.radians(np.asarray(angle, np.float64)), left, right)
 
     axes.secondary_yaxis("right", functions=(degrees, share)).set_ylabel("[°]")
 
 
-def _vertical(axes: Axes, runs: list[Run], unit: DisplayUnit | None) -> None:
+def _draw_vertical(axes: Axes, runs: list[Run], unit: DisplayUnit | None) -> None:
     name = "relative_vertical_displacement"
     over_settlement = unit is None and all(name in run.dataset for run in runs)
     metres = unit or METRES
     for number, run in enumerate(runs):
-        shown_as = run.dataset[name if over_settlement else "vertical_displacement"]
-        values = shown_as.to_numpy() if over_settlement else metres.of(shown_as)
+        displacement = run.dataset[name if over_settlement else "vertical_displacement"]
+        values = displacement.to_numpy() if over_settlement else metres.of(displacement)
         colour = COLOURS[number % len(COLOURS)]
         axes.plot(run.time, values, color=colour, linestyle=run.style, linewidth=1.1)
     zero_line(axes)
@@ -461,27 +461,30 @@ def _vertical(axes: Axes, runs: list[Run], unit: DisplayUnit | None) -> None:
         of_stack = "\nof body 1" if any("body" in run.dataset.dims for run in runs) else ""
         axes.set_ylabel(axis_label(f"vertical $y${of_stack}", metres.words))
         return
-    stacked = any(_STACKED in run.dataset for run in runs)  # pads and soil: two settlements
-    whose = "\n($\\delta$ of the pads)" if stacked else ""
-    axes.set_ylabel(rf"vertical $y/\delta$ [-]{whose}")
-    sizes = {settlement_in(run.dataset) for run in runs}
-    size = sizes.pop()
-    if not sizes and size > 0.0:
-        both = (lambda y: 1e3 * size * np.asarray(y), lambda y: np.asarray(y) / (1e3 * size))
-        axes.secondary_yaxis("right", functions=both).set_ylabel("[mm]")
+    stacked = any(_ROTATION_ON_CAP in run.dataset for run in runs)  # pads and soil: two settlements
+    of_pads = "\n($\\delta$ of the pads)" if stacked else ""
+    axes.set_ylabel(rf"vertical $y/\delta$ [-]{of_pads}")
+    settlements = {settlement_of_run(run.dataset) for run in runs}
+    settlement = settlements.pop()
+    if not settlements and settlement > 0.0:
+        conversions = (
+            lambda y: 1e3 * settlement * np.asarray(y),
+            lambda y: np.asarray(y) / (1e3 * settlement),
+        )
+        axes.secondary_yaxis("right", functions=conversions).set_ylabel("[mm]")
 
 
-def settlement_in(run: xr.Dataset) -> float:
+def settlement_of_run(run: xr.Dataset) -> float:
     """Find the settlement by which vertical displacements were divided [m]."""
-    share = run["relative_vertical_displacement"].to_numpy()
-    most = int(np.argmax(np.abs(share)))
-    if share[most] == 0.0:
+    relative = run["relative_vertical_displacement"].to_numpy()
+    largest = int(np.argmax(np.abs(relative)))
+    if relative[largest] == 0.0:
         return 0.0
-    return float(f"{float(run['vertical_displacement'][most]) / float(share[most]):.12g}")
+    return float(f"{float(run['vertical_displacement'][largest]) / float(relative[largest]):.12g}")
 
 
-_DRAW: Final[dict[str, Callable[..., None]]] = {
-    "ground": _ground,
-    "rotation": _rotation,
-    "vertical": _vertical,
+_PANEL_FUNCTIONS: Final[dict[str, Callable[..., None]]] = {
+    "ground": _draw_ground,
+    "rotation": _draw_rotation,
+    "vertical": _draw_vertical,
 }

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import ComponentError, short_repr
-from rockframe.plot._axes import colour_of, labels_of_names, style_of
+from rockframe.plot._axes import line_colour, line_style, unique_labels
 from rockframe.plot._checks import checked_run
 from rockframe.results.outcome import verdict_of
 from rockframe.results.variables.variable import flag_words, unit_suffix
@@ -41,20 +41,27 @@ class Run:
         return np.where(times - self.time[before] <= self.time[after] - times, before, after)
 
 
-def runs_of(value: object, function: str, window: Window) -> list[Run]:
+def read_runs(value: object, function: str, window: Window) -> list[Run]:
     """Read one or several runs, and cut out the window that is drawn."""
-    cut = window_of(window, function)
-    labelled = _labelled(value)
+    limits = read_window(window, function)
+    labelled = _labelled_runs(value)
     if labelled is None:
-        return [Run(_part(checked_run(value, function), cut, function), None, colour_of(0), "-")]
+        return [
+            Run(
+                _within_window(checked_run(value, function), limits, function),
+                None,
+                line_colour(0),
+                "-",
+            )
+        ]
     runs = [checked_run(one, function) for one in labelled.values()]
     return [
-        Run(_part(one, cut, function), label, colour_of(number), style_of(number))
-        for number, (label, one) in enumerate(zip(labels_of_names(labelled), runs, strict=True))
+        Run(_within_window(one, limits, function), label, line_colour(number), line_style(number))
+        for number, (label, one) in enumerate(zip(unique_labels(labelled), runs, strict=True))
     ]
 
 
-def window_of(window: object, function: str, name: str = "window") -> tuple[float, float]:
+def read_window(window: object, function: str, name: str = "window") -> tuple[float, float]:
     """Read a window of times or of periods; an end that is not given is infinite [s]."""
     if window is None:
         return -np.inf, np.inf
@@ -85,24 +92,24 @@ def runs_title(runs: list[Run], units: DisplayUnits) -> str:
 
 
 def verdict_of_case(run: xr.Dataset, units: DisplayUnits) -> str:
-    """Return verdict of a run, also of one case of a sweep, whose attribute covers all cases."""
+    """Return the verdict on a run, also on a case of a sweep, whose attribute covers all cases."""
     if "axes_json" not in run.attrs:
         return units.convert_text(str(run.attrs.get("verdict", "")))
-    fell = verdict_of(run)
-    if fell is None:
+    overturned = verdict_of(run)
+    if overturned is None:
         words = flag_words(run["status"].attrs)[run["status"].item()]
         text = f"no verdict, {words.replace('_', ' ')}"
-    elif fell:
+    elif overturned:
         text = f"overturned at {float(run['overturning_time']):.4g} s"
     else:
         share = 100.0 * float(run["peak_relative_rotation"])
         peak = f"peak rotation {float(run['peak_rotation']):.4g} rad"
         text = f"did not overturn, {peak}, {share:.3g} % of the overturning angle"
-    return units.convert_text(f"{_labels_of(run)}: {text}")
+    return units.convert_text(f"{_case_label(run)}: {text}")
 
 
-def _labels_of(run: xr.Dataset) -> str:
-    """Tell which case of a sweep a run is."""
+def _case_label(run: xr.Dataset) -> str:
+    """Name the case of a sweep by its coordinates."""
     axes = [str(one["name"]) for one in json.loads(str(run.attrs["axes_json"]))]
     names = [name for name in ("motion", *axes) if name in run.coords and not run[name].dims]
     labels = [(name.replace("_", " "), run[name].item(), run[name].attrs) for name in names]
@@ -113,17 +120,17 @@ def _labels_of(run: xr.Dataset) -> str:
     return ", ".join(words) or "case of a sweep"
 
 
-def _labelled(value: object) -> dict[str, Any] | None:
+def _labelled_runs(value: object) -> dict[str, Any] | None:
     """Return several runs by their labels; None for a single run."""
     if isinstance(value, Mapping) and not isinstance(value, xr.Dataset):
         labels = {str(key): one for key, one in value.items()}
-        return labels if labels and _all_runs(list(labels.values())) else None
+        return labels if labels and _are_datasets(list(labels.values())) else None
     if not isinstance(value, list | tuple) or not value:
         return None
     runs = list(cast("Sequence[Any]", value))
-    if not _all_runs(runs):
+    if not _are_datasets(runs):
         return None
-    cases = [_labels_of(run) if "axes_json" in run.attrs else "" for run in runs]
+    cases = [_case_label(run) if "axes_json" in run.attrs else "" for run in runs]
     attributes = ("motion", "model", "accuracy")
     for names in [cases, *([str(run.attrs.get(one, "")) for run in runs] for one in attributes)]:
         if len(set(names)) == len(runs):
@@ -131,16 +138,16 @@ def _labelled(value: object) -> dict[str, Any] | None:
     return {f"run {number}": run for number, run in enumerate(runs, start=1)}
 
 
-def _all_runs(values: list[Any]) -> bool:
+def _are_datasets(values: list[Any]) -> bool:
     return all(isinstance(one, xr.Dataset) for one in values)
 
 
-def _part(run: xr.Dataset, cut: tuple[float, float], function: str) -> xr.Dataset:
+def _within_window(run: xr.Dataset, limits: tuple[float, float], function: str) -> xr.Dataset:
     """Cut out a window of time, with the events in it."""
-    if not np.isfinite(cut).any():
+    if not np.isfinite(limits).any():
         return run
     time = run["time"].to_numpy()
-    inside = np.flatnonzero((time >= cut[0]) & (time <= cut[1]))
+    inside = np.flatnonzero((time >= limits[0]) & (time <= limits[1]))
     if inside.size < 2:
         msg = (
             f"rf.plot.{function}: the window holds {inside.size} of the run's samples, which go "
@@ -149,6 +156,6 @@ def _part(run: xr.Dataset, cut: tuple[float, float], function: str) -> xr.Datase
         raise ComponentError(msg)
     part = run.isel(time=slice(int(inside[0]), int(inside[-1]) + 1))
     if "event_time" in part:
-        when = part["event_time"].to_numpy()
-        part = part.isel(event=np.flatnonzero((when >= cut[0]) & (when <= cut[1])))
+        times = part["event_time"].to_numpy()
+        part = part.isel(event=np.flatnonzero((times >= limits[0]) & (times <= limits[1])))
     return part

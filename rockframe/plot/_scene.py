@@ -9,11 +9,18 @@ import xarray as xr
 from rockframe.arguments import checked_bool
 from rockframe.dynamics.events import LinkState
 from rockframe.errors import ComponentError, SchemaError, short_repr
-from rockframe.plot._artists import Drawer, SceneArtist, part_labels
-from rockframe.plot._axes import FigureUnits, units_of
-from rockframe.plot._checks import RUN, above_zero, checked_run, draws, refuse, system_of_run
-from rockframe.plot._panels import Axes, AxesLike, single
-from rockframe.plot._response import CONTACT_OF_BODIES
+from rockframe.plot._artists import LayoutBuilder, SceneArtist, part_labels
+from rockframe.plot._axes import FigureUnits, figure_units
+from rockframe.plot._checks import (
+    RUN,
+    checked_run,
+    draws,
+    mismatch_message,
+    read_positive,
+    system_of_run,
+)
+from rockframe.plot._panels import Axes, AxesLike, make_single_panel
+from rockframe.plot._response import BODY_CONTACT_STATE
 from rockframe.results.points import UPRIGHT, Placement
 from rockframe.simulation.plan import read_body_points
 from rockframe.simulation.system import System
@@ -21,7 +28,7 @@ from rockframe.system.geometry import Geometry, geometry_of
 from rockframe.units import ANGLE, LENGTH, TIME, QuantityLike, to_si
 from rockframe.units.display import UnitsLike, unit_suffix
 
-_FOLLOWED: Final = (
+_PLACEMENT_HISTORIES: Final = (
     "rotation",
     "horizontal_displacement",
     "vertical_displacement",
@@ -33,11 +40,11 @@ _FOLLOWED: Final = (
     "soil_contact_state",
 )
 """Histories that give the places of a scene's parts; those of the cap only where there is one."""
-_OF_BODIES: Final = (
+_BODY_HISTORIES: Final = (
     "body_rotation", "body_horizontal_displacement", "body_vertical_displacement",
 )  # fmt: skip
 """The same for all bodies of a stack."""
-_OF_TIES: Final = "restrainer_state"
+_RESTRAINER_STATE: Final = "restrainer_state"
 _BROKEN_COUNT: Final = "broken_restrainer_count"
 
 
@@ -86,29 +93,31 @@ def scene(
     '[m]'
     """
     if not isinstance(cast("object", system), System):
-        raise ComponentError(refuse("scene", system))
-    drawer = Drawer(geometry_of(system.assembly))
-    at = Placement(drawer.geometry, UPRIGHT, system.restraint)
-    named = checked_bool(legend, owner="rf.plot.scene", name="legend")
+        raise ComponentError(mismatch_message("scene", system))
+    builder = LayoutBuilder(geometry_of(system.assembly))
+    placement = Placement(builder.geometry, UPRIGHT, system.restraint)
+    with_legend = checked_bool(legend, owner="rf.plot.scene", name="legend")
     faults: list[str] = []
     marked = read_body_points(points, faults, owner="rf.plot.scene")
     if faults:
         msg = f"rf.plot.scene: {'; '.join(faults)}"
         raise ComponentError(msg)
-    on = single(ax, "scene", figure_size(drawer, wide=named))
-    chosen = units_of(units, "scene")
-    names = part_labels(system.parts, drawer.geometry, chosen.reader)
-    artist = SceneArtist(on.axes, drawer, names, chosen.of(LENGTH))
-    artist.mark({point.name: (point.x, point.y) for point in marked})
-    artist.frame([at])
-    artist.draw(at)
-    if named:
-        artist.legend()
-    on.entitle("", title)
-    if named and on.own is not None:  # the layout makes room for the legend iteratively
+    sheet = make_single_panel(ax, "scene", figure_size(builder, wide=with_legend))
+    axis_units = figure_units(units, "scene")
+    names = part_labels(system.parts, builder.geometry, axis_units.reader)
+    artist = SceneArtist(sheet.axes, builder, names, axis_units.axis_unit(LENGTH))
+    artist.set_points({point.name: (point.x, point.y) for point in marked})
+    artist.set_limits([placement])
+    artist.draw(placement)
+    if with_legend:
+        artist.draw_legend()
+    sheet.set_title("", title)
+    if (
+        with_legend and sheet.own_figure is not None
+    ):  # the layout makes room for the legend iteratively
         for _ in range(2):
-            on.panels.figure.draw_without_rendering()
-    return on.axes
+            sheet.panels.figure.draw_without_rendering()
+    return sheet.axes
 
 
 @draws(RUN, title="time and rotation")
@@ -155,39 +164,39 @@ def state(
     ''
     """
     run = checked_run(run, "state")
-    chosen = units_of(units, "state")
-    moving = Moving(run, "state", magnify, chosen)
-    place = moving.nearest(time)
-    at = moving.at(place)
-    on = single(ax, "state", figure_size(moving.drawer, wide=False))
-    artist = SceneArtist(on.axes, moving.drawer, length=chosen.of(LENGTH))
-    artist.mark(moving.points)
-    artist.frame([at, moving.upright])
-    artist.rest(moving.upright)
-    artist.draw(at)
-    on.entitle(moving.words(place), title)
-    return on.axes
+    axis_units = figure_units(units, "state")
+    history = SceneHistory(run, "state", magnify, axis_units)
+    sample = history.nearest_sample(time)
+    placement = history.placement_at(sample)
+    sheet = make_single_panel(ax, "state", figure_size(history.builder, wide=False))
+    artist = SceneArtist(sheet.axes, history.builder, length=axis_units.axis_unit(LENGTH))
+    artist.set_points(history.points)
+    artist.set_limits([placement, history.upright])
+    artist.draw_at_rest(history.upright)
+    artist.draw(placement)
+    sheet.set_title(history.caption(sample), title)
+    return sheet.axes
 
 
-class Moving:
+class SceneHistory:
     """A run as a scene that moves."""
 
     def __init__(
         self, run: xr.Dataset, function: str, magnify: object, units: FigureUnits | None = None
     ) -> None:
         self.function = function
-        self.angle = (units or units_of(None, function)).of(ANGLE, "deg")
-        number = above_zero(magnify, function, "magnify")
+        self.angle = (units or figure_units(None, function)).axis_unit(ANGLE, "deg")
+        number = read_positive(magnify, function, "magnify")
         self.system = system_of_run(run, function)
-        self.drawer = Drawer(geometry_of(self.system.assembly), number)
+        self.builder = LayoutBuilder(geometry_of(self.system.assembly), number)
         self.run = run
         self.time = run["time"].to_numpy()
         needed = (
-            *_FOLLOWED[:4],
-            *((*_OF_BODIES, CONTACT_OF_BODIES) if self.geometry.lower else ()),
+            *_PLACEMENT_HISTORIES[:4],
+            *((*_BODY_HISTORIES, BODY_CONTACT_STATE) if self.geometry.lower else ()),
         )
         if self.geometry.links and run.get(_BROKEN_COUNT, 0) > 0:
-            needed += (_OF_TIES,)
+            needed += (_RESTRAINER_STATE,)
         missing = [name for name in needed if name not in run]
         if missing:
             msg = (
@@ -196,15 +205,15 @@ class Moving:
             )
             raise SchemaError(msg)
         self._broken = None
-        if _OF_TIES in run:
-            states = run[_OF_TIES].transpose("time", "restrainer").to_numpy()
+        if _RESTRAINER_STATE in run:
+            states = run[_RESTRAINER_STATE].transpose("time", "restrainer").to_numpy()
             self._broken = states == LinkState.BROKEN
-        self._columns = {name: run[name].to_numpy() for name in _FOLLOWED if name in run}
+        self._columns = {name: run[name].to_numpy() for name in _PLACEMENT_HISTORIES if name in run}
 
     @property
     def geometry(self) -> Geometry:
         """Geometry of the scene."""
-        return self.drawer.geometry
+        return self.builder.geometry
 
     @property
     def upright(self) -> Placement:
@@ -220,22 +229,24 @@ class Moving:
         places = zip(self.run["point_x"].to_numpy(), self.run["point_y"].to_numpy(), strict=True)
         return {str(name): (float(x), float(y)) for name, (x, y) in zip(names, places, strict=True)}
 
-    def at(self, place: int) -> Placement:
+    def placement_at(self, sample: int) -> Placement:
         """Return the scene at a sample."""
-        values = {name: float(column[place]) for name, column in self._columns.items()}
+        values = {name: float(column[sample]) for name, column in self._columns.items()}
         bodies = contacts = None
         if self.geometry.lower:
-            bodies = np.column_stack([self.run[name].to_numpy()[:, place] for name in _OF_BODIES])
-            contacts = self.run[CONTACT_OF_BODIES].to_numpy()[:, place]
+            bodies = np.column_stack(
+                [self.run[name].to_numpy()[:, sample] for name in _BODY_HISTORIES]
+            )
+            contacts = self.run[BODY_CONTACT_STATE].to_numpy()[:, sample]
         broken = frozenset[int]()
         if self._broken is not None:
-            broken = frozenset(np.flatnonzero(self._broken[place]).tolist())
+            broken = frozenset(np.flatnonzero(self._broken[sample]).tolist())
             if self.geometry.columns:  # in each column there are all tendons
                 all_broke = 0 < self.run.sizes["restrainer"] == len(broken)
                 broken = frozenset(range(len(self.geometry.links)) if all_broke else ())
         return Placement(self.geometry, values, self.system.restraint, bodies, broken, contacts)
 
-    def nearest(self, time: object) -> int:
+    def nearest_sample(self, time: object) -> int:
         """Find the sample nearest to a time, or that of the largest rotation."""
         if time is None:
             return int(np.argmax(np.abs(self.run["relative_rotation"].to_numpy())))
@@ -250,19 +261,21 @@ class Moving:
             raise ComponentError(msg)
         return int(np.argmin(np.abs(self.time - when)))
 
-    def words(self, place: int) -> str:
+    def caption(self, sample: int) -> str:
         """Write the time and rotation of a sample."""
-        angle = float(self.angle.of(self._columns["rotation"][place])) + 0.0  # no negative zero
-        share = abs(float(self.run["relative_rotation"][place]))
-        turned = f"{angle:.3g}{unit_suffix(self.angle.words)}"
-        whose = " of body 1" if "body" in self.run.dims else ""
-        text = f"{self.time[place]:.3f} s: {turned}, {100.0 * share:.3g} % of overturning{whose}"
-        factor = self.drawer.magnify
+        angle = float(self.angle.of(self._columns["rotation"][sample])) + 0.0  # no negative zero
+        share = abs(float(self.run["relative_rotation"][sample]))
+        rotation = f"{angle:.3g}{unit_suffix(self.angle.words)}"
+        of_body = " of body 1" if "body" in self.run.dims else ""
+        text = (
+            f"{self.time[sample]:.3f} s: {rotation}, {100.0 * share:.3g} % of overturning{of_body}"
+        )
+        factor = self.builder.magnify
         return text if factor == 1.0 else f"{text}; displacements times {factor:g}"
 
 
-def figure_size(drawer: Drawer, *, wide: bool) -> tuple[float, float]:
+def figure_size(builder: LayoutBuilder, *, wide: bool) -> tuple[float, float]:
     """Return the size of a figure for a scene [in]."""
-    geometry = drawer.geometry
-    tall = (geometry.base_level + geometry.height) / (2.0 * drawer.reach)
+    geometry = builder.geometry
+    tall = (geometry.base_level + geometry.height) / (2.0 * builder.reach)
     return (5.6 if wide else 4.2), float(np.clip(3.6 * tall, 3.2, 5.6))

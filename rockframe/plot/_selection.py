@@ -9,18 +9,18 @@ from rockframe.plot._axes import (
     BLUE,
     GREY,
     VERMILLION,
+    add_legend,
     axis_label,
     grid,
-    key,
     label_log_ticks,
-    labels_of_names,
+    unique_labels,
 )
-from rockframe.plot._checks import drawable, draws
-from rockframe.plot._panels import AxesLike, Panels, sheet
+from rockframe.plot._checks import draws, figure_data
+from rockframe.plot._panels import AxesLike, Panels, make_sheet
 from rockframe.units.display import UnitsLike
 
-_MOST_NAMED: Final = 50
-_LETTERS: Final = 34
+_MAX_NAMED: Final = 50
+_MAX_NAME_LENGTH: Final = 34
 
 
 @draws(
@@ -65,15 +65,15 @@ def selection(
     >>> [axes.get_xlabel() for axes in rf.plot.selection(found)]
     ['period [s]', 'misfit of the logarithm [-]']
     """
-    dataset = drawable(dataset, "selection", units)
+    dataset = figure_data(dataset, "selection", units)
     count = dataset.sizes["motion"]
-    on = sheet(
+    sheet = make_sheet(
         ax, "selection", ("spectra", "misfits"), (8.6, max(4.0, min(9.0, 1.0 + 0.16 * count))),
         lambda figure: figure.subplots(1, 2, width_ratios=[1.7, 1.0]),
     )  # fmt: skip
     drawn = dataset.isel(period=np.flatnonzero(dataset["period"].to_numpy() > 0.0))
     period = drawn["period"].to_numpy()
-    spectra, misfits = on.panels
+    spectra, misfits = sheet.panels
     for place in range(count):
         words = "motions" if place == 0 else None
         one = drawn["scaled_spectral_acceleration"].isel(motion=place)
@@ -92,16 +92,16 @@ def selection(
     unit = dataset["scaled_spectral_acceleration"].attrs["units"]
     spectra.set(xscale="log", yscale="log", xlabel="period [s]")
     spectra.set_ylabel(axis_label("pseudo-spectral acceleration", unit))
-    key(spectra)
-    labels = labels_of_names(map(str, dataset["motion"].to_numpy()), _LETTERS)
+    add_legend(spectra)
+    labels = unique_labels(map(str, dataset["motion"].to_numpy()), _MAX_NAME_LENGTH)
     factors = dataset["scale_factor"].to_numpy()
     misfits.barh(range(count), dataset["spectral_misfit"], color=GREY, alpha=0.7)
     misfits.set(xlabel="misfit of the logarithm [-]", ylim=(count - 0.5, -0.5))
-    if count <= _MOST_NAMED:
+    if count <= _MAX_NAMED:
         words = [f"{name}, $\\times${f:.3g}" for name, f in zip(labels, factors, strict=True)]
         misfits.set_yticks(range(count), words, fontsize="x-small")
-    for panel in on.panels:
+    for panel in sheet.panels:
         grid(panel)
     label_log_ticks(spectra)
-    on.entitle(f"{count} motions; {dataset.attrs['target']}", title)
-    return on.panels
+    sheet.set_title(f"{count} motions; {dataset.attrs['target']}", title)
+    return sheet.panels

@@ -13,30 +13,30 @@ from rockframe.motion.quantities import ArrayLike
 from rockframe.plot._axes import (
     BLUE,
     GREY,
-    STANDS,
+    PALE_BLUE,
     VERMILLION,
     DisplayUnit,
+    add_legend,
     axis_label,
-    colour_of,
+    figure_units,
     grid,
-    ink,
-    key,
     label_log_ticks,
-    style_of,
-    units_of,
+    line_colour,
+    line_style,
+    text_colour,
     zero_line,
 )
 from rockframe.plot._checks import draws
-from rockframe.plot._motion import Drawn, MotionsLike, drawn_motions, motions_title
-from rockframe.plot._panels import Axes, AxesLike, Panels, sheet, single
-from rockframe.plot._runs import Window, window_of
+from rockframe.plot._motion import LabelledMotion, MotionsLike, labelled_motions, motions_title
+from rockframe.plot._panels import Axes, AxesLike, Panels, make_sheet, make_single_panel
+from rockframe.plot._runs import Window, read_window
 from rockframe.suites import TargetSpectrum
 from rockframe.suites.target import check_target
 from rockframe.units import ACCELERATION, VELOCITY, QuantityLike, RatioLike
 from rockframe.units.display import UnitsLike
 
 _RESOLUTION: Final = "0.05 Hz"  # for short pulses; long records have a finer resolution
-_PREFIX: Final = {"horizontal": "", "vertical": "vertical_"}
+_VARIABLE_PREFIX: Final = {"horizontal": "", "vertical": "vertical_"}
 _PANELS: Final = ("history", "response", "fourier")
 
 
@@ -85,11 +85,11 @@ def spectra(
     >>> panels[0].get_xlabel()
     'time [s]'
     """
-    data = drawn_motions(motion, "spectra")
-    cut = window_of(window, "spectra")
-    chosen = units_of(units, "spectra")
-    unit = chosen.of(ACCELERATION, acceleration=acceleration)
-    amplitude = chosen.of(VELOCITY)
+    data = labelled_motions(motion, "spectra")
+    limits = read_window(window, "spectra")
+    axis_units = figure_units(units, "spectra")
+    unit = axis_units.axis_unit(ACCELERATION, acceleration=acceleration)
+    amplitude = axis_units.axis_unit(VELOCITY)
     found = [
         (
             one,
@@ -105,25 +105,30 @@ def spectra(
         drawn = figure.subplot_mosaic(mosaic, height_ratios=[1.0, 1.7])
         return [drawn[name] for name in _PANELS]
 
-    on = sheet(ax, "spectra", _PANELS, (7.2, 5.4), make)
+    sheet = make_sheet(ax, "spectra", _PANELS, (7.2, 5.4), make)
     for one, history, response, fourier in found:
-        name = f"{_PREFIX[str(component)]}ground_acceleration"
-        colour, part = ink() if one.label is None else one.colour, history.sel(time=slice(*cut))
+        name = f"{_VARIABLE_PREFIX[str(component)]}ground_acceleration"
+        colour, part = (
+            text_colour() if one.label is None else one.colour,
+            history.sel(time=slice(*limits)),
+        )
         values = unit.of(part[name])
-        on.axes.plot(part["time"], values, color=colour, linewidth=0.8, label=one.label)
-        zero_line(on.axes)
-        _response(on.panels[1], response, unit, one)
+        sheet.axes.plot(part["time"], values, color=colour, linewidth=0.8, label=one.label)
+        zero_line(sheet.axes)
+        _draw_response_spectra(sheet.panels[1], response, unit, one)
         rest = fourier.isel(frequency=slice(1, None))
         values = amplitude.of(rest["fourier_amplitude"])
-        on.panels[2].semilogx(rest["frequency"], values, color=colour, linewidth=0.7)
-    _label(on.panels, found, unit, amplitude)
+        sheet.panels[2].semilogx(rest["frequency"], values, color=colour, linewidth=0.7)
+    _label_axes(sheet.panels, found, unit, amplitude)
     if len(data) > 1:
-        on.legend(*on.panels[1].get_legend_handles_labels(), fontsize="small")
-    on.entitle(motions_title(data), title)
-    return on.panels
+        sheet.add_legend(*sheet.panels[1].get_legend_handles_labels(), fontsize="small")
+    sheet.set_title(motions_title(data), title)
+    return sheet.panels
 
 
-def _response(axes: Axes, dataset: xr.Dataset, unit: DisplayUnit, one: Drawn) -> None:
+def _draw_response_spectra(
+    axes: Axes, dataset: xr.Dataset, unit: DisplayUnit, one: LabelledMotion
+) -> None:
     drawn = dataset.isel(period=np.flatnonzero(dataset["period"].to_numpy() > 0.0))
     ratios = dataset["damping_ratio"].to_numpy().tolist()
     for place, ratio in enumerate(ratios):
@@ -132,13 +137,15 @@ def _response(axes: Axes, dataset: xr.Dataset, unit: DisplayUnit, one: Drawn) ->
         if one.label is not None:
             label = one.label if len(ratios) == 1 else f"{one.label}, {damping}"
         values = unit.of(drawn["pseudo_spectral_acceleration"].isel(damping_ratio=place))
-        colour = colour_of(place) if one.label is None else one.colour
+        colour = line_colour(place) if one.label is None else one.colour
         axes.semilogx(
-            drawn["period"], values, color=colour, ls=style_of(place), lw=1.2, label=label
+            drawn["period"], values, color=colour, ls=line_style(place), lw=1.2, label=label
         )
 
 
-def _label(panels: Panels, found: list[Any], unit: DisplayUnit, amplitude: DisplayUnit) -> None:
+def _label_axes(
+    panels: Panels, found: list[Any], unit: DisplayUnit, amplitude: DisplayUnit
+) -> None:
     history, response, fourier = panels
     several = len(found) > 1
     times = [each[1]["time"].to_numpy() for each in found]
@@ -149,7 +156,7 @@ def _label(panels: Panels, found: list[Any], unit: DisplayUnit, amplitude: Displ
     response.set(xlabel="period [s]", ylabel=axis_label("pseudo-spectral acceleration", unit.words))
     response.set_ylim(bottom=0.0)
     if not several:
-        key(response, title="damping", title_fontsize="small")
+        add_legend(response, title="damping", title_fontsize="small")
     highest = max(float(amplitude.of(each[3]["fourier_amplitude"]).max()) for each in found)
     if highest > 0.0:
         fourier.set_yscale("log")
@@ -168,8 +175,8 @@ class Average(StrEnum):
     MEAN = "mean"
 
 
-_SUITE: Final = "rf.plot.suite"
-_MOST_NAMED: Final = 6
+_SUITE_OWNER: Final = "rf.plot.suite"
+_MAX_NAMED: Final = 6
 _PERIODS: Final = (np.geomspace(0.05, 5.0, 80), "s")
 
 
@@ -233,12 +240,12 @@ def suite(
     >>> axes.get_ylabel()
     'pseudo-spectral acceleration [g]'
     """
-    data = drawn_motions(motions, "suite")
+    data = labelled_motions(motions, "suite")
     if target is not None:
         check_target(target, owner="rf.plot.suite")
-    middle = checked_choice(Average, average, owner=_SUITE, name="average")
-    cut = window_of(compared, "suite", "compared")
-    unit = units_of(units, "suite").of(ACCELERATION, "g", acceleration=acceleration)
+    shown_average = checked_choice(Average, average, owner=_SUITE_OWNER, name="average")
+    comparison = read_window(compared, "suite", "compared")
+    unit = figure_units(units, "suite").axis_unit(ACCELERATION, "g", acceleration=acceleration)
     labelled = {one.label or motions_title(data): one.motion for one in data}
     found = response_spectrum(labelled, periods, damping_ratio, component=component)
     found = found.isel(period=np.flatnonzero(found["period"].to_numpy() > 0.0))
@@ -246,44 +253,46 @@ def suite(
         found["pseudo_spectral_acceleration"].squeeze("damping_ratio").transpose("motion", ...)
     )
     period = found["period"].to_numpy()
-    on = single(ax, "suite", (6.0, 4.3))
-    few = (
-        len(data) <= _MOST_NAMED
+    sheet = make_single_panel(ax, "suite", (6.0, 4.3))
+    label_each = (
+        len(data) <= _MAX_NAMED
         if named is None
-        else checked_bool(named, owner=_SUITE, name="named")
+        else checked_bool(named, owner=_SUITE_OWNER, name="named")
     )
     for place, (label, one) in enumerate(zip(labelled, data, strict=True)):
-        words: Any = label if few else ("motions" if place == 0 else None)
-        on.axes.plot(
-            period, values[place], label=words, linewidth=0.9 if few else 0.6,
-            color=one.colour if few else GREY, linestyle=one.style if few else "-",
-            alpha=0.8 if few else 0.5,
+        words: Any = label if label_each else ("motions" if place == 0 else None)
+        sheet.axes.plot(
+            period, values[place], label=words, linewidth=0.9 if label_each else 0.6,
+            color=one.colour if label_each else GREY, linestyle=one.style if label_each else "-",
+            alpha=0.8 if label_each else 0.5,
         )  # fmt: skip
-    if len(data) > 1 and middle is Average.MEDIAN:
-        _draw_spread(on.axes, period, values)
+    if len(data) > 1 and shown_average is Average.MEDIAN:
+        _draw_spread(sheet.axes, period, values)
     elif len(data) > 1:
-        on.axes.plot(period, values.mean(axis=0), color=BLUE, linewidth=1.8, label="mean")
+        sheet.axes.plot(period, values.mean(axis=0), color=BLUE, linewidth=1.8, label="mean")
     if target is not None:
         low, high = target.limits
         known = period[(period >= low) & (period <= high)]
-        wanted = target.at((known, "s"))
-        on.axes.plot(known, unit.of(wanted), color=VERMILLION, linewidth=1.8, label="target")
-    on.axes.set(
+        target_values = target.at((known, "s"))
+        sheet.axes.plot(
+            known, unit.of(target_values), color=VERMILLION, linewidth=1.8, label="target"
+        )
+    sheet.axes.set(
         xscale="log", yscale="log", xlabel="period [s]",
         ylabel=axis_label("pseudo-spectral acceleration", unit.words),
     )  # fmt: skip
-    on.axes.set_xlim(period[0], period[-1])
-    if np.isfinite(cut).any():
-        low, high = np.clip(cut, period[0], period[-1])
-        on.axes.axvspan(low, high, color=STANDS, zorder=-1)
-    label_log_ticks(on.axes)
-    grid(on.axes)
-    key(on.axes)
+    sheet.axes.set_xlim(period[0], period[-1])
+    if np.isfinite(comparison).any():
+        low, high = np.clip(comparison, period[0], period[-1])
+        sheet.axes.axvspan(low, high, color=PALE_BLUE, zorder=-1)
+    label_log_ticks(sheet.axes)
+    grid(sheet.axes)
+    add_legend(sheet.axes)
     count = len(data)
     damping = float(found["damping_ratio"].to_numpy().ravel()[0])
     usual = f"{count} motion{'s' if count > 1 else ''}; damping {100.0 * damping:g} %"
-    on.entitle(usual, title)
-    return on.axes
+    sheet.set_title(usual, title)
+    return sheet.axes
 
 
 def _draw_spread(axes: Axes, period: Any, values: Any) -> None:

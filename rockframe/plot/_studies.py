@@ -10,30 +10,30 @@ from rockframe.plot._axes import (
     BLUE,
     GREY,
     VERMILLION,
+    add_legend,
     axis_label,
-    colour_of,
+    figure_units,
     grid,
-    ink,
-    key,
-    label_of,
-    label_of_value,
-    labels_of_names,
-    style_of,
-    units_of,
+    line_colour,
+    line_style,
+    text_colour,
+    unique_labels,
+    value_label,
+    variable_label,
     zero_line,
 )
-from rockframe.plot._checks import drawable, draws, refuse
-from rockframe.plot._panels import Axes, AxesLike, Panels, sheet, single
+from rockframe.plot._checks import draws, figure_data, mismatch_message
+from rockframe.plot._panels import Axes, AxesLike, Panels, make_sheet, make_single_panel
 from rockframe.results.outcome import overturns
 from rockframe.results.variables.studies import Outcome
 from rockframe.studies.sweeps.words import cases_verdict
 from rockframe.units import ANGLE
 from rockframe.units.display import UnitsLike, display_units
 
-_MOST_AXES: Final = 2
+_MAX_AXES: Final = 2
 """Largest number of dimensions in a figure of a sweep."""
-_MOST_LINES: Final = 12
-_MOST_LETTERS: Final = 28
+_MAX_LINES: Final = 12
+_MAX_NAME_LENGTH: Final = 28
 """Of a name below an axis."""
 _PANELS: Final = ("histories", "residual")
 
@@ -63,33 +63,39 @@ def critical_scale(
     >>> axes.get_xlabel()
     'scale of the motion [-]'
     """
-    data = drawable(dataset, "critical_scale", units)
+    data = figure_data(dataset, "critical_scale", units)
     scale, outcome = data["scale"].to_numpy(), data["outcome"].to_numpy()
-    reader = units_of(units, "critical_scale").reader
+    reader = figure_units(units, "critical_scale").reader
     angles = reader.chosen_unit(ANGLE) is not None
     relative = "peak_relative_rotation" in data and not angles
     name = "peak_relative_rotation" if relative else "peak_rotation"
     peak = data[name].to_numpy()
-    on = single(ax, "critical_scale", (6.4, 3.6))
-    ends = np.append(data["scale_above"].to_numpy(), scale.max())
-    falls = data["overturns_above"].to_numpy().astype(bool)
-    for number in np.flatnonzero(falls):
-        on.axes.axvspan(ends[number], ends[number + 1], color=VERMILLION, alpha=0.15, linewidth=0.0)
+    sheet = make_single_panel(ax, "critical_scale", (6.4, 3.6))
+    bounds = np.append(data["scale_above"].to_numpy(), scale.max())
+    overturns_above = data["overturns_above"].to_numpy().astype(bool)
+    for number in np.flatnonzero(overturns_above):
+        sheet.axes.axvspan(
+            bounds[number], bounds[number + 1], color=VERMILLION, alpha=0.15, linewidth=0.0
+        )
     for value, colour, words, marker in (
         (Outcome.STANDS, BLUE, "stands", "o"),
         (Outcome.OVERTURNS, VERMILLION, "overturns", "X"),
     ):
         chosen = outcome == value
-        on.axes.plot(scale[chosen], peak[chosen], marker, markersize=3.5, color=colour, label=words)
+        sheet.axes.plot(
+            scale[chosen], peak[chosen], marker, markersize=3.5, color=colour, label=words
+        )
     least = float(data["critical_scale"])
     if np.isfinite(least):
-        on.axes.axvline(least, color=ink(), linestyle=":", linewidth=1.0, label=f"{least:.4g}")
-    on.axes.set(xlabel="scale of the motion [-]", ylabel=label_of(data[name]))
-    on.axes.set_ylim(bottom=0.0)
-    grid(on.axes)
-    key(on.axes)
-    on.entitle(reader.convert_text(cases_verdict(dataset)), title)
-    return on.axes
+        sheet.axes.axvline(
+            least, color=text_colour(), linestyle=":", linewidth=1.0, label=f"{least:.4g}"
+        )
+    sheet.axes.set(xlabel="scale of the motion [-]", ylabel=variable_label(data[name]))
+    sheet.axes.set_ylim(bottom=0.0)
+    grid(sheet.axes)
+    add_legend(sheet.axes)
+    sheet.set_title(reader.convert_text(cases_verdict(dataset)), title)
+    return sheet.axes
 
 
 @draws("the result of a sweep, as rf.sweep(system, motions, ...) gives it")
@@ -137,24 +143,26 @@ def sweep(
     ('scale [-]', 'peak rotation [rad]')
     """
     if not isinstance(cast("object", runs), xr.Dataset) or not runs.data_vars:
-        raise SchemaError(refuse("sweep", runs))
-    data = _without_single_values(runs, variable)
+        raise SchemaError(mismatch_message("sweep", runs))
+    data = _drop_single_axes(runs, variable)
     data = display_units(units, owner="rf.plot.sweep").convert_dataset(data)
-    values = _values(data, variable)
-    fell = overturns(data) == 1 if "status" in data else None
-    fell = None if fell is None or set(fell.dims) != set(values.dims) else fell
-    dims = sorted((str(dim) for dim in values.dims), key=lambda dim: _is_axis(data, dim))
-    on = single(ax, "sweep", (6.4, 4.2))
-    if len(dims) == 1 or min(values.sizes.values()) <= _MOST_LINES:
+    values = _checked_values(data, variable)
+    overturned = overturns(data) == 1 if "status" in data else None
+    overturned = (
+        None if overturned is None or set(overturned.dims) != set(values.dims) else overturned
+    )
+    dims = sorted((str(dim) for dim in values.dims), key=lambda dim: _is_numeric_axis(data, dim))
+    sheet = make_single_panel(ax, "sweep", (6.4, 4.2))
+    if len(dims) == 1 or min(values.sizes.values()) <= _MAX_LINES:
         # lines along the longest axis that has numbers
-        along = max(dims, key=lambda dim: (_is_axis(data, dim), values.sizes[dim]))
+        along = max(dims, key=lambda dim: (_is_numeric_axis(data, dim), values.sizes[dim]))
         others = [dim for dim in dims if dim != along]
-        _draw_lines(on.axes, data, values, fell, along, others)
+        _draw_lines(sheet.axes, data, values, overturned, along, others)
     else:
-        _draw_map(on.axes, data, values.transpose(*dims), fell, dims)
+        _draw_map(sheet.axes, data, values.transpose(*dims), overturned, dims)
     sentence = display_units(units, owner="rf.plot.sweep").convert_text(cases_verdict(runs))
-    on.entitle(sentence or str(data.attrs.get("title", "")), title)
-    return on.axes
+    sheet.set_title(sentence or str(data.attrs.get("title", "")), title)
+    return sheet.axes
 
 
 @draws(
@@ -202,9 +210,9 @@ def free_decay(
     >>> panels[0].get_ylabel()
     'rotation [°]'
     """
-    data = drawable(dataset, "free_decay")
-    chosen = units_of(units, "free_decay")
-    unit = chosen.of(ANGLE, "deg", rotation=rotation)
+    data = figure_data(dataset, "free_decay")
+    axis_units = figure_units(units, "free_decay")
+    unit = axis_units.axis_unit(ANGLE, "deg", rotation=rotation)
     histories = "measured_rotation" in data
     if histories:
         names = ("measured_rotation", "fitted_rotation", "rotation_residual")
@@ -217,13 +225,15 @@ def free_decay(
         measured = data["measured_peak_time"].to_numpy() if timed else counted
         fitted = data["fitted_peak_time"].to_numpy() if timed else counted
         times = [measured, fitted, measured]
-    on = sheet(
+    sheet = make_sheet(
         ax, "free_decay", _PANELS, (7.2, 4.4),
         lambda figure: figure.subplots(2, 1, sharex=True, height_ratios=(2.2, 1)),
     )  # fmt: skip
-    above, below = on.panels
+    above, below = sheet.panels
     dots = "-" if histories else "o"
-    above.plot(times[0], unit.of(data[names[0]]), dots, color=ink(), lw=1.4, label="measured")
+    above.plot(
+        times[0], unit.of(data[names[0]]), dots, color=text_colour(), lw=1.4, label="measured"
+    )
     style = "--" if histories else "x"
     above.plot(times[1], unit.of(data[names[1]]), style, color=VERMILLION, lw=1.0, label="fitted")
     below.plot(times[2], unit.of(data[names[2]]), dots, color=GREY, lw=0.8, markersize=3.0)
@@ -232,22 +242,22 @@ def free_decay(
         axes.set_ylabel(axis_label(words, unit.words))
         grid(axes)
     below.set_xlabel("time [s]" if histories or "measured_peak_time" in data else "peak")
-    key(above)
-    on.entitle(chosen.reader.convert_text(str(data.attrs.get("verdict", ""))), title)
-    return on.panels
+    add_legend(above)
+    sheet.set_title(axis_units.reader.convert_text(str(data.attrs.get("verdict", ""))), title)
+    return sheet.panels
 
 
-def _without_single_values(dataset: xr.Dataset, variable: object) -> xr.Dataset:
+def _drop_single_axes(dataset: xr.Dataset, variable: object) -> xr.Dataset:
     """Leave out axes of one value, such as a single motion, if there are too many axes."""
     if not isinstance(variable, str) or variable not in dataset.data_vars:
         return dataset
     sizes = dataset[variable].sizes
-    if len(sizes) <= _MOST_AXES or max(sizes.values()) == 1:
+    if len(sizes) <= _MAX_AXES or max(sizes.values()) == 1:
         return dataset
     return dataset.isel({dim: 0 for dim, size in sizes.items() if size == 1})
 
 
-def _values(dataset: xr.Dataset, variable: object) -> xr.DataArray:
+def _checked_values(dataset: xr.Dataset, variable: object) -> xr.DataArray:
     if not isinstance(variable, str) or variable not in dataset.data_vars:
         known = ", ".join(
             repr(str(name)) for name, one in dataset.data_vars.items() if 0 < one.ndim < 3
@@ -256,7 +266,7 @@ def _values(dataset: xr.Dataset, variable: object) -> xr.DataArray:
         msg = f"rf.plot.sweep: the runs have no {short_repr(variable)}{near}; they have {known}"
         raise SchemaError(msg)
     values = dataset[variable]
-    if not 1 <= values.ndim <= _MOST_AXES:
+    if not 1 <= values.ndim <= _MAX_AXES:
         names = [str(dim) for dim in values.dims]
         as_label = next((name for name in reversed(names) if name.isidentifier()), "scale")
         msg = (
@@ -271,62 +281,65 @@ def _values(dataset: xr.Dataset, variable: object) -> xr.DataArray:
     return values
 
 
-def _is_axis(dataset: xr.Dataset, dim: str) -> bool:
+def _is_numeric_axis(dataset: xr.Dataset, dim: str) -> bool:
     """Whether the coordinate of a dimension has numbers."""
     return dim in dataset.coords and dataset[dim].dtype.kind in "fiu"
 
 
-def _along(dataset: xr.Dataset, dim: str) -> tuple[Any, str]:
+def _axis_values(dataset: xr.Dataset, dim: str) -> tuple[Any, str]:
     """Return the places along a dimension, and its label."""
-    if _is_axis(dataset, dim):
-        return dataset[dim].to_numpy(), label_of(dataset[dim])
+    if _is_numeric_axis(dataset, dim):
+        return dataset[dim].to_numpy(), variable_label(dataset[dim])
     return np.arange(dataset.sizes[dim]), dim.replace("_", " ")
 
 
 def _draw_lines(
-    axes: Axes, dataset: xr.Dataset, values: xr.DataArray, fell: Any, along: str,
-    others: list[str],
+    axes: Axes, dataset: xr.Dataset, values: xr.DataArray, overturned: Any, x_dim: str,
+    other_dims: list[str],
 ) -> None:  # fmt: skip
-    places, words = _along(dataset, along)
-    across, crosses = others[0] if others else "", list[tuple[Any, Any]]()
-    for number in range(values.sizes.get(across, 1)):
-        one = {across: number} if others else {}
+    places, words = _axis_values(dataset, x_dim)
+    line_dim, crosses = other_dims[0] if other_dims else "", list[tuple[Any, Any]]()
+    for number in range(values.sizes.get(line_dim, 1)):
+        one = {line_dim: number} if other_dims else {}
         line = values.isel(one).to_numpy().astype(np.float64)
         label = None
-        if others:
-            known = across in dataset.coords
-            text = label_of_value(dataset[across][number]) if known else str(number)
-            named = across == "motion" or text.startswith(across)
-            label = text if named else f"{across.replace('_', ' ')} {text}"
+        if other_dims:
+            known = line_dim in dataset.coords
+            text = value_label(dataset[line_dim][number]) if known else str(number)
+            named = line_dim == "motion" or text.startswith(line_dim)
+            label = text if named else f"{line_dim.replace('_', ' ')} {text}"
         axes.plot(
-            places, line, marker="o", markersize=3.0, color=colour_of(number), linewidth=1.0,
-            linestyle=style_of(number // 6) if _is_axis(dataset, along) else "none", label=label,
+            places, line, marker="o", markersize=3.0, color=line_colour(number), linewidth=1.0,
+            linestyle=line_style(number // 6) if _is_numeric_axis(dataset, x_dim) else "none",
+            label=label,
         )  # fmt: skip
-        down = np.zeros(line.shape, bool) if fell is None else fell.isel(one).to_numpy()
-        crosses.append((places[down], line[down]))
-    if any(across.size for across, _ in crosses):
+        crossed = (
+            np.zeros(line.shape, bool) if overturned is None else overturned.isel(one).to_numpy()
+        )
+        crosses.append((places[crossed], line[crossed]))
+    if any(line_dim.size for line_dim, _ in crosses):
         both = np.concatenate(crosses, axis=1)
-        axes.plot(*both, "x", color=ink(), markersize=6.0, label="overturned")
-    if not _is_axis(dataset, along) and along in dataset.coords:
-        names = labels_of_names(map(str, dataset[along].to_numpy()), _MOST_LETTERS)
+        axes.plot(*both, "x", color=text_colour(), markersize=6.0, label="overturned")
+    if not _is_numeric_axis(dataset, x_dim) and x_dim in dataset.coords:
+        names = unique_labels(map(str, dataset[x_dim].to_numpy()), _MAX_NAME_LENGTH)
         axes.set_xticks(places, names, rotation=30, ha="right", fontsize="small")
     elif places.dtype.kind in "iu":  # earthquakes and bodies are counted in integers
         axes.locator_params(axis="x", integer=True)
-    axes.set(xlabel=words, ylabel=label_of(values))
+    axes.set(xlabel=words, ylabel=variable_label(values))
     grid(axes)
-    key(axes)
+    add_legend(axes)
 
 
 def _draw_map(
-    axes: Axes, dataset: xr.Dataset, values: xr.DataArray, fell: Any, dims: list[str]
+    axes: Axes, dataset: xr.Dataset, values: xr.DataArray, overturned: Any, dims: list[str]
 ) -> None:
-    (up, up_words), (across, across_words) = (_along(dataset, dim) for dim in dims)
+    (up, up_words), (across, across_words) = (_axis_values(dataset, dim) for dim in dims)
     mesh = axes.pcolormesh(
         across, up, values.to_numpy().astype(np.float64), cmap="viridis", shading="nearest"
     )
-    if fell is not None and fell.any():
-        rows, columns = np.nonzero(fell.transpose(*dims).to_numpy())
+    if overturned is not None and overturned.any():
+        rows, columns = np.nonzero(overturned.transpose(*dims).to_numpy())
         axes.plot(across[columns], up[rows], "x", color=VERMILLION, ms=3.0, label="overturned")
         axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize="small", frameon=False)
     axes.set(xlabel=across_words, ylabel=up_words)
-    axes.figure.colorbar(mesh, ax=axes, label=label_of(values))
+    axes.figure.colorbar(mesh, ax=axes, label=variable_label(values))

@@ -5,25 +5,25 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.plot._axes import GREY, grid, ink, labels_of_names
-from rockframe.plot._checks import drawable, draws
-from rockframe.plot._panels import Axes, AxesLike, Panels, sheet
+from rockframe.plot._axes import GREY, grid, text_colour, unique_labels
+from rockframe.plot._checks import draws, figure_data
+from rockframe.plot._panels import Axes, AxesLike, Panels, make_sheet
 from rockframe.units.display import UnitsLike
 
 if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
 
-_LEAST: Final = 1e-14
+_MIN_ERROR: Final = 1e-14
 """Smaller errors of the integration are rounding, and drawn at this value."""
-_TOLD_APART: Final = 1e-6
+_MIN_MODEL_ERROR: Final = 1e-6
 """Smaller errors of model and integration are drawn in one band: no model is that accurate."""
-_BELOW: Final = 0.1 * _TOLD_APART
+_BAND_POSITION: Final = 0.1 * _MIN_MODEL_ERROR
 _SPREAD: Final = 0.4
 """Height over which the accuracies of a model are spread, over the distance between models."""
 _MARKERS: Final = "osD^vP*h"
-_SMALL: Final = "small rotations"
-_ERROR: Final = "largest error of the rotation{}over its peak [-]"
+_SMALL_ROTATIONS: Final = "small rotations"
+_ERROR_LABEL: Final = "largest error of the rotation{}over its peak [-]"
 
 
 @draws(
@@ -56,79 +56,79 @@ def tradeoff(
     from matplotlib import colormaps
     from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
 
-    drawable(dataset, "tradeoff", units)
+    figure_data(dataset, "tradeoff", units)
     models = [str(name) for name in dataset["model"].to_numpy()]
-    on = sheet(
+    sheet = make_sheet(
         ax, "tradeoff", ("integration", "model and integration"),
         (11.0, max(3.4, 2.4 + 0.4 * len(models))),
         lambda figure: figure.subplots(1, 2),
     )  # fmt: skip
-    axes = on.panels
+    axes = sheet.panels
     colours = colormaps["viridis"](np.linspace(0.1, 0.8, len(models)))
     for place, (model, colour) in enumerate(zip(models, colours, strict=True)):
         row = dataset.sel(model=model)
         time = 1e3 * row["run_time"].to_numpy()
-        error = np.maximum(row["numerical_history_error"].to_numpy(), _LEAST)
-        _line(axes[0], time, error, row, colour)
+        error = np.maximum(row["numerical_history_error"].to_numpy(), _MIN_ERROR)
+        _draw_line(axes[0], time, error, row, colour)
         total = row["history_error"].to_numpy()
-        total = np.where(total < _TOLD_APART, _BELOW, total)
+        total = np.where(total < _MIN_MODEL_ERROR, _BAND_POSITION, total)
         middle = 0.5 * (total.size - 1)
         heights = place + _SPREAD * (middle - np.arange(total.size)) / max(total.size - 1, 1)
-        _line(axes[1], total, heights, row, colour)
+        _draw_line(axes[1], total, heights, row, colour)
     for panel in axes:
         panel.set(xscale="log")
         grid(panel)
-    axes[0].set(yscale="log", xlabel="time of a run [ms]", ylabel=_ERROR.format("\n"))
+    axes[0].set(yscale="log", xlabel="time of a run [ms]", ylabel=_ERROR_LABEL.format("\n"))
     axes[0].set_title("integration: low and left is better")
     axes[0].xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axes[0].xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
     axes[0].xaxis.set_minor_locator(NullLocator())
     axes[1].set(
         yticks=range(len(models)),
-        yticklabels=labels_of_names(models),
+        yticklabels=unique_labels(models),
         ylim=(-0.7, len(models) - 0.3),
-        xlabel=_ERROR.format("\n"),
+        xlabel=_ERROR_LABEL.format("\n"),
         title="with that of the model: left is better",
     )
-    _mark_below(axes[1], dataset["history_error"].to_numpy())
-    keys = _keys(dataset, models)
-    on.legend(keys, [str(key.get_label()) for key in keys])
-    on.entitle(f"{dataset.attrs.get('scene', '')}: {dataset.attrs.get('motion', '')}", title)
-    return on.panels
+    _mark_small_errors(axes[1], dataset["history_error"].to_numpy())
+    keys = _legend_handles(dataset, models)
+    sheet.add_legend(keys, [str(key.get_label()) for key in keys])
+    sheet.set_title(f"{dataset.attrs.get('scene', '')}: {dataset.attrs.get('motion', '')}", title)
+    return sheet.panels
 
 
-def _line(axes: Axes, x: Any, y: Any, row: xr.Dataset, colour: Any) -> None:
+def _draw_line(axes: Axes, x: Any, y: Any, row: xr.Dataset, colour: Any) -> None:
     axes.plot(x, y, "-", color=colour, lw=1.0)
-    face = "white" if _SMALL in str(row["model"].item()) else colour
+    face = "white" if _SMALL_ROTATIONS in str(row["model"].item()) else colour
     agrees = row["verdict_agrees"].to_numpy()
     for k in range(len(x)):
         marker = _MARKERS[k % len(_MARKERS)]
         axes.plot(x[k], y[k], marker, color=colour, mfc=face, ms=7)
         if not agrees[k]:
-            axes.plot(x[k], y[k], "x", color=ink(), ms=11)
+            axes.plot(x[k], y[k], "x", color=text_colour(), ms=11)
 
 
-def _mark_below(axes: Axes, errors: Any) -> None:
+def _mark_small_errors(axes: Axes, errors: Any) -> None:
     """Set the ends of the axis of errors, and mark the band of the smallest ones."""
     from matplotlib.ticker import LogLocator, NullLocator
 
     drawn = errors[np.isfinite(errors)]
     right = 2.0 * max(1.0, np.max(drawn, initial=0.0))
-    below = bool((drawn < _TOLD_APART).any())
-    left = 0.25 * _BELOW if below else _TOLD_APART
+    any_below = bool((drawn < _MIN_MODEL_ERROR).any())
+    left = 0.25 * _BAND_POSITION if any_below else _MIN_MODEL_ERROR
     axes.set_xlim(left, right)
     axes.xaxis.set_major_locator(LogLocator(numticks=20))
     axes.xaxis.set_minor_locator(NullLocator())
-    if not below:
+    if not any_below:
         return
-    axes.axvspan(left, _TOLD_APART, color=GREY, alpha=0.12, zorder=0)
-    ticks = [tick for tick in axes.get_xticks() if _TOLD_APART <= tick <= right]
+    axes.axvspan(left, _MIN_MODEL_ERROR, color=GREY, alpha=0.12, zorder=0)
+    ticks = [tick for tick in axes.get_xticks() if _MIN_MODEL_ERROR <= tick <= right]
     ticks = ticks[::2]  # the labels of all would overlap
     names = [f"$10^{{{round(np.log10(tick))}}}$" for tick in ticks]
-    axes.set_xticks([_BELOW, *ticks], ["below", *names])
+    axes.set_xticks([_BAND_POSITION, *ticks], ["below", *names])
 
 
-def _keys(dataset: xr.Dataset, models: list[str]) -> "list[Line2D]":
+def _legend_handles(dataset: xr.Dataset, models: list[str]) -> "list[Line2D]":
     """Return the legend: the accuracies, hollow markers and crosses."""
     from matplotlib.lines import Line2D
 
@@ -136,7 +136,7 @@ def _keys(dataset: xr.Dataset, models: list[str]) -> "list[Line2D]":
         Line2D([], [], marker=_MARKERS[k % len(_MARKERS)], color=GREY, ls="none", label=str(name))
         for k, name in enumerate(dataset["accuracy"].to_numpy())
     ]
-    if any(_SMALL in model for model in models):
+    if any(_SMALL_ROTATIONS in model for model in models):
         style: Any = {"marker": "o", "color": GREY, "mfc": "white", "ls": "none"}
-        keys.append(Line2D([], [], **style, label=f"hollow: {_SMALL}"))
+        keys.append(Line2D([], [], **style, label=f"hollow: {_SMALL_ROTATIONS}"))
     return [*keys, Line2D([], [], marker="x", color=GREY, ls="none", ms=10, label="other verdict")]

@@ -9,16 +9,16 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from rockframe.reports import page
-from rockframe.reports.values import column_head, number_in, value_of
+from rockframe.reports.values import column_title, format_number, format_value
 from rockframe.results.outcome import overturned_from_status
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.variable import TIME
 from rockframe.units import Unit
 from rockframe.units.display import DisplayUnits, unit_suffix, with_superscripts
 
-MOST_ROWS: Final = 300
+MAX_ROWS: Final = 300
 """Largest number of rows of a table of cases; of more cases it has the worst ones."""
-_MOTION: Final = (
+_MOTION_VARIABLES: Final = (
     "peak_rotation",
     "peak_relative_rotation",
     "peak_body_rotation",
@@ -32,7 +32,7 @@ _MOTION: Final = (
     "peak_ground_acceleration",
     "peak_ground_velocity",
 )
-_FORCES: Final = (
+_FORCE_VARIABLES: Final = (
     "peak_base_shear",
     "peak_restrainer_force",
     "broken_restrainer_count",
@@ -48,16 +48,16 @@ _FORCES: Final = (
     "peak_point_horizontal_acceleration",
     "peak_point_vertical_acceleration",
 )
-COLUMNS: Final = (*_MOTION, *_FORCES)
+COLUMNS: Final = (*_MOTION_VARIABLES, *_FORCE_VARIABLES)
 """Variables that the tables show if a study has them, in this order.
 
 Of histories, such as reactions, the largest absolute value at the samples is shown.
 """
-_CAPACITY: Final = ("capacity_scale", "capacity_resolution", "flip_count")
+_CAPACITY_VARIABLES: Final = ("capacity_scale", "capacity_resolution", "flip_count")
 """Variables of a dynamic analysis along its limit states and motions."""
-_MOST_COLUMNS: Final = 8
+_MAX_COLUMNS: Final = 8
 """Largest number of columns besides the labels of a case, on a sheet of A4."""
-_OVER_CASES: Final = (("mean", np.mean), ("largest", np.max))
+_STATISTICS: Final = (("mean", np.mean), ("largest", np.max))
 
 
 @dataclass(frozen=True)
@@ -73,22 +73,22 @@ def case_tables(dataset: xr.Dataset, units: DisplayUnits) -> Iterator[str]:
     """Return a row for each case, or for the worst ones if there are too many, and the extremes."""
     count = dataset["status"].size
     order = np.arange(count)
-    if count > MOST_ROWS:
-        order = from_worst(dataset)[:MOST_ROWS]
+    if count > MAX_ROWS:
+        order = order_from_worst(dataset)[:MAX_ROWS]
         yield page.paragraph(f"The {order.size} worst of {count} cases.", kind="soft")
-    for columns in _sheets(_columns(dataset, _MOTION, units)):
+    for columns in _split_columns(_columns(dataset, _MOTION_VARIABLES, units)):
         yield _table(dataset, order, columns, units, with_verdict=True)
-    forces = _sheets(_columns(dataset, _FORCES, units))
+    forces = _split_columns(_columns(dataset, _FORCE_VARIABLES, units))
     if forces:
         yield page.subtitle("Forces, and motion of points")
     for columns in forces:
         yield _table(dataset, order, columns, units, with_verdict=False)
 
 
-def _sheets(columns: Iterable[_Column]) -> list[list[_Column]]:
+def _split_columns(columns: Iterable[_Column]) -> list[list[_Column]]:
     """Divide columns evenly among tables that fit on a sheet."""
     several = list(columns)
-    tables = -(-len(several) // _MOST_COLUMNS)
+    tables = -(-len(several) // _MAX_COLUMNS)
     size = -(-len(several) // max(1, tables))
     return [several[k : k + size] for k in range(0, len(several), max(1, size))]
 
@@ -99,7 +99,7 @@ def _verdict(dataset: xr.Dataset, place: int) -> str:
     one = status.isel(dict.fromkeys(status.dims, 0)).copy()
     one.values = status.to_numpy().ravel()[place]
     if one.item() != RunStatus.COMPLETED:
-        return "overturned" if overturned_from_status(one.to_numpy()) == 1.0 else value_of(one)
+        return "overturned" if overturned_from_status(one.to_numpy()) == 1.0 else format_value(one)
     passed = dataset["overturned"].to_numpy().ravel()[place] == 1
     return "overturned" if passed else "did not overturn"
 
@@ -116,24 +116,24 @@ def _table(
     status = dataset["status"]
     rows = list[list[str]]()
     for place in order.tolist():
-        labels = [*labels_of(dataset, place, units).values()]
+        labels = [*label_texts(dataset, place, units).values()]
         if with_verdict:
             labels.append(_verdict(dataset, place))
-        numbers = [number_in(float(one.values[place]), one.unit, units) for one in columns]
+        numbers = [format_number(float(one.values[place]), one.unit, units) for one in columns]
         rows.append([*labels, *numbers])
-    between = [""] * (len(status.dims) - 1 + with_verdict)
-    for words, over in _OVER_CASES:
-        numbers = [_over_cases(over, one, units) for one in columns]
-        rows.append([f"{words} of {status.size}", *between, *numbers])
-    heads = [str(dim).replace("_", " ") for dim in status.dims]
+    blanks = [""] * (len(status.dims) - 1 + with_verdict)
+    for words, function in _STATISTICS:
+        numbers = [_statistic(function, one, units) for one in columns]
+        rows.append([f"{words} of {status.size}", *blanks, *numbers])
+    titles = [str(dim).replace("_", " ") for dim in status.dims]
     verdict = ["verdict"] if with_verdict else []
-    return page.columns(rows, [*heads, *verdict, *(one.head for one in columns)])
+    return page.number_table(rows, [*titles, *verdict, *(one.head for one in columns)])
 
 
-def _over_cases(over: Callable[..., Any], column: _Column, units: DisplayUnits) -> str:
+def _statistic(function: Callable[..., Any], column: _Column, units: DisplayUnits) -> str:
     """Write a number of all cases, and of how many it is where some have none."""
     known = column.values[~np.isnan(column.values)]
-    number = number_in(float(over(known)), column.unit, units)
+    number = format_number(float(function(known)), column.unit, units)
     return number if known.size == column.values.size else f"{number} (of {known.size})"
 
 
@@ -153,47 +153,47 @@ def _columns(dataset: xr.Dataset, names: Sequence[str], units: DisplayUnits) -> 
             flat = values.transpose(*status.dims).to_numpy().astype(np.float64).ravel()
             if np.isfinite(flat).any():
                 whose = "".join(
-                    f" ({written(one[dim].item())})"
+                    f" ({format_label(one[dim].item())})"
                     if dim in dataset.coords
                     else f" ({dim} {1 + one[dim].item()})"
                     for dim in others
                 )
-                yield _Column(column_head(f"{words}{whose}", unit, units), unit, flat)
+                yield _Column(column_title(f"{words}{whose}", unit, units), unit, flat)
 
 
 def capacity_table(dataset: xr.Dataset, units: DisplayUnits) -> Iterator[str]:
     """Return a row for each capacity of a dynamic analysis, or for the least if there are many."""
-    name = _CAPACITY[0]
+    name = _CAPACITY_VARIABLES[0]
     if name not in dataset:
         return
     capacity = dataset[name]
     order = np.arange(capacity.size)
-    if capacity.size > MOST_ROWS:
-        order = np.argsort(capacity.to_numpy().ravel(), kind="stable")[:MOST_ROWS]
+    if capacity.size > MAX_ROWS:
+        order = np.argsort(capacity.to_numpy().ravel(), kind="stable")[:MAX_ROWS]
         yield page.paragraph(f"The {order.size} least of {capacity.size} capacities.", kind="soft")
-    names = [one for one in _CAPACITY if one in dataset]
+    names = [one for one in _CAPACITY_VARIABLES if one in dataset]
     flat = {one: dataset[one].broadcast_like(capacity).transpose(*capacity.dims) for one in names}
     rows = list[list[str]]()
     for place in order.tolist():
         at = dict(zip(capacity.dims, np.unravel_index(place, capacity.shape), strict=True))
-        numbers = [value_of(flat[one].isel(at), units) for one in names]
-        rows.append([*labels_of(dataset, place, units, name).values(), *numbers])
+        numbers = [format_value(flat[one].isel(at), units) for one in names]
+        rows.append([*label_texts(dataset, place, units, name).values(), *numbers])
     heads = [str(one).replace("_", " ") for one in (*capacity.dims, *names)]
-    yield page.columns(rows, heads)
+    yield page.number_table(rows, heads)
     meanings = [f"{one.replace('_', ' ')}: {dataset[one].attrs['long_name']}" for one in names]
     yield page.paragraph(f"{'; '.join(meanings)}.", kind="soft")
 
 
-def from_worst(dataset: xr.Dataset) -> np.ndarray:
+def order_from_worst(dataset: xr.Dataset) -> np.ndarray:
     """Order cases with a result: by time of overturning, then by decreasing peak rotation."""
-    share = dataset["peak_relative_rotation"].to_numpy().ravel()
-    when = np.nan_to_num(dataset["overturning_time"].to_numpy().ravel(), nan=np.inf)
-    fallen = overturned_from_status(dataset["status"].to_numpy().ravel()) == 1.0
-    order = np.lexsort((-np.nan_to_num(share, nan=-1.0), when, ~fallen))
-    return order[np.isfinite(share[order])]
+    peak = dataset["peak_relative_rotation"].to_numpy().ravel()
+    time = np.nan_to_num(dataset["overturning_time"].to_numpy().ravel(), nan=np.inf)
+    overturned = overturned_from_status(dataset["status"].to_numpy().ravel()) == 1.0
+    order = np.lexsort((-np.nan_to_num(peak, nan=-1.0), time, ~overturned))
+    return order[np.isfinite(peak[order])]
 
 
-def labels_at(dataset: xr.Dataset, place: int, of: str = "status") -> dict[str, Any]:
+def label_values(dataset: xr.Dataset, place: int, of: str = "status") -> dict[str, Any]:
     """Return the labels of a value of a variable by its place; usually those of a case."""
     status = dataset[of]
     places = np.unravel_index(place, status.shape)
@@ -201,18 +201,18 @@ def labels_at(dataset: xr.Dataset, place: int, of: str = "status") -> dict[str, 
             for dim, k in zip(status.dims, places, strict=True)}  # fmt: skip
 
 
-def labels_of(
+def label_texts(
     dataset: xr.Dataset, place: int, units: DisplayUnits, of: str = "status"
 ) -> dict[str, str]:
     """Write the labels of a value, usually those of a case, numbers with their units."""
     found: dict[str, str] = {}
-    for name, value in labels_at(dataset, place, of).items():
+    for name, value in label_values(dataset, place, of).items():
         unit = units.of(str(dataset[name].attrs.get("units", Unit.ONE)) if name in dataset else "1")
         shown = value / unit.size if isinstance(value, float) else value
-        found[name] = f"{written(shown)}{unit_suffix(with_superscripts(unit.words))}"
+        found[name] = f"{format_label(shown)}{unit_suffix(with_superscripts(unit.words))}"
     return found
 
 
-def written(value: object) -> str:
+def format_label(value: object) -> str:
     """Write the label of a case."""
     return f"{value:.6g}" if isinstance(value, float) else str(value)

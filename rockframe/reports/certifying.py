@@ -12,11 +12,11 @@ from rockframe.results.variables.runs import CERTIFICATE
 from rockframe.simulation.provenance import arguments_of_run
 from rockframe.simulation.system import System
 
-_SAME: Final = 1e-3
+_TOLERANCE: Final = 1e-3
 """Relative difference up to which runs of other versions and machines are the same."""
 
 
-def certified(dataset: xr.Dataset, system: System | None) -> tuple[xr.Dataset, str]:
+def with_certificate(dataset: xr.Dataset, system: System | None) -> tuple[xr.Dataset, str]:
     """Add the certificate to a result, by running it again with all runs of a certificate."""
     if "certificate" in dataset.attrs or "proof" in dataset.attrs:
         return dataset, ""
@@ -33,7 +33,7 @@ def certified(dataset: xr.Dataset, system: System | None) -> tuple[xr.Dataset, s
             again = system.simulate(**arguments_of_run(dataset), outputs=None, certify=True)
     except RockframeError as problem:
         return dataset, f"{problem}."
-    if verdict_of(again) != verdict_of(dataset) or not _alike(again, dataset):
+    if verdict_of(again) != verdict_of(dataset) or not _same_outcome(again, dataset):
         return dataset, "a repeated run differs; another version or machine made the result."
     found = {
         name: value for name, value in again.attrs.items() if str(name).startswith("certificate")
@@ -42,9 +42,9 @@ def certified(dataset: xr.Dataset, system: System | None) -> tuple[xr.Dataset, s
     return dataset.assign({name: again[name] for name in names}).assign_attrs(found), ""
 
 
-def _alike(one: xr.Dataset, other: xr.Dataset) -> bool:
+def _same_outcome(one: xr.Dataset, other: xr.Dataset) -> bool:
     """Whether peaks and times of overturning are equal but for rounding."""
     return all(
-        np.isclose(one[name], other[name], rtol=_SAME, atol=0.0, equal_nan=True)
+        np.isclose(one[name], other[name], rtol=_TOLERANCE, atol=0.0, equal_nan=True)
         for name in ("peak_rotation", "overturning_time")
     )

@@ -23,7 +23,7 @@ from rockframe.units.display import (
 )
 from rockframe.writing import write_file
 
-_SAID: Final = {True: ("satisfied", "good"), False: ("not satisfied", "bad")}
+_OUTCOMES: Final = {True: ("satisfied", "good"), False: ("not satisfied", "bad")}
 
 
 @suggests_names
@@ -182,13 +182,13 @@ class CodeCheck:
                 for one in several
             ]
         text += [
-            f"{one.title}: {_SAID[one.passed][0]}; {one.words} [{one.source}]"
+            f"{one.title}: {_OUTCOMES[one.passed][0]}; {one.words} [{one.source}]"
             for one in self.verdicts
         ]
         return "\n".join([*text, *(f"Left out: {one}" for one in self.notes)])
 
     def _repr_html_(self) -> str:
-        rows = {one.title: f"{_SAID[one.passed][0]}; {one.words}" for one in self.verdicts}
+        rows = {one.title: f"{_OUTCOMES[one.passed][0]}; {one.words}" for one in self.verdicts}
         return html_summary(escape(self.title), rows)
 
     def banners(self, units: DisplayUnits) -> Iterator[str]:
@@ -205,7 +205,7 @@ class CodeCheck:
             HTML.
         """
         for one in self.verdicts:
-            text, kind = _SAID[one.passed]
+            text, kind = _OUTCOMES[one.passed]
             words = f"{units.convert_text(one.words)} [{one.source}]. {self.code}."
             yield page.banner(f"{one.title}: {text}", words, kind)
 
@@ -233,16 +233,12 @@ class CodeCheck:
                 )
                 for one in several
             ]
-            yield title, [page.rows(cells, head=head)]
+            yield title, [page.parameter_table(cells, head=head)]
         if self.notes:
-            yield "Left out", [page.items(map(units.convert_text, self.notes))]
+            yield "Left out", [page.numbered_list(map(units.convert_text, self.notes))]
 
     def report(
-        self,
-        path: "str | PathLike[str]",
-        *,
-        units: UnitsLike = None,
-        overwrite: bool = False,
+        self, path: "str | PathLike[str]", *, units: UnitsLike = None, overwrite: bool = False
     ) -> Path:
         """Write the check as one HTML page that needs no other file.
 
@@ -270,13 +266,13 @@ class CodeCheck:
         """
         chosen = display_units(units, owner="CodeCheck.report")
         body = [f"<h1>{escape(self.title)}</h1>", page.paragraph(self.code, kind="soft")]
-        body += self._checked(chosen)
+        body += self._scene_paragraph(chosen)
         body += self.banners(chosen)
         body += [page.section(title, pieces) for title, pieces in self.tables(chosen)]
-        content = page.page(self.title, body).encode()
-        return write_file(path, KIND, content, overwrite=overwrite)
+        content = page.html_page(self.title, body).encode()
+        return write_file(path, FILE_KIND, content, overwrite=overwrite)
 
-    def _checked(self, units: DisplayUnits) -> list[str]:
+    def _scene_paragraph(self, units: DisplayUnits) -> list[str]:
         words = units.convert_text(self.scene)
         return [page.paragraph(f"Checked: {words}.")] if words else []
 
@@ -293,13 +289,13 @@ class CodeCheck:
         str
             HTML.
         """
-        pieces = [page.paragraph(f"{self.title}. {self.code}."), *self._checked(units)]
+        pieces = [page.paragraph(f"{self.title}. {self.code}."), *self._scene_paragraph(units)]
         for title, inner in self.tables(units):
             pieces += [page.subtitle(title), *inner]
         return page.section(f"Check by {self.code.split(',')[0]}", pieces)
 
 
-def checks_of(value: object, owner: str) -> list[CodeCheck]:
+def read_checks(value: object, owner: str) -> list[CodeCheck]:
     """Read a check, or several."""
     several = [value] if isinstance(value, CodeCheck) else value
     if several is None:

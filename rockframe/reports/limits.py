@@ -13,10 +13,10 @@ class Limit:
     """A limit of the models."""
 
     title: str  # as on the page of the manual
-    words: str  # its meaning for a result
+    meaning: str  # for a result
     # whether it concerns a scene with these parts
-    concerns: Callable[[Parts], bool] = lambda _: True
-    of_study: str = ""  # its meaning for the results of a study, where that differs
+    applies_to: Callable[[Parts], bool] = lambda _: True
+    study_meaning: str = ""  # for the results of a study, where that differs
 
 
 SLIDING: Final = "Sliding"
@@ -107,20 +107,20 @@ GENERAL: Final = (
     "grow, so that a single verdict near a boundary means little.",
 )
 """Limits of every verdict."""
-CERTIFIED: Final = "The certificate shows how near the boundary is."
-NOT_CERTIFIED: Final = (
+WITH_CERTIFICATE: Final = "The certificate shows how near the boundary is."
+WITHOUT_CERTIFICATE: Final = (
     "The certificate of a run, which this page does not have, shows how near the boundary is."
 )
-NOT_OF_STUDIES: Final = (
+STUDY_WITHOUT_CERTIFICATE: Final = (
     "Studies have no certificates: that of one case, run by itself, shows how near the boundary is."
 )
 """What follows the last of them."""
 
 
-def limits_of(parts: Parts | None, *, slides: bool = False) -> list[Limit]:
+def model_limits(parts: Parts | None, *, slides: bool = False) -> list[Limit]:
     """Return the limits that concern a scene; all of them if its parts are not known.
 
     Equations in which the block slides include its flight, too.
     """
-    found = [one for one in LIMITS if parts is None or one.concerns(parts)]
+    found = [one for one in LIMITS if parts is None or one.applies_to(parts)]
     return [one for one in found if not (slides and one.title in (SLIDING, FLIGHT))]

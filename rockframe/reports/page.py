@@ -13,16 +13,16 @@ from rockframe.writing import FileKind, generator_tag
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-KIND: Final = FileKind.marked("a report", (".html", ".htm"), generator_tag("report"))
+FILE_KIND: Final = FileKind.marked("a report", (".html", ".htm"), generator_tag("report"))
 BANNERS: Final = {
     True: ("Overturned", "bad"),
     False: ("Did not overturn", "good"),
     None: ("Not finished", "doubt"),
 }
 """Title and kind of the banner of a run, by its verdict."""
-LARGEST_DRAWING: Final = 1_500_000
+MAX_DRAWING_SIZE: Final = 1_500_000
 """Size of a vector drawing above which pixels replace it [bytes]."""
-_LONGEST_VALUE: Final = 14
+_MAX_VALUE_LENGTH: Final = 14
 """Longest content of a cell that is kept in one line [characters]."""
 _POLICY: Final = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
 STYLE: Final = """\
@@ -80,7 +80,7 @@ td.value { white-space: normal; overflow-wrap: anywhere; min-width: 5.5rem; }
 """
 
 
-def page(title: str, body: Iterable[str]) -> str:
+def html_page(title: str, body: Iterable[str]) -> str:
     """Return the whole page."""
     head = (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
@@ -104,7 +104,7 @@ def subtitle(words: str) -> str:
 
 def paragraph(words: str, *, kind: str = "") -> str:
     """Return a paragraph, of a class of the style sheet."""
-    return f"<p{_class(kind)}>{escape(words)}</p>"
+    return f"<p{_class_attribute(kind)}>{escape(words)}</p>"
 
 
 def banner(title: str, words: str, kind: str) -> str:
@@ -113,7 +113,7 @@ def banner(title: str, words: str, kind: str) -> str:
     return f'<div class="verdict {kind}">{inner}</div>'
 
 
-def rows(values: Iterable[Sequence[str]], *, head: Sequence[str] = ()) -> str:
+def parameter_table(values: Iterable[Sequence[str]], *, head: Sequence[str] = ()) -> str:
     """Return a table; the second column holds values."""
     lines = ['<div class="scroll"><table>']
     if head:
@@ -122,7 +122,7 @@ def rows(values: Iterable[Sequence[str]], *, head: Sequence[str] = ()) -> str:
     lines.append("<tbody>")
     for row in values:
         cells = "".join(
-            f"<td{_class('value' if column == 1 else '')}>{escape(cell)}</td>"
+            f"<td{_class_attribute('value' if column == 1 else '')}>{escape(cell)}</td>"
             for column, cell in enumerate(row)
         )
         lines.append(f"<tr>{cells}</tr>")
@@ -130,21 +130,22 @@ def rows(values: Iterable[Sequence[str]], *, head: Sequence[str] = ()) -> str:
     return "\n".join(lines)
 
 
-def columns(values: Iterable[Sequence[str]], head: Sequence[str]) -> str:
+def number_table(values: Iterable[Sequence[str]], head: Sequence[str]) -> str:
     """Return a table in which all columns but the first hold values."""
     names = "".join(f"<th>{escape(name)}</th>" for name in head)
     lines = [f'<div class="scroll"><table class="many"><thead><tr>{names}</tr></thead><tbody>']
     for first, *others in values:
         cells = "".join(
-            f"<td{_class('value' if len(cell) <= _LONGEST_VALUE else '')}>{escape(cell)}</td>"
+            f"<td{_class_attribute(kind)}>{escape(cell)}</td>"
             for cell in others
+            for kind in ["value" if len(cell) <= _MAX_VALUE_LENGTH else ""]
         )
         lines.append(f"<tr><td>{escape(first)}</td>{cells}</tr>")
     lines.append("</tbody></table></div>")
     return "\n".join(lines)
 
 
-def items(values: Iterable[str | tuple[str, str]]) -> str:
+def numbered_list(values: Iterable[str | tuple[str, str]]) -> str:
     """Return a numbered list; of pairs, the first is a title."""
     inner = list[str]()
     for one in values:
@@ -154,18 +155,18 @@ def items(values: Iterable[str | tuple[str, str]]) -> str:
     return "<ol>\n" + "\n".join(inner) + "\n</ol>"
 
 
-def verbatim(text: str) -> str:
+def preformatted(text: str) -> str:
     """Return preformatted text."""
     return f"<pre>{escape(text)}</pre>"
 
 
-def picture(drawn: Any, words: str) -> str:
+def captioned_figure(drawn: Any, words: str) -> str:
     """Return the figure of what was drawn with its caption, with the image inside the page."""
     figure = figure_of(drawn)
-    data, kind = _drawn(figure, "svg"), "svg+xml"
-    if len(data) > LARGEST_DRAWING:
-        data, kind = _drawn(figure, "png"), "png"
-    close(figure)
+    data, kind = _rendered(figure, "svg"), "svg+xml"
+    if len(data) > MAX_DRAWING_SIZE:
+        data, kind = _rendered(figure, "png"), "png"
+    close_figure(figure)
     source = f"data:image/{kind};base64,{base64.b64encode(data).decode()}"
     caption = f"<figcaption>{escape(words)}</figcaption>"
     return f'<figure><img src="{source}" alt="{escape(words)}">{caption}</figure>'
@@ -178,14 +179,14 @@ def figure_of(drawn: Any) -> "Figure":
     return cast("Figure", drawn)
 
 
-def close(figure: "Figure") -> None:
+def close_figure(figure: "Figure") -> None:
     """Close a figure, which pyplot would otherwise keep."""
     pyplot = sys.modules.get("matplotlib.pyplot")
     if pyplot is not None:
         pyplot.close(figure)
 
 
-def _drawn(figure: "Figure", kind: str) -> bytes:
+def _rendered(figure: "Figure", kind: str) -> bytes:
     import matplotlib as mpl
 
     store = BytesIO()
@@ -196,5 +197,5 @@ def _drawn(figure: "Figure", kind: str) -> bytes:
     return store.getvalue()
 
 
-def _class(kind: str) -> str:
+def _class_attribute(kind: str) -> str:
     return f' class="{kind}"' if kind else ""

@@ -11,9 +11,9 @@ import xarray as xr
 from rockframe.errors import ComponentError, did_you_mean, short_repr
 from rockframe.reports import page
 
-ATTRIBUTE: Final = "project_json"
-"""Attribute of a result in which the command line keeps the project of a scene's file."""
-LINES: Final = {
+PROJECT_ATTRIBUTE: Final = "project_json"
+"""Attribute of a result in which the command line stores the project of a scene's file."""
+ENTRIES: Final = {
     "object": "Object",
     "place": "Place",
     "number": "Number",
@@ -39,30 +39,30 @@ class Project:
     def block(self) -> Iterator[str]:
         """Return the lines at the head of a report."""
         if self.lines:
-            yield f'<div class="sheet">{page.rows(self.lines)}</div>'
+            yield f'<div class="sheet">{page.parameter_table(self.lines)}</div>'
 
-    def conclusions(self) -> Iterator[str]:
+    def conclusion_banner(self) -> Iterator[str]:
         """Return the conclusion, which precedes all verdicts."""
         if self.conclusion:
             yield page.banner("Conclusion", self.conclusion, "")
 
-    def unchecked(self) -> Iterator[str]:
+    def missing_checks_banner(self) -> Iterator[str]:
         """Mention requested checks in a report that has none."""
         if self.checks:
             words = "; pass checks=, or the motions to 'rockframe report'."
             yield page.banner("Not checked", f"Requested: {'; '.join(self.checks)}{words}", "doubt")
 
 
-def project_of(value: object, dataset: xr.Dataset, owner: str) -> Project:
+def project_of_result(value: object, dataset: xr.Dataset, owner: str) -> Project:
     """Read a project, or that of the result if none is given."""
     if value is None:
-        value = json.loads(str(dataset.attrs.get(ATTRIBUTE, "{}")))
+        value = json.loads(str(dataset.attrs.get(PROJECT_ATTRIBUTE, "{}")))
     return read_project(value, owner)
 
 
 def read_project(value: object, owner: str) -> Project:
     """Read a project from a mapping."""
-    known = (*LINES, CONCLUSION, ASSUMPTIONS, CHECKS)
+    known = (*ENTRIES, CONCLUSION, ASSUMPTIONS, CHECKS)
     if not isinstance(value, Mapping):
         msg = (
             f"{owner}: project must be a mapping with any of {', '.join(known)}, got "
@@ -75,11 +75,13 @@ def read_project(value: object, owner: str) -> Project:
             called = f"{short_repr(name)}{did_you_mean(name, known)}"
             msg = f"{owner}: project has no entry {called}; known are {', '.join(known)}"
             raise ComponentError(msg)
-    assumptions, checks = (_texts(values.get(one, ()), one, owner) for one in (ASSUMPTIONS, CHECKS))
+    assumptions, checks = (
+        _read_texts(values.get(one, ()), one, owner) for one in (ASSUMPTIONS, CHECKS)
+    )
     return Project(
-        tuple((title, _text(values[name], name, owner)) for name, title in LINES.items()
+        tuple((title, _read_text(values[name], name, owner)) for name, title in ENTRIES.items()
               if name in values),
-        _text(values.get(CONCLUSION, ""), CONCLUSION, owner),
+        _read_text(values.get(CONCLUSION, ""), CONCLUSION, owner),
         assumptions,
         checks,
     )  # fmt: skip
@@ -91,14 +93,14 @@ def project_json(values: Mapping[str, object], owner: str) -> str:
     return json.dumps(values, default=str)
 
 
-def _texts(value: object, name: str, owner: str) -> tuple[str, ...]:
+def _read_texts(value: object, name: str, owner: str) -> tuple[str, ...]:
     if not isinstance(value, list | tuple):
         msg = f"{owner}: {name} must be a list of texts, got {short_repr(value)}"
         raise ComponentError(msg)
-    return tuple(_text(one, name, owner) for one in value)
+    return tuple(_read_text(one, name, owner) for one in value)
 
 
-def _text(value: object, name: str, owner: str) -> str:
+def _read_text(value: object, name: str, owner: str) -> str:
     if isinstance(value, datetime.date):  # TOML has dates
         return value.isoformat()
     if isinstance(value, str | int):

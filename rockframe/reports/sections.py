@@ -16,11 +16,17 @@ from rockframe.errors import RockframeError
 from rockframe.measures import intensity_measures
 from rockframe.motion import GroundMotion
 from rockframe.plot._checks import RUN
-from rockframe.plot._response import SLIPS, has_slid, histories_of
+from rockframe.plot._response import SLIP_HISTORIES, has_slid, history_names
 from rockframe.reports import page
-from rockframe.reports.limits import CERTIFIED, GENERAL, NOT_CERTIFIED, NOT_OF_STUDIES, limits_of
-from rockframe.reports.motions import Aim, record_rows, spectra_section
-from rockframe.reports.values import extremes_of, table_of, value_of
+from rockframe.reports.limits import (
+    GENERAL,
+    STUDY_WITHOUT_CERTIFICATE,
+    WITH_CERTIFICATE,
+    WITHOUT_CERTIFICATE,
+    model_limits,
+)
+from rockframe.reports.motions import TargetComparison, record_rows, spectra_section
+from rockframe.reports.values import extreme_rows, format_value, scalar_rows
 from rockframe.results.outcome import MIN_REPORTED_SLIP, verdict_of
 from rockframe.results.variables.runs import CERTIFICATE, PROOF
 from rockframe.simulation.certify.certificate import NEAR_WORDS
@@ -33,12 +39,12 @@ from rockframe.units.display import DisplayUnits, with_superscripts
 from rockframe.version import __version__
 
 _LIBRARIES: Final = ("numpy", "scipy", "xarray")
-_CERTIFICATE: Final = [row.name for row in (*CERTIFICATE, *PROOF)]
-_NUMBERS: Final = re.compile(r": |, after ")
+_CERTIFICATE_VARIABLES: Final = [row.name for row in (*CERTIFICATE, *PROOF)]
+_NUMBERS_START: Final = re.compile(r": |, after ")
 """Ends of the part of a verdict before its numbers."""
-_PANELS: Final = 4
+_MAX_PANELS: Final = 4
 """Largest number of histories in one figure, which then fits on a page."""
-_DRAWN: Final = frozenset({
+_DRAWN_HISTORIES: Final = frozenset({
     "ground_acceleration", "vertical_ground_acceleration", "rotation", "relative_rotation",
     "angular_velocity", "vertical_displacement", "relative_vertical_displacement",
     "vertical_velocity", "horizontal_displacement", "cap_rotation", "cap_angular_velocity",
@@ -65,13 +71,13 @@ _PROVENANCE: Final = (
 )
 
 
-def outcome_of(dataset: xr.Dataset, units: DisplayUnits) -> str:
+def outcome_banner(dataset: xr.Dataset, units: DisplayUnits) -> str:
     """Return the verdict; its title says whether the body slid."""
     title, kind = page.BANNERS[verdict_of(dataset)]
     words = units.convert_text(str(dataset.attrs.get("verdict", "")))
     slid = float(slips_of_cases(dataset)) >= MIN_REPORTED_SLIP
     if "peak_slip" in dataset and words:
-        title = _NUMBERS.split(words)[0]
+        title = _NUMBERS_START.split(words)[0]
     elif bool(dataset.get("would_slide", False)):
         slid, title = True, f"{title}, but would slide"
     return page.banner(title, words, "doubt" if slid and kind == "good" else kind)
@@ -79,19 +85,19 @@ def outcome_of(dataset: xr.Dataset, units: DisplayUnits) -> str:
 
 def verdict_section(dataset: xr.Dataset, reason: str, units: DisplayUnits) -> Iterator[str]:
     """Return the verdict, its proof or certificate, and cautions."""
-    yield outcome_of(dataset, units)
+    yield outcome_banner(dataset, units)
     if "proof" in dataset.attrs:
         proved = bool(dataset["verdict_proved"])
         title = f"The verdict is {'' if proved else 'not '}proved"
         words = units.convert_text(str(dataset.attrs["proof"]))
         yield page.banner(title, words, "good" if proved else "doubt")
     if "certificate" in dataset.attrs:
-        sure = all(bool(dataset[name]) for name in _CERTIFICATE[:2] if name in dataset)
+        holds = all(bool(dataset[name]) for name in _CERTIFICATE_VARIABLES[:2] if name in dataset)
         words = units.convert_text(str(dataset.attrs["certificate"]))
         near = words.startswith(NEAR_WORDS)
-        text = f"holds{', but near a boundary' * near}" if sure else "is in doubt"
+        text = f"holds{', but near a boundary' * near}" if holds else "is in doubt"
         title = f"Certificate: the verdict {text}"
-        yield page.banner(title, words, "good" if sure and not near else "doubt")
+        yield page.banner(title, words, "good" if holds and not near else "doubt")
     elif "proof" not in dataset.attrs:
         yield page.banner("No certificate", reason or "none was requested.", "doubt")
     cautions = str(dataset.attrs.get("cautions", NONE))
@@ -102,23 +108,26 @@ def verdict_section(dataset: xr.Dataset, reason: str, units: DisplayUnits) -> It
 def scene_section(dataset: xr.Dataset, system: System | None, units: DisplayUnits) -> Iterator[str]:
     """Return the parts with their parameters, and the model."""
     if system is not None:
-        yield from _drawing(system, units)
+        yield from _scene_figure(system, units)
         for part in system.parts.structural():
-            yield from _part(type(part).__name__, part, units)
+            yield from _part_tables(type(part).__name__, part, units)
         yield page.subtitle("Options")
-        yield page.rows(
-            (name, _value(value, units))
+        yield page.parameter_table(
+            (name, _format_value(value, units))
             for name, value in system.options.to_dict().items()
             if name != "coupling" or system.scene.coupling is not None
         )
     yield page.subtitle("Model")
     # runs keep the description of their model, analyses do not
     text = "not described" if system is None else system.describe()
-    yield page.verbatim(units.convert_text(str(dataset.attrs.get("model_description", text))))
+    yield page.preformatted(units.convert_text(str(dataset.attrs.get("model_description", text))))
 
 
 def motion_section(
-    dataset: xr.Dataset, found: GroundMotion | None, units: DisplayUnits, aim: Aim | None = None
+    dataset: xr.Dataset,
+    found: GroundMotion | None,
+    units: DisplayUnits,
+    comparison: TargetComparison | None = None,
 ) -> Iterator[str]:
     """Return the motion, its measures and its figure, and its spectrum with a target."""
     attributes = dict(dataset.attrs)
@@ -132,61 +141,63 @@ def motion_section(
         ("motion_sha256", "digest (SHA-256)"),
     )
     pairs = [(words, str(attributes[name])) for name, words in known if name in attributes]
-    yield page.rows([*pairs, *([] if found is None else record_rows(found, units))])
+    yield page.parameter_table([*pairs, *([] if found is None else record_rows(found, units))])
     if found is None:
         return
-    across = found.si.vertical is not None  # of which nothing is shown
-    yield page.subtitle(f"Measures{' of the horizontal component' * across}")
+    has_vertical = found.si.vertical is not None  # of which nothing is shown
+    yield page.subtitle(f"Measures{' of the horizontal component' * has_vertical}")
     measures = intensity_measures(found)
     threshold = to_si(measures.attrs["threshold"], ACCELERATION, owner="", name="")
-    in_words = value_of(xr.DataArray(threshold, attrs={"units": str(ACCELERATION.unit)}), units)
-    yield page.rows(
+    in_words = format_value(xr.DataArray(threshold, attrs={"units": str(ACCELERATION.unit)}), units)
+    yield page.parameter_table(
         (words.replace("the threshold", in_words), value)
-        for words, value in table_of(measures, units=units)
+        for words, value in scalar_rows(measures, units=units)
     )
-    yield page.picture(
+    yield page.captioned_figure(
         plot.spectra(found, units=units.words),
-        f"History of the {'horizontal ' * across}ground acceleration, its response spectra at 5 % "
-        "damping and its Fourier spectrum.",
+        f"History of the {'horizontal ' * has_vertical}ground acceleration, its response spectra "
+        "at 5 % damping and its Fourier spectrum.",
     )
-    if aim is not None:
+    if comparison is not None:
         yield page.subtitle("Spectrum and target")
-        yield from spectra_section({found.name: found}, aim, units)
+        yield from spectra_section({found.name: found}, comparison, units)
 
 
 def response_section(dataset: xr.Dataset, units: DisplayUnits) -> Iterator[str]:
     """Return the scalars of a run, and figures of its histories."""
-    if dataset.sizes.get("time", 0) > 1 and {*RUN.known, *RUN.needed} <= {*dataset.variables}:
+    if dataset.sizes.get("time", 0) > 1 and {*RUN.identifying, *RUN.required} <= {
+        *dataset.variables
+    }:
         angle = units.chosen.get(Unit.RADIAN)
-        yield page.picture(
+        yield page.captioned_figure(
             plot.response(dataset, rotation="deg" if angle else "relative", units=units.words),
             "From the top: ground acceleration; rotation"
             f"{'' if angle else ' over the overturning angle'}; vertical displacement; "
             f"{'slip; ' if has_slid(dataset) else ''}and contact states.",
         )
-        yield from _histories(dataset, units)
+        yield from _history_figures(dataset, units)
     else:
         yield page.paragraph("The result has no histories of the motion to draw.", kind="soft")
-    names = [str(name) for name in dataset.data_vars if str(name) not in _CERTIFICATE]
-    yield page.rows(table_of(dataset, names, units))
-    if any(name in dataset for name in _CERTIFICATE):
+    names = [str(name) for name in dataset.data_vars if str(name) not in _CERTIFICATE_VARIABLES]
+    yield page.parameter_table(scalar_rows(dataset, names, units))
+    if any(name in dataset for name in _CERTIFICATE_VARIABLES):
         yield page.subtitle("Certificate")
-        yield page.rows(table_of(dataset, _CERTIFICATE, units))
+        yield page.parameter_table(scalar_rows(dataset, _CERTIFICATE_VARIABLES, units))
 
 
-def _histories(dataset: xr.Dataset, units: DisplayUnits) -> Iterator[str]:
+def _history_figures(dataset: xr.Dataset, units: DisplayUnits) -> Iterator[str]:
     """Return figures and extremes of forces, accelerations and other requested histories."""
-    beside = [name for name in histories_of(dataset) if name not in _DRAWN]
-    below = [name for name in beside if name not in SLIPS or not has_slid(dataset)]
-    for start in range(0, len(below), _PANELS):
-        names = below[start : start + _PANELS]
+    beside = [name for name in history_names(dataset) if name not in _DRAWN_HISTORIES]
+    below = [name for name in beside if name not in SLIP_HISTORIES or not has_slid(dataset)]
+    for start in range(0, len(below), _MAX_PANELS):
+        names = below[start : start + _MAX_PANELS]
         drawn = plot.response(dataset, panels=tuple(names), units=units.words, title=" ")
         words = ", ".join(name.replace("_", " ") for name in names)
-        yield page.picture(drawn, f"{words[0].upper()}{words[1:]}, over time.")
+        yield page.captioned_figure(drawn, f"{words[0].upper()}{words[1:]}, over time.")
     if beside:
         yield page.subtitle("Least and greatest values over time")
-        rows = extremes_of(dataset, beside, units)
-        yield page.columns(rows, ("", "unit", "least", "greatest"))
+        rows = extreme_rows(dataset, beside, units)
+        yield page.number_table(rows, ("", "unit", "least", "greatest"))
 
 
 def limits_section(
@@ -196,18 +207,18 @@ def limits_section(
     parts = None if system is None else system.parts
     slides = system is not None and system.setting.slides
     left_out = [
-        (one.title, one.of_study if study and one.of_study else one.words)
-        for one in limits_of(parts, slides=slides)
+        (one.title, one.study_meaning if study and one.study_meaning else one.meaning)
+        for one in model_limits(parts, slides=slides)
     ]
-    known = CERTIFIED if "certificate" in dataset.attrs else NOT_CERTIFIED
+    known = WITH_CERTIFICATE if "certificate" in dataset.attrs else WITHOUT_CERTIFICATE
     *general, sensitive = GENERAL
     if "proof" not in dataset.attrs:  # the proof says that of its own verdict
-        sensitive = f"{sensitive} {NOT_OF_STUDIES if study else known}"
+        sensitive = f"{sensitive} {STUDY_WITHOUT_CERTIFICATE if study else known}"
     if assumptions:
         yield page.subtitle("Assumptions")
-        yield page.items(assumptions)
+        yield page.numbered_list(assumptions)
         yield page.subtitle("What the model neglects")
-    yield page.items([*general, sensitive, *left_out])
+    yield page.numbered_list([*general, sensitive, *left_out])
 
 
 def provenance_section(dataset: xr.Dataset, file: str) -> Iterator[str]:
@@ -216,53 +227,57 @@ def provenance_section(dataset: xr.Dataset, file: str) -> Iterator[str]:
     pairs = [(words, str(attributes[name])) for name, words in _PROVENANCE if name in attributes]
     versions = ", ".join(f"{name} {version(name)}" for name in _LIBRARIES)
     here = f"rockframe {__version__}, Python {python_version()}, {versions}"
-    yield page.rows([*([("file", file)] if file else []), *pairs, ("page written by", here)])
+    yield page.parameter_table(
+        [*([("file", file)] if file else []), *pairs, ("page written by", here)]
+    )
     for name, words in (("system_json", "System"), ("run_json", "Run")):
         if name in attributes:
             yield page.subtitle(f"{words}, to be built again")
-            yield page.verbatim(_indented(str(attributes[name])))
+            yield page.preformatted(_indented(str(attributes[name])))
 
 
-def _drawing(system: System, units: DisplayUnits) -> Iterator[str]:
+def _scene_figure(system: System, units: DisplayUnits) -> Iterator[str]:
     """Draw the scene, if it can be drawn."""
     try:
         drawn = plot.scene(system, units=units.words)
     except RockframeError:  # a base of a user's own
         return
-    yield page.picture(drawn, "The scene, to scale.")
+    yield page.captioned_figure(drawn, "The scene, to scale.")
 
 
-def _part(title: str, part: Component, units: DisplayUnits) -> Iterator[str]:
+def _part_tables(title: str, part: Component, units: DisplayUnits) -> Iterator[str]:
     """Return a part with its parameters, and the parts of which it consists."""
     yield page.subtitle(title)
-    yield page.rows(_parameters(part, units))
+    yield page.parameter_table(_parameter_rows(part, units))
     described: dict[str, Any] = dict(part.to_dict())
     for name, value in described.items():
         if isinstance(value, dict):
-            yield from _part(
+            yield from _part_tables(
                 f"{name.capitalize()}: {value['type']}", component_from_dict(value), units
             )
-        for number, one in enumerate(_made_of(value), 1):
+        for number, one in enumerate(_inner_parts(value), 1):
             which = {"bodies": "Body"}.get(name, name.removesuffix("s").capitalize())
-            yield from _part(f"{which} {number}: {one['type']}", component_from_dict(one), units)
+            yield from _part_tables(
+                f"{which} {number}: {one['type']}", component_from_dict(one), units
+            )
 
 
-def _made_of(value: object) -> list[Any]:
+def _inner_parts(value: object) -> list[Any]:
     """Return the descriptions of parts in an argument of a part."""
     return [one for one in value if isinstance(one, dict)] if isinstance(value, list) else []
 
 
-def _parameters(part: Component, units: DisplayUnits) -> list[tuple[str, str, str]]:
+def _parameter_rows(part: Component, units: DisplayUnits) -> list[tuple[str, str, str]]:
     """Return the parameters of a part as they were given, with their meanings."""
     declared = part.declared()
     return [
         (
             name.replace("_", " "),
-            _value(value, units),
+            _format_value(value, units),
             _meaning(declared[name]) if name in declared else "",
         )
         for name, value in part.to_dict().items()
-        if name != "type" and not isinstance(value, dict) and not _made_of(value)
+        if name != "type" and not isinstance(value, dict) and not _inner_parts(value)
     ]
 
 
@@ -271,10 +286,10 @@ def _meaning(one: Declared[Any, Any]) -> str:
     return words if one.condition is None else words.removesuffix(f"; {one.condition.words}")
 
 
-def _value(value: object, units: DisplayUnits) -> str:
+def _format_value(value: object, units: DisplayUnits) -> str:
     """Write a number with its unit, in six digits; the numbers of a list with commas."""
     if isinstance(value, list):
-        return ", ".join(_value(one, units) for one in value)
+        return ", ".join(_format_value(one, units) for one in value)
     number, blank, unit = units.convert_text(str(value)).partition(" ")
     try:
         return f"{float(number):.6g}{blank}{with_superscripts(unit)}"

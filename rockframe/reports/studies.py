@@ -11,11 +11,17 @@ import xarray as xr
 from rockframe import plot
 from rockframe.errors import RockframeError, RockframeWarning, SchemaError, StudyError
 from rockframe.motion import GroundMotion
-from rockframe.plot._checks import drawn_by
+from rockframe.plot._checks import figure_function_name
 from rockframe.reports import page
-from rockframe.reports.cases import capacity_table, case_tables, from_worst, labels_at, labels_of
+from rockframe.reports.cases import (
+    capacity_table,
+    case_tables,
+    label_texts,
+    label_values,
+    order_from_worst,
+)
 from rockframe.reports.project import Project
-from rockframe.reports.values import table_of, value_of
+from rockframe.reports.values import format_value, scalar_rows
 from rockframe.results.outcome import MIN_REPORTED_SLIP, overturned_from_status
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.simulation.system import System
@@ -31,10 +37,10 @@ def verdict_sections(
 ) -> Iterator[str]:
     """Return the verdicts of the cases and of codes, the figure, and the numbers."""
     sentence = cases_verdict(dataset)
-    verdict = [*about.conclusions()]
+    verdict = [*about.conclusion_banner()]
     if sentence:
         verdict.append(_banner(dataset, units.convert_text(sentence)))
-    fit = _fit_of_capacities(dataset)
+    fit = _capacity_fit(dataset)
     if fit:
         verdict.append(page.banner("Fit", with_superscripts(units.convert_text(fit)), ""))
     yield page.section("Verdict", [*verdict, *by_codes])
@@ -46,10 +52,10 @@ def verdict_sections(
         yield page.section("Capacities", capacities)
     if _is_sweep(dataset):
         yield page.section("Cases", case_tables(dataset, units))
-    scalars = table_of(dataset, units=units)
+    scalars = scalar_rows(dataset, units=units)
     if scalars:
-        yield page.section("Numbers", [page.rows(scalars)])
-    limits = _of_limit_states(dataset, units)
+        yield page.section("Numbers", [page.parameter_table(scalars)])
+    limits = _limit_state_tables(dataset, units)
     if limits:
         yield page.section("Limit states", limits)
 
@@ -61,26 +67,26 @@ def worst_case(
 
     Gives a sentence on it, or on why it cannot be simulated; an empty one if there are no cases.
     """
-    order = from_worst(dataset) if _is_sweep(dataset) else np.array([])
+    order = order_from_worst(dataset) if _is_sweep(dataset) else np.array([])
     if not order.size:
         return "", None
     place = int(order[0])
-    labels = labels_at(dataset, place)
+    labels = label_values(dataset, place)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RockframeWarning)  # the dataset has them
             found = case(dataset, motions=motions or None, **labels)
             run = found.simulate(outputs=())
     except RockframeError as problem:  # such as without its motions
-        words = str(problem).replace(NOT_GIVEN, f"{NOT_GIVEN} or, in a shell, by --motions")
-        return f"Not simulated again; {words}.", None
-    shown_as = labels_of(dataset, place, units)
-    named = ", ".join(f"{name.replace('_', ' ')} {words}" for name, words in shown_as.items())
-    system = found.system if found.motion is None else under(found.system, found.motion)
+        reason = str(problem).replace(NOT_GIVEN, f"{NOT_GIVEN} or, in a shell, by --motions")
+        return f"Not simulated again; {reason}.", None
+    shown_as = label_texts(dataset, place, units)
+    named = ", ".join(f"{name.replace('_', ' ')} {reason}" for name, reason in shown_as.items())
+    system = found.system if found.motion is None else with_motion(found.system, found.motion)
     return f"Simulated again: {named}." if named else "Simulated again.", (run, system)
 
 
-def varied_in_words(dataset: xr.Dataset) -> str:
+def varied_parameters_sentence(dataset: xr.Dataset) -> str:
     """Write which values of the scene differ among the cases; an empty text if none do."""
     axes: list[dict[str, str]] = json.loads(str(dataset.attrs.get("axes_json", "[]")))
     names = [one["name"].replace("_", " ") for one in axes if one["changes"] != Changes.MOTION]
@@ -89,7 +95,7 @@ def varied_in_words(dataset: xr.Dataset) -> str:
     return f"Values of the scene from which the cases differ in: {', '.join(names)}."
 
 
-def run_of_case(dataset: xr.Dataset, motions: Any) -> xr.Dataset:
+def simulated_case(dataset: xr.Dataset, motions: Any) -> xr.Dataset:
     """Simulate a case selected from a sweep; return it unchanged without its motion."""
     try:
         return case(dataset, motions=motions).simulate(outputs=())
@@ -102,7 +108,7 @@ def run_of_case(dataset: xr.Dataset, motions: Any) -> xr.Dataset:
     return found
 
 
-def under(system: System, motion: GroundMotion) -> System:
+def with_motion(system: System, motion: GroundMotion) -> System:
     """Return a system with a motion of its own."""
     options: dict[str, Any] = dict(system.options.to_dict())
     return System(*system.parts.structural(), motion, **options)
@@ -111,12 +117,12 @@ def under(system: System, motion: GroundMotion) -> System:
 def is_study(dataset: xr.Dataset) -> bool:
     """Whether a dataset has many runs, or is an analysis of them."""
     try:
-        return _is_sweep(dataset) or drawn_by(dataset) != "response"
+        return _is_sweep(dataset) or figure_function_name(dataset) != "response"
     except SchemaError:
         return False
 
 
-def _fit_of_capacities(dataset: xr.Dataset) -> str:
+def _capacity_fit(dataset: xr.Dataset) -> str:
     """Describe the lognormal fit to the capacities of a dynamic analysis; empty without one."""
     measure = dataset.attrs.get("intensity")
     if "capacity_scale" not in dataset or measure not in dataset:
@@ -139,16 +145,16 @@ def _is_sweep(dataset: xr.Dataset) -> bool:
 def _banner(dataset: xr.Dataset, sentence: str) -> str:
     if "status" not in dataset:
         return page.banner("Result", with_superscripts(sentence), "")
-    fallen = overturned_from_status(dataset["status"].to_numpy())
-    slid = _slid(dataset)
-    if (fallen == 1.0).any():
+    overturned = overturned_from_status(dataset["status"].to_numpy())
+    slid = _sliding_words(dataset)
+    if (overturned == 1.0).any():
         return page.banner(f"Some cases overturned{slid}", sentence, "bad")
-    if (fallen == 0.0).all():
+    if (overturned == 0.0).all():
         return page.banner(f"No case overturned{slid}", sentence, "doubt" if slid else "good")
     return page.banner("Not all cases have a result", sentence, "doubt")
 
 
-def _slid(dataset: xr.Dataset) -> str:
+def _sliding_words(dataset: xr.Dataset) -> str:
     """Write whether cases slid, or would slide; an empty text if none did."""
     if (slips_of_cases(dataset) >= MIN_REPORTED_SLIP).any():
         return ", some slid"
@@ -159,13 +165,13 @@ def _slid(dataset: xr.Dataset) -> str:
 def _figure(dataset: xr.Dataset, units: DisplayUnits) -> str:
     """Draw a dataset with the function for its kind, if there is one."""
     try:
-        drawn = getattr(plot, drawn_by(dataset))(dataset, units=units.words)
+        drawn = getattr(plot, figure_function_name(dataset))(dataset, units=units.words)
     except RockframeError:
         return ""
-    return page.picture(drawn, str(dataset.attrs.get("title", "The study")) + ".")
+    return page.captioned_figure(drawn, str(dataset.attrs.get("title", "The study")) + ".")
 
 
-def _of_limit_states(dataset: xr.Dataset, units: DisplayUnits) -> list[str]:
+def _limit_state_tables(dataset: xr.Dataset, units: DisplayUnits) -> list[str]:
     """Return all numbers of a fragility: a row for each, with a column for each limit state."""
     dim = "limit_state"
     if dim not in dataset.dims:
@@ -174,7 +180,7 @@ def _of_limit_states(dataset: xr.Dataset, units: DisplayUnits) -> list[str]:
     for name, values in dataset.data_vars.items():
         if values.dims == (dim,):
             words = str(values.attrs.get("long_name", name))
-            rows.append([words, *(value_of(values.isel({dim: k}), units)
+            rows.append([words, *(format_value(values.isel({dim: k}), units)
                                   for k in range(dataset.sizes[dim]))])  # fmt: skip
     heads = [units.convert_text(str(one)) for one in dataset[dim].to_numpy()]
-    return [page.columns(rows, ["", *heads])]
+    return [page.number_table(rows, ["", *heads])]

@@ -19,12 +19,17 @@ from rockframe.errors import (
     warn,
 )
 from rockframe.motion import GroundMotion
-from rockframe.plot._fonts import warning_once
+from rockframe.plot._fonts import warn_of_letters_once
 from rockframe.reports import page, sections, studies
-from rockframe.reports.certifying import certified
-from rockframe.reports.checks import CodeCheck, checks_of
-from rockframe.reports.motions import Aim, aim_of, motions_of, spectra_section
-from rockframe.reports.project import Project, project_of
+from rockframe.reports.certifying import with_certificate
+from rockframe.reports.checks import CodeCheck, read_checks
+from rockframe.reports.motions import (
+    TargetComparison,
+    available_motions,
+    read_target,
+    spectra_section,
+)
+from rockframe.reports.project import Project, project_of_result
 from rockframe.simulation.system import System
 from rockframe.suggestions import with_hints
 from rockframe.suites import TargetSpectrum
@@ -34,7 +39,7 @@ from rockframe.writing import checked_path, write_file
 _OWNER: Final = "report"
 
 
-@warning_once
+@warn_of_letters_once
 @with_hints()
 def report(
     response: xr.Dataset,
@@ -131,7 +136,7 @@ def report(
     'report.html'
     """
     dataset = checked_dataset(response, owner=_OWNER)
-    _check(dataset)
+    _check_dataset(dataset)
     # dimensions that xarray stacked: make their levels ordinary coordinates
     stacked = [
         dim for dim, index in dataset.indexes.items() if dim in dataset.dims and index.nlevels > 1
@@ -142,44 +147,44 @@ def report(
     if motion is not None and not isinstance(cast("object", motion), GroundMotion):
         msg = f"{_OWNER}: motion must be a GroundMotion, got {short_repr(motion)}"
         raise ComponentError(msg)
-    about = project_of(project, dataset, _OWNER)
+    about = project_of_result(project, dataset, _OWNER)
     chosen = display_units(units, owner=_OWNER)
-    aim = aim_of(target, motions, _OWNER)
-    checked = checks_of(checks, _OWNER)
+    comparison = read_target(target, motions, _OWNER)
+    checked = read_checks(checks, _OWNER)
     by_codes = [banner for one in checked for banner in one.banners(chosen)]
-    by_codes = by_codes or [*about.unchecked()]
+    by_codes = by_codes or [*about.missing_checks_banner()]
     source = str(dataset.encoding.get("source", ""))
     read = [source] if source else []
     # checked before the certificate, which takes a while
-    checked_path(path, page.KIND, overwrite=overwrite, read=read)
+    checked_path(path, page.FILE_KIND, overwrite=overwrite, read=read)
     run, picked = _is_run(dataset), "axes_json" in dataset.attrs  # picked out of a sweep
     if motion is not None and not run:
         msg = f"{_OWNER}: found motion=, which is for a run; a study takes motions="
         raise ComponentError(msg)
-    if motions is not None and run and not picked and not aim_of(None, motions, _OWNER):
+    if motions is not None and run and not picked and not read_target(None, motions, _OWNER):
         msg = f"{_OWNER}: found motions=, which is for a study; a run takes motion="
         raise ComponentError(msg)
     if run and picked:
-        dataset = studies.run_of_case(dataset, motions if motion is None else motion)
+        dataset = studies.simulated_case(dataset, motions if motion is None else motion)
         motion = None  # the run has its own motion, which is scaled
     if _is_run(dataset):
         model = str(dataset.attrs["model"])
         heading = value or f"Rocking response, {model} model"
         system = _system_of(dataset, motion)
-        _warn_of_target(target, None if system is None else system.motion, "motion")
-        dataset, reason = certified(dataset, system) if certify else (dataset, "")
+        _warn_of_unused_target(target, None if system is None else system.motion, "motion")
+        dataset, reason = with_certificate(dataset, system) if certify else (dataset, "")
         verdict = sections.verdict_section(dataset, reason, chosen)
-        body = [page.section("Verdict", [*about.conclusions(), *verdict, *by_codes])]
-        body += _of_run(dataset, system, about, chosen, aim)
+        body = [page.section("Verdict", [*about.conclusion_banner(), *verdict, *by_codes])]
+        body += _run_sections(dataset, system, about, chosen, comparison)
     else:
         heading = value or str(dataset.attrs.get("title", "Study"))
-        found = motions_of(dataset, motions, _OWNER)
-        _warn_of_target(target, found, "motions")
+        found = available_motions(dataset, motions, _OWNER)
+        _warn_of_unused_target(target, found, "motions")
         body = [*studies.verdict_sections(dataset, about, chosen, by_codes)]
         if found:
-            spectra = spectra_section(found, aim, chosen)
+            spectra = spectra_section(found, comparison, chosen)
             body.append(page.section("Ground motions", spectra))
-        body += _of_study(dataset, found, about, chosen)
+        body += _study_sections(dataset, found, about, chosen)
     body += [one.section(chosen) for one in checked]
     made = str(dataset.attrs.get("history", "")).splitlines()[-1:]
     head = [f"<h1>{escape(heading)}</h1>", *(page.paragraph(one, kind="soft") for one in made)]
@@ -190,23 +195,23 @@ def report(
         *body,
         page.section("Provenance", sections.provenance_section(dataset, file)),
     ]
-    written = page.page(heading, content).encode()
-    return write_file(path, page.KIND, written, overwrite=overwrite, read=read)
+    written = page.html_page(heading, content).encode()
+    return write_file(path, page.FILE_KIND, written, overwrite=overwrite, read=read)
 
 
-def _warn_of_target(target: object, found: object, name: str) -> None:
+def _warn_of_unused_target(target: object, found: object, name: str) -> None:
     """Warn of a target without spectra to compare, since no motion is available."""
     if target is not None and not found:
         msg = f"{_OWNER}: no motion is available to compare with the target; pass it by {name}="
         warn(msg, RockframeWarning)
 
 
-def _of_run(
+def _run_sections(
     dataset: xr.Dataset,
     system: System | None,
     about: Project,
     units: DisplayUnits,
-    aim: Aim | None = None,
+    comparison: TargetComparison | None = None,
     *,
     study: bool = False,
 ) -> list[str]:
@@ -216,25 +221,25 @@ def _of_run(
     return [
         page.section("Response", sections.response_section(dataset, units)),
         page.section("Scene", sections.scene_section(dataset, system, units)),
-        page.section("Ground motion", sections.motion_section(dataset, motion, units, aim)),
+        page.section("Ground motion", sections.motion_section(dataset, motion, units, comparison)),
         page.section("Limits of validity", limits),
     ]
 
 
-def _of_study(
+def _study_sections(
     dataset: xr.Dataset, motions: Mapping[str, GroundMotion], about: Project, units: DisplayUnits
 ) -> list[str]:
     """Return the sections on a study that follow its motions: its worst case, or its scene."""
     words, worst = studies.worst_case(dataset, motions, units)
     if worst is not None:
         run, system = worst
-        inner = [page.paragraph(words), sections.outcome_of(run, units)]
+        inner = [page.paragraph(words), sections.outcome_banner(run, units)]
         body = [page.section("The worst case in full", inner)]
-        return [*body, *_of_run(run, system, about, units, study=True)]
+        return [*body, *_run_sections(run, system, about, units, study=True)]
     body = [page.section("The worst case", [page.paragraph(words)])] if words else []
     system = _system_of(dataset, None)
     if system is not None:
-        differs = studies.varied_in_words(dataset)
+        differs = studies.varied_parameters_sentence(dataset)
         intro = [page.paragraph(differs)] if differs else []
         scene = [*intro, *sections.scene_section(dataset, system, units)]
         body.append(page.section("Scene", scene))
@@ -242,7 +247,7 @@ def _of_study(
     return [*body, page.section("Limits of validity", limits)]
 
 
-def _check(dataset: xr.Dataset) -> None:
+def _check_dataset(dataset: xr.Dataset) -> None:
     """Raise on a dataset that is not the result of a run or of a study."""
     if not _is_run(dataset) and not studies.is_study(dataset):
         title = dataset.attrs.get("title", "without a title")
@@ -277,4 +282,4 @@ def _system_of(dataset: xr.Dataset, motion: GroundMotion | None) -> System | Non
             f"({dataset.attrs.get('motion')}); expected the motion of the run"
         )
         raise SchemaError(msg)
-    return studies.under(found, motion)
+    return studies.with_motion(found, motion)

@@ -59,7 +59,7 @@ class NamedRecord:
 
 
 @dataclass(frozen=True)
-class Tried:
+class TrialScene:
     """The choices on the page."""
 
     numbers: Mapping[str, float]
@@ -86,7 +86,7 @@ class Tried:
         }  # fmt: skip
         return System(*(kinds[name](**table) for name, table in self.parts.items()))
 
-    def ground(self, record: NamedRecord | None) -> GroundMotion:
+    def ground_motion(self, record: NamedRecord | None) -> GroundMotion:
         """Make the motion of the ground."""
         if self.motion == RECORD and record is not None:
             motion = record.motion
@@ -107,9 +107,13 @@ class Tried:
         lines = ["# rockframe run scene.toml"]
         tables = {**self.parts, "motion": motion, "run": {"free_vibration": FREE_VIBRATION}}
         for name, table in tables.items():
-            lines += ["", f"[{name}]", *(f"{key} = {_toml(one)}" for key, one in table.items())]
+            lines += [
+                "",
+                f"[{name}]",
+                *(f"{key} = {_toml_value(one)}" for key, one in table.items()),
+            ]
             if name == "motion" and self.numbers["scale"] != 1.0:
-                factor = _toml(self.numbers["scale"])
+                factor = _toml_value(self.numbers["scale"])
                 lines.append(f"operations = [{{ scaled = {{ factor = {factor} }} }}]")
         return "\n".join(lines) + "\n"
 
@@ -120,25 +124,27 @@ class Tried:
         return next(one for one in CONTROLS if one.name == name).quantity(self.numbers[name])
 
 
-def motions_with(record: NamedRecord | None) -> dict[str, str]:
+def motion_choices(record: NamedRecord | None) -> dict[str, str]:
     """Return the motions of the page; the record, if there is one, comes first."""
     own = {} if record is None else {RECORD: f"Record: {record.motion.name}"}
     return {**own, **PULSES, EXAMPLE: "Example record (Loma Prieta 1989)"}
 
 
-def read_choice(values: Mapping[str, str], record: NamedRecord | None) -> tuple[Tried, list[str]]:
+def read_choice(
+    values: Mapping[str, str], record: NamedRecord | None
+) -> tuple[TrialScene, list[str]]:
     """Read the address of the page; a wrong value is reported and replaced by its default."""
-    faults = [*_unknown(values)]
+    faults = [*_unknown_keys(values)]
     numbers = dict[str, float]()
     for control in CONTROLS:
         numbers[control.name] = control.default
         if control.name in values:
             try:
-                numbers[control.name] = _number(control, values[control.name])
+                numbers[control.name] = _read_number(control, values[control.name])
             except ValueError as problem:
                 faults.append(str(problem))
     words = dict[str, str]()
-    for name, known in (("base", BASES), ("motion", motions_with(record))):
+    for name, known in (("base", BASES), ("motion", motion_choices(record))):
         words[name] = values.get(name, next(iter(known)))
         if words[name] not in known:
             near = did_you_mean(words[name], known)
@@ -146,10 +152,10 @@ def read_choice(values: Mapping[str, str], record: NamedRecord | None) -> tuple[
                 f"{name}: found {short_repr(words[name])}; expected one of {', '.join(known)}{near}"
             )
             words[name] = next(iter(known))
-    return Tried(numbers, words["base"], words["motion"]), faults
+    return TrialScene(numbers, words["base"], words["motion"]), faults
 
 
-def _unknown(values: Mapping[str, str]) -> Iterator[str]:
+def _unknown_keys(values: Mapping[str, str]) -> Iterator[str]:
     known = [*(one.name for one in CONTROLS), "base", "motion"]
     for name in values:
         if name not in known:
@@ -157,7 +163,7 @@ def _unknown(values: Mapping[str, str]) -> Iterator[str]:
             yield f"there is no {short_repr(name)}{words}"
 
 
-def _number(control: Control, text: str) -> float:
+def _read_number(control: Control, text: str) -> float:
     unit = f" {control.unit}" if control.unit else ""
     try:
         value = float(text.strip().replace(",", "."))
@@ -172,6 +178,6 @@ def _number(control: Control, text: str) -> float:
     return value
 
 
-def _toml(value: object) -> str:
+def _toml_value(value: object) -> str:
     """Write a value in TOML, whose texts have the escapes of JSON."""
     return json.dumps(value, ensure_ascii=False)

@@ -7,7 +7,7 @@ from typing import Final
 from urllib.parse import urlencode
 
 from rockframe.reports.page import banner
-from rockframe.serve.controls import BASES, CONTROLS, PULSES, Control, Tried
+from rockframe.serve.controls import BASES, CONTROLS, PULSES, Control, TrialScene
 from rockframe.units.display import with_superscripts
 
 STYLE: Final = "/page.css"
@@ -15,7 +15,7 @@ SCRIPT: Final = "/page.js"
 
 
 @dataclass(frozen=True)
-class ToldOutcome:
+class TrialOutcome:
     """The outcome of a run, for the page."""
 
     title: str
@@ -26,17 +26,17 @@ class ToldOutcome:
     player: str  # a page
 
 
-def trial_page(choice: Tried, motions: Mapping[str, str], outcome: str) -> str:
+def trial_page(choice: TrialScene, motions: Mapping[str, str], outcome: str) -> str:
     """Return the whole page."""
     groups = [
-        _group("Body", "", _numbers(choice, "", without=("scale",))),
-        _group("Base", "", [_choices("base", BASES, choice.base)]),
-        _group("Pads", "pads", _numbers(choice, "pads"), shown=choice.base == "pads"),
-        _group("Bed", "soil", _numbers(choice, "soil"), shown=choice.base == "soil"),
-        _group("Motion", "", [
-            _choices("motion", motions, choice.motion), *_numbers(choice, "", only="scale"),
+        _fieldset("Body", "", _number_inputs(choice, "", without=("scale",))),
+        _fieldset("Base", "", [_select("base", BASES, choice.base)]),
+        _fieldset("Pads", "pads", _number_inputs(choice, "pads"), shown=choice.base == "pads"),
+        _fieldset("Bed", "soil", _number_inputs(choice, "soil"), shown=choice.base == "soil"),
+        _fieldset("Motion", "", [
+            _select("motion", motions, choice.motion), *_number_inputs(choice, "", only="scale"),
         ]),
-        _group("Pulse", "pulse", _numbers(choice, "pulse"), shown=choice.motion in PULSES),
+        _fieldset("Pulse", "pulse", _number_inputs(choice, "pulse"), shown=choice.motion in PULSES),
     ]  # fmt: skip
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
@@ -51,7 +51,7 @@ def trial_page(choice: Tried, motions: Mapping[str, str], outcome: str) -> str:
     )
 
 
-def told(outcome: ToldOutcome, query: Mapping[str, str]) -> str:
+def outcome_html(outcome: TrialOutcome, query: Mapping[str, str]) -> str:
     """Return the part of the page with the outcome of a run."""
     address = escape(urlencode(query))
     cautions = "".join(banner("To be used with care", one, "doubt") for one in outcome.warnings)
@@ -66,20 +66,20 @@ def told(outcome: ToldOutcome, query: Mapping[str, str]) -> str:
     )
 
 
-def refused(faults: Sequence[str]) -> str:
+def faults_html(faults: Sequence[str]) -> str:
     """Return the part of the page with faults."""
     lines = "".join(f"<li>{escape(one)}</li>" for one in faults)
     return f'<div class="verdict doubt" role="alert"><strong>Not run</strong><ul>{lines}</ul></div>'
 
 
-def _group(title: str, name: str, pieces: Sequence[str], *, shown: bool = True) -> str:
+def _fieldset(title: str, name: str, pieces: Sequence[str], *, shown: bool = True) -> str:
     owned = f' data-of="{name}"' if name else ""
     hidden = "" if shown else " hidden"
     inner = "\n".join(pieces)
     return f"<fieldset{owned}{hidden}><legend>{title}</legend>\n{inner}\n</fieldset>"
 
 
-def _choices(name: str, known: Mapping[str, str], chosen: str) -> str:
+def _select(name: str, known: Mapping[str, str], chosen: str) -> str:
     options = "".join(
         f'<option value="{value}"{" selected" if value == chosen else ""}>{escape(words)}</option>'
         for value, words in known.items()
@@ -88,15 +88,17 @@ def _choices(name: str, known: Mapping[str, str], chosen: str) -> str:
     return f'<label>{title}<select name="{name}">{options}</select></label>'
 
 
-def _numbers(choice: Tried, of: str, *, only: str = "", without: Sequence[str] = ()) -> list[str]:
+def _number_inputs(
+    choice: TrialScene, of: str, *, only: str = "", without: Sequence[str] = ()
+) -> list[str]:
     return [
-        _number(one, choice.numbers[one.name])
+        _number_input(one, choice.numbers[one.name])
         for one in CONTROLS
         if one.of == of and one.name not in without and only in ("", one.name)
     ]
 
 
-def _number(one: Control, value: float) -> str:
+def _number_input(one: Control, value: float) -> str:
     unit = f" [{escape(with_superscripts(one.unit))}]" if one.unit else ""
     ends = f'min="{one.low:g}" max="{one.high:g}"'
     return (

@@ -19,18 +19,18 @@ from rockframe.serve import page
 from rockframe.serve.controls import (
     FREE_VIBRATION,
     NamedRecord,
-    Tried,
-    motions_with,
+    TrialScene,
+    motion_choices,
     read_choice,
 )
-from rockframe.serve.page import ToldOutcome
+from rockframe.serve.page import TrialOutcome
 
 LOOPBACK: Final = "127.0.0.1"
-_MOVING: Final = "Animation of the run"
-_KEPT: Final = 16
+_PLAYER_TITLE: Final = "Animation of the run"
+_CACHE_SIZE: Final = 16
 """Number of outcomes kept, so that the player of a run is available when its frame loads."""
-_MOST_FIELDS: Final = 50
-_PATIENCE: Final = 30.0
+_MAX_FIELDS: Final = 50
+_TIMEOUT: Final = 30.0
 """Time after which a silent client is disconnected [s]."""
 _HTML: Final = "text/html; charset=utf-8"
 _FILES: Final = {page.STYLE: "text/css", page.SCRIPT: "text/javascript"}
@@ -65,7 +65,7 @@ class Server(ThreadingHTTPServer):
 
     def __init__(self, port: int = 0, record: NamedRecord | None = None) -> None:
         try:
-            super().__init__((LOOPBACK, port), _Handler)
+            super().__init__((LOOPBACK, port), _RequestHandler)
         except (OSError, OverflowError) as problem:
             msg = (
                 f"serve: port {port} cannot be opened ({problem}); expected a free one from 1024 "
@@ -75,42 +75,42 @@ class Server(ThreadingHTTPServer):
         self.record = record
         self.hosts = {f"{name}:{self.server_port}" for name in (LOOPBACK, "localhost")}
         self._lock = threading.Lock()  # one run at a time, and one user of matplotlib
-        self._outcomes = OrderedDict[str, ToldOutcome]()
+        self._outcomes = OrderedDict[str, TrialOutcome]()
 
     @property
     def address(self) -> str:
         """The address of the page."""
         return f"http://{LOOPBACK}:{self.server_port}/"
 
-    def outcome(self, choice: Tried) -> ToldOutcome:
+    def outcome(self, choice: TrialScene) -> TrialOutcome:
         """Simulate a choice, or give its outcome if it is kept."""
         toml = choice.toml(self.record)
         with self._lock:
             if toml not in self._outcomes:
-                self._outcomes[toml] = self._simulated(choice, toml)
-                if len(self._outcomes) > _KEPT:
+                self._outcomes[toml] = self._simulate(choice, toml)
+                if len(self._outcomes) > _CACHE_SIZE:
                     self._outcomes.popitem(last=False)
             self._outcomes.move_to_end(toml)
             return self._outcomes[toml]
 
-    def _simulated(self, choice: Tried, toml: str) -> ToldOutcome:
+    def _simulate(self, choice: TrialScene, toml: str) -> TrialOutcome:
         with collected_warnings() as warned:
-            motion = choice.ground(self.record)
+            motion = choice.ground_motion(self.record)
             run = choice.system().simulate(motion, free_vibration=FREE_VIBRATION)
-            player = plot.player(run, title=_MOVING).to_html()
+            player = plot.player(run, title=_PLAYER_TITLE).to_html()
         title, kind = BANNERS[verdict_of(run)]
-        return ToldOutcome(title, str(run.attrs["verdict"]), kind, tuple(warned), toml, player)
+        return TrialOutcome(title, str(run.attrs["verdict"]), kind, tuple(warned), toml, player)
 
 
-class _Handler(BaseHTTPRequestHandler):
+class _RequestHandler(BaseHTTPRequestHandler):
     server: Server  # pyright: ignore[reportIncompatibleVariableOverride]
     server_version = "rockframe"
     sys_version = ""
-    timeout = _PATIENCE  # pyright: ignore[reportAssignmentType]
+    timeout = _TIMEOUT  # pyright: ignore[reportAssignmentType]
 
     def do_GET(self) -> None:
         """Answer a request."""
-        if not self._is_own():
+        if not self._is_same_origin():
             words = "This page answers to its own address on this machine only.\n"
             self._send(HTTPStatus.FORBIDDEN, "text/plain; charset=utf-8", words)
             return
@@ -120,22 +120,22 @@ class _Handler(BaseHTTPRequestHandler):
             self._send(HTTPStatus.OK, f"{_FILES[target.path]}; charset=utf-8", text)
             return
         answers: dict[str, Callable[[Mapping[str, str]], None]] = {
-            "/": self._page, "/outcome": self._outcome, "/player": self._player,
-            "/scene.toml": self._scene,
+            "/": self._send_page, "/outcome": self._send_outcome, "/player": self._send_player,
+            "/scene.toml": self._send_scene,
         }  # fmt: skip
         if target.path not in answers:
             words = f"There is no such page; the page is at {self.server.address}\n"
             self._send(HTTPStatus.NOT_FOUND, "text/plain; charset=utf-8", words)
             return
         try:
-            query = dict(parse_qsl(target.query, max_num_fields=_MOST_FIELDS,
+            query = dict(parse_qsl(target.query, max_num_fields=_MAX_FIELDS,
                                    keep_blank_values=True))  # fmt: skip
         except ValueError:
-            self._send(HTTPStatus.BAD_REQUEST, _HTML, page.refused(["too many values"]))
+            self._send(HTTPStatus.BAD_REQUEST, _HTML, page.faults_html(["too many values"]))
             return
         answers[target.path](query)
 
-    def _is_own(self) -> bool:
+    def _is_same_origin(self) -> bool:
         """Whether a request is from the page itself, not from another page in the browser."""
         hosts = self.server.hosts
         origin = self.headers.get("Origin")
@@ -145,7 +145,9 @@ class _Handler(BaseHTTPRequestHandler):
             and self.headers.get("Sec-Fetch-Site") not in ("cross-site", "same-site")
         )
 
-    def _tried(self, query: Mapping[str, str]) -> tuple[Tried, ToldOutcome | None, list[str]]:
+    def _evaluate(
+        self, query: Mapping[str, str]
+    ) -> tuple[TrialScene, TrialOutcome | None, list[str]]:
         choice, faults = read_choice(query, self.server.record)
         if faults:
             return choice, None, faults
@@ -157,26 +159,26 @@ class _Handler(BaseHTTPRequestHandler):
             traceback.print_exc()
             return choice, None, [f"The run failed: {PLEASE_REPORT}."]
 
-    def _page(self, query: Mapping[str, str]) -> None:
-        choice, outcome, faults = self._tried(query)
-        part = page.refused(faults) if outcome is None else page.told(outcome, query)
+    def _send_page(self, query: Mapping[str, str]) -> None:
+        choice, outcome, faults = self._evaluate(query)
+        part = page.faults_html(faults) if outcome is None else page.outcome_html(outcome, query)
         self._send(
-            HTTPStatus.OK, _HTML, page.trial_page(choice, motions_with(self.server.record), part)
+            HTTPStatus.OK, _HTML, page.trial_page(choice, motion_choices(self.server.record), part)
         )
 
-    def _outcome(self, query: Mapping[str, str]) -> None:
-        _, outcome, faults = self._tried(query)
-        part = page.refused(faults) if outcome is None else page.told(outcome, query)
+    def _send_outcome(self, query: Mapping[str, str]) -> None:
+        _, outcome, faults = self._evaluate(query)
+        part = page.faults_html(faults) if outcome is None else page.outcome_html(outcome, query)
         self._send(HTTPStatus.OK, _HTML, part)
 
-    def _player(self, query: Mapping[str, str]) -> None:
-        _, outcome, faults = self._tried(query)
+    def _send_player(self, query: Mapping[str, str]) -> None:
+        _, outcome, faults = self._evaluate(query)
         if outcome is None:
-            self._send(HTTPStatus.BAD_REQUEST, _HTML, page.refused(faults))
+            self._send(HTTPStatus.BAD_REQUEST, _HTML, page.faults_html(faults))
         else:
             self._send(HTTPStatus.OK, _HTML, outcome.player, _PLAYER_POLICY)
 
-    def _scene(self, query: Mapping[str, str]) -> None:
+    def _send_scene(self, query: Mapping[str, str]) -> None:
         choice, faults = read_choice(query, self.server.record)
         plain = "text/plain; charset=utf-8"
         if faults:

@@ -99,7 +99,7 @@ def test_impacts_with_little_friction(own, slenderness, share, side):
     block = rf.Block(width="1 m", height=f"{slenderness} m", mass="1 t")
     system = standing(own, block, friction).assembly.model.system
     state, memory = np.array([0.0, 0.0, 0.0, -0.3 * side]), np.zeros(5)
-    mode = system.land(3 if side > 0.0 else 6, state, Ground(0.0, 0.0), memory)
+    mode = system.impact(3 if side > 0.0 else 6, state, Ground(0.0, 0.0), memory)
     under = 1.0 + 4.0 * t * t - 3.0 * friction * t
     after = (1.0 - 2.0 * t * t + 3.0 * friction * t) / under
     slip = 2.0 * t * (3.0 * t - 4.0 * friction - friction * t * t) / under
@@ -112,7 +112,7 @@ def test_impacts_with_little_friction(own, slenderness, share, side):
 def test_impacts_with_enough_friction_are_housners(own):
     system = standing(own, SLENDER, 0.185).assembly.model.system
     state = np.array([0.0, 0.0, 0.0, -0.3])
-    assert system.land(3, state, Ground(0.0, 0.0), np.zeros(5)) == 6
+    assert system.impact(3, state, Ground(0.0, 0.0), np.zeros(5)) == 6
     assert state[3] == pytest.approx(-0.3 * SLENDER.maximum_restitution, rel=1e-12)
     assert state[2] == 0.0
 

@@ -9,7 +9,7 @@ from matplotlib.ticker import FuncFormatter
 
 import rockframe as rf
 from rockframe.errors import ComponentError, UnitsError
-from rockframe.plot._checks import KINDS, drawn_by
+from rockframe.plot._checks import KINDS, figure_function_name
 
 BLOCK = rf.Block(width="0.8 m", height="4 m", mass="2 t")
 SYSTEM = rf.System(BLOCK, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1))
@@ -203,7 +203,7 @@ def test_units_are_those_of_the_reader(name, given):
 @pytest.mark.parametrize("name", sorted(set(DRAWN) - {"player"}))
 def test_figures_are_drawn_where_they_are_told_to(name, given):
     draw, what = getattr(rf.plot, name), given(name)
-    assert name not in KINDS or drawn_by(what) == name
+    assert name not in KINDS or figure_function_name(what) == name
     usual = panels_of(draw(what))
     plt.close("all")
     figure = plt.figure(figsize=(14.0, 6.0), layout="constrained")

@@ -50,7 +50,7 @@ def test_the_model_has_the_numbers_of_the_system(base, dashpots, tmp_path):
     system = rf.System(BLOCK, BASES[base], restraint="centre")
     both = PULSE.with_vertical(PULSE.scaled(0.5))
     found = written(system, both, tmp_path, free_vibration="1 s", springs=10, dashpots=dashpots)
-    given, ops = found["GIVEN"], Recorder()
+    given, ops = found["PARAMETERS"], Recorder()
     middle, above, top = found["build"](ops, given)
     places = {tag: np.array(place) for tag, *place in ops.of("node")}
     masses = {tag: mass for tag, mass, _ in ops.of("mass")}
@@ -132,7 +132,7 @@ def test_a_rotation_between_two_outputs_has_no_row(tmp_path):
     """A run that overturns ends between two of them; OpenSees goes on to the next."""
     system = rf.System(BLOCK, PADS, restraint="centre")
     strong = PULSE.scaled(3.0)
-    given = written(system, strong, tmp_path, free_vibration="3 s")["GIVEN"]
+    given = written(system, strong, tmp_path, free_vibration="3 s")["PARAMETERS"]
     run = system.simulate(strong, free_vibration="3 s", output_step="0.01 s", outputs=())
     assert run.overturned
     assert given["outputs"] == run.sizes["time"]

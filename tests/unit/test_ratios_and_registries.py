@@ -15,7 +15,7 @@ from unit.dimensional_arguments import FOREIGN, make_block, make_pads, make_puls
 
 import rockframe as rf
 from rockframe.errors import ComponentError, UnitsError
-from rockframe.reports.values import value_of
+from rockframe.reports.values import format_value
 from rockframe.units import LENGTH, to_si, to_si_values
 from rockframe.units.display import degrees_text, display_units, unit_suffix
 
@@ -260,8 +260,8 @@ def test_degrees_follow_a_number_without_a_space_everywhere():
     assert (degrees_text(math.pi / 7), degrees_text(math.pi / 7, 2)) == ("25.71°", "26°")
     angle = xr.DataArray(0.25, attrs={"units": "rad"})
     units = display_units({"angle": "deg"}, owner="a page")
-    assert value_of(angle) == "0.25 rad (14.3°)"
-    assert value_of(angle, units) == "14.32°" == units.convert_text("0.25 rad")
+    assert format_value(angle) == "0.25 rad (14.3°)"
+    assert format_value(angle, units) == "14.32°" == units.convert_text("0.25 rad")
     block = rf.Block(width="0.5 m", height="2 m", mass="1 t")
     text = rf.System(block, inclination="2 deg").describe()
     assert "(12.04°)" in text

@@ -16,7 +16,7 @@ import rockframe as rf
 from rockframe.errors import ComponentError, RecordWarning, SchemaError
 from rockframe.reports import cases, sections
 from rockframe.reports.limits import LIMITS
-from rockframe.reports.values import value_of
+from rockframe.reports.values import format_value
 from rockframe.results.schema import SCHEMA
 from rockframe.simulation.certify import certificate
 from rockframe.simulation.run_arguments import MIN_RUNS
@@ -311,7 +311,7 @@ def test_the_parts_of_a_part_have_tables_of_their_own():
         (stack, ("Body 1: Block", "Body 2: Block", "Interface 1: RigidGround", "0.01 m")),
         (rf.RockingFrame(block, columns=3, beam_mass="2 t"), ("Column: Block", "500 kg")),
     ):
-        shown = Page("".join(sections._part("part", part, DisplayUnits()))).text
+        shown = Page("".join(sections._part_tables("part", part, DisplayUnits()))).text
         assert all(each in shown for each in words)
         assert "{" not in shown
 
@@ -408,11 +408,11 @@ def test_a_sweep_shows_forces_and_slips_of_each_case_in_the_units_of_the_reader(
 
 
 def test_what_tables_and_figures_choose_by_name_exists():
-    assert {*cases.COLUMNS, *sections._DRAWN} <= set(SCHEMA)
+    assert {*cases.COLUMNS, *sections._DRAWN_HISTORIES} <= set(SCHEMA)
 
 
 def test_of_many_cases_the_worst_are_listed(tmp_path, monkeypatch):
-    monkeypatch.setattr(cases, "MOST_ROWS", 3)
+    monkeypatch.setattr(cases, "MAX_ROWS", 3)
     runs = rf.sweep(rf.System(BLOCK), SUITE["long"], scale=[0.4, 0.7, 2.0, 3.0, 4.0])
     words = words_of(rf.report(runs, tmp_path / "r.html"))
     assert "The 3 worst of 5 cases." in words
@@ -455,7 +455,7 @@ def test_a_dynamic_analysis_has_its_capacities(tmp_path, monkeypatch):
     assert f"Fit Capacity against overturning: median {float(fit.median_intensity):.4g}" in (
         words.replace("median peak ground acceleration", "median")
     )
-    monkeypatch.setattr(cases, "MOST_ROWS", 1)
+    monkeypatch.setattr(cases, "MAX_ROWS", 1)
     words = words_of(rf.report(found, tmp_path / "least.html"))
     least = str(capacities.motion[int(np.argmin(capacities.to_numpy()))].item())
     assert "The 1 least of 2 capacities." in words
@@ -532,7 +532,7 @@ def test_a_mean_tells_of_how_many_cases_it_is_and_a_demand_without_end_is_infini
     assert 0 < known.size < times.size
     words = words_of(rf.report(runs, tmp_path / "r.html"))
     assert f"{known.mean():.4g} (of {known.size})" in words
-    assert value_of(xr.DataArray(np.inf)) == "infinite"
+    assert format_value(xr.DataArray(np.inf)) == "infinite"
 
 
 def test_measures_say_of_which_component_and_threshold_they_are(tmp_path):

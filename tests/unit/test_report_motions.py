@@ -189,7 +189,7 @@ def test_joined_runs_take_the_motions_that_are_given(suite, tmp_path):
 
 
 def test_columns_of_records_are_those_of_suites():
-    assert set(in_reports.OF_RECORDS) <= set(SCHEMA)
+    assert set(in_reports.RECORD_COLUMNS) <= set(SCHEMA)
 
 
 @pytest.fixture(scope="module")

@@ -10,9 +10,9 @@ import xarray as xr
 import rockframe as rf
 from rockframe.command.files.scenes import read_scene
 from rockframe.errors import AssemblyError, ComponentError, ModelWarning
-from rockframe.plot._artists import Drawer
-from rockframe.plot._scene import Moving
-from rockframe.reports.limits import limits_of
+from rockframe.plot._artists import LayoutBuilder
+from rockframe.plot._scene import SceneHistory
+from rockframe.reports.limits import model_limits
 from rockframe.results.points import UPRIGHT, Placement
 from rockframe.simulation.certify.perturbations import parameters
 from rockframe.system.geometry import geometry_of
@@ -165,7 +165,7 @@ def test_a_run_keeps_its_energy_tells_the_scene_and_goes_to_a_file(tmp_path):
     for words in ("Makris and Vassiliou", "gamma = m_b/(N m)  1.11111", "6.54421 m"):
         assert words in text
     assert "<svg" in system._repr_html_()
-    assert "Rocking frames" in [one.title for one in limits_of(system.parts)]
+    assert "Rocking frames" in [one.title for one in model_limits(system.parts)]
 
 
 def test_statics():
@@ -185,10 +185,10 @@ def test_columns_and_beam_are_drawn_where_they_are():
         PULSE, free_vibration="3 s", points={"deck": ("0 m", "11 m"), "head": ("0.8 m", "9.6 m")}
     )
     for place in (0, run.sizes["time"] // 3, int(np.abs(run.rotation.to_numpy()).argmax())):
-        moving = Moving(run, "state", 1.0)
-        at = moving.at(place)
-        found = moving.drawer.lay_out(at)
-        first, others, beam = found.block, found.others[:-1], found.others[-1]
+        moving = SceneHistory(run, "state", 1.0)
+        at = moving.placement_at(place)
+        found = moving.builder.layout_at(at)
+        first, others, beam = found.block, found.frame_parts[:-1], found.frame_parts[-1]
         assert len(others) == 2
         for k, one in enumerate(others, 1):
             np.testing.assert_allclose(one, first + np.array([7.0 * k, 0.0]), atol=1e-12)
@@ -198,10 +198,10 @@ def test_columns_and_beam_are_drawn_where_they_are():
         deck, head = (run.isel(point=k, time=place) for k in (0, 1))
         for name, point, rest in (("deck", deck, (0.0, 11.0)), ("head", head, (-6.2, 9.6))):
             shown = [point.point_horizontal_displacement, point.point_vertical_displacement]
-            drawn = moving.drawer.points(at, np.array([moving.points[name]]))[0]
+            drawn = moving.builder.points_at(at, np.array([moving.points[name]]))[0]
             np.testing.assert_allclose(drawn - rest, shown, atol=1e-9)
     upright = Placement(geometry_of(rf.System(BENT).assembly), UPRIGHT, Restraint.CONTACT_STATE)
-    assert len(Drawer(upright.geometry).lay_out(upright).touching) == 3
+    assert len(LayoutBuilder(upright.geometry).layout_at(upright).contacts) == 3
     rf.plot.scene(rf.System(BENT))
     rf.plot.state(run, "1 s")
 

@@ -14,7 +14,14 @@ import rockframe as rf
 from rockframe.command.files.scenes import read_scene
 from rockframe.errors import ComponentError
 from rockframe.serve import Server
-from rockframe.serve.controls import BASES, CONTROLS, PULSES, NamedRecord, motions_with, read_choice
+from rockframe.serve.controls import (
+    BASES,
+    CONTROLS,
+    PULSES,
+    NamedRecord,
+    motion_choices,
+    read_choice,
+)
 
 pytestmark = pytest.mark.unit
 
@@ -81,7 +88,7 @@ def test_the_file_makes_the_scene_that_was_run(ask, record, tmp_path, base, moti
     choice, faults = read_choice(given, record)
     assert faults == []
     assert found.system == choice.system()
-    assert found.motion == choice.ground(record)
+    assert found.motion == choice.ground_motion(record)
     assert found.run == {"free_vibration": "5 s"}
 
 
@@ -147,7 +154,7 @@ def test_what_fails_inside_is_told_without_a_traceback(ask, server, monkeypatch,
     def fails(choice, toml):
         raise ZeroDivisionError
 
-    monkeypatch.setattr(server, "_simulated", fails)
+    monkeypatch.setattr(server, "_simulate", fails)
     text = ask("/outcome?width=1.01")[1]
     assert "please report it" in text
     assert "Zero" not in text
@@ -160,7 +167,7 @@ def test_every_control_begins_between_its_ends():
     assert faults == []
     for control in CONTROLS:
         assert control.low <= choice.numbers[control.name] == control.default <= control.high
-    assert set(motions_with(None)) == {*PULSES, "example"}
+    assert set(motion_choices(None)) == {*PULSES, "example"}
 
 
 def test_a_port_that_is_taken_or_none_is_told(server):

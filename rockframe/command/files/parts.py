@@ -5,7 +5,14 @@ from dataclasses import dataclass
 from inspect import getmembers, ismethod
 from typing import Any, Final
 
-from rockframe.command.files.tables import Place, TomlFile, arguments_of, checked, made, table_title
+from rockframe.command.files.tables import (
+    KeyPath,
+    TomlFile,
+    arguments_of,
+    call_with_table,
+    check_table,
+    table_title,
+)
 from rockframe.components import Component, RockingFrame, Stack
 from rockframe.components.registry import registered_classes
 from rockframe.errors import did_you_mean, short_repr
@@ -15,7 +22,7 @@ from rockframe.system.parts import RESTRAINER, default_class, slot_of_class, slo
 TYPE: Final = "type"
 CONSTRUCTOR: Final = "constructor"
 MODULES: Final = "modules"
-_OF_ALL: Final = ("from_dict", "declared")
+_COMMON_METHODS: Final = ("from_dict", "declared")
 """Class methods of all components that are not constructors for users."""
 _BODIES: Final = "bodies"
 _MOTION: Final = "motion"
@@ -29,7 +36,7 @@ class InnerParts:
     several: bool  # whether they are an array of tables
 
 
-_INNER: Final[Mapping[type, Mapping[str, InnerParts]]] = {
+_INNER_PARTS: Final[Mapping[type, Mapping[str, InnerParts]]] = {
     Stack: {
         _BODIES: InnerParts(("block",), several=True),
         "interfaces": InnerParts(("pads", "soil", "ground"), several=True),
@@ -43,14 +50,19 @@ def part_slots() -> tuple[str, ...]:
     return tuple(slot for slot in slots() if slot != _MOTION)
 
 
-def described_parts(file: TomlFile, slot: str, value: object) -> list[Component | None]:
+def build_parts(file: TomlFile, slot: str, value: object) -> list[Component | None]:
     """Build the part that a table describes, or those of an array of tables."""
     several = slot == RESTRAINER and isinstance(value, list)
-    return _each(file, (slot,), classes_in(slot), value, several=several)
+    return _build_each(file, (slot,), classes_in(slot), value, several=several)
 
 
-def _each(
-    file: TomlFile, where: Place, known: Mapping[str, type[Component]], value: Any, *, several: bool
+def _build_each(
+    file: TomlFile,
+    where: KeyPath,
+    known: Mapping[str, type[Component]],
+    value: Any,
+    *,
+    several: bool,
 ) -> list[Component | None]:
     """Build the part of a table, or those of several; parts with faults are None."""
     items: list[Any] = value if several else [value]
@@ -58,20 +70,20 @@ def _each(
     for number, item in enumerate(items):
         place = (*where, number) if several else where
         table = file.table(place, item)
-        found.append(None if table is None else _described(file, place, known, table))
+        found.append(None if table is None else _build_part(file, place, known, table))
     return found
 
 
 def inner_parts(kind: type[Component]) -> Mapping[str, InnerParts]:
     """Return the parts of which a part consists, by the keys of their tables."""
-    return next((inner for of, inner in _INNER.items() if issubclass(kind, of)), {})
+    return next((inner for of, inner in _INNER_PARTS.items() if issubclass(kind, of)), {})
 
 
-def _described(
-    file: TomlFile, where: Place, known: Mapping[str, type[Component]], table: dict[str, Any]
+def _build_part(
+    file: TomlFile, where: KeyPath, known: Mapping[str, type[Component]], table: dict[str, Any]
 ) -> Component | None:
     """Build a part, of one of the known classes, after the parts of which it consists."""
-    kind = _kind_of(file, where, known, table.pop(TYPE, None))
+    kind = _class_of(file, where, known, table.pop(TYPE, None))
     if kind is None:
         return None
     constructor = table.pop(CONSTRUCTOR, None)
@@ -83,7 +95,7 @@ def _described(
         if constructor not in ways:
             listed = ", ".join(ways) or "none but the usual one"
             near = did_you_mean(str(constructor), ways)
-            file.fault(
+            file.add_fault(
                 (*where, CONSTRUCTOR),
                 f"constructors of {kind.__name__} are {listed}; got "
                 f"{short_repr(constructor)}{near}",
@@ -94,31 +106,31 @@ def _described(
     known_keys = {**dict.fromkeys(inner, True), **arguments_of(function)}
     faulty = [
         name for name in inner
-        if name in table and not _inner(file, (*where, name), inner[name], table)
+        if name in table and not _build_inner(file, (*where, name), inner[name], table)
     ]  # fmt: skip
     unknown = [name for name in table if name not in known_keys]
     declared = {name: one for name, one in declared.items() if name not in inner}
-    if not checked(file, where, table, known_keys, declared, hints_of(kind.__init__)):
-        _note_others(file, where, kind, unknown)
+    if not check_table(file, where, table, known_keys, declared, hints_of(kind.__init__)):
+        _note_constructors(file, where, kind, unknown)
         return None
     if faulty:
         return None
     bodies = table.pop(_BODIES, ()) if _BODIES in inner else ()
-    return made(file, where, lambda **rest: function(*bodies, **rest), table)
+    return call_with_table(file, where, lambda **rest: function(*bodies, **rest), table)
 
 
-def _inner(file: TomlFile, where: Place, wanted: InnerParts, table: dict[str, Any]) -> bool:
+def _build_inner(file: TomlFile, where: KeyPath, inner: InnerParts, table: dict[str, Any]) -> bool:
     """Build the parts of an inner table; false if one of them has faults."""
     name = str(where[-1])
     value = table[name]
-    if wanted.several and not isinstance(value, list):
+    if inner.several and not isinstance(value, list):
         header = f"[[{table_title(where)}]]"
         words = f"{name} must be an array of tables, {header} above each, got {short_repr(value)}"
-        file.fault(where, words)
+        file.add_fault(where, words)
         return False
-    known = {key: kind for slot in wanted.slots for key, kind in classes_in(slot).items()}
-    parts = _each(file, where, known, value, several=wanted.several)
-    table[name] = parts if wanted.several else parts[0]
+    known = {key: kind for slot in inner.slots for key, kind in classes_in(slot).items()}
+    parts = _build_each(file, where, known, value, several=inner.several)
+    table[name] = parts if inner.several else parts[0]
     return None not in parts
 
 
@@ -136,12 +148,12 @@ def constructors(kind: type[Component]) -> dict[str, Callable[..., Component]]:
     return {
         name: one
         for name, one in getmembers(kind, ismethod)
-        if not name.startswith("_") and name not in _OF_ALL
+        if not name.startswith("_") and name not in _COMMON_METHODS
     }
 
 
-def _kind_of(
-    file: TomlFile, where: Place, known: Mapping[str, type[Component]], name: object
+def _class_of(
+    file: TomlFile, where: KeyPath, known: Mapping[str, type[Component]], name: object
 ) -> type[Component] | None:
     if name is None:
         return next(iter(known.values()))
@@ -152,16 +164,18 @@ def _kind_of(
     )
     near = did_you_mean(str(name), known)
     words = f"type must be {' or '.join(known)}, got {short_repr(name)}{near or of_own}"
-    file.fault((*where, TYPE), words)
+    file.add_fault((*where, TYPE), words)
     return None
 
 
-def _note_others(file: TomlFile, where: Place, kind: type[Component], unknown: list[str]) -> None:
+def _note_constructors(
+    file: TomlFile, where: KeyPath, kind: type[Component], unknown: list[str]
+) -> None:
     """Note which other constructors take the keys that this one does not know."""
     for name in unknown:
         ways = [way for way, one in constructors(kind).items() if name in arguments_of(one)]
         if ways:
-            file.fault(
+            file.add_fault(
                 (*where, name),
                 f"{name!r} goes with {CONSTRUCTOR} = {' or '.join(map(repr, ways))}".replace(
                     "'", '"'

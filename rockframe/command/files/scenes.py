@@ -8,9 +8,16 @@ from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from typing import Any, Final
 
-from rockframe.command.files.parts import CONSTRUCTOR, MODULES, described_parts, part_slots
-from rockframe.command.files.tables import Place, TomlFile, arguments_of, checked, made, table_title
-from rockframe.command.typed_calls import check_of
+from rockframe.command.files.parts import CONSTRUCTOR, MODULES, build_parts, part_slots
+from rockframe.command.files.tables import (
+    KeyPath,
+    TomlFile,
+    arguments_of,
+    call_with_table,
+    check_table,
+    table_title,
+)
+from rockframe.command.typed_calls import parse_check
 from rockframe.components import Component, InitialState
 from rockframe.components.registry import registered_classes
 from rockframe.errors import AssemblyError, RockframeError, did_you_mean, short_repr
@@ -24,7 +31,7 @@ from rockframe.solve.accuracy import Accuracy
 from rockframe.suggestions import hints_of
 from rockframe.system.parts import slot_of_class
 
-_FILE: Final = "file"
+_FILE_KEY: Final = "file"
 MOTIONS: Final = (*CONSTRUCTORS, "example")
 """Constructors of motions that files may name; ``example`` gives a record of the package."""
 _OPERATIONS: Final = "operations"
@@ -34,97 +41,103 @@ _RESPONSE: Final = "response"
 def motion_keys() -> dict[str, bool]:
     """Return the keys of a motion from a file, and whether each is needed."""
     arguments = arguments_of(GroundMotion.read, without=("path",))
-    return {_FILE: True, **arguments, _OPERATIONS: False}
+    return {_FILE_KEY: True, **arguments, _OPERATIONS: False}
 
 
-def described_motion(file: TomlFile, where: Place, value: object) -> GroundMotion | None:
+def build_motion(file: TomlFile, where: KeyPath, value: object) -> GroundMotion | None:
     """Build the motion that a table describes."""
     table = file.table(where, value)
     if table is None:
         return None
     operations = table.pop(_OPERATIONS, [])
-    if CONSTRUCTOR in table and _FILE not in table:
-        motion = _constructed(file, where, table)
-    elif _FILE not in table:
-        ways = f"{_FILE!r}, the path of a record, or {CONSTRUCTOR!r}, one of {', '.join(MOTIONS)}"
-        file.fault(where, f"[{table_title(where)}] lacks {ways}")
+    if CONSTRUCTOR in table and _FILE_KEY not in table:
+        motion = _construct_motion(file, where, table)
+    elif _FILE_KEY not in table:
+        ways = (
+            f"{_FILE_KEY!r}, the path of a record, or {CONSTRUCTOR!r}, one of {', '.join(MOTIONS)}"
+        )
+        file.add_fault(where, f"[{table_title(where)}] lacks {ways}")
         motion = None
-    elif checked(file, where, {**table}, motion_keys()):
-        motion = _read(file, where, table)
+    elif check_table(file, where, {**table}, motion_keys()):
+        motion = _read_record(file, where, table)
     else:
         motion = None
-    return None if motion is None else _operated(file, where, motion, operations)
+    return None if motion is None else _apply_operations(file, where, motion, operations)
 
 
-def _read(file: TomlFile, where: Place, table: dict[str, Any]) -> GroundMotion | None:
-    name = table.pop(_FILE)
+def _read_record(file: TomlFile, where: KeyPath, table: dict[str, Any]) -> GroundMotion | None:
+    name = table.pop(_FILE_KEY)
     if not isinstance(name, str):
-        file.fault((*where, _FILE), f"file must be the path of a record, got {short_repr(name)}")
+        file.add_fault(
+            (*where, _FILE_KEY), f"file must be the path of a record, got {short_repr(name)}"
+        )
         return None
     component = table.get("component")
     if isinstance(component, list):  # TOML has no tuples
         table["component"] = tuple(component)
     if isinstance(table.get(_RESPONSE), str):
         table[_RESPONSE] = file.path_relative_to(table[_RESPONSE])
-    return made(
+    return call_with_table(
         file, where, lambda **rest: GroundMotion.read(file.path_relative_to(name), **rest), table
     )
 
 
-def _constructed(file: TomlFile, where: Place, table: dict[str, Any]) -> GroundMotion | None:
+def _construct_motion(file: TomlFile, where: KeyPath, table: dict[str, Any]) -> GroundMotion | None:
     constructor = table.pop(CONSTRUCTOR)
     if constructor not in MOTIONS:
         known = ", ".join(MOTIONS)
         near = did_you_mean(str(constructor), MOTIONS)
         words = f"constructor must be one of {known}, got {short_repr(constructor)}{near}"
-        file.fault((*where, CONSTRUCTOR), words)
+        file.add_fault((*where, CONSTRUCTOR), words)
         return None
     function = getattr(GroundMotion, constructor)
-    if not checked(file, where, table, arguments_of(function)):
+    if not check_table(file, where, table, arguments_of(function)):
         return None
-    return made(file, where, function, table)
+    return call_with_table(file, where, function, table)
 
 
-def _operated(
-    file: TomlFile, where: Place, motion: GroundMotion, operations: object
+def _apply_operations(
+    file: TomlFile, where: KeyPath, motion: GroundMotion, operations: object
 ) -> GroundMotion | None:
     """Apply a list of operations to a motion, each a table with one key."""
     where = (*where, _OPERATIONS)
     if not isinstance(operations, list):
         words = "operations must be a list such as [{ scaled = { factor = 1.5 } }]"
-        file.fault(where, f"{words}, got {short_repr(operations)}")
+        file.add_fault(where, f"{words}, got {short_repr(operations)}")
         return None
     found: GroundMotion | None = motion
     for number, one in enumerate(operations):
         here = (*where, number)
         if not isinstance(one, dict) or len(one) != 1:
             words = "an operation is written { scaled = { factor = 1.5 } }"
-            file.fault(here, f"{words}, got {short_repr(one)}")
+            file.add_fault(here, f"{words}, got {short_repr(one)}")
             return None
         ((name, value),) = one.items()
         if found is None:
             return None
-        found = _done(file, (*here, str(name)), found, value)
+        found = _apply_operation(file, (*here, str(name)), found, value)
     return found
 
 
-def _done(file: TomlFile, where: Place, motion: GroundMotion, value: object) -> GroundMotion | None:
+def _apply_operation(
+    file: TomlFile, where: KeyPath, motion: GroundMotion, value: object
+) -> GroundMotion | None:
     name = str(where[-1])
     if name not in OPERATIONS:
-        file.unknown(where[:-1], name, OPERATIONS)
+        file.add_unknown_key(where[:-1], name, OPERATIONS)
         return None
     table = file.table(where, value)
     if table is None:
         return None
     arguments: Mapping[str, bool] = arguments_of(getattr(motion, name))
-    if not checked(file, where, table, arguments):
+    if not check_table(file, where, table, arguments):
         return None
     if isinstance(table.get("other"), dict):
-        other = described_motion(file, (*where, "other"), table["other"])
+        other = build_motion(file, (*where, "other"), table["other"])
         if other is None:
             return None
         table["other"] = other
-    return made(file, where, getattr(motion, name), table)
+    return call_with_table(file, where, getattr(motion, name), table)
 
 
 OPTIONS: Final = "system"
@@ -133,13 +146,13 @@ RUN: Final = "run"
 PROJECT: Final = "project"
 
 
-def keys() -> tuple[str, ...]:
+def scene_keys() -> tuple[str, ...]:
     """Return the keys of the file of a scene."""
     return (MODULES, *part_slots(), OPTIONS, MOTION, RUN, PROJECT)
 
 
 @dataclass(frozen=True)
-class Described:
+class SceneDescription:
     """What the file of a scene describes."""
 
     system: System  # the parts, without the motion
@@ -149,38 +162,42 @@ class Described:
     project: str  # the project in JSON, as results keep it
 
 
-def read_scene(path: str | Path) -> Described:
+def read_scene(path: str | Path) -> SceneDescription:
     """Read the file of a scene."""
     file = TomlFile.read(path)
     import_modules(file)  # before the keys are checked: its parts may add tables
     for name in file.values:
-        if name not in keys():
-            _unknown_table(file, name)
-    found = described_scene(file)
-    if found is None or not file.sound:
+        if name not in scene_keys():
+            _add_unknown_table(file, name)
+    found = build_scene(file)
+    if found is None or not file.is_valid:
         raise file.error()
     return found
 
 
-def described_scene(file: TomlFile) -> Described | None:
+def build_scene(file: TomlFile) -> SceneDescription | None:
     """Build what the tables of a file describe."""
     given = file.values
     parts = [
         part for slot in part_slots() if slot in given
-        for part in described_parts(file, slot, given[slot])
+        for part in build_parts(file, slot, given[slot])
     ]  # fmt: skip
-    motion = described_motion(file, (MOTION,), given[MOTION]) if MOTION in given else None
-    run = _run_of(file, given[RUN]) if RUN in given else {}
-    project = described_project(file, given[PROJECT]) if PROJECT in given else ""
+    motion = build_motion(file, (MOTION,), given[MOTION]) if MOTION in given else None
+    run = _run_from_table(file, given[RUN]) if RUN in given else {}
+    project = project_from_table(file, given[PROJECT]) if PROJECT in given else ""
     options = file.table((OPTIONS,), given.get(OPTIONS, {}))
     known = arguments_of(System.__init__, without=("parts",))
     hints = hints_of(System.simulate)  # for keys that belong to the parts or to the run
-    if options is None or not checked(file, (OPTIONS,), options, known, hints=hints):
+    if options is None or not check_table(file, (OPTIONS,), options, known, hints=hints):
         return None
-    if not file.sound:
+    if not file.is_valid:
         return None
-    system = made(file, (OPTIONS,), lambda **rest: System(*parts, **rest), options)
-    return None if system is None else Described(system, motion, run, tuple(file.files), project)
+    system = call_with_table(file, (OPTIONS,), lambda **rest: System(*parts, **rest), options)
+    return (
+        None
+        if system is None
+        else SceneDescription(system, motion, run, tuple(file.files), project)
+    )
 
 
 def run_keys() -> dict[str, bool]:
@@ -188,24 +205,24 @@ def run_keys() -> dict[str, bool]:
     return arguments_of(System.simulate, without=("motion",))
 
 
-def described_run(file: TomlFile, where: Place, table: dict[str, Any]) -> dict[str, Any]:
+def build_run_objects(file: TomlFile, where: KeyPath, table: dict[str, Any]) -> dict[str, Any]:
     """Build the objects that inner tables of the table of a run describe."""
     found = dict(table)
-    for name, kind in _OBJECTS.items():
+    for name, kind in _RUN_CLASSES.items():
         inner = found.get(name)
         if not isinstance(inner, dict):
             continue
         here = (*where, name)
         value = file.table(here, inner) or {}
         declared = kind.declared() if issubclass(kind, Component) else {}
-        if checked(file, here, value, arguments_of(kind), declared):
-            found[name] = made(file, here, kind, value)
+        if check_table(file, here, value, arguments_of(kind), declared):
+            found[name] = call_with_table(file, here, kind, value)
         if not isinstance(found[name], kind):  # its fault has been noted
             del found[name]
     return found
 
 
-_OBJECTS: Final[Mapping[str, type]] = {
+_RUN_CLASSES: Final[Mapping[str, type]] = {
     "initial": InitialState,
     "accuracy": Accuracy,
     "certify": Certification,
@@ -213,31 +230,31 @@ _OBJECTS: Final[Mapping[str, type]] = {
 """Classes of the objects that inner tables of the table of a run describe."""
 
 
-def _run_of(file: TomlFile, argument: object) -> dict[str, Any]:
+def _run_from_table(file: TomlFile, argument: object) -> dict[str, Any]:
     table = file.table((RUN,), argument)
     hints = hints_of(System.simulate)
     if table is None:
         return {}
-    checked(file, (RUN,), table, run_keys(), hints=hints)
+    check_table(file, (RUN,), table, run_keys(), hints=hints)
     known = {name: value for name, value in table.items() if name in run_keys()}
-    arguments = described_run(file, (RUN,), known)
-    made(file, (RUN,), _read_arguments, arguments)
+    arguments = build_run_objects(file, (RUN,), known)
+    call_with_table(file, (RUN,), _read_arguments, arguments)
     return arguments
 
 
-def described_project(file: TomlFile, value: object) -> str:
+def project_from_table(file: TomlFile, value: object) -> str:
     """Read the description of the project for reports."""
     table = file.table((PROJECT,), value)
     if table is None:
         return ""
-    return made(file, (PROJECT,), _read_project, table) or ""
+    return call_with_table(file, (PROJECT,), _read_project, table) or ""
 
 
 def _read_project(**values: Any) -> str:
     """Read a project and its checks by codes, before there is a result."""
     text = project_json(values, PROJECT)
     for one in values.get(CHECKS, ()):
-        check_of(str(one), CHECKS)
+        parse_check(str(one), CHECKS)
     return text
 
 
@@ -250,38 +267,38 @@ def _read_arguments(**values: Any) -> None:
         raise AssemblyError(faults)
 
 
-def _unknown_table(file: TomlFile, name: str) -> None:
+def _add_unknown_table(file: TomlFile, name: str) -> None:
     letters = name.replace("_", "").casefold()
     kind = next(
         (kind for one, kind in registered_classes().items() if one.casefold() == letters), None
     )
     slot = None if kind is None else slot_of_class(kind)
     if kind is None or slot is None:
-        file.unknown((), name, keys())
+        file.add_unknown_key((), name, scene_keys())
     else:
         words = f'a {kind.__name__} is written [{slot}] with type = "{kind.__name__}"'
-        file.fault((name,), f"unknown key {name!r}; {words}")
+        file.add_fault((name,), f"unknown key {name!r}; {words}")
 
 
 def import_modules(file: TomlFile) -> None:
     """Import the files in which users declare their own parts."""
     value = file.values.get(MODULES, [])
     if not isinstance(value, list):
-        file.fault(
+        file.add_fault(
             (MODULES,), f'modules must be a list such as ["mine.py"], got {short_repr(value)}'
         )
         return
     for name in value:
         try:
-            _import(file, str(name))
+            _import_module(file, str(name))
         except RockframeError as problem:
-            file.fault((MODULES,), f"{name}: {problem}")
+            file.add_fault((MODULES,), f"{name}: {problem}")
         except Exception as problem:  # code of users may raise anything
             words = f"{name} cannot be imported ({type(problem).__name__}: {problem})"
-            file.fault((MODULES,), words)
+            file.add_fault((MODULES,), words)
 
 
-def _import(file: TomlFile, name: str) -> None:
+def _import_module(file: TomlFile, name: str) -> None:
     if not name.endswith(".py"):
         import_module(name)
         return

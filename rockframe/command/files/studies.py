@@ -9,21 +9,21 @@ from typing import Any, Final
 from rockframe.command.files.scenes import (
     PROJECT,
     RUN,
-    Described,
-    described_motion,
-    described_project,
-    described_run,
-    described_scene,
+    SceneDescription,
+    build_motion,
+    build_run_objects,
+    build_scene,
     import_modules,
+    project_from_table,
     read_scene,
+    scene_keys,
 )
-from rockframe.command.files.scenes import keys as scene_keys
 from rockframe.command.files.tables import (
     TomlFile,
     arguments_of,
-    checked,
-    key_in,
-    made,
+    call_with_table,
+    check_table,
+    key_in_message,
     read_columns,
 )
 from rockframe.errors import FileError, RockframeError, StudyError, short_repr
@@ -42,8 +42,8 @@ SWEEP: Final = "sweep"
 KNOWN: Final = "known"
 KEYS: Final = (SCENE, MOTIONS, AXES, CASES, STORE, OUTPUT, SWEEP)
 """Keys of the file of a study, besides the tables of its scene."""
-_NOT_OF_SWEEP: Final = (SCENE, MOTIONS, AXES, CASES, STORE, "executor", "progress")
-_FROM_RUN: Final = ("duration", "free_vibration", "initial", "accuracy", "output_step",
+_NOT_SWEEP_KEYS: Final = (SCENE, MOTIONS, AXES, CASES, STORE, "executor", "progress")
+_RUN_ARGUMENTS: Final = ("duration", "free_vibration", "initial", "accuracy", "output_step",
                     "overturning")  # fmt: skip
 """Arguments of a run that its study takes over from the file of the scene."""
 
@@ -51,7 +51,7 @@ Motions = Mapping[str, GroundMotion] | Sequence[GroundMotion] | GroundMotion | N
 
 
 @dataclass(frozen=True)
-class DescribedStudy:
+class StudyDescription:
     """What the file of a study describes."""
 
     system: System  # the scene
@@ -68,64 +68,65 @@ class DescribedStudy:
         arguments = {name: self.source.values.get(name) for name in (AXES, SWEEP)}
         tables = {name: table for name, table in arguments.items() if isinstance(table, dict)}
         for words in problem.faults:
-            places = [key_in(words, (name,), table) for name, table in tables.items()]
-            self.source.fault(max(places, key=len, default=(CASES,)), words)
+            places = [key_in_message(words, (name,), table) for name, table in tables.items()]
+            self.source.add_fault(max(places, key=len, default=(CASES,)), words)
         return self.source.error()
 
 
-def read_study(path: str | Path, *, varied: bool = True) -> DescribedStudy:
-    """Read the file of a study; unless `varied`, it may be a scene alone."""
+def read_study(path: str | Path, *, needs_axes: bool = True) -> StudyDescription:
+    """Read the file of a study; unless `needs_axes`, it may be a scene alone."""
     file = TomlFile.read(path)
     import_modules(file)  # before the keys are checked: its parts may add tables
     for name in file.values:
         if name not in (*KEYS, *scene_keys()):
-            file.unknown((), name, (*KEYS, *scene_keys()))
-    scene = _scene_of(file)
-    motions = _motions_of(file)
-    arguments = _sweep_of(file) | _axes_of(file)
-    store, output = (_path_of(file, name) for name in (STORE, OUTPUT))
-    if varied and AXES not in file.values and CASES not in file.values:
-        file.fault((), "a study needs [axes], such as scale = [0.5, 1.0, 1.5], or cases")
-    if scene is None or not file.sound:
+            file.add_unknown_key((), name, (*KEYS, *scene_keys()))
+    scene = _read_scene(file)
+    motions = _read_motions(file)
+    arguments = _read_sweep(file) | _read_axes(file)
+    store, output = (_read_path(file, name) for name in (STORE, OUTPUT))
+    if needs_axes and AXES not in file.values and CASES not in file.values:
+        file.add_fault((), "a study needs [axes], such as scale = [0.5, 1.0, 1.5], or cases")
+    if scene is None or not file.is_valid:
         raise file.error()
-    taken = {name: value for name, value in scene.run.items() if name in _FROM_RUN}
-    used = scene.motion if motions is None else motions
+    run_arguments = {name: value for name, value in scene.run.items() if name in _RUN_ARGUMENTS}
+    motions_used = scene.motion if motions is None else motions
     files = (*file.files, *scene.files)
-    return DescribedStudy(
-        scene.system, used, taken | arguments, store, output, files, scene.project, file
+    return StudyDescription(
+        scene.system, motions_used, run_arguments | arguments, store, output, files,
+        scene.project, file,
     )  # fmt: skip
 
 
 def sweep_keys() -> dict[str, bool]:
     """Return the keys of the table of a sweep, and whether each is needed."""
-    return arguments_of(sweep, without=_NOT_OF_SWEEP)
+    return arguments_of(sweep, without=_NOT_SWEEP_KEYS)
 
 
-def _scene_of(file: TomlFile) -> Described | None:
+def _read_scene(file: TomlFile) -> SceneDescription | None:
     name = file.values.get(SCENE)
     if name is None:
-        return described_scene(file)
+        return build_scene(file)
     inner = [key for key in file.values if key in scene_keys() and key != PROJECT]
     for key in inner:
         where = "; arguments of the runs of a study belong in [sweep]" if key == RUN else ""
         words = (
             f"[{key}] and scene = {short_repr(name)} are both given; give only one of them{where}"
         )
-        file.fault((key,), words)
+        file.add_fault((key,), words)
     if not isinstance(name, str):
-        file.fault((SCENE,), f"scene must be the path of a file, got {short_repr(name)}")
+        file.add_fault((SCENE,), f"scene must be the path of a file, got {short_repr(name)}")
         return None
     try:
         scene = read_scene(file.path_relative_to(name))
     except FileError as problem:
-        file.fault((SCENE,), f"the scene has faults\n{problem}")
+        file.add_fault((SCENE,), f"the scene has faults\n{problem}")
         return None
     if PROJECT in file.values:  # the project of the study replaces that of the scene
-        return replace(scene, project=described_project(file, file.values[PROJECT]))
+        return replace(scene, project=project_from_table(file, file.values[PROJECT]))
     return scene
 
 
-def _motions_of(file: TomlFile) -> Motions:
+def _read_motions(file: TomlFile) -> Motions:
     """Read motions: a list of files, folders and patterns, or of tables."""
     value = file.values.get(MOTIONS)
     if value is None:
@@ -133,13 +134,11 @@ def _motions_of(file: TomlFile) -> Motions:
     where = (MOTIONS,)
     items: list[Any] = value if isinstance(value, list) else [value]
     if items and all(isinstance(item, dict) for item in items):
-        found = [
-            described_motion(file, (MOTIONS, number), item) for number, item in enumerate(items)
-        ]
+        found = [build_motion(file, (MOTIONS, number), item) for number, item in enumerate(items)]
         return [one for one in found if one is not None]
     if not items or not all(isinstance(item, str) for item in items):
         words = 'motions must be a list of files, folders or patterns such as ["records/*.AT2"]'
-        file.fault(where, f"{words}, or of tables [[motions]]; got {short_repr(value)}")
+        file.add_fault(where, f"{words}, or of tables [[motions]]; got {short_repr(value)}")
         return None
     paths: list[str] = []
     for item in items:
@@ -147,29 +146,29 @@ def _motions_of(file: TomlFile) -> Motions:
         matching = sorted(glob(path)) if any(mark in item for mark in "*?[") else [path]
         file.files += map(Path, matching)
         if not matching:
-            file.fault(where, f"no file matches {item!r} in {str(file.path.parent)!r}")
+            file.add_fault(where, f"no file matches {item!r} in {str(file.path.parent)!r}")
         paths += matching
-    if not file.sound:
+    if not file.is_valid:
         return None
-    suite = made(file, where, lambda: read_suite(paths), {})
+    suite = call_with_table(file, where, lambda: read_suite(paths), {})
     return None if suite is None else dict(suite.items())
 
 
-def _axes_of(file: TomlFile) -> dict[str, Any]:
+def _read_axes(file: TomlFile) -> dict[str, Any]:
     found: dict[str, Any] = {}
     if AXES in file.values:
         axes = file.table((AXES,), file.values[AXES]) or {}
-        found[AXES] = {name: _axis(file, name, given) for name, given in axes.items()}
+        found[AXES] = {name: _read_axis(file, name, given) for name, given in axes.items()}
     if CASES in file.values:
         name = file.values[CASES]
         try:
             found[CASES] = read_columns(file.path_relative_to(str(name)))
         except (OSError, ValueError) as problem:
-            file.fault((CASES,), f"{name}: the table cannot be read ({problem})")
+            file.add_fault((CASES,), f"{name}: the table cannot be read ({problem})")
     return found
 
 
-def _axis(file: TomlFile, name: str, value: object) -> Any:
+def _read_axis(file: TomlFile, name: str, value: object) -> Any:
     """Return the values of an axis: a list, or a table of values and their unit."""
     if not isinstance(value, dict):
         return value
@@ -177,25 +176,25 @@ def _axis(file: TomlFile, name: str, value: object) -> Any:
     table = file.table(where, value) or {}
     if table and not {"values", "unit"}.intersection(table):
         written = f'"{name}.{next(iter(table))}" = [...]'
-        file.fault(where, f"write the axis of a part in quotation marks: {written}")
+        file.add_fault(where, f"write the axis of a part in quotation marks: {written}")
         return []
-    if checked(file, where, table, {"values": True, "unit": True}):
+    if check_table(file, where, table, {"values": True, "unit": True}):
         return (table["values"], table["unit"])
     return []
 
 
-def _sweep_of(file: TomlFile) -> dict[str, Any]:
+def _read_sweep(file: TomlFile) -> dict[str, Any]:
     table = file.table((SWEEP,), file.values.get(SWEEP, {}))
-    if table is None or not checked(file, (SWEEP,), table, sweep_keys()):
+    if table is None or not check_table(file, (SWEEP,), table, sweep_keys()):
         return {}
     try:
-        return described_run(file, (SWEEP,), _beside(file, table))
+        return build_run_objects(file, (SWEEP,), _resolve_stores(file, table))
     except RockframeError as problem:
-        file.fault((SWEEP,), str(problem))
+        file.add_fault((SWEEP,), str(problem))
         return {}
 
 
-def _beside(file: TomlFile, table: dict[str, Any]) -> dict[str, Any]:
+def _resolve_stores(file: TomlFile, table: dict[str, Any]) -> dict[str, Any]:
     """Return a table with the paths of known stores, relative to the folder of the file."""
     if KNOWN not in table:
         return table
@@ -204,11 +203,11 @@ def _beside(file: TomlFile, table: dict[str, Any]) -> dict[str, Any]:
     return table | {KNOWN: [file.path_of(one) if isinstance(one, str) else one for one in paths]}
 
 
-def _path_of(file: TomlFile, name: str) -> Path | None:
+def _read_path(file: TomlFile, name: str) -> Path | None:
     value = file.values.get(name)
     if value is None:
         return None
     if not isinstance(value, str) or not value:
-        file.fault((name,), f"{name} must be a path, got {short_repr(value)}")
+        file.add_fault((name,), f"{name} must be a path, got {short_repr(value)}")
         return None
     return file.path_of(value)

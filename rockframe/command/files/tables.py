@@ -12,7 +12,7 @@ from typing import Any, Final, Self, TypeAlias, TypeVar, cast
 import pandas as pd
 
 from rockframe.command.files.notation import in_toml
-from rockframe.command.streams import INPUT, STREAM, StandardInput
+from rockframe.command.streams import STANDARD_INPUT_NAME, STREAM, StandardInput
 from rockframe.components.parameters import Declared
 from rockframe.errors import (
     AssemblyError,
@@ -26,10 +26,10 @@ from rockframe.errors import (
 )
 from rockframe.results.variables.studies import MOTION
 
-Place: TypeAlias = tuple[str | int, ...]
+KeyPath: TypeAlias = tuple[str | int, ...]
 """Keys from the outermost table inwards; a number counts the tables of an array."""
 
-_PIECE: Final = re.compile(
+_TOKEN: Final = re.compile(
     r'"""(?:\\.|[^\\])*?"""'
     r"|'''.*?'''"
     r'|"(?:\\.|[^"\\\n])*"'
@@ -41,24 +41,24 @@ _PIECE: Final = re.compile(
 """A text in quotation marks, a comment, or a single character."""
 
 
-def lines_of(text: str) -> dict[Place, int]:
+def lines_of(text: str) -> dict[KeyPath, int]:
     """Return the lines of tables and keys."""
-    found: dict[Place, int] = {}
-    arrays: dict[Place, int] = {}
-    table: Place = ()
+    found: dict[KeyPath, int] = {}
+    arrays: dict[KeyPath, int] = {}
+    table: KeyPath = ()
     for line, statement in _statements(text):
         if statement.startswith("["):
-            names, several = _names(tomllib.loads(statement)), statement.startswith("[[")
-            table = _resolved(names[:-1], arrays) + names[-1:]
+            names, several = _nested_keys(tomllib.loads(statement)), statement.startswith("[[")
+            table = _with_array_numbers(names[:-1], arrays) + names[-1:]
             if several:
                 arrays[table] = arrays.get(table, -1) + 1
                 found.setdefault(table, line)
                 table = (*table, arrays[table])
             found[table] = line
         else:
-            pieces = (match[0] for match in _PIECE.finditer(statement))
+            pieces = (match[0] for match in _TOKEN.finditer(statement))
             key = "".join(takewhile(lambda piece: piece != "=", pieces))
-            names = _names(tomllib.loads(f"{key} = 0"))
+            names = _nested_keys(tomllib.loads(f"{key} = 0"))
             for depth in range(1, len(names) + 1):
                 found.setdefault(table + names[:depth], line)
     return found
@@ -67,7 +67,7 @@ def lines_of(text: str) -> dict[Place, int]:
 def _statements(text: str) -> Iterator[tuple[int, str]]:
     """Cut a file into headers and assignments, without comments, each with its line."""
     line, begun, depth, statement = 1, 1, 0, ""
-    for match in _PIECE.finditer(text + "\n"):
+    for match in _TOKEN.finditer(text + "\n"):
         piece = match[0]
         if piece == "\n" and depth == 0:
             if statement.strip():
@@ -81,7 +81,7 @@ def _statements(text: str) -> Iterator[tuple[int, str]]:
         line += piece.count("\n")
 
 
-def _names(nested: Any) -> Place:
+def _nested_keys(nested: Any) -> KeyPath:
     """Return the keys of nested tables that have one key each."""
     names: list[str] = []
     while isinstance(nested, dict | list) and nested:
@@ -93,9 +93,9 @@ def _names(nested: Any) -> Place:
     return tuple(names)
 
 
-def _resolved(names: Place, arrays: dict[Place, int]) -> Place:
+def _with_array_numbers(names: KeyPath, arrays: dict[KeyPath, int]) -> KeyPath:
     """Return a path with numbers of tables in arrays: a header refers to the last one so far."""
-    place: Place = ()
+    place: KeyPath = ()
     for name in names:
         place = (*place, name)
         if place in arrays:
@@ -103,10 +103,10 @@ def _resolved(names: Place, arrays: dict[Place, int]) -> Place:
     return place
 
 
-_WHERE: Final = re.compile(r"\s*\(at line (\d+), column \d+\)")
+_TOML_POSITION: Final = re.compile(r"\s*\(at line (\d+), column \d+\)")
 _CONTROL: Final = re.compile(r"[\x00-\x08\x0e-\x1f\ufffd]")
 """Characters that do not occur in text."""
-_NO_TEXT: Final = (
+_NOT_TEXT: Final = (
     "this is no text; expected a scene or a study in TOML, as 'rockframe template' prints it. "
     "Results (.nc) are for 'rockframe plot' and for 'rockframe report', which certifies them"
 )
@@ -115,7 +115,7 @@ _NO_TEXT: Final = (
 class TomlFile:
     """The contents of a file, and the faults found so far."""
 
-    def __init__(self, path: Path, values: Mapping[str, Any], lines: Mapping[Place, int]) -> None:
+    def __init__(self, path: Path, values: Mapping[str, Any], lines: Mapping[KeyPath, int]) -> None:
         self.path = path
         self.values = dict(values)
         self._lines = lines
@@ -126,14 +126,14 @@ class TomlFile:
     @classmethod
     def read(cls, path: str | Path) -> Self:
         """Read a file."""
-        place, data = _bytes_of(path)
-        text = _text_of(str(place), data)
+        place, data = _read_bytes(path)
+        text = _decoded_text(str(place), data)
         try:
             values = tomllib.loads(text)
         except tomllib.TOMLDecodeError as problem:
-            found = _WHERE.search(str(problem))
+            found = _TOML_POSITION.search(str(problem))
             line = int(found[1]) if found else None
-            words = f"this is no TOML: {_WHERE.sub('', str(problem))}"
+            words = f"this is no TOML: {_TOML_POSITION.sub('', str(problem))}"
             hint = '; write text in quotation marks, as in width = "1 m"'
             raise FileError(str(place), [(line, words + hint)]) from problem
         return cls(place, values, lines_of(text))
@@ -147,14 +147,14 @@ class TomlFile:
         """Return the path of a name in this file, relative to its folder."""
         return self.path.parent / Path(name).expanduser()
 
-    def fault(self, where: Place, words: str) -> None:
+    def add_fault(self, where: KeyPath, words: str) -> None:
         """Note a fault, with the line of a place or else of the table around it."""
         depths = range(len(where), 0, -1)
         lines = [self._lines[where[:depth]] for depth in depths if where[:depth] in self._lines]
         self._faults.append((lines[0] if lines else None, in_toml(words)))
 
     @property
-    def sound(self) -> bool:
+    def is_valid(self) -> bool:
         """Whether no fault has been found."""
         return not self._faults
 
@@ -162,32 +162,34 @@ class TomlFile:
         """Return the error with all faults, in the order of their lines."""
         return FileError(str(self.path), sorted(self._faults, key=lambda fault: fault[0] or 0))
 
-    def table(self, where: Place, argument: object) -> dict[str, Any] | None:
+    def table(self, where: KeyPath, argument: object) -> dict[str, Any] | None:
         """Return a value that must be a table, or note a fault."""
         if isinstance(argument, dict):
             return {str(name): value for name, value in argument.items()}
-        self.fault(
+        self.add_fault(
             where,
             f"{where[-1]} must be a table, [{table_title(where)}] with its keys below it, "
             f"got {short_repr(argument)}",
         )
         return None
 
-    def unknown(self, where: Place, name: str, known: Iterable[str], hint: str = "") -> None:
+    def add_unknown_key(
+        self, where: KeyPath, name: str, known: Iterable[str], hint: str = ""
+    ) -> None:
         """Note an unknown key, and the one that may have been meant."""
         known = list(known)
         if hint:
-            self.fault((*where, name), f"unknown key {name!r}: {hint}")
+            self.add_fault((*where, name), f"unknown key {name!r}: {hint}")
             return
         meant = did_you_mean(name, known) or ";"
         inside = f"[{table_title(where)}] takes" if where else "there are"
-        self.fault((*where, name), f"unknown key {name!r}{meant} {inside} {', '.join(known)}")
+        self.add_fault((*where, name), f"unknown key {name!r}{meant} {inside} {', '.join(known)}")
 
 
-def _bytes_of(path: str | Path) -> tuple[Path, bytes]:
+def _read_bytes(path: str | Path) -> tuple[Path, bytes]:
     """Read a file, or the standard input, whose folder is the current one."""
     if str(path) == STREAM:
-        return Path(INPUT), StandardInput.read_for("a scene").getvalue()
+        return Path(STANDARD_INPUT_NAME), StandardInput.read_for("a scene").getvalue()
     try:
         place = Path(path).expanduser()
         return place, place.read_bytes()
@@ -200,7 +202,7 @@ def _bytes_of(path: str | Path) -> tuple[Path, bytes]:
         raise FileError(str(path), f"it cannot be read ({problem})") from problem
 
 
-def _text_of(name: str, data: bytes) -> str:
+def _decoded_text(name: str, data: bytes) -> str:
     r"""Read the text of a file in any usual encoding, with ``\n`` at the end of lines."""
     try:
         marked = data.startswith((BOM_UTF16_LE, BOM_UTF16_BE))
@@ -208,7 +210,7 @@ def _text_of(name: str, data: bytes) -> str:
     except UnicodeDecodeError as problem:
         text = data.decode("cp1252", "replace")
         if _CONTROL.search(text):
-            raise FileError(name, _NO_TEXT) from problem
+            raise FileError(name, _NOT_TEXT) from problem
         line = data[: problem.start].count(b"\n") + 1
         sign = data[problem.start : problem.start + 1].decode("cp1252", "replace")
         words = (
@@ -230,12 +232,12 @@ def read_columns(path: str | Path) -> pd.DataFrame:
     return found
 
 
-def table_title(where: Place) -> str:
+def table_title(where: KeyPath) -> str:
     """Name a table as in its header."""
     return ".".join(name for name in where if isinstance(name, str))
 
 
-Made = TypeVar("Made")
+Result = TypeVar("Result")
 
 
 def arguments_of(function: Callable[..., Any], *, without: tuple[str, ...] = ()) -> dict[str, bool]:
@@ -248,9 +250,9 @@ def arguments_of(function: Callable[..., Any], *, without: tuple[str, ...] = ())
     }
 
 
-def checked(
+def check_table(
     file: TomlFile,
-    where: Place,
+    where: KeyPath,
     table: Mapping[str, Any],
     known: Mapping[str, bool],
     declared: Mapping[str, Declared[Any, Any]] | None = None,
@@ -261,37 +263,40 @@ def checked(
     declared = declared or {}
     for name in table:
         if name not in known:
-            file.unknown(where, name, known, (hints or {}).get(name, ""))
+            file.add_unknown_key(where, name, known, (hints or {}).get(name, ""))
             sound = False
     for name, required in known.items():
         if required and name not in table:
-            file.fault(where, f"[{table_title(where)}] lacks {name!r}{_wanted(declared.get(name))}")
+            file.add_fault(
+                where,
+                f"[{table_title(where)}] lacks {name!r}{_missing_key_note(declared.get(name))}",
+            )
             sound = False
     for name, value in table.items():
         if name in known and name in declared:
             try:
                 declared[name].accept(value, f"[{table_title(where)}]")
             except RockframeError as problem:
-                file.fault((*where, name), str(problem))
+                file.add_fault((*where, name), str(problem))
                 sound = False
     return sound
 
 
-def made(
-    file: TomlFile, where: Place, function: Callable[..., Made], table: Mapping[str, Any]
-) -> Made | None:
+def call_with_table(
+    file: TomlFile, where: KeyPath, function: Callable[..., Result], table: Mapping[str, Any]
+) -> Result | None:
     """Call a function with a checked table, or note why this fails."""
     try:
         return function(**table)
     except (AssemblyError, StudyError) as problem:
         for words in problem.faults:
-            file.fault(key_in(words, where, table), words)
+            file.add_fault(key_in_message(words, where, table), words)
     except (RockframeError, TypeError, ValueError) as problem:
-        file.fault(key_in(str(problem), where, table), str(problem))
+        file.add_fault(key_in_message(str(problem), where, table), str(problem))
     return None
 
 
-def _wanted(one: Declared[Any, Any] | None) -> str:
+def _missing_key_note(one: Declared[Any, Any] | None) -> str:
     if one is None:
         return ""
     if one.measure is None:
@@ -300,21 +305,21 @@ def _wanted(one: Declared[Any, Any] | None) -> str:
     return f" ({one.words.rstrip('.')}); write for example {one.name} = {example}"
 
 
-def key_in(words: str, where: Place, table: Mapping[str, Any]) -> Place:
+def key_in_message(words: str, where: KeyPath, table: Mapping[str, Any]) -> KeyPath:
     """Return the place of the first key of a table that a message names, else of the table."""
     found = {name: re.search(rf"\b{re.escape(name)}\b", words) for name in table}
     starts = {name: match.start() for name, match in found.items() if match is not None}
     if starts:
         first = min(starts, key=lambda name: starts[name])
-        return _within(words, (*where, first), table[first])
+        return _innermost_key(words, (*where, first), table[first])
     for name, inner in table.items():
-        place = _within(words, (*where, name), inner)
+        place = _innermost_key(words, (*where, name), inner)
         if len(place) > len(where) + 1:
             return place
     return where
 
 
-def _within(words: str, where: Place, inner: object) -> Place:
+def _innermost_key(words: str, where: KeyPath, inner: object) -> KeyPath:
     """Follow the keys of inner tables that a message has in quotation marks, to the innermost."""
     if not isinstance(inner, dict):
         return where
@@ -323,4 +328,4 @@ def _within(words: str, where: Place, inner: object) -> Place:
     if not named:
         return where
     first = min(named, key=lambda name: words.index(repr(name)))
-    return _within(words, (*where, first), table[first])
+    return _innermost_key(words, (*where, first), table[first])

@@ -20,7 +20,7 @@ from rockframe.components import Component, InitialState
 from rockframe.components.parameters import REQUIRED, Choice, Count, Declared, Flag
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import OPERATIONS
-from rockframe.reports.project import ASSUMPTIONS, CHECKS, CONCLUSION, LINES
+from rockframe.reports.project import ASSUMPTIONS, CHECKS, CONCLUSION, ENTRIES
 from rockframe.simulation.system import System
 from rockframe.studies import sweep
 
@@ -157,11 +157,11 @@ TEMPLATES: Final = {
 """Texts by the kind of scene."""
 
 
-_TABLES: Final = ("initial",)
+_OWN_TABLES: Final = ("initial",)
 """Arguments of runs that have a table of their own."""
 _WIDTH: Final = 96
 _UNIT: Final = re.compile(r"\[[^\]]*\]")
-_FIXED: Final = "\N{NO-BREAK SPACE}"
+_NO_BREAK: Final = "\N{NO-BREAK SPACE}"
 """In place of spaces within units, where no line ends."""
 _HEAD: Final = """\
 # Every table and every key of the files of scenes and studies.
@@ -172,7 +172,7 @@ modules = []      # files in which you declare parts of your own, such as ["mine
 _PARAMETERS: Final = re.compile(
     r"^Parameters\n-+\n(.*?)(?=^\w[\w ]*\n-{3,}|\Z)", re.DOTALL | re.MULTILINE
 )
-_ENTRY: Final = re.compile(
+_PARAMETER_ENTRY: Final = re.compile(
     r"^(\*{0,2}\w[\w, *]*?) : .*\n((?:[ ]{4}.*\n?|\n(?=[ ]{4}))+)", re.MULTILINE
 )
 
@@ -194,7 +194,7 @@ _SAMPLES: Final = {
 """Values of keys that have no default to show."""
 
 
-def every_key() -> str:
+def all_keys_template() -> str:
     """Write a file with every key, as a comment with its meaning."""
     return "\n".join(_lines()) + "\n"
 
@@ -203,56 +203,56 @@ def _lines() -> Iterator[str]:
     yield from _HEAD.splitlines()
     for slot in part_slots():
         for name, kind in classes_in(slot).items():
-            yield from _of_part(slot, name, kind)
-    yield from _of_function("system", "options of the system", System.__init__, of=System)
-    yield from _of_motion()
-    yield from _of_function("run", "how it is simulated", System.simulate, names=run_keys())
-    yield from _of_component(
+            yield from _part_lines(slot, name, kind)
+    yield from _function_lines("system", "options of the system", System.__init__, of=System)
+    yield from _motion_lines()
+    yield from _function_lines("run", "how it is simulated", System.simulate, names=run_keys())
+    yield from _component_lines(
         "run.initial",
         "state at the start of the run, at rest unless given; of a study [sweep.initial]",
         InitialState,
     )
-    yield from _title("project", "for reports")
-    yield from (f'{name} = ""' for name in LINES)
+    yield from _table_header("project", "for reports")
+    yield from (f'{name} = ""' for name in ENTRIES)
     yield f'{CONCLUSION} = ""'.ljust(18) + "# a sentence"
     yield f"{ASSUMPTIONS} = []".ljust(18) + "# a list of texts"
     yield f"{CHECKS} = []".ljust(18) + '# such as "circolare_2019 confidence_factor=1.35"'
-    yield from _of_study()
+    yield from _study_lines()
 
 
-def _title(table: str, words: str) -> Iterator[str]:
+def _table_header(table: str, words: str) -> Iterator[str]:
     yield ""
     yield f"[{table}]".ljust(18) + f"# {words}"
 
 
-def _of_part(slot: str, name: str, kind: type[Component]) -> Iterator[str]:
-    yield from _of_component(slot, _summary(kind), kind, f'type = "{name}"')
+def _part_lines(slot: str, name: str, kind: type[Component]) -> Iterator[str]:
+    yield from _component_lines(slot, _summary(kind), kind, f'type = "{name}"')
     for key, inner in inner_parts(kind).items():
         words = " or ".join(f"[{one}]" for one in inner.slots)
         header = f"[[{slot}.{key}]]" if inner.several else f"[{slot}.{key}]"
-        yield from _commented(f"# {header}", f"must be given: as {words}")
+        yield from _commented_key(f"# {header}", f"must be given: as {words}")
     if not kind.declared():
-        yield from _keys(", ".join(arguments_of(kind, without=tuple(inner_parts(kind)))))
+        yield from _wrapped_keys(", ".join(arguments_of(kind, without=tuple(inner_parts(kind)))))
     for way, function in constructors(kind).items():
         keys = arguments_of(function)
         if not keys:
             continue
         words = _summary(function)
         yield f'# or {CONSTRUCTOR} = "{way}": {words[:1].lower()}{words[1:]}'
-        yield from _keys(", ".join(_marked(keys)))
+        yield from _wrapped_keys(", ".join(_keys_with_needed(keys)))
 
 
-def _of_component(
+def _component_lines(
     table: str, words: str, kind: type[Component], first: str | None = None
 ) -> Iterator[str]:
-    yield from _title(table, words)
+    yield from _table_header(table, words)
     if first is not None:
         yield first
     for name, one in kind.declared().items():
         if name not in inner_parts(kind):
             must = "must be given: " if one.default is REQUIRED else ""
             meaning = f"{must}{_without_markup(one.words)}"
-            yield from _commented(f"# {name} = {_example(one)}", meaning)
+            yield from _commented_key(f"# {name} = {_example(one)}", meaning)
 
 
 def _example(one: Declared[Any, Any]) -> str:
@@ -268,7 +268,7 @@ def _example(one: Declared[Any, Any]) -> str:
     return one.measure.example if plain else f'"{one.measure.example}"'
 
 
-def _of_function(
+def _function_lines(
     table: str,
     words: str,
     function: Callable[..., Any],
@@ -276,37 +276,37 @@ def _of_function(
     names: Mapping[str, bool] | None = None,
     of: object = None,
 ) -> Iterator[str]:
-    yield from _title(table, words)
+    yield from _table_header(table, words)
     meanings = _meanings(function if of is None else of)
     names = arguments_of(function, without=("parts",)) if names is None else names
     for name in names:
-        if name in _TABLES:
+        if name in _OWN_TABLES:
             continue
         default = signature(function).parameters[name].default
         bare = default in (Parameter.empty, None, ())
-        value = _SAMPLES[name] if bare else _written(default)
-        yield from _commented(f"# {name} = {value}", meanings.get(name, ""))
+        value = _SAMPLES[name] if bare else _toml_value(default)
+        yield from _commented_key(f"# {name} = {value}", meanings.get(name, ""))
 
 
-def _of_motion() -> Iterator[str]:
-    yield from _title("motion", "motion of the ground, from a record")
+def _motion_lines() -> Iterator[str]:
+    yield from _table_header("motion", "motion of the ground, from a record")
     meanings = _meanings(GroundMotion.read)
     for name, must in motion_keys().items():
         words = {"file": "path of the record", "operations": "list of operations on the motion"}
         meaning = words.get(name, meanings.get(name, ""))
         must_be = "must be given: " if must else ""
-        yield from _commented(f"# {name} = {_SAMPLES[name]}", f"{must_be}{meaning}")
+        yield from _commented_key(f"# {name} = {_SAMPLES[name]}", f"{must_be}{meaning}")
     yield f"# or {CONSTRUCTOR}, with its arguments:"
     for name in MOTIONS:
         keys = arguments_of(getattr(GroundMotion, name))
-        yield from _keys(f"{name}: {', '.join(_marked(keys))}")
+        yield from _wrapped_keys(f"{name}: {', '.join(_keys_with_needed(keys))}")
     yield "# operations, such as operations = [{ scaled = { factor = 1.5 } }]:"
     for name in OPERATIONS:
         keys = arguments_of(getattr(GroundMotion, name), without=("motion",))
-        yield from _keys(f"{name}: {', '.join(_marked(keys))}")
+        yield from _wrapped_keys(f"{name}: {', '.join(_keys_with_needed(keys))}")
 
 
-def _of_study() -> Iterator[str]:
+def _study_lines() -> Iterator[str]:
     yield ""
     yield "# A study has also, at the top:"
     for name, words in (
@@ -316,32 +316,32 @@ def _of_study() -> Iterator[str]:
         ("store", "folder that keeps finished cases"),
         ("output", "file of the results"),
     ):
-        yield from _commented(f"# {name} = {_SAMPLES[name]}", words)
-    yield from _title("axes", "lists of values of what varies: parameters, options, scale")
-    yield from _commented("# scale = [0.5, 1.0, 2.0]", "factors of the motion")
-    yield from _commented('# width = ["0.7 m", "0.8 m"]', "a parameter of a part")
-    yield from _of_function("sweep", "how the cases are simulated", sweep, names=sweep_keys())
+        yield from _commented_key(f"# {name} = {_SAMPLES[name]}", words)
+    yield from _table_header("axes", "lists of values of what varies: parameters, options, scale")
+    yield from _commented_key("# scale = [0.5, 1.0, 2.0]", "factors of the motion")
+    yield from _commented_key('# width = ["0.7 m", "0.8 m"]', "a parameter of a part")
+    yield from _function_lines("sweep", "how the cases are simulated", sweep, names=sweep_keys())
 
 
-def _marked(keys: Mapping[str, bool]) -> list[str]:
+def _keys_with_needed(keys: Mapping[str, bool]) -> list[str]:
     return [f"{name} (needed)" if must else name for name, must in keys.items()]
 
 
-def _keys(words: str) -> Iterator[str]:
+def _wrapped_keys(words: str) -> Iterator[str]:
     yield from wrap(words, _WIDTH, initial_indent="#   ", subsequent_indent="#     ")
 
 
-def _commented(head: str, words: str) -> Iterator[str]:
+def _commented_key(head: str, words: str) -> Iterator[str]:
     """Write a key, followed by its meaning in wrapped lines."""
     column = max(len(head) + 2, 34)
-    kept = _UNIT.sub(lambda unit: unit[0].replace(" ", _FIXED), words)
+    kept = _UNIT.sub(lambda unit: unit[0].replace(" ", _NO_BREAK), words)
     lines = wrap(kept, max(_WIDTH - column, 40), break_on_hyphens=False) or [""]
-    pieces = [line.replace(_FIXED, " ") for line in lines]
+    pieces = [line.replace(_NO_BREAK, " ") for line in lines]
     yield f"{head.ljust(column)}{pieces[0]}".rstrip()
     yield from (f"#{' ' * (column - 1)}{piece}" for piece in pieces[1:])
 
 
-def _written(value: object) -> str:
+def _toml_value(value: object) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     return f'"{value}"' if isinstance(value, str) else str(value)
@@ -356,7 +356,7 @@ def _meanings(documented: object) -> dict[str, str]:
     """Return the description of each parameter in a numpydoc docstring."""
     section = _PARAMETERS.search(getdoc(documented) or "")
     found: dict[str, str] = {}
-    for names, words in _ENTRY.findall(section[1] if section else ""):
+    for names, words in _PARAMETER_ENTRY.findall(section[1] if section else ""):
         for name in names.split(","):
             found[name.strip(" *")] = _without_markup(" ".join(words.split()))
     return found

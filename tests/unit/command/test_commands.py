@@ -424,7 +424,7 @@ def test_help_teaches_by_examples(typed):
             if line.startswith("  rockframe "):
                 typed_line = re.split("   | [<>] ", line.strip())[0]
                 words = shlex.split(typed_line)[1:]
-                assert parser.misspelt(words) is None
+                assert parser.unknown_word_message(words) is None
                 assert built.parse_args(words).command == command.name
 
 
@@ -433,7 +433,7 @@ def test_an_error_of_the_command_line_has_its_own_message(capsys):
     parsers = [parser.build_parser() for _ in lines]
     found = []
     for one, (line, _) in zip(parsers, lines, strict=True):
-        with pytest.raises(parser.WrongLineError) as caught:
+        with pytest.raises(parser.UsageError) as caught:
             one.parse_args(line)
         found.append(caught.value)
     written = capsys.readouterr().err

@@ -12,8 +12,8 @@ from rockframe.command.files.parts import classes_in, inner_parts, part_slots
 from rockframe.command.files.scenes import read_scene
 from rockframe.command.files.studies import read_study
 from rockframe.command.files.tables import lines_of
-from rockframe.command.files.templates import TEMPLATES, every_key
-from rockframe.command.files.written import tables_of
+from rockframe.command.files.templates import TEMPLATES, all_keys_template
+from rockframe.command.files.written import toml_tables
 from rockframe.errors import FileError, StudyError
 
 pytestmark = pytest.mark.unit
@@ -386,7 +386,7 @@ def test_templates_are_sound(file):
 
 
 def test_every_key_that_can_be_written_is_told():
-    text = every_key()
+    text = all_keys_template()
     for slot in part_slots():
         assert f"\n[{slot}]" in text
         for name, kind in classes_in(slot).items():
@@ -417,7 +417,7 @@ def test_every_key_that_can_be_written_is_told():
     ],
 )
 def test_a_file_with_the_values_of_every_key_can_be_read(file, table, left_out):
-    of_table = every_key().split(f"\n[{table}] ", 1)[1].split("\n[", 1)[0]
+    of_table = all_keys_template().split(f"\n[{table}] ", 1)[1].split("\n[", 1)[0]
     lines = re.findall(r"^# (\w+ = .+?)(?:  .*)?$", of_table, re.MULTILINE)
     kept = "\n".join(one for one in lines if one.split()[0] not in left_out)
     body = "[block]\nwidth = '1 m'\nheight = '4 m'\nmass = '9 t'\n" * (table != "block")
@@ -457,5 +457,7 @@ WRITTEN = {
 @pytest.mark.parametrize("name", WRITTEN)
 def test_written_parts_are_a_file_of_the_same_parts(name, file):
     system = rf.System(*WRITTEN[name])
-    lines = [line for head, keys in tables_of(system.parts.structural()) for line in (head, *keys)]
+    lines = [
+        line for head, keys in toml_tables(system.parts.structural()) for line in (head, *keys)
+    ]
     assert read_scene(file("\n".join(lines))).system == system

@@ -113,10 +113,10 @@ def test_messages_are_coloured_on_terminals_that_want_it(environment, coloured, 
     for name, value in environment.items():
         monkeypatch.setenv(name, value)
     monkeypatch.setattr(sys, "stderr", Terminal())
-    streams.tell("rockframe run", "no")
+    streams.print_message("rockframe run", "no")
     assert ("\x1b[" in sys.stderr.getvalue()) == coloured
     monkeypatch.setattr(sys, "stderr", io.StringIO())
-    streams.tell("rockframe run", "no")
+    streams.print_message("rockframe run", "no")
     assert sys.stderr.getvalue() == "rockframe run: no\n"
 
 
@@ -142,7 +142,7 @@ ANALYSES = {
 def test_progress_is_shown_on_a_terminal_alone(name, typed, monkeypatch):
     Path("study.toml").write_text('scene = "scene.toml"\n[axes]\nscale = [1.0, 2.0]\n')
     monkeypatch.setattr(streams, "_DELAY", 0.0)
-    monkeypatch.setattr(streams, "_BETWEEN", 0.0)
+    monkeypatch.setattr(streams, "_UPDATE_INTERVAL", 0.0)
     monkeypatch.delenv("TERM", raising=False)
     assert "runs (" not in typed(*ANALYSES[name])[2]
     for quiet in ((), ("-q",)):

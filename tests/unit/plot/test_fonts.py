@@ -69,7 +69,7 @@ def drawn(name, run):
         made = DRAWN[name](run)
         figure = made.figure
         figure.savefig(BytesIO(), format="png")
-    return list(_fonts._texts([figure])), [one.message for one in issued]
+    return list(_fonts._non_ascii_texts([figure])), [one.message for one in issued]
 
 
 @pytest.mark.parametrize("name", SOME_DRAWN)

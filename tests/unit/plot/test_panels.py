@@ -11,10 +11,10 @@ from matplotlib.colors import to_rgb
 
 import rockframe as rf
 from rockframe.errors import ComponentError, SchemaError, UnitsError
-from rockframe.plot._artists import SOIL
+from rockframe.plot._artists import SOIL_COLOUR
 from rockframe.plot._axes import COLOURS, GREY
 from rockframe.plot._overturning import MAP_COLOURS
-from rockframe.plot._response import CONTACT_COLOURS, histories_of
+from rockframe.plot._response import CONTACT_COLOURS, history_names
 from rockframe.units.display import display_units
 
 BLOCK = rf.Block(width="0.8 m", height="4 m", mass="2 t", centre_of_mass=("2 m", "0.05 m"))
@@ -330,7 +330,7 @@ def test_all_figures_take_their_colours_from_the_palette():
         for found in re.findall(r"\"(#[0-9a-f]{6})\"", path.read_text())
         if path.name != "_axes.py"
     }
-    known = {*CONTACT_COLOURS.values(), SOIL}
+    known = {*CONTACT_COLOURS.values(), SOIL_COLOUR}
     assert {colour for _, colour in written} == known
 
 
@@ -365,7 +365,7 @@ def test_any_history_of_a_run_has_a_panel():
     assert {"slip", "horizontal_reaction", "horizontal_acceleration"} <= set(run.data_vars)
     units = {"force": "kN", "length": "mm", "acceleration": "g", "angle": "mrad"}
     shown = rf.table(run, "histories", units=units)
-    for name in histories_of(run):
+    for name in history_names(run):
         _, axes = plt.subplots()
         rf.plot.response(run, panels=name, units=units, ax=axes)
         label = " ".join(axes.get_ylabel().split())

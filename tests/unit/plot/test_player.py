@@ -16,7 +16,7 @@ from plainly import plainly
 import rockframe as rf
 from rockframe.errors import ComponentError, SchemaError
 from rockframe.plot._response import CONTACT_COLOURS
-from rockframe.plot._scene import Moving
+from rockframe.plot._scene import SceneHistory
 
 BLOCK = rf.Block(width="1 m", height="4 m", mass="8 t")
 PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
@@ -67,7 +67,7 @@ def points_of(data, numbers, name):
 def test_the_numbers_of_a_page_are_where_the_parts_are(scene):
     run = run_of(scene, points={"top": ("0 m", "4 m")} if scene == "pads" else None)
     data, numbers = read(rf.plot.player(run).to_html())
-    moving = Moving(run, "player", 1.0)
+    moving = SceneHistory(run, "player", 1.0)
     times = run.time.to_numpy()
     assert (data["times"][0], data["times"][-1]) == pytest.approx(times[[0, -1]])
     names = {one["name"] for one in data["layers"]["list"]}
@@ -75,7 +75,7 @@ def test_the_numbers_of_a_page_are_where_the_parts_are(scene):
     block, step = points_of(data, numbers, "block")
     cross, _ = points_of(data, numbers, "centre of mass")
     for place, when in list(enumerate(data["times"]))[::7]:
-        there = moving.drawer.lay_out(moving.at(int(np.argmin(abs(times - when)))))
+        there = moving.builder.layout_at(moving.placement_at(int(np.argmin(abs(times - when)))))
         np.testing.assert_allclose(block[place], there.block, atol=0.51 * step)
         np.testing.assert_allclose(cross[place], there.centres, atol=0.51 * step)
     rest = [one for one in data["layers"]["list"] if one["name"] == "at rest"]

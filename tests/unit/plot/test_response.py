@@ -10,7 +10,7 @@ from records import record_path
 import rockframe as rf
 from rockframe.errors import ComponentError, SolverWarning
 from rockframe.plot import _response
-from rockframe.plot._response import CONTACT_COLOURS, mixed_colours
+from rockframe.plot._response import CONTACT_COLOURS, mean_colours
 from rockframe.solve.workspace import Status
 
 BLOCK = rf.Block(width="1 m", height="6 m", mass="10 t")
@@ -36,8 +36,8 @@ def pixels(figure, axes, start, end):
 def test_a_part_of_the_time_has_the_mean_colour_of_its_states():
     state = strip([0.0, 1.0, 1.5, 3.0, 4.0], [0, 1, 2, 1, 2])
     expected = [FULL, 0.5 * LEFT + 0.5 * RIGHT, RIGHT, LEFT]
-    np.testing.assert_allclose(mixed_colours(state, 4), expected, atol=1e-12)
-    np.testing.assert_allclose(mixed_colours(state, 1), [np.mean(expected, axis=0)], atol=1e-12)
+    np.testing.assert_allclose(mean_colours(state, 4), expected, atol=1e-12)
+    np.testing.assert_allclose(mean_colours(state, 1), [np.mean(expected, axis=0)], atol=1e-12)
 
 
 @pytest.mark.wide
@@ -154,7 +154,7 @@ def test_of_a_stack_events_are_said_to_be_of_all_bodies_and_no_uplift_line_is_dr
     assert first.get_ylabel() == "run 1, body 1"
     (vertical,) = rf.plot.response(run, panels="vertical", vertical="mm")
     assert vertical.get_ylabel() == "vertical $y$\nof body 1 [mm]"
-    monkeypatch.setattr(_response, "_MOST_STRIPS", 1)
+    monkeypatch.setattr(_response, "_MAX_STRIPS", 1)
     (strip,) = rf.plot.response(run, panels="contact")
     shares = (run.body_contact_state.to_numpy() != 0).mean(axis=1)
     assert strip.get_ylabel() == f"body {1 + int(np.argmax(shares))}"

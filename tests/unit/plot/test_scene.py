@@ -8,9 +8,9 @@ from matplotlib.patches import Polygon
 
 import rockframe as rf
 from rockframe.errors import ComponentError, FileError, SchemaError, UnitsError
-from rockframe.plot._artists import Drawer
-from rockframe.plot._runs import runs_of
-from rockframe.plot._scene import Moving
+from rockframe.plot._artists import LayoutBuilder
+from rockframe.plot._runs import read_runs
+from rockframe.plot._scene import SceneHistory
 from rockframe.results.points import UPRIGHT, Placement
 from rockframe.system.geometry import geometry_of
 from rockframe.system.options import Restraint
@@ -24,8 +24,8 @@ PULSE = rf.GroundMotion.sine_pulse("2.2 m/s^2", "1 Hz")
 
 
 def drawn(system, run, place):
-    moving = Moving(run, "state", 1.0)
-    return moving.at(place), moving.drawer.lay_out(moving.at(place))
+    moving = SceneHistory(run, "state", 1.0)
+    return moving.placement_at(place), moving.builder.layout_at(moving.placement_at(place))
 
 
 def turned(point, about, angle):
@@ -49,7 +49,7 @@ def test_on_rigid_ground_a_block_turns_about_the_corner_that_bears():
         np.testing.assert_allclose(
             found.centres, [turned((0.1, 1.8), (corner, 0.0), angle)], atol=1e-9
         )
-        (touching,) = found.touching
+        (touching,) = found.contacts
         if int(run.contact_state[place]) != 0:
             np.testing.assert_allclose(touching, [(corner, 0.0)], atol=1e-9)
             seen.add(corner)
@@ -61,12 +61,12 @@ def test_a_point_of_the_body_is_drawn_where_the_run_says_it_is(parts):
     system = rf.System(EVEN, *parts)
     point = {"top": ("1 m", "7 m")}
     run = system.simulate(PULSE, free_vibration="1 s", points=point)
-    moving = Moving(run, "state", 1.0)
+    moving = SceneHistory(run, "state", 1.0)
     below = 0.4 if len(parts) == 3 else 0.0  # points count from the base of the body of the run
-    lift = moving.drawer.pad_thickness if len(parts) == 3 else 0.0
+    lift = moving.builder.pad_thickness if len(parts) == 3 else 0.0
     for place in range(0, run.sizes["time"], 40):
-        at = moving.at(place)
-        (found,) = moving.drawer.points(at, np.array([(1.0, 7.0)]))
+        at = moving.placement_at(place)
+        (found,) = moving.builder.points_at(at, np.array([(1.0, 7.0)]))
         moved = [
             run[f"point_{name}_displacement"][0, place].item()
             for name in ("horizontal", "vertical")
@@ -81,7 +81,7 @@ def test_soil_touches_as_far_as_the_run_says():
     assert lengths.min() < 1.5
     for place in range(0, run.sizes["time"], 25):
         _, found = drawn(None, run, place)
-        length = sum(np.hypot(*(one[-1] - one[0])) for one in found.touching)
+        length = sum(np.hypot(*(one[-1] - one[0])) for one in found.contacts)
         assert length == pytest.approx(lengths[place], abs=2.0 / 80 + 1e-9)
 
 
@@ -92,9 +92,9 @@ def test_pads_are_as_high_as_the_block_lets_them_be():
     for place in range(0, run.sizes["time"], 25):
         at, found = drawn(system, run, place)
         corners = at.block(np.array([(-1.0, 0.0), (1.0, 0.0)]))
-        bearing = np.where(np.array(found.pads_bear)[:, None], corners, np.nan)
-        np.testing.assert_allclose(np.reshape(found.touching, (-1, 2)), bearing, atol=1e-12)
-        for pad, corner, bears in zip(found.pads, corners, found.pads_bear, strict=True):
+        bearing = np.where(np.array(found.pads_in_contact)[:, None], corners, np.nan)
+        np.testing.assert_allclose(np.reshape(found.contacts, (-1, 2)), bearing, atol=1e-12)
+        for pad, corner, bears in zip(found.pads, corners, found.pads_in_contact, strict=True):
             assert pad[3, 1] == pytest.approx(min(corner[1], free), abs=1e-9)
             # a dashpot may hold back a pad whose end has not come up to its free level yet
             assert not bears or corner[1] <= free + 1e-9
@@ -113,14 +113,18 @@ def test_each_body_of_a_stack_has_its_contact_its_centre_and_its_outline_at_rest
     assert len({*map(tuple, states.T)}) > 2
     for place in range(0, run.sizes["time"], 5):
         _, found = drawn(None, run, place)
-        *_, upper = found.touching
+        *_, upper = found.contacts
         if soil is None:
-            upper, lower = found.touching
-            ends = {0: found.lower[0][:2], 1: found.lower[0][:1], 2: found.lower[0][1:2]}
+            upper, lower = found.contacts
+            ends = {
+                0: found.lower_bodies[0][:2],
+                1: found.lower_bodies[0][:1],
+                2: found.lower_bodies[0][1:2],
+            }
             expected = ends.get(states[1, place], np.full((1, 2), np.nan))
             np.testing.assert_array_equal(lower, expected)
         else:
-            assert np.isnan(found.touching[0]).any() == (states[1, place] == 3)
+            assert np.isnan(found.contacts[0]).any() == (states[1, place] == 3)
         ends = {0: found.block[:2], 1: found.block[:1], 2: found.block[1:2]}
         np.testing.assert_array_equal(upper, ends.get(states[0, place], np.full((1, 2), np.nan)))
         moves = run.isel(time=place)
@@ -129,17 +133,17 @@ def test_each_body_of_a_stack_has_its_contact_its_centre_and_its_outline_at_rest
         np.testing.assert_allclose(found.centres, rest + np.column_stack([across, up]), atol=1e-9)
     axes = rf.plot.state(run)
     dashed = [one.get_xy()[:4] for one in axes.patches if one.get_linestyle() == "--"]
-    upright = Moving(run, "state", 1.0).upright
-    rest = Moving(run, "state", 1.0).drawer.lay_out(upright)
-    np.testing.assert_allclose(dashed, [rest.block, rest.lower[0]])
+    upright = SceneHistory(run, "state", 1.0).upright
+    rest = SceneHistory(run, "state", 1.0).builder.layout_at(upright)
+    np.testing.assert_allclose(dashed, [rest.block, rest.lower_bodies[0]])
     labels = [one.get_ylabel() for one in rf.plot.response(run, panels=("contact",))]
     assert labels == ["body 1", "body 2"]
 
 
 def test_a_cap_that_moves_apart_has_its_centre():
     run = rf.System(EVEN, PADS, CAP, SOIL).simulate(PULSE, duration="1 s")
-    moving = Moving(run, "state", 1.0)
-    assert moving.drawer.lay_out(moving.upright).centres[1] == pytest.approx([0.0, 0.2])
+    moving = SceneHistory(run, "state", 1.0)
+    assert moving.builder.layout_at(moving.upright).centres[1] == pytest.approx([0.0, 0.2])
 
 
 def test_a_cap_under_pads_turns_about_the_end_that_the_soil_holds():
@@ -173,11 +177,11 @@ def test_block_and_cap_stay_together_on_their_pads():
 
 
 def test_an_inclined_base_turns_the_drawing():
-    level = Drawer(geometry_of(rf.System(EVEN, PADS).assembly))
-    slope = Drawer(geometry_of(rf.System(EVEN, PADS, inclination="5 deg").assembly))
+    level = LayoutBuilder(geometry_of(rf.System(EVEN, PADS).assembly))
+    slope = LayoutBuilder(geometry_of(rf.System(EVEN, PADS, inclination="5 deg").assembly))
     values = dict(UPRIGHT)
-    flat = level.lay_out(Placement(level.geometry, values, Restraint.CONTACT_STATE))
-    found = slope.lay_out(Placement(slope.geometry, values, Restraint.CONTACT_STATE))
+    flat = level.layout_at(Placement(level.geometry, values, Restraint.CONTACT_STATE))
+    found = slope.layout_at(Placement(slope.geometry, values, Restraint.CONTACT_STATE))
     expected = [turned(point, (0.0, 0.0), -np.radians(5.0)) for point in flat.block]
     np.testing.assert_allclose(found.block, expected, atol=1e-12)
     assert found.ground[1, 1] > found.ground[0, 1]
@@ -186,12 +190,14 @@ def test_an_inclined_base_turns_the_drawing():
 def test_displacements_are_magnified_about_the_place_at_rest():
     run = rf.System(EVEN, PADS).simulate(PULSE, free_vibration="1 s")
     place = int(np.argmax(np.abs(run.rotation.to_numpy())))
-    rest, once = (Moving(run, "state", 1.0) for _ in range(2))
-    at_rest = rest.drawer.lay_out(rest.upright).block
-    moved = once.drawer.lay_out(once.at(place)).block - at_rest
-    thrice = Moving(run, "state", 3.0)
+    rest, once = (SceneHistory(run, "state", 1.0) for _ in range(2))
+    at_rest = rest.builder.layout_at(rest.upright).block
+    moved = once.builder.layout_at(once.placement_at(place)).block - at_rest
+    thrice = SceneHistory(run, "state", 3.0)
     np.testing.assert_allclose(
-        thrice.drawer.lay_out(thrice.at(place)).block - at_rest, 3.0 * moved, atol=1e-12
+        thrice.builder.layout_at(thrice.placement_at(place)).block - at_rest,
+        3.0 * moved,
+        atol=1e-12,
     )
     with pytest.raises(ComponentError, match="magnify must be greater than zero, got '0'"):
         rf.plot.state(run, magnify=0)
@@ -267,14 +273,14 @@ def test_a_restrainer_is_drawn_until_it_breaks():
     run = rf.System(SLIM, TIE).simulate(PULSE, free_vibration="1 s")
     kinds = dict(zip(run.event_kind.flag_meanings.split(), run.event_kind.flag_values, strict=True))
     (broke,) = run.event_time.to_numpy()[run.event_kind.to_numpy() == kinds["restrainer_fracture"]]
-    moving = Moving(run, "state", 1.0)
+    moving = SceneHistory(run, "state", 1.0)
     for place in range(0, run.sizes["time"], 9):
-        (tie,) = moving.drawer.lay_out(moving.at(place)).ties
+        (tie,) = moving.builder.layout_at(moving.placement_at(place)).restrainers
         assert np.isnan(tie).all() == (run.time[place].item() >= broke)
     # it stays broken in a window that begins later
-    (drawn,) = runs_of(run, "animation", (f"{broke + 0.1} s", None))
-    later = Moving(drawn.dataset, "animation", 1.0)
-    assert np.isnan(later.drawer.lay_out(later.at(0)).ties[0]).all()
+    (drawn,) = read_runs(run, "animation", (f"{broke + 0.1} s", None))
+    later = SceneHistory(drawn.dataset, "animation", 1.0)
+    assert np.isnan(later.builder.layout_at(later.placement_at(0)).restrainers[0]).all()
     rf.plot.player(run, window=(f"{broke - 0.1} s", None))
 
 
@@ -282,9 +288,9 @@ def test_a_restrainer_stays_broken_in_a_run_that_continues_another():
     system = rf.System(SLIM, TIE)
     run = system.simulate(PULSE, free_vibration="1 s")
     assert run.broken_restrainer_count == 1
-    later = Moving(system.simulate(duration="0.2 s", initial=run), "state", 1.0)
+    later = SceneHistory(system.simulate(duration="0.2 s", initial=run), "state", 1.0)
     for place in (0, 5):
-        assert np.isnan(later.drawer.lay_out(later.at(place)).ties[0]).all()
+        assert np.isnan(later.builder.layout_at(later.placement_at(place)).restrainers[0]).all()
 
 
 def test_a_case_of_a_sweep_is_not_drawn_with_a_restrainer_that_broke():

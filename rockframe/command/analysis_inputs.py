@@ -7,15 +7,15 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
-from rockframe.command.files.studies import AXES, DescribedStudy, read_study
+from rockframe.command.files.studies import AXES, StudyDescription, read_study
 from rockframe.command.shared import (
-    refuse_of_record,
+    arguments_accepted_by,
+    read_numbers,
+    refuse_reading_options,
     run_from,
     store_from,
     suite_from,
-    taken_by,
     typed_options,
-    values_of,
 )
 from rockframe.errors import ComponentError, FileError
 from rockframe.results.schema import SCHEMA
@@ -25,14 +25,14 @@ _NO_MOTIONS: Final = (
     "there are no motions; name records, archives or folders after the scene, or describe motions "
     "in the file"
 )
-_NUMBER: Final = re.compile(r"[-+]?\.?\d")
+_NUMBER_START: Final = re.compile(r"[-+]?\.?\d")
 
 
-def scene_and_motions(arguments: argparse.Namespace) -> DescribedStudy:
+def scene_and_motions(arguments: argparse.Namespace) -> StudyDescription:
     """Read a scene or a study; motions, scales and runs that were typed replace those in it."""
-    found = read_study(arguments.scene, varied=False)
+    found = read_study(arguments.scene, needs_axes=False)
     if not arguments.records:
-        refuse_of_record(arguments, "name records after the scene")
+        refuse_reading_options(arguments, "name records after the scene")
     else:
         suite = suite_from(arguments.records, arguments)
         files = (*found.files, *map(Path, arguments.records))
@@ -41,7 +41,7 @@ def scene_and_motions(arguments: argparse.Namespace) -> DescribedStudy:
         raise FileError(arguments.scene, _NO_MOTIONS)
     values = run_from(found.arguments, arguments)
     if arguments.scales is not None:
-        scales, _ = values_of(arguments.scales, "--scales", "0.25:4:0.25")
+        scales, _ = read_numbers(arguments.scales, "--scales", "0.25:4:0.25")
         values[AXES] = {**values.get(AXES, {}), SCALE: scales}
     return replace(found, arguments=values, store=store_from(arguments) or found.store)
 
@@ -50,13 +50,15 @@ def typed_intensity(arguments: argparse.Namespace, function: Callable[..., Any])
     """Return the intensity and the limit states that were typed."""
     options = typed_options(arguments, "intensity", "period")
     if arguments.limits is not None:
-        options["limits"] = [_limit(word.strip()) for word in arguments.limits.split(",")]
-    return taken_by(function, options)
+        options["limits"] = [
+            _read_limit_state(word.strip()) for word in arguments.limits.split(",")
+        ]
+    return arguments_accepted_by(function, options)
 
 
-def _limit(word: str) -> object:
+def _read_limit_state(word: str) -> object:
     """Read a limit state: a rotation, a name, or a variable and its limit."""
-    if _NUMBER.match(word):
+    if _NUMBER_START.match(word):
         try:
             return float(word)
         except ValueError:
