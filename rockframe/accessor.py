@@ -170,7 +170,7 @@ class RockframeAccessor:
     @property
     def summary(self) -> str:
         """Contents and outcome of the dataset, in a few lines."""
-        from rockframe.results.variables.variable import unit_suffix
+        from rockframe.results.variables.variable import unit_suffix_of
 
         data = self._dataset
         lines = [line for line in (str(data.attrs.get("title", "")), self.verdict) if line]
@@ -183,7 +183,7 @@ class RockframeAccessor:
             lines.append("over " + ", ".join(f"{dim} ({n})" for dim, n in data.sizes.items()))
         for name in _SHOWN:
             if name in data and data[name].ndim == 0 and not math.isnan(data[name].item()):
-                unit = unit_suffix(data[name].attrs)
+                unit = unit_suffix_of(data[name].attrs)
                 lines.append(f"{name}: {data[name].item():.4g}{unit}")
         return "\n".join(lines)
 

@@ -29,7 +29,7 @@ from rockframe.errors import ComponentError, FileError, RecordError, SolverError
 from rockframe.motion import GroundMotion
 from rockframe.reports.project import PROJECT_ATTRIBUTE
 from rockframe.results.table import head_of
-from rockframe.results.variables.variable import unit_suffix
+from rockframe.results.variables.variable import unit_suffix_of
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import accuracy_of
 from rockframe.studies.intensities import PERIOD_ATTRIBUTE, measure_words
@@ -222,7 +222,7 @@ def intensity_text(value: xr.DataArray, of: xr.Dataset) -> str:
 
 def amount_text(value: float, attributes: Mapping[Any, Any]) -> str:
     """Write a number with its unit; of an acceleration also in g."""
-    text = f"{value:.4g}{unit_suffix(attributes)}"
+    text = f"{value:.4g}{unit_suffix_of(attributes)}"
     if attributes.get("units") == Unit.METRE_PER_SECOND_SQUARED:
         text += f" ({value / STANDARD_GRAVITY:.3g} g)"
     return text

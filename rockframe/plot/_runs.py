@@ -12,7 +12,7 @@ from rockframe.errors import ComponentError, short_repr
 from rockframe.plot._axes import line_colour, line_style, unique_labels
 from rockframe.plot._checks import checked_run
 from rockframe.results.outcome import verdict_of
-from rockframe.results.variables.variable import flag_words, unit_suffix
+from rockframe.results.variables.variable import flag_words, unit_suffix_of
 from rockframe.units import TIME, QuantityLike, to_si
 from rockframe.units.display import DisplayUnits
 
@@ -114,7 +114,7 @@ def _case_label(run: xr.Dataset) -> str:
     names = [name for name in ("motion", *axes) if name in run.coords and not run[name].dims]
     labels = [(name.replace("_", " "), run[name].item(), run[name].attrs) for name in names]
     words = [
-        f"{name} {f'{one:.6g}' if isinstance(one, float) else one}{unit_suffix(attrs)}"
+        f"{name} {f'{one:.6g}' if isinstance(one, float) else one}{unit_suffix_of(attrs)}"
         for name, one, attrs in labels
     ]
     return ", ".join(words) or "case of a sweep"

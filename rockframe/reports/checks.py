@@ -11,7 +11,7 @@ from rockframe.arguments import checked_name, is_iterable
 from rockframe.errors import ComponentError, short_repr
 from rockframe.notebook import html_summary, number_with_unit
 from rockframe.reports import page
-from rockframe.reports.page import KIND
+from rockframe.reports.page import FILE_KIND
 from rockframe.suggestions import suggests_names
 from rockframe.units import Unit
 from rockframe.units.display import (

@@ -14,7 +14,7 @@ from rockframe.results.outcome import Generic, overturns
 from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.studies import MOTION
-from rockframe.results.variables.variable import unit_suffix
+from rockframe.results.variables.variable import unit_suffix_of
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import read_level
 from rockframe.studies.fragility.labelling import with_stripes
@@ -290,7 +290,7 @@ def cloud_analysis(
     floor = read_least(least, values, owner=_OWNER)
     found = fit_cloud(runs, measure, values, least=floor, owner=_OWNER)
     words = " ".join(filter(None, [response.replace("_", " "), label]))
-    named = {f"{words} {one:g}{unit_suffix(values.attrs)}": one for one in requested}
+    named = {f"{words} {one:g}{unit_suffix_of(values.attrs)}": one for one in requested}
     dataset = _cloud_dataset(found, named | {OVERTURNING: math.inf}, measure, level, seed)
     for one in ("cloud_response", "response_limit"):
         dataset[one].attrs["units"] = str(values.attrs.get("units", "1"))

@@ -13,7 +13,7 @@ from rockframe.motion.quantities import ArrayLike
 from rockframe.results.outcome import Generic, overturns
 from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.studies import MOTION
-from rockframe.results.variables.variable import unit_suffix
+from rockframe.results.variables.variable import unit_suffix_of
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import read_shares
 from rockframe.studies.fragility.trials import attributes_of_system
@@ -324,7 +324,7 @@ def _sentence(
         ]
         for one in curves
     ]
-    unit = unit_suffix(measure.attrs)
+    unit = unit_suffix_of(measure.attrs)
     motions = f"{len(curves)} motion{'s' if len(curves) > 1 else ''}"
     text = f"Of {motions} {sum(map(bool, falls))} overturned at some "
     text += f"{str(measure.name).replace('_', ' ')} from {low:.4g} to {high:.4g}{unit}"

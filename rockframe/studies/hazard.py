@@ -13,7 +13,7 @@ from rockframe.arguments import checked_dataset, checked_function
 from rockframe.errors import ComponentError, ModelWarning, SchemaError, UnitsError, short_repr, warn
 from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
-from rockframe.results.variables.variable import unit_suffix
+from rockframe.results.variables.variable import unit_suffix_of
 from rockframe.signals.arrays import Array
 from rockframe.studies.fragility.likelihood import log_interval_probability
 from rockframe.studies.fragility.words import in_own_units, measures_of
@@ -391,7 +391,7 @@ def _rate_of_curve(probability: xr.DataArray, along: xr.DataArray, curve: Hazard
 
 def _warn_beyond_curve(found: xr.Dataset, curve: HazardCurve) -> None:
     """Warn if a part of the rate lies beyond the ends of the hazard curve."""
-    unit = unit_suffix(found["quantile_intensity"].attrs)
+    unit = unit_suffix_of(found["quantile_intensity"].attrs)
     ends = {"below": curve.intensities[0], "above": curve.intensities[-1]}
     missing: list[str] = []
     for side, end in ends.items():
@@ -419,7 +419,7 @@ def _sentence(found: xr.Dataset) -> str:
     if not len(known):
         return f"There is no fragility against {state}, and so no rate."
     measure = measure_words(str(found.attrs["intensity"]), found.attrs.get(PERIOD_ATTRIBUTE))
-    unit = unit_suffix(found["quantile_intensity"].attrs)
+    unit = unit_suffix_of(found["quantile_intensity"].attrs)
     if len(known) > 1:
         return f"Annual rate of {state}: from {known.min():.3g} to {known.max():.3g}."
     if known[0] == 0.0:

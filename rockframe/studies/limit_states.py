@@ -15,7 +15,7 @@ from rockframe.results.outcome import Generic, overturns
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.bodies import BODIES, RESTRAINERS
 from rockframe.results.variables.requests import FORCE_SCALARS, POINT_PEAKS
-from rockframe.results.variables.variable import TIME, unit_suffix
+from rockframe.results.variables.variable import TIME, unit_suffix_of
 from rockframe.studies.confidence import SHARE
 from rockframe.studies.sweeps.axes import in_units_of_schema, labels_in_unit
 from rockframe.units import NOT_NEGATIVE, Condition, Measure, Unit, to_ratio, to_si
@@ -57,7 +57,7 @@ class LimitState:
             return named.get(self.rotation, f"rotation {self.rotation:g}")
         words = [self.variable.replace("_", " "), self.label]
         if not math.isnan(self.value):
-            unit = unit_suffix(SCHEMA[self.variable].attributes())
+            unit = unit_suffix_of(SCHEMA[self.variable].attributes())
             words.append(f"{self.value:g}{unit}")
         return " ".join(filter(None, words))
 
@@ -222,7 +222,8 @@ def scalar_of(runs: xr.Dataset, name: str, label: object = None, *, owner: str) 
     """Return a scalar of runs, for one point, body or restrainer if it has several."""
     known = isinstance(cast("Any", name), str)
     if not known or name not in runs or runs[name].dtype.kind not in "biuf":
-        msg = f"{owner}: the runs have no {short_repr(name)}{_scalar_hint(runs, name) if known else ''}"
+        hint = _scalar_hint(runs, name) if known else ""
+        msg = f"{owner}: the runs have no {short_repr(name)}{hint}"
         raise SchemaError(msg)
     values = runs[name]
     extra_dims = [dim for dim in values.dims if dim not in runs["status"].dims]

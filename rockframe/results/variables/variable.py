@@ -83,7 +83,7 @@ class Variable:
         return attributes
 
 
-def unit_suffix(attributes: Mapping[Any, Any]) -> str:
+def unit_suffix_of(attributes: Mapping[Any, Any]) -> str:
     """Return the unit of values as it follows a number; empty where it is 1."""
     return unit_suffix(str(attributes.get("units", Unit.ONE)))
 

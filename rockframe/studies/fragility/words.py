@@ -10,7 +10,7 @@ import xarray as xr
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.analyses import LIMIT_STATE, FragilityStatus
-from rockframe.results.variables.variable import unit_suffix
+from rockframe.results.variables.variable import unit_suffix_of
 from rockframe.signals.arrays import Array
 from rockframe.studies.fragility.likelihood import Bands
 from rockframe.studies.intensities import PERIOD_ATTRIBUTE, measure_words
@@ -146,7 +146,7 @@ def _fit_sentence(last: xr.Dataset, status: Generic, fitted: Generic) -> str:
     rest = f"; to {int((~fitted).sum())} of them none fits" if not fitted.all() else ""
     if len(names) > 1:
         return f"Capacity against {head} fitted over {over}{rest}."
-    unit = unit_suffix(last["median_intensity"].attrs)
+    unit = unit_suffix_of(last["median_intensity"].attrs)
     median, dispersion = (
         _range_words(last[name].to_numpy().ravel()[fitted], digits)
         for name, digits in zip(("median_intensity", "dispersion"), _DIGITS, strict=True)
@@ -167,7 +167,7 @@ def _separation_sentence(last: xr.Dataset) -> str:
     if list(status) != [FragilityStatus.SEPARATED] or "separation_lower_intensity" not in last:
         return ""
     low, high = (last[f"separation_{end}_intensity"].item() for end in ("lower", "upper"))
-    unit = unit_suffix(last["median_intensity"].attrs)
+    unit = unit_suffix_of(last["median_intensity"].attrs)
     words = f" None exceeded up to {low:.4g}{unit}, all did from {high:.4g} on: so the "
     words += "dispersion is not known, only that it may be small"
     ends = [

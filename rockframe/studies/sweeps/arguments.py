@@ -25,8 +25,8 @@ class CourseArguments(TypedDict, total=False):
         Argument(
             AccuracyLevel.STANDARD,
             ACCURACY_ARGUMENT.kind.replace('"reference"', '"reference", "screen"'),
-            f'{ACCURACY_ARGUMENT.description} ``"screen"`` runs all cases at ``"fast"``, and those near '
-            'a flip of their verdict again at ``"standard"``, :eq:`eq-screened`; all at '
+            f'{ACCURACY_ARGUMENT.description} ``"screen"`` runs all cases at ``"fast"``, and those '
+            'near a flip of their verdict again at ``"standard"``, :eq:`eq-screened`; all at '
             '``"standard"`` where that costs less, as on rigid ground and under pulses.',
         ),
     ]

@@ -127,8 +127,8 @@ def motion_number(requested: object, names: Sequence[str], *, owner: str) -> int
             return number
     few = ", ".join(map(repr, names[:_MAX_LISTED])) + ", ..." * (len(names) > _MAX_LISTED)
     msg = (
-        f"{owner}: there is no motion {short_repr(requested)}; expected a name, or a number from 0 to "
-        f"{len(names) - 1}; there are {few}"
+        f"{owner}: there is no motion {short_repr(requested)}; expected a name, or a number from 0 "
+        f"to {len(names) - 1}; there are {few}"
     )
     raise StudyError(msg)
 
