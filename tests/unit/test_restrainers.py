@@ -453,14 +453,14 @@ def test_changes_of_contact_beside_ties_come_to_an_end(number):
 
 def out_of_balance(system: rf.System) -> float:
     """Return greatest force at rest that nothing holds, over the weight, and moments likewise."""
-    chain, stands = system.setting.standing.chain, system.setting.standing.rest
-    loads, weights = chain.tie_loads(stands), chain.weights(stands)
+    chain, poses = system.setting.standing.chain, system.setting.standing.rest
+    loads, weights = chain.link_loads(poses), chain.weights(poses)
     upward = [
         one.force.upward + weight + load
-        for one, (_, weight), load in zip(stands, weights, loads[1::2], strict=True)
+        for one, (_, weight), load in zip(poses, weights, loads[1::2], strict=True)
     ]
     height = sum(link.part.body.height for link in chain.bodies)
-    moments = [moment / height for moment in chain.moments(stands)]
+    moments = [moment / height for moment in chain.moments(poses)]
     return float(max(map(abs, [*upward, *moments]))) / chain.weight
 
 
