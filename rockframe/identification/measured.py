@@ -103,7 +103,7 @@ def read_peaks(value: object) -> MeasuredPeaks:
 
 
 def check_below_overturning(measured: History | MeasuredPeaks, angles: OverturningAngles) -> None:
-    """Refuse rotations at or beyond overturning, and those of which the side is not known."""
+    """Refuse rotations at or beyond overturning, and those of unknown side."""
     if isinstance(measured, MeasuredPeaks) and not measured.signed and angles.left != angles.right:
         msg = (
             f"{OWNER}: peaks without their signs do not tell the sides of an eccentric block; give "

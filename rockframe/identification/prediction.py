@@ -1,4 +1,4 @@
-"""Rotation that a test would show for values of the unknowns, and start values of the search."""
+"""Rotation of a test as predicted from the unknowns, and start values of the search."""
 
 import math
 from collections.abc import Collection, Mapping, Sequence

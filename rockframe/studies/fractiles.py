@@ -185,7 +185,7 @@ class _ResponseCurve:
 def _response_curves(
     runs: xr.Dataset, measure: xr.DataArray, values: xr.DataArray
 ) -> list[_ResponseCurve]:
-    """Return the line of each motion."""
+    """Return the response curve of each motion."""
     verdict = overturns(runs)
     wide = [str(dim) for dim, size in verdict.sizes.items() if size > 1 and dim != MOTION]
     if len(wide) != 1 or MOTION not in verdict.dims:
@@ -257,7 +257,7 @@ def _response_curve(
     overturned: Generic,
     ranges: list[tuple[float, float]] | None,
 ) -> _ResponseCurve:
-    """Return the line through runs of ascending intensity, some of which may have overturned."""
+    """Return the curve through runs of ascending intensity, some of which may have overturned."""
     if not ranges:  # from the first of neighbours that overturned to the last
         edges = np.diff(np.concatenate([[False], overturned, [False]]).astype(int))
         firsts, lasts = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) - 1

@@ -47,7 +47,7 @@ CAPACITY_DEFINITION: Final = "least scale found to exceed"
 SCAN_SOURCE: Final = f"rockframe {__version__}, scan and bisection of event-driven runs"
 """Source of the numbers of such analyses, for the attributes of datasets."""
 INTERRUPTED_ENDING: Final = "; interrupted."
-"""Ends the verdict of an analysis whose brackets are wider than asked."""
+"""Ends the verdict of an analysis whose brackets are wider than requested."""
 MAX_ROUNDS: Final = 60
 """Most rounds of halving, whatever the width: by then neighbouring floats are reached."""
 _WIDTH: Final = Condition("from 1e-12 to 0.1", lambda value: 1e-12 <= value <= 0.1)

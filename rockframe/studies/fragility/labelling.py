@@ -198,7 +198,7 @@ def _log_median_dispersion(coefficients: Array) -> Array:
 
 
 def _log_dispersion_bias(clusters: float) -> float:
-    """Return the mean deficit of the logarithm of a dispersion, :eq:`eq-fragility-lacking` [1]."""
+    """Return the bias of the logarithm of a dispersion, :eq:`eq-fragility-dispersion-bias` [1]."""
     from scipy.special import digamma
 
     if math.isinf(clusters):

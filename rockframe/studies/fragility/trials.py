@@ -153,7 +153,7 @@ def _structural_axes(axes: Mapping[str, str], own: Sequence[str]) -> list[str]:
 def _check_motions(
     runs: xr.Dataset, unknown_dims: Sequence[str], owner: str, *, named: bool
 ) -> None:
-    """Refuse combined datasets of which the motions cannot be known."""
+    """Refuse combined datasets whose motions are unknown."""
     if unknown_dims and named:
         msg = (
             f"{owner}: the sweep had no dimension {', '.join(map(repr, unknown_dims))}; datasets "
@@ -338,7 +338,7 @@ def motion_numbers(runs: xr.DataArray) -> Generic:
 
 
 def at_scales(measure: Generic, known: Array, scales: Array | float) -> Array:
-    """Return a measure at scales from those at known ones, of which it is a power."""
+    """Return a measure at other scales; it is a power of the scale."""
     near, far = measure[..., 0], measure[..., -1]
     if measure.shape[-1] == 1:
         return near

@@ -17,7 +17,7 @@ from rockframe.system.options import SweepAccuracyLike
 
 
 class CourseArguments(TypedDict, total=False):
-    """How each run goes."""
+    """Start, accuracy and end of each run."""
 
     initial: Annotated[InitialState | None, INITIAL_ARGUMENT]
     accuracy: Annotated[

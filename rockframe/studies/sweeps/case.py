@@ -201,7 +201,7 @@ def cache_study(study: Study) -> None:
 def _indices_of_case(
     dataset: xr.Dataset, labels: dict[str, Any], units: Mapping[str, str | None]
 ) -> dict[str, int]:
-    """Find where the case stands along each dimension."""
+    """Return the index of the case along each dimension."""
     dims = [str(dim) for dim in dataset["status"].dims]
     fixed = [str(name) for name in dataset.coords if not dataset[name].dims]
     unknown = [name for name in labels if name not in (*dims, *fixed)]

@@ -64,7 +64,7 @@ class CaseResults:
     scalars: dict[str, Generic]
     histories: dict[str, Generic]  # the same; NaN beyond a run's end too
     message: Generic  # places in `texts`
-    texts: tuple[str, ...]  # what is said of cases, each once; the first says nothing
+    texts: tuple[str, ...]  # messages of cases, each once; the first is empty
 
 
 def _assign(

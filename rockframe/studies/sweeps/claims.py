@@ -20,8 +20,8 @@ _CLAIMS: Final = "claims"
 _RENEWAL_INTERVAL: Final = 10.0
 """Time after which a running job renews its claims [s]."""
 _TIMEOUT: Final = 150.0
-"""Time of silence after which a job is dead; longer than shared file systems keep what they told
-before [s]."""
+"""Time without renewal after which a job counts as dead; longer than shared file systems cache
+modification times [s]."""
 _PROC: Final = Path("/proc")
 
 
@@ -52,7 +52,7 @@ class Claims:
             raise StudyError(msg) from problem
 
     def _make(self, number: int, path: Path) -> bool:
-        # with what it says from its first moment on: of a job that is killed before, none is left
+        # linked only when it is complete: a killed job leaves no empty claim
         part = path.with_name(f".{path.name}.{os.urandom(8).hex()}.part")
         try:
             part.write_text(json.dumps(_this_job()), encoding="utf-8")
@@ -129,7 +129,7 @@ def _generation(claim: Path) -> int:
 
 
 def _this_job() -> dict[str, Any]:
-    """Describe this process, so that others on its machine can tell whether it lives."""
+    """Describe this process, so that others on its machine can check whether it is alive."""
     return {"machine": _machine(), "process": os.getpid(), "begun": _start_of_process(os.getpid())}
 
 

@@ -23,7 +23,7 @@ from rockframe.studies.sweeps.chunk import CaseResults, run_chunk
 from rockframe.studies.sweeps.study import SweepJob, worker_count
 
 _DELAY: Final = 1.0
-"""Work that takes no longer shows no bar, unless one is requested [s]."""
+"""Least duration of work for which a bar is shown, unless one is requested [s]."""
 _TOTAL_GROWS: Final = "total grows"
 """Text of a bar when further cases are to come whose number is not known yet."""
 

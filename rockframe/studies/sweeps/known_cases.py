@@ -30,7 +30,7 @@ class KnownCases:
         self._sources = [_Source(study, folder) for folder in folders]
 
     def missing_cases(self, chunk: Chunk) -> Generic:
-        """Return the numbers of the cases of a chunk that nobody has run."""
+        """Return the numbers of the cases of a chunk that have not been run."""
         if not self._sources:
             return np.asarray(chunk.cases)
         source, _ = self._locate(chunk)

@@ -51,9 +51,9 @@ class Finished:
 
     case: int  # its number in the job
     system: Assembly  # its scene
-    summary: Summary  # what became of it
-    warnings: list[str]  # what was warned of when its scene was assembled
-    # with the histories; of runs side by side, of which there is nothing to be warned, None
+    summary: Summary  # the outcome
+    warnings: list[str]  # of the assembly of its scene
+    # with histories; None for runs in lanes, which have no warnings
     response: Response | None = None
 
 
@@ -160,9 +160,9 @@ def run_assembled_singly(
 
 
 def prepare_lanes(system: Assembly, messages: list[str], plan: Plan) -> LaneScene | None:
-    """Prepare a scene for lanes; None if its runs need a closer look."""
+    """Prepare a scene for lanes; None if its runs must be made one by one."""
     if plan.output_step is not None:
-        return None  # samples are looked at, for friction
+        return None  # friction is checked at samples, which lanes do not have
     if not system.options.slope.level or (plan.has_vertical_motion and not system.setting.flies):
         return None  # the ground differs for each scene, or a block may leave it
     model = system.model
@@ -182,7 +182,7 @@ class FinishedGroup:
 
     cases: CaseIndices  # their numbers in the job
     status: Status
-    warnings: list[str]  # what was warned of when their scenes were assembled, and of their runs
+    warnings: list[str]  # of the assembly of their scenes, and of their runs
     scalars: dict[str, Generic | float]  # of each, or of all
     look: Look  # indications of their verdicts, with arrays instead of numbers
 
@@ -212,7 +212,7 @@ def run_assembled_together(
     stopped: Callable[[], bool],
     ready: Callable[[LaneScene], bool],
 ) -> Iterator[Finished | FinishedGroup]:
-    """Run what can be assembled together; cases are missing that cannot, or need a closer look."""
+    """Run the cases that can be assembled together; the others must be run one by one."""
     if not cases.can_run_in_lanes:
         return
     kinds: dict[Any, list[_Batch]] = {}
@@ -270,7 +270,7 @@ def _integrate_batch(
         if key not in places:
             try:
                 motions.append(cases.ground_motion(case))
-            except Exception:  # noqa: S112 - of which the case tells where it runs alone
+            except Exception:  # noqa: S112 - reported when the case runs alone
                 continue
             places[key] = len(places)
         ran.append(k)
@@ -289,7 +289,7 @@ def _results_of_lanes(
 ) -> Iterator[Finished | FinishedGroup]:
     """Return the outcomes of runs, together for those that ended in the same way."""
     status, modes = outcomes.status, outcomes.modes
-    # the mode tells whether those that stand may overturn later, and which slips are over
+    # the mode determines whether a standing block may overturn later, and which slips have ended
     with_modes = (status == Status.COMPLETED) | groups[0].one.system.setting.slides
     way = np.column_stack([group_of, status, np.where(with_modes, modes, 0)])
     ways, way_of = np.unique(way, axis=0, return_inverse=True)

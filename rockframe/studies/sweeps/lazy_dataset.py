@@ -49,7 +49,7 @@ def lazy_dataset(stored: Store) -> xr.Dataset:
     def variable(name: str, kind: str, shape: tuple[int, ...]) -> xr.Variable:
         row = SCHEMA[name]
         data = indexing.LazilyIndexedArray(_Column(stored, grid, name, kind, shape))
-        # nobody knows yet whether there are gaps, so that all but texts and status may have some
+        # gaps are unknown until chunks are read: all variables but texts and status may have some
         attributes = row.attributes("float64" if kind == "f8" else None)
         return xr.Variable((*over, *row.dims), data, attributes)
 

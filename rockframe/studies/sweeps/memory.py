@@ -53,7 +53,7 @@ def check_memory(
 
 
 def available_memory() -> float:
-    """Return what this process may still use; infinite where the system does not tell [bytes]."""
+    """Return what this process may still use; infinite if unknown [bytes]."""
     found = [math.inf]
     with suppress(OSError, ValueError, IndexError):
         (line,) = (one for one in _MEMINFO.read_text().splitlines() if "MemAvailable" in one)

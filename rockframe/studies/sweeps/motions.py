@@ -14,7 +14,7 @@ from rockframe.studies.sweeps.axes import OWNER
 from rockframe.units import ACCELERATION, TIME, VELOCITY, Measure, Unit
 
 NO_MOTION: Final = "none"
-"""Name of a ground that stands still, as in the attributes of a run."""
+"""Name of a motion of zero, as in the attributes of a run."""
 MOTION_OF_SCENE: Final = "of the scene"
 """Name of motions that a function puts into its systems."""
 _MAX_LISTED: Final = 6

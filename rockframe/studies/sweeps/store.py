@@ -80,7 +80,7 @@ def read_arrays(path: Path) -> tuple[dict[str, Any], dict[str, Generic]]:
 
 
 def read_shapes(path: Path) -> dict[str, tuple[int, ...]]:
-    """Read which arrays a file has, and their shapes, without looking at anything else."""
+    """Read which arrays a file has, and their shapes, without reading the arrays."""
     with path.open("rb") as file:
         file.readline()
         try:
@@ -114,7 +114,7 @@ def write_atomically(path: Path, content: bytes, *, replace: bool = True) -> Non
 
 FORMAT: Final = 3
 FOLDER_FORMAT: Final = 4
-"""Format of studies whose chunks stand in folders of their own, since they are many."""
+"""Format of studies whose many chunks are in several folders."""
 MAX_FILES_PER_FOLDER: Final = 1000
 """Most chunks of a folder; file systems, and tools that list folders, are slow with many more."""
 _OBSOLETE_FORMATS: Final = (1, 2)
@@ -141,7 +141,7 @@ class Store:
     chunk: int  # cases of a chunk
     history: str  # when the study was begun, for the history of its dataset
     version: str  # of rockframe, whose numbers these are
-    in_folders: bool  # whether chunks stand in folders of their own
+    in_folders: bool  # whether chunks are in several folders
 
     @classmethod
     def open_or_create(cls, path: Path, study: Study, chunk: int) -> "Store":
@@ -187,7 +187,7 @@ class Store:
         )  # fmt: skip
 
     def provenance(self) -> dict[str, str]:
-        """Return the attributes that tell where the numbers are from."""
+        """Return the attributes of provenance."""
         return {
             "history": self.history,
             "source": f"rockframe {self.version}, {SOURCE}",

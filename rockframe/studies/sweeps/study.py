@@ -74,7 +74,7 @@ class SweepJob:
     compile_timeout: float | None
     # whether each is run twice, and again by tolerance where its verdict is in doubt
     screened: bool
-    restrainers: tuple[str, ...]  # what results call those of all cases; nothing where unlike
+    restrainers: tuple[str, ...]  # names in results; empty if cases have different ones
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,7 +129,7 @@ class Study:
 
     @cached_property
     def restrainers(self) -> tuple[str, ...]:
-        """What results call the restrainers; nothing where some of its scenes have others."""
+        """Names of the restrainers in results; empty if scenes have different ones."""
         if isinstance(self.scene, SystemScene):
             return self.scene.assembly.setting.link_names
         made = [
@@ -151,7 +151,7 @@ class Study:
             try:
                 with collected_warnings():
                     found.append(self.scene.assembled(values))
-            except Exception as problem:  # of which its run tells
+            except Exception as problem:  # reported by the run of the case
                 found.append(problem)
         return found
 

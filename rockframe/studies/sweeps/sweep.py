@@ -50,7 +50,7 @@ _MAX_CHUNK: Final = 1_000_000
 _DAY: Final = 86_400.0
 """A day [s]."""
 _TRIAL_SHARE: Final = 1e-3
-"""Share of a run that shows whether its law can be compiled."""
+"""Duration of a trial run, which shows whether a law can be compiled, over that of a run [1]."""
 _CHECK_INTERVAL: Final = 1.0
 """Time between two checks of the chunks run by other jobs [s]."""
 
@@ -304,7 +304,7 @@ def _runs_as_python(study: Study) -> bool:
             return False
         trial = replace(plan.without_outputs(), duration=_TRIAL_SHARE * plan.duration)
         return compute_response(system, trial).trajectory.as_python
-    except Exception:  # of which its run tells
+    except Exception:  # reported by the run of the case
         return False
 
 
