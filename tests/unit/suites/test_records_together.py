@@ -178,7 +178,9 @@ class TestOneBadFile:
             raise fault
 
         entry = known_formats._PLAIN_TEXT
-        monkeypatch.setattr(known_formats, "_PLAIN_TEXT", type(entry)(**{**vars(entry), where: failing}))
+        monkeypatch.setattr(
+            known_formats, "_PLAIN_TEXT", type(entry)(**{**vars(entry), where: failing})
+        )
         with pytest.warns(RecordWarning, match=f"1 files not read .*{type(fault).__name__}"):
             suite = rf.read_suite(tmp_path)
         assert list(suite) == ["good"]
