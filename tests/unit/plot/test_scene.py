@@ -260,7 +260,7 @@ def test_a_tendon_goes_through_its_body():
     upper = rf.Block(width="1 m", height="3 m", mass="5 t")
     stack = rf.System(rf.Stack(upper, EVEN, interfaces=[rf.RigidGround()]), PADS, tendon)
     for system, ends in ((alone, [(0.3, 8.0), (0.3, -2.0)]), (stack, [(0.3, 11.0), (0.3, 6.0)])):
-        assert geometry_of(system.assembly).restrainers[0].points == pytest.approx(np.array(ends))
+        assert geometry_of(system.assembly).ties[0].points == pytest.approx(np.array(ends))
 
 
 TIE = rf.Restrainer(
