@@ -102,7 +102,7 @@ def test_the_time_is_the_median_of_runs_without_histories(monkeypatch):
     module = importlib.import_module("rockframe.comparison.tradeoff")
     times, steps = iter([5.0, 1.0, 2.0]), []
     monkeypatch.setattr(
-        module, "_timed", lambda _, plan: steps.append(plan.output_step) or next(times)
+        module, "_time_of_run", lambda _, plan: steps.append(plan.output_step) or next(times)
     )
     found = rf.tradeoff(SYSTEM, PULSE, models=["two pads"], accuracies=["fast"], repeats=3)
     least, median, greatest = (

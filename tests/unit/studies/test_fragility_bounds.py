@@ -76,7 +76,7 @@ def test_the_jackknife_leaves_out_each_motion_in_turn():
     rows = np.array(
         [by_hand(*(each[cluster != one] for each in (logs, over, cluster)))[0] for one in range(6)]
     )
-    assert found.without[0] == pytest.approx(rows, rel=1e-4, abs=1e-5)
+    assert found.leave_one_out[0] == pytest.approx(rows, rel=1e-4, abs=1e-5)
     spread = rows - found.coefficients
     assert found.covariance == pytest.approx(5.0 / 6.0 * spread.T @ spread, rel=1e-3, abs=1e-5)
 

@@ -205,9 +205,9 @@ def test_blocks_follow_the_order_of_running(tmp_path):
     assert grid.order == ("motion", "scale", "height")
     for most, expected in ((1, (1, 1, 1)), (2, (1, 1, 2)), (7, (1, 2, 3)), (30, (2, 4, 3))):
         assert tuple(lazy_dataset.block_lengths(grid, most).values())[::-1] == expected
-    numbers = grid.numbers((slice(None), slice(None), slice(None)))
+    numbers = grid.case_numbers((slice(None), slice(None), slice(None)))
     assert numbers.shape == tuple(grid.sizes.values())
-    assert (grid.arranged(np.arange(grid.count)) == numbers).all()
+    assert (grid.in_dimension_order(np.arange(grid.count)) == numbers).all()
 
 
 def test_what_does_not_fit_is_read_from_its_store(tmp_path, monkeypatch):
