@@ -62,7 +62,7 @@ class CheckedLine:
 
         Parameters
         ----------
-        units : ReaderUnits, optional
+        units : DisplayUnits, optional
             Units of a report; SI unless given.
 
         Returns
@@ -131,9 +131,9 @@ class CodeCheck:
     >>> check = rf.codes.asce_7_22(cabinet, spectral_acceleration=1.0, importance=1.5)
     >>> check.value("S_DS"), check.passed["tipping"]
     (1.0, False)
-    >>> len([*check.banners(ReaderUnits())]), [title for title, _ in check.tables(ReaderUnits())]
+    >>> len([*check.banners(DisplayUnits())]), [title for title, _ in check.tables(DisplayUnits())]
     (1, ['Factors', 'Forces', 'Statics, without anchors', 'Left out'])
-    >>> "S_DS" in check.section(ReaderUnits())
+    >>> "S_DS" in check.section(DisplayUnits())
     True
     >>> check.report(f"{tempfile.mkdtemp()}/check.html").name
     'check.html'
@@ -196,7 +196,7 @@ class CodeCheck:
 
         Parameters
         ----------
-        units : ReaderUnits
+        units : DisplayUnits
             Units of the numbers.
 
         Yields
@@ -214,7 +214,7 @@ class CodeCheck:
 
         Parameters
         ----------
-        units : ReaderUnits
+        units : DisplayUnits
             Units of the numbers.
 
         Yields
@@ -281,7 +281,7 @@ class CodeCheck:
 
         Parameters
         ----------
-        units : ReaderUnits
+        units : DisplayUnits
             Units of the numbers.
 
         Returns

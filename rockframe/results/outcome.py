@@ -391,7 +391,7 @@ def _carrier_displacement(model: ContactModel, run: Trajectory) -> Array | float
     memory, rows = memory_at_outputs(run)
     places = np.array(
         [
-            system.place(LOWER, int(mode), state, memory[row])
+            system.centre_position(LOWER, int(mode), state, memory[row])
             for mode, state, row in zip(run.mode, run.state, rows, strict=True)
         ]
     )

@@ -47,7 +47,7 @@ class DisplacedPoint(NamedTuple):
     speed_y: float
 
 
-class LinkKinematics(NamedTuple):
+class LinkMotion(NamedTuple):
     """Elongation of a link and its rate; unit vector from its second point to its first."""
 
     stretch: Stretch
@@ -92,7 +92,7 @@ class LinkPoints(LinkRows):
     @inlined
     def link_kinematics(
         self, row: Vector, one: DisplacedPoint, other: DisplacedPoint
-    ) -> LinkKinematics:
+    ) -> LinkMotion:
         """Return elongation, rate and direction of a link, :eq:`eq-link`, but no acceleration.
 
         Where its points meet it acts along their relative velocity, in its upward sense.
@@ -106,7 +106,7 @@ class LinkPoints(LinkRows):
         if direction_x != 0.0 or direction_y != 0.0:
             elongation = direction_x * shift_x + direction_y * shift_y
             rate = direction_x * speed_x + direction_y * speed_y
-            return LinkKinematics(
+            return LinkMotion(
                 Stretch(elongation, rate, 0.0, initial_length, row[NOISE]), direction_x, direction_y
             )
         square = x * x + y * y
@@ -126,10 +126,10 @@ class LinkPoints(LinkRows):
             length = math.sqrt(square)
             if square < TINY:
                 still = Stretch(elongation, 0.0, 0.0, initial_length, row[NOISE])
-                return LinkKinematics(still, up_x, up_y)
+                return LinkMotion(still, up_x, up_y)
         x, y = x / length, y / length
         rate = x * speed_x + y * speed_y
-        return LinkKinematics(Stretch(elongation, rate, 0.0, initial_length, row[NOISE]), x, y)
+        return LinkMotion(Stretch(elongation, rate, 0.0, initial_length, row[NOISE]), x, y)
 
     @inlined
     def point_acceleration(
