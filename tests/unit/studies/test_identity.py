@@ -248,7 +248,7 @@ def test_every_field_of_a_study_and_of_what_it_is_made_of_is_told():
     # a job has nothing that its study does not tell: two are of the grid, and in lanes, for which
     # it waits as long as they save, cases have the same numbers to the last bit; what restrainers
     # are called follows from the scenes
-    derived = {"axes", "motion_of_case", "patience", "restrainers"}
+    derived = {"axes", "motion_of_case", "compile_timeout", "restrainers"}
     told_of = {one.name for one in fields(Study)} | derived
     assert {one.name for one in fields(SweepJob)} <= told_of
 
