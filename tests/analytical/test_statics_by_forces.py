@@ -156,7 +156,7 @@ def test_small_motion_of_a_stack_has_the_printed_matrices(rotation):
     setting = rf.System(BLOCKS["slender"], BASES["pads"], CAP, BASES["bed"], rotation=rotation)
     setting = setting.setting
     order = [3, 2, 1, 0]
-    found = linearized_chain(setting._moving.chain, setting._rest)
+    found = linearized_chain(setting._effective_statics.chain, setting._rest)
     mass, damping, stiffness = printed_matrices(*setting.bodies())
     for matrix, printed in zip(found, (mass, damping, stiffness), strict=True):
         size = np.abs(printed).max()

@@ -117,7 +117,7 @@ def finer_plans(system: Assembly, plan: Plan, step: float) -> Iterator[tuple[str
 
 
 def tolerance_words(accuracy: Accuracy) -> str:
-    """Say what is finer in a run of :func:`tightened` settings."""
+    """Say what is finer in a run of :func:`with_tighter_tolerance` settings."""
     if accuracy.rtol is None:
         return "adaptive steps instead of fixed ones"
     if accuracy.rtol <= TIGHTEST:

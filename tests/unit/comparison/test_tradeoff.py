@@ -458,7 +458,7 @@ def test_a_rung_is_timed_once_its_machine_code_is_there(monkeypatch):
         done.append("timed")
         return 1.0
 
-    compute_response = module.respond
+    compute_response = module.compute_response
     monkeypatch.setattr(module, "has_machine_code", lambda _: next(there))
     monkeypatch.setattr(module, "runs_as_python", lambda _: False)
     monkeypatch.setattr(module, "compute_response", counted)
