@@ -29,7 +29,7 @@ def written(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
         # as the fixture no_pictures, which serves single tests alone
-        patch.setattr(page, "_drawn", lambda figure, kind: b"<svg/>")
+        patch.setattr(page, "_rendered", lambda figure, kind: b"<svg/>")
         scene = TEMPLATES["block"].split("[run]", maxsplit=1)[0]
         Path("scene.toml").write_text(scene + '[run]\naccuracy = "fast"\n')
         rf.GroundMotion.sine_pulse("-4 m/s^2", "1 Hz").to_at2("record.AT2")
