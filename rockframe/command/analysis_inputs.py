@@ -10,7 +10,7 @@ from typing import Any, Final
 from rockframe.command.files.studies import AXES, StudyDescription, read_study
 from rockframe.command.shared import (
     arguments_accepted_by,
-    read_numbers,
+    parse_numbers,
     refuse_reading_options,
     run_from,
     store_from,
@@ -41,7 +41,7 @@ def scene_and_motions(arguments: argparse.Namespace) -> StudyDescription:
         raise FileError(arguments.scene, _NO_MOTIONS)
     values = run_from(found.arguments, arguments)
     if arguments.scales is not None:
-        scales, _ = read_numbers(arguments.scales, "--scales", "0.25:4:0.25")
+        scales, _ = parse_numbers(arguments.scales, "--scales", "0.25:4:0.25")
         values[AXES] = {**values.get(AXES, {}), SCALE: scales}
     return replace(found, arguments=values, store=store_from(arguments) or found.store)
 

@@ -14,8 +14,8 @@ from rockframe.command.shared import (
     Outputs,
     analysis_kind,
     arguments_accepted_by,
+    parse_numbers,
     part_names,
-    read_numbers,
     run_analysis,
     run_from,
     store_from,
@@ -40,8 +40,8 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     values: dict[str, Any] = {
         "store": store_from(arguments),
         **arguments_accepted_by(overturning_map, run_from(found.run, arguments)),
-        "amplitude": read_numbers(arguments.amplitude, "--amplitude", "1:10:0.5 m/s^2"),
-        "frequency": read_numbers(arguments.frequency, "--frequency", "0.5:4:0.25 Hz"),
+        "amplitude": parse_numbers(arguments.amplitude, "--amplitude", "1:10:0.5 m/s^2"),
+        "frequency": parse_numbers(arguments.frequency, "--frequency", "0.5:4:0.25 Hz"),
     }
     pulse, words = _pulse(found, arguments.pulse)
     dataset = run_analysis(overturning_map, found, pulse, values, arguments)

@@ -22,7 +22,7 @@ from rockframe.command.streams import (
     STREAM,
     StandardInput,
     open_input,
-    progress_bar,
+    terminal_progress_bar,
 )
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, FileError, RecordError, SolverError, short_repr
@@ -156,7 +156,7 @@ def store_from(arguments: argparse.Namespace) -> Path | None:
     return None if arguments.store is None else Path(arguments.store).expanduser()
 
 
-def read_numbers(words: str, option: str, example: str) -> tuple[list[float], str]:
+def parse_numbers(words: str, option: str, example: str) -> tuple[list[float], str]:
     """Read numbers but zero, listed or from:to:step, with a unit where the example has one."""
     numbers, _, unit = words.strip().partition(" ")
     unit = unit.strip()
@@ -204,7 +204,7 @@ def run_analysis(
     arguments: argparse.Namespace,
 ) -> xr.Dataset:
     """Analyse what a file describes, with a progress bar."""
-    with progress_bar(arguments.command, quiet=arguments.quiet) as bar:
+    with terminal_progress_bar(arguments.command, quiet=arguments.quiet) as bar:
         dataset = analysis(found.system, motions, **values, progress=bar)
     return with_project(dataset, found.project)
 

@@ -113,7 +113,7 @@ class TerminalProgressBar:
 
 
 @contextmanager
-def progress_bar(what: str, *, quiet: bool) -> Generator[TerminalProgressBar]:
+def terminal_progress_bar(what: str, *, quiet: bool) -> Generator[TerminalProgressBar]:
     """Show a progress bar during an analysis."""
     bar = TerminalProgressBar(what, enabled=not quiet)
     try:

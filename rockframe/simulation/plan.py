@@ -37,7 +37,7 @@ from rockframe.units import LENGTH, POSITIVE, TIME, TIME_STEP, Measure, Quantity
 POINTS_EXAMPLE: Final = 'points={"roof": ("0 m", "18 m")}'
 
 
-def as_list(outputs: object) -> list[object]:
+def outputs_as_list(outputs: object) -> list[object]:
     """Return the argument ``outputs`` as a list."""
     if outputs is None:
         return []
@@ -55,7 +55,7 @@ def read_outputs(
     """
     names: set[str] = set()
     diagnostics: set[str] = set()
-    for value in as_list(outputs):
+    for value in outputs_as_list(outputs):
         name = value if isinstance(value, str) else ""
         dims = SCHEMA[name].dims if name in SCHEMA else ()
         if dims == POINT_TIME:

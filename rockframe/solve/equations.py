@@ -34,7 +34,7 @@ from rockframe.solve.workspace import Pieces, Progress, StepTable, UnpackedMode,
 
 
 @kernel
-def switch_mode(
+def switch_at_event(
     system: Equations, mode: int, guard: int, state: Vector, ground_x: float, ground_y: float,
     memory: Vector,
 ) -> int:  # fmt: skip
@@ -143,7 +143,7 @@ def equations_of(
             (evaluate_slope, evaluate_guards, evaluate_columns, *powers_kernel), system
         )
     switch, energies, properties = bind(
-        (switch_mode, evaluate_energies, mode_properties), system, rarely_called=True
+        (switch_at_event, evaluate_energies, mode_properties), system, rarely_called=True
     )
     return BoundEquations(
         march=march,

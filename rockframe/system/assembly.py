@@ -31,8 +31,8 @@ from rockframe.system.options import (
     Restraint,
     Rotation,
     Sliding,
-    read_number,
     read_option,
+    read_option_number,
 )
 from rockframe.system.own_base import OwnBase
 from rockframe.system.own_scene import OwnScene
@@ -311,8 +311,8 @@ def assemble(
         read_option(Restraint, restraint, "restraint", option_faults := []),
         read_option(Rotation, rotation, "rotation", option_faults),
         read_option(Coupling, coupling, "coupling", option_faults),
-        read_number(gravity, "gravity", option_faults),
-        read_number(inclination, "inclination", option_faults),
+        read_option_number(gravity, "gravity", option_faults),
+        read_option_number(inclination, "inclination", option_faults),
         read_option(Sliding, sliding, "sliding", option_faults),
     )
     return assemble_parts(sorted_parts, options, faults, option_faults)

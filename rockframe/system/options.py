@@ -134,7 +134,7 @@ def read_option(kind: type[Option], value: object, name: str, faults: list[str])
         return next(iter(kind))
 
 
-def read_number(argument: object, name: str, faults: list[str]) -> float:
+def read_option_number(argument: object, name: str, faults: list[str]) -> float:
     """Return an option that is a number; if it is wrong, add to faults and give the default."""
     one = NUMERIC_OPTIONS[name]
     if argument is None:

@@ -201,6 +201,6 @@ def test_rivals_are_held_down():
     assert peaks.values.size > 1
     made = make_adjustment(oscillators, peaks, np.array([0.9 * peaks.spectrum[0]]), COUNT)
     found = made.amplitudes(1e-8)
-    left = made.missing - made.effects @ found
+    left = made.misfits - made.effects @ found
     assert abs(left[0]) < 1e-3
     assert (left > -0.006).all()

@@ -203,7 +203,7 @@ def test_what_a_code_says_stands_beside_the_motion(check, tmp_path):
                                  spectral_acceleration=1.0)  # fmt: skip
     units = {"force": "kN", "length": "mm"}
     path = rf.report(run, tmp_path / "r.html", checks=[check, cabinet], certify=False, units=units)
-    told = display_units(units, owner="a test").of_sentence
+    told = display_units(units, owner="a test").convert_text
     words = text_of(path)
     above = words.split("Response")[0]
     assert "Did not overturn" in above

@@ -79,7 +79,7 @@ def test_what_makes_no_tie_is_refused(changes, words):
         ((BLOCK, PADS, TIE, TIE), "two links are called 'upper'"),
         (
             (BLOCK, PADS, TIE.replace(name="restrainer_2"), TIE.replace(name=None)),
-            "'restrainer_2' and 'restrainer 2', both restrainer_2 as an axis names them",
+            "'restrainer_2' and 'restrainer 2', both restrainer_2 as an axis of a sweep",
         ),
         ((BLOCK, PADS, TIE.replace(on_body=2)), "there is no body 2"),
         ((BLOCK, PADS, TIE.replace(to_body=1)), "both its points are on body 1"),

@@ -27,8 +27,8 @@ from rockframe.results.variables.studies import MOTION, SWEEP
 from rockframe.results.variables.variable import EVENT, FLIP, TIME
 from rockframe.simulation.plan import (
     RunRequest,
-    as_list,
     default_output_step,
+    outputs_as_list,
     read_arguments,
     run_length,
 )
@@ -68,7 +68,7 @@ def kept_histories(
     """Find the histories that are kept, and the times that those of all cases have."""
     if not arguments.histories:
         return None
-    named = [str(name) for name in as_list(outputs)]
+    named = [str(name) for name in outputs_as_list(outputs)]
     names = tuple(dict.fromkeys(one for name in named for one in GROUPS.get(name, (name,))))
     wrong = [name for name in names if SCHEMA[name].dims not in (TIME, requests.POINT_TIME)]
     if wrong:
