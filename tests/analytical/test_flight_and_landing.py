@@ -332,7 +332,13 @@ def dropped(accuracy, restitution, **friction):
 
 @pytest.mark.filterwarnings("ignore:.*one of several motions:rockframe.errors.ModelWarning")
 @pytest.mark.parametrize("restitution", [pytest.param(0.1, marks=pytest.mark.long), 0.6])
-@pytest.mark.parametrize("friction", [{}, {"friction": 0.5}], ids=["held", "friction"])
+@pytest.mark.parametrize(
+    "friction",
+    [
+        pytest.param({}, id="held"),
+        pytest.param({"friction": 0.5}, id="friction", marks=pytest.mark.long),
+    ],
+)
 def test_bodies_that_fall_together_land_together(restitution, friction):
     """Without a force between them one bears on any of the corners that touch; all take the blow.
 

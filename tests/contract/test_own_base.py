@@ -192,6 +192,7 @@ class TestLadder:
             assert elastic < own
         assert names[-1] == "YieldingPads, cap and soil coupled"
 
+    @pytest.mark.long
     def test_tradeoff_tells_what_yielding_changes(self, system):
         study = rf.tradeoff(
             system, PULSE, models=["two pads", "YieldingPads"], accuracies="standard", repeats=1,

@@ -40,6 +40,7 @@ def test_a_rope_runs_and_balances_its_energies(example):
     assert rf.System.from_dict(system.to_dict()) == system
 
 
+@pytest.mark.long
 def test_one_that_hardly_hardens_is_a_tie(example):
     rope = example.Rope(**POINTS, reach="1e6 m")
     with plainly():

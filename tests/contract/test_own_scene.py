@@ -190,6 +190,7 @@ class TestStudies:
         alone = scene(0.26).simulate(PULSE, **RUN)
         assert float(runs.peak_rotation[1, 0]) == float(alone.peak_rotation) > 0.0
 
+    @pytest.mark.long
     def test_many_cases_are_as_one(self, system, monkeypatch):
         """Side by side in lanes where it can be compiled; each comes to an end."""
         monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)

@@ -59,7 +59,8 @@ STACKS = {
 }
 SECOND_LOOKS = {
     "fast, rigid joints", "standard, pads", "pads, leading corner", "coupled", "cascade",
-    "fast on pads",
+    "fast on pads", "fast on soil", "coupled, leading corner", "cascade, leading corner",
+    "fast, cascade",
 }  # fmt: skip
 """Of whose equations another scene compiles most."""
 

@@ -126,6 +126,7 @@ def test_ends_do_not_leave_and_come_back_at_one_instant(case):
     assert standard.energy_residual < 1e-8
 
 
+@pytest.mark.long
 def test_rounding_of_time_makes_no_events():
     """Hundreds of contact changes on hard pads, none of which follows another without end."""
     coupling, number, scale, *parts = BY_ROUNDING

@@ -459,7 +459,7 @@ def test_a_rung_is_timed_once_its_machine_code_is_there(monkeypatch):
         return 1.0
 
     compute_response = module.compute_response
-    monkeypatch.setattr(module, "has_machine_code", lambda _: next(there))
+    monkeypatch.setattr(module, "is_fully_compiled", lambda _: next(there))
     monkeypatch.setattr(module, "runs_as_python", lambda _: False)
     monkeypatch.setattr(module, "compute_response", counted)
     monkeypatch.setattr(module, "_time_of_run", timed)
