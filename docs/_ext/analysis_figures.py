@@ -12,5 +12,5 @@ def office_contents() -> Figure:
     """Draw the medians of the example."""
     example = runpy.run_path(str(EXAMPLES / "office_contents.py"))
     return example["draw"](
-        example["table_of"](example["fragilities"](example["earthquakes"](6), None))
+        example["comparison_table"](example["fragilities"](example["synthetic_motions"](6), None))
     )
