@@ -49,10 +49,8 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     records = arguments.motions
     motions = None if records is None else read_suite(records[0] if len(records) == 1 else records)
     if arguments.case is not None:
-        dataset, motions = (
-            _simulate_case(dataset, arguments, motions),
-            None,
-        )  # a case holds its motion
+        dataset = _simulate_case(dataset, arguments, motions)
+        motions = None  # a case holds its motion
     outputs = Outputs(arguments, [arguments.dataset], answer)
     outputs.save_by(
         path, ".html", "Report", lambda source: _write_report(dataset, source, arguments, motions)

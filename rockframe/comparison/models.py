@@ -98,10 +98,8 @@ def model_ladder(system: System) -> dict[str, System]:
     prevents_sliding = slides or "wall" in present
     whole, sliding = components, Sliding.CHECKED if prevents_sliding else system.sliding
     if slides and "stack" in present:  # the bases of a stack do not slide without a friction
-        components, sliding = (
-            {slot: _without_sliding(part) for slot, part in components.items()},
-            system.sliding,
-        )
+        components = {slot: _without_sliding(part) for slot, part in components.items()}
+        sliding = system.sliding
     options: dict[str, Any] = {
         "restraint": system.restraint, "gravity": system.gravity,
         "inclination": system.inclination,

@@ -119,11 +119,11 @@ class TiedSlideRock(TiedNumbers, LinkMechanics, SlideSwitches):  # pyright: igno
         """Write displacement, rotation and velocity of the block."""
         poses, side = self.poses(), self.side(self.bearing_in(mode))
         sine, cosine = sine_cosine(state[ROTATION])
-        lacks = versine(sine, cosine)
+        one_less_cosine = versine(sine, cosine)
         away = side * self.distance(side)
-        poses[DISPLACEMENT_X] = state[SLIP] + self.height * sine + away * lacks
-        poses[DISPLACEMENT_Y] = state[RISE] + away * sine - self.height * lacks
-        poses[BODY_SINE], poses[BODY_VERSINE] = sine, lacks
+        poses[DISPLACEMENT_X] = state[SLIP] + self.height * sine + away * one_less_cosine
+        poses[DISPLACEMENT_Y] = state[RISE] + away * sine - self.height * one_less_cosine
+        poses[BODY_SINE], poses[BODY_VERSINE] = sine, one_less_cosine
         poses[BODY_ROTATION_RATE] = state[DOF + ROTATION]
         work[at.SPEED_X], work[at.SPEED_Y] = self.centre_velocity(mode, state)
 

@@ -39,11 +39,9 @@ def build(ops: Any, arguments: dict[str, Any]) -> tuple[int, int, float]:
     half = 0.5 * (h**2 + 0.5 * b**2 - square)
     top = h + (math.sqrt(half**2 + square * h**2) - half) / h
     base = mass * (1.0 - h / top)
-    springs_at, stiffness, damping = (
-        arguments["springs_at"],
-        arguments["stiffness"],
-        arguments["damping"],
-    )
+    springs_at = arguments["springs_at"]
+    stiffness = arguments["stiffness"]
+    damping = arguments["damping"]
     weight, count = mass * arguments["gravity"], len(springs_at)
     ops.wipe()
     ops.model("basic", "-ndm", 2, "-ndf", 2)

@@ -331,10 +331,8 @@ def _draw_equilibrium_moment(
     rotation = run.dataset["rotation"].to_numpy()
     angles = np.linspace(rotation.min(), rotation.max(), _ANGLE_COUNT)
     equilibrium = system.moment_rotation((angles, str(ANGLE.unit)))
-    rotations, moments = (
-        angle_unit.of(equilibrium["angle"]),
-        moment_unit.of(equilibrium["base_moment"]),
-    )
+    rotations = angle_unit.of(equilibrium["angle"])
+    moments = moment_unit.of(equilibrium["base_moment"])
     axes.plot(rotations, moments, "--", color=GREY, linewidth=1.2, label="in equilibrium")
 
 

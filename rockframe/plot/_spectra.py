@@ -108,10 +108,8 @@ def spectra(
     sheet = make_sheet(ax, "spectra", _PANELS, (7.2, 5.4), make)
     for one, history, response, fourier in found:
         name = f"{_VARIABLE_PREFIX[str(component)]}ground_acceleration"
-        colour, part = (
-            text_colour() if one.label is None else one.colour,
-            history.sel(time=slice(*limits)),
-        )
+        colour = text_colour() if one.label is None else one.colour
+        part = history.sel(time=slice(*limits))
         values = unit.of(part[name])
         sheet.axes.plot(part["time"], values, color=colour, linewidth=0.8, label=one.label)
         zero_line(sheet.axes)

@@ -95,10 +95,8 @@ def _reset(
     ]
     jump = (after_impact.acceleration - new.restitution * before_impact.acceleration) / arriving
     reset = [[new.restitution, ZERO], [jump, new.restitution]]
-    flow_before, flow_after = (
-        short_flow(before_impact, old, ground, at),
-        short_flow(after_impact, new, ground, at),
-    )
+    flow_before = short_flow(before_impact, old, ground, at)
+    flow_after = short_flow(after_impact, new, ground, at)
     after_reset = matrix_product(flow_after.matrix, reset)
     by_inputs = [
         list(

@@ -440,10 +440,8 @@ def _component_of_pairs(
         chosen = choose_unit(source, request, pairs.unit, pairs.unit_line)
         time_step, values = read_pairs(source, pairs)
         checked_time_step(source, request, time_step, pairs.data_at + 1)
-        stated, surplus = (
-            _stated(header, first),
-            surplus_rows_warning(source, pairs.end_index, "'NO. OF POINTS'"),
-        )
+        stated = _stated(header, first)
+        surplus = surplus_rows_warning(source, pairs.end_index, "'NO. OF POINTS'")
         metadata = description(header)
         return make_record(
             source, values, time_step, chosen, metadata, stated=stated, warnings_after=surplus

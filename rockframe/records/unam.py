@@ -176,10 +176,8 @@ def _direction(text: str) -> tuple[str, Orientation]:
 
 
 def _description(header: Keys) -> Metadata:
-    day, clock = (
-        value_or_empty(header, "FECHA DEL SISMO [GMT]"),
-        value_or_empty(header, "HORA EPICENTRO (GMT)"),
-    )
+    day = value_or_empty(header, "FECHA DEL SISMO [GMT]")
+    clock = value_or_empty(header, "HORA EPICENTRO (GMT)")
     time = f"{day} {clock} GMT" if day and clock else day
     start = value_or_empty(header, "HORA DE LA PRIMERA MUESTRA (GMT)")
     times = {

@@ -139,10 +139,8 @@ def write_works(
     slope_size, rates = powers + POWERS, STAGES * size
     dissipated = supplied = imbalance = 0.0
     for s in range(STAGES):
-        power_out, power_in = (
-            stages[rates + s * slope_size + powers],
-            stages[rates + s * slope_size + powers + 1],
-        )
+        power_out = stages[rates + s * slope_size + powers]
+        power_in = stages[rates + s * slope_size + powers + 1]
         dissipated += WEIGHTS[s] * power_out
         supplied += WEIGHTS[s] * power_in
         imbalance += ERROR_WEIGHTS[s] * (power_out - power_in)

@@ -132,10 +132,8 @@ class Cloud:
         """Return the logarithm of the likelihood of each run, :eq:`eq-cloud-likelihood`."""
         if self.regression is None:
             return np.full(len(self.logs), np.nan)
-        overturning, moving = (
-            self.overturning.probability(self.logs),
-            self.moving.probability(self.logs),
-        )
+        overturning = self.overturning.probability(self.logs)
+        moving = self.moving.probability(self.logs)
         overturned, dispersion = np.isinf(self.responses), self.regression.dispersion
         found = np.where(
             overturned,
@@ -164,10 +162,8 @@ class Cloud:
 
     def draw_curves(self, logs: Array, level: float, rng: np.random.Generator, count: int) -> Array:
         """Draw fragility curves from the posterior; shape (count, intensities)."""
-        overturning, moving = (
-            self.overturning.draw_curves(logs, rng, count),
-            self.moving.draw_curves(logs, rng, count),
-        )
+        overturning = self.overturning.draw_curves(logs, rng, count)
+        moving = self.moving.draw_curves(logs, rng, count)
         coefficients = None
         if self.regression is not None and not math.isinf(level):
             coefficients = [one[:, None] for one in self.regression.draw_coefficients(rng, count)]

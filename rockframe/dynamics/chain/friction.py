@@ -33,11 +33,9 @@ class SlippingChain(SlipperyBases):
     ) -> Guards:
         """Return the guards of a body: of contacts, of the friction that holds it, of its slip."""
         part, body_mode, body = self.on_base(k), self.body_mode(mode, k), self.state_of(k, state)
-        first, press, sliding = (
-            BEFORE_HORIZONTAL * k,
-            k * BODY_STRIDE + at.NORMAL_FORCE,
-            IDLE_GUARDS,
-        )
+        first = BEFORE_HORIZONTAL * k
+        press = k * BODY_STRIDE + at.NORMAL_FORCE
+        sliding = IDLE_GUARDS
         if k == 0:
             self.forces_from_slope(mode, state, slope, ground)
         if not part.flies(body_mode.contact):

@@ -27,14 +27,14 @@ LEFT_ONLY: Final = 1
 RIGHT_ONLY: Final = 2
 BOTH: Final = 3
 
-EXHAUSTIVE_COUNT: Final = 10
+FIRST_EXHAUSTIVE_COUNT: Final = 10
 """With this many closed corners or fewer, every subset of them is a candidate."""
-MAX_DIFFERENCES: Final = 3
+FIRST_MAX_DIFFERENCES: Final = 3
 """With more, candidates of the first round differ from the solution of :eq:`eq-sticking` in at
 most this many corners."""
-EXHAUSTIVE_COUNT_2: Final = 16
+LAST_EXHAUSTIVE_COUNT: Final = 16
 """With this many closed corners or fewer, the second round takes every other subset."""
-MAX_DIFFERENCES_2: Final = 5
+LAST_MAX_DIFFERENCES: Final = 5
 """With more, candidates of the second round differ in at most this many corners."""
 NOISE: Final = 1e-11
 """Rounding noise of impulses, or of speeds, over the sum of all of them [1]."""
@@ -290,17 +290,17 @@ def find_bearing_corners(
     noise = trial_noise(system, closed, impulsive, state)
     near = NearbySubsets(closed, closed, count)
     far = near
-    if count > EXHAUSTIVE_COUNT:
+    if count > FIRST_EXHAUSTIVE_COUNT:
         reference = find_sticking_corners(system, mode, closed, impulsive, noise, state)
-        near = NearbySubsets(closed, reference, MAX_DIFFERENCES)
-        differences = count if count <= EXHAUSTIVE_COUNT_2 else MAX_DIFFERENCES_2
+        near = NearbySubsets(closed, reference, FIRST_MAX_DIFFERENCES)
+        differences = count if count <= LAST_EXHAUSTIVE_COUNT else LAST_MAX_DIFFERENCES
         far = NearbySubsets(closed, reference, differences)
     chosen, other, admissible, held = -1, -1, 0, 0
     must_press = ~before | max(leaving, 0)  # the leaving corner, too, if it is to bear on
     lowest = second = math.inf
     # first sets that are admissible within rounding; in each round first the near ones
     for trial in range(2 if impulsive else 1 + ALL_SLIPS_ROUND):
-        if trial % 2 == 1 and count <= EXHAUSTIVE_COUNT:
+        if trial % 2 == 1 and count <= FIRST_EXHAUSTIVE_COUNT:
             continue  # there are no sets farther off
         tried = near if trial % 2 == 0 else far
         subset = next_subset(closed, tried)

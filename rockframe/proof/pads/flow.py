@@ -220,10 +220,8 @@ def _motion(pads: PadBalls, found: PadMotion, deviations: Array) -> _Motion:
     if pads.small:
         sine, cosine = curve(series.rotation, rest.rotation + d_rotation), constant_curve(1.0)
     else:
-        sine, cosine = (
-            curve(series.sine, rest.sine + d_rotation),
-            curve(series.cosine, rest.cosine + d_rotation),
-        )
+        sine = curve(series.sine, rest.sine + d_rotation)
+        cosine = curve(series.cosine, rest.cosine + d_rotation)
     reach = centre_height * (1.0 if not pads.small else sine.size) + wide
     level = float(deviations[_HEIGHT]) + reach * d_rotation
     speed = (
@@ -268,10 +266,8 @@ def _stiffness(pads: PadBalls, contacts: Contacts, motion: _Motion) -> dict[tupl
         inverse = constant_curve(1.0 / (float(pads.inertia) + centre_height * centre_height))
     else:
         offset = float(pivot_offset(pads, contacts))
-        arm, lever_slope = (
-            cosine.times(centre_height) + sine.times(offset),
-            cosine.times(offset) - sine.times(centre_height),
-        )
+        arm = cosine.times(centre_height) + sine.times(offset)
+        lever_slope = cosine.times(offset) - sine.times(centre_height)
         square = arm * arm
         inverse = (constant_curve(float(pads.inertia)) + square).inverse()
         spin, both = rate * rate, arm * lever_slope

@@ -124,10 +124,8 @@ def write_new_clock(system: Equations, data: Vector, lane: int) -> None:
     )  # fmt: skip
     limits, h = lane_of(data, fields.LIMITS, lane), own[fields.STEP]
     rotation = rotation_in_step(0, system.coordinates(), limits, start, end)
-    flight, flies = (
-        clock[at.FLIGHT_TIME],
-        lane_of(whole, fields.OWN_INTEGERS, lane)[fields.IN_FLIGHT],
-    )
+    flight = clock[at.FLIGHT_TIME]
+    flies = lane_of(whole, fields.OWN_INTEGERS, lane)[fields.IN_FLIGHT]
     supplied = clock[at.SUPPLIED] + works[1]
     new[at.INTO_INTERVAL] = clock[at.INTO_INTERVAL] + h
     new[at.FLIGHT_TIME] = flight + h if flies == 1 else flight
@@ -390,10 +388,8 @@ def accept_or_reject(data: Vector, lane: int) -> int:
     """
     own = lane_of(as_integers(data), fields.OWN_INTEGERS, lane)
     within_tolerance = lane_of(data, fields.CLOCK, lane)[at.ERROR_NORM] <= 1.0
-    busy, for_driver = (
-        own[fields.BUSY],
-        has_reached_step_limit(data, lane) | (own[fields.NEEDS_DRIVER] == 1),
-    )
+    busy = own[fields.BUSY]
+    for_driver = has_reached_step_limit(data, lane) | (own[fields.NEEDS_DRIVER] == 1)
     accepted = (own[fields.ACCEPTED] != 0) & within_tolerance & (not for_driver)
     rejected = (not within_tolerance) & (not for_driver)
     own[fields.ACCEPTED] = -1 if accepted else 0
