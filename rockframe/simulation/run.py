@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Final, Literal, TypeAlias
@@ -14,6 +14,7 @@ from rockframe.compiled import compiling_for
 from rockframe.dynamics.chain.rigid import RigidChain
 from rockframe.errors import ModelWarning, RockframeWarning, SolverWarning, warn
 from rockframe.motion import GroundMotion
+from rockframe.proof.verdict import Proof
 from rockframe.results.outcome import (
     Generic,
     broken_links,
@@ -168,6 +169,23 @@ def run_scalars(
     return found
 
 
+@dataclass(frozen=True)
+class _Labels:
+    """Values, attributes and cautions that become the dataset of a run."""
+
+    values: Mapping[str, Generic | float | int | bool]
+    attributes: Mapping[str, str | float | int]
+    cautions: Sequence[Caution] = ()
+
+    def __or__(self, other: "_Labels") -> "_Labels":
+        """Return all of these, and those of another analysis of the run."""
+        return _Labels(
+            {**self.values, **other.values},
+            {**self.attributes, **other.attributes},
+            [*self.cautions, *other.cautions],
+        )
+
+
 def run(
     system: Assembly,
     plan: Plan,
@@ -180,70 +198,75 @@ def run(
         schema_row(column.name)  # before the run
     proof = prove_run(system, plan, owner="simulate") if certification == PROVED else None
     response = compute_response(system, plan)
-    summary, missing = response.trajectory, response.missing
-    attributes = _attributes(system, plan, summary, missing)
-    attributes[END_STATE] = json.dumps(ending_as_json(summary.ending))
-    attributes |= response.nonunique_motions[0]
-    if summary.status.finished and not system.setting.slides:
-        outputs = response.outputs
-        friction = compute_or_note(
-            lambda: friction_words(outputs.scalars, outputs.sliding_checks),
-            "",
-            _FRICTION_CHECK,
-            missing,
-        )
-        attributes["verdict"] = f"{attributes['verdict']}{friction}"
+    missing, attributes = response.missing, _attributes(response)
     of_scene = compute_or_note(
         lambda: system.cautions, [], "what is unusual about the scene", missing
     )
     cautions, before = response.cautions(), len(missing)
-    values = {**response.events, **response.scalars}
+    labels = _Labels({**response.events, **response.scalars}, attributes, cautions)
     if repeat_run and certification is None and plan.accuracy == LEVELS[AccuracyLevel.FAST]:
-        error, doubted = compute_or_note(
-            lambda: _repeated_run(system, plan, summary), (math.nan, []), _REPEATED_RUN, missing
-        )
-        values["peak_error_estimate"] = error
-        cautions += doubted
+        labels |= _second_look(response)
     if proof is not None:
-        shown = response.summary()
-        values |= proof.values(shown.overturned, summary.end_time)
-        attributes |= proof.attributes()
-        frequency = system.setting.body.frequency_at(system.setting.gravity)
-        objections = proof.objections(shown.overturned, summary.end_time, frequency)
-        cautions += [(SolverWarning, text) for text in objections]
-    # an attribute of every run: otherwise xarray.concat would extend it from a few runs to all
-    attributes["cautions"] = NONE
-    for kind, text in cautions:
+        labels |= _proof_labels(proof, response)
+    for kind, text in labels.cautions:
         warn(text, kind)
     if isinstance(certification, Certification):
-        found = compute_or_note(
-            lambda: certify(system, plan, response.summary(), certification, compute_summary),
-            None, "the certificate", missing,
-        )  # fmt: skip
-        attributes |= {"certificate": "Not known."} if found is None else found.attributes()
-        values |= {} if found is None else found.values()
-    of_samples = {**response.outputs.values, **response.outputs.points}
-    dataset = compute_or_note(
-        lambda: build_dataset(
-            {**values, **of_samples, **motion_after_end(plan.motion, of_samples)}, attributes
-        ),
-        None, _SAMPLED_OUTPUTS, missing,
-    )  # fmt: skip
-    if dataset is None:
-        dataset = build_dataset(values, attributes)
+        labels |= _certificate_labels(certification, response)
+    dataset = _dataset(labels, response)
     late = missing[before:]
     for text in late:
         warn(text, SolverWarning)
-    every = [*of_scene, *(text for _, text in cautions), *late]
+    every = [*of_scene, *(text for _, text in labels.cautions), *late]
     dataset.attrs["cautions"] = "; ".join(every) or NONE
     return dataset
 
 
-def _repeated_run(system: Assembly, plan: Plan, summary: Summary) -> tuple[float, list[Caution]]:
+def _second_look(response: Response) -> _Labels:
     """Return the error of the peak from a second run with more steps, and the doubts it raises."""
-    second = compute_response(system, second_look(system, plan)).trajectory
-    found = doubts(system.setting, plan, summary, second)
-    return peak_error(summary, second), [(SolverWarning, text) for text in found]
+    system, plan, run = response.system, response.plan, response.trajectory
+
+    def found() -> tuple[float, list[str]]:
+        second = compute_response(system, second_look(system, plan)).trajectory
+        return peak_error(run, second), list(doubts(system.setting, plan, run, second))
+
+    error, doubted = compute_or_note(found, (math.nan, []), _REPEATED_RUN, response.missing)
+    cautions: list[Caution] = [(SolverWarning, text) for text in doubted]
+    return _Labels({"peak_error_estimate": error}, {}, cautions)
+
+
+def _proof_labels(proof: Proof, response: Response) -> _Labels:
+    """Return the proved verdict, and how the run differs from it."""
+    setting, end_time = response.system.setting, response.trajectory.end_time
+    overturned = response.summary().overturned
+    frequency = setting.body.frequency_at(setting.gravity)
+    objections = proof.objections(overturned, end_time, frequency)
+    cautions: list[Caution] = [(SolverWarning, text) for text in objections]
+    return _Labels(proof.values(overturned, end_time), proof.attributes(), cautions)
+
+
+def _certificate_labels(certification: Certification, response: Response) -> _Labels:
+    """Return the certificate of a run."""
+    system, plan = response.system, response.plan
+    found = compute_or_note(
+        lambda: certify(system, plan, response.summary(), certification, compute_summary),
+        None, "the certificate", response.missing,
+    )  # fmt: skip
+    if found is None:
+        return _Labels({}, {"certificate": "Not known."})
+    return _Labels(found.values(), found.attributes())
+
+
+def _dataset(labels: _Labels, response: Response) -> xr.Dataset:
+    """Return the dataset of a run; without what follows from its samples if that fails."""
+    attributes, outputs, motion = labels.attributes, response.outputs, response.plan.motion
+    of_samples = {**outputs.values, **outputs.points}
+    dataset = compute_or_note(
+        lambda: build_dataset(
+            {**labels.values, **of_samples, **motion_after_end(motion, of_samples)}, attributes
+        ),
+        None, _SAMPLED_OUTPUTS, response.missing,
+    )  # fmt: skip
+    return build_dataset(labels.values, attributes) if dataset is None else dataset
 
 
 def compute_summary(system: Assembly, plan: Plan) -> RunSummary:
@@ -278,13 +301,20 @@ def compute_response(system: Assembly, plan: Plan) -> Response:
     return Response(system, plan, trajectory, outputs, missing)
 
 
-def _attributes(
-    system: Assembly, plan: Plan, summary: Summary, missing: list[str]
-) -> dict[str, str | float | int]:
+def _attributes(response: Response) -> dict[str, str | float | int]:
+    system, plan, missing = response.system, response.plan, response.missing
+    summary = response.trajectory
+    friction = ""
+    if summary.status.finished and not system.setting.slides:
+        outputs = response.outputs
+        friction = compute_or_note(
+            lambda: friction_words(outputs.scalars, outputs.sliding_checks),
+            "", _FRICTION_CHECK, missing,
+        )  # fmt: skip
     description = compute_or_note(lambda: system.description, "", "the words of the model", missing)
     coupling = {"coupling": str(system.options.coupling)} if system.scene.coupling else {}
     return {
-        "verdict": verdict(summary, system.setting, system.model),
+        "verdict": f"{verdict(summary, system.setting, system.model)}{friction}",
         "overturned": int(summary.reached_limit),
         "overturning_time": summary.overturning_time,
         "overturning_direction": Direction(summary.overturning_direction).name.lower(),
@@ -306,6 +336,10 @@ def _attributes(
         ),
         "system_json": compute_or_note(lambda: system.json, "", "the parts as text", missing),
         "run_json": compute_or_note(plan.to_json, "", "the arguments as text", missing),
+        END_STATE: json.dumps(ending_as_json(summary.ending)),
+        **response.nonunique_motions[0],
+        # an attribute of every run: otherwise xarray.concat would extend it from a few runs to all
+        "cautions": NONE,
     }
 
 
