@@ -5,7 +5,7 @@ import inspect
 import json
 import pickle
 import re
-from time import perf_counter
+from time import thread_time
 
 import numpy as np
 import pint
@@ -334,10 +334,10 @@ def test_what_is_done_to_a_motion_takes_no_longer_for_its_long_history():
         made = GroundMotion(motion().si, history=history)
         times = []
         for _ in range(20):
-            began = perf_counter()
+            began = thread_time()
             for factor in range(50):
                 made.scaled(1.0 + factor)
-            times.append(perf_counter() - began)
+            times.append(thread_time() - began)
         return min(times)
 
     long = tuple(f"step {k} of what was done to the samples of a record" for k in range(30))

@@ -31,9 +31,9 @@ def test_what_is_kept_is_what_is_given(whole):
     assert {**runs.attrs, "history": ""} == {**plain.attrs, "history": ""}
     assert rf.open_study(folder).identical(runs)
     before = files(folder)
-    begun = time.perf_counter()
+    begun = time.process_time()
     assert the_sweep(folder, chunk=1000).identical(runs)  # it keeps to its chunks
-    assert time.perf_counter() - begun < 5.0
+    assert time.process_time() - begun < 5.0
     assert files(folder) == before
     assert not list(folder.glob(".*"))
 
