@@ -30,6 +30,8 @@ _UNIT: Final = re.compile(
     # pint would even compute 9**9**9; a sign may only precede a power
     rf"(?:[^\W\d_]|_\d*|\^(?:[-+]?{_POWER}|\([-+]{_POWER}\))|[\s*·()%‰°]|/(?!/)|\.(?!\d))*"
 )
+_DOT_OF_PRODUCT: Final = re.compile(r"\.(?=\s*(?:[^\W\d]|\())")
+_DOT_OF_ABBREVIATION: Final = re.compile(r"\.(?!\d)")
 _NAME: Final = re.compile(r"[^\W\d]\w*")
 _INVALID_CHARACTER: Final = re.compile(r"[^\s\w*/^()%‰°·.+⁻-]")
 
@@ -45,7 +47,9 @@ def pint_spelling(text: str) -> str | None:
     parts = number_and_unit(text)
     if parts is None or not _is_unit(parts[1]):
         return None
-    return f"{float(parts[0])!r} {parts[1].translate(_SPELLINGS)}"
+    # versions of pint differ in what they make of dots
+    unit = _DOT_OF_PRODUCT.sub("*", parts[1].translate(_SPELLINGS))
+    return f"{float(parts[0])!r} {_DOT_OF_ABBREVIATION.sub('', unit)}"
 
 
 def invalid_character(text: str) -> str | None:
