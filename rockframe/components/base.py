@@ -74,8 +74,8 @@ class Component(Immutable):
     >>> buffer = Buffer(strength="3 kN")
     >>> buffer
     Buffer(strength='3000.0 N', friction=0.3)
-    >>> buffer.replace(strength="4 kN").strength.to("kN")
-    <Quantity(4.0, 'kilonewton')>
+    >>> print(buffer.replace(strength="4 kN").strength.to("kN"))
+    4.0 kilonewton
     >>> buffer.parameters(), [*Buffer.declared()] == [*Buffer.varied()]
     (('strength', 'friction'), True)
     >>> Buffer.from_dict(buffer.to_dict()) == buffer.with_scaled("friction", 1.0)

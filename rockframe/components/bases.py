@@ -316,8 +316,8 @@ class WinklerSoil(Component):
     Examples
     --------
     >>> soil = WinklerSoil.from_subgrade_modulus("20 MN/m^3", depth="4 m", damping_ratio=0.2)
-    >>> soil.stiffness.to("MPa")
-    <Quantity(80.0, 'megapascal')>
+    >>> print(soil.stiffness.to("MPa"))
+    80.0 megapascal
     """
 
     noun: ClassVar[str] = "soil"
@@ -409,8 +409,8 @@ class WinklerSoil(Component):
         --------
         >>> import rockframe as rf
         >>> soil = rf.WinklerSoil.from_subgrade_modulus("20 MN/m^3", depth="4 m", damping_ratio=0.2)
-        >>> soil.stiffness.to("MPa").round(9)
-        <Quantity(80.0, 'megapascal')>
+        >>> print(soil.stiffness.to("MPa").round(9))
+        80.0 megapascal
         """
         owner = f"{cls.__name__}.from_subgrade_modulus"
         per_area = to_si(modulus, SUBGRADE_MODULUS, owner=owner, name="modulus", condition=POSITIVE)

@@ -86,8 +86,8 @@ class Block(Component):
     >>> block = Block(width="2.4254 m", height="9.7014 m", mass="50 t")
     >>> round(block.overturning_angle.m_as("rad"), 4)
     0.245
-    >>> block.replace(mass="60 t").mass.to("t")
-    <Quantity(60.0, 'metric_ton')>
+    >>> print(block.replace(mass="60 t").mass.to("t"))
+    60.0 metric_ton
     """
 
     si: BlockSI
@@ -179,8 +179,8 @@ class Block(Component):
         Examples
         --------
         >>> block = Block(width="0.8 m", height="4 m", mass="2 t")
-        >>> block.replace(centre_of_mass=("1.5 m", "0.05 m")).eccentricity
-        <Quantity(0.05, 'meter')>
+        >>> print(block.replace(centre_of_mass=("1.5 m", "0.05 m")).eccentricity)
+        0.05 meter
         """
         if "centre_of_mass" in changes:
             height, beside = changes.get("centre_height"), changes.get("eccentricity")
@@ -264,8 +264,8 @@ class Block(Component):
         Examples
         --------
         >>> block = Block(width="0.8 m", height="4 m", mass="2 t")
-        >>> block.with_si({"slenderness": 4.0, "width": 1.0}).height
-        <Quantity(4.0, 'meter')>
+        >>> print(block.with_si({"slenderness": 4.0, "width": 1.0}).height)
+        4.0 meter
         """
         example = "{'width': 0.8}"
         values = checked_mapping(values, owner="Block.with_si", name="values", example=example)
@@ -395,8 +395,8 @@ class Block(Component):
         Examples
         --------
         >>> stone = {"depth": "0.5 m", "density": "2.5 t/m^3"}
-        >>> Block.from_density(width="1 m", height="4 m", **stone).mass
-        <Quantity(5000.0, 'kilogram')>
+        >>> print(Block.from_density(width="1 m", height="4 m", **stone).mass)
+        5000.0 kilogram
         """
         owner = f"{cls.__name__}.from_density"
         volume = 1.0
@@ -439,8 +439,8 @@ class Block(Component):
 
         Examples
         --------
-        >>> Block.from_size(radius="5 m", slenderness=4, mass="50 t").width.round(4)
-        <Quantity(2.4254, 'meter')>
+        >>> print(Block.from_size(radius="5 m", slenderness=4, mass="50 t").width.round(4))
+        2.4254 meter
         """
         owner = f"{cls.__name__}.from_size"
         metres = to_si(radius, LENGTH, owner=owner, name="radius", condition=POSITIVE)

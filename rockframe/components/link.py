@@ -121,8 +121,8 @@ class Restrainer(PointLink):
     >>> tie = rf.Restrainer(
     ...     on=("-0.5 m", "3 m"), to=("-1.5 m", "3 m"), stiffness="2 MN/m", strength="20 kN"
     ... )
-    >>> tie.replace(slack="5 mm").slack.to("mm")
-    <Quantity(5.0, 'millimeter')>
+    >>> print(tie.replace(slack="5 mm").slack.to("mm"))
+    5.0 millimeter
     """
 
     noun: ClassVar[str] = "restrainer"
@@ -216,8 +216,8 @@ class Tendon(Link):
     Examples
     --------
     >>> import rockframe as rf
-    >>> rf.Tendon(stiffness="5 MN/m", preload="200 kN").preload.to("kN")
-    <Quantity(200.0, 'kilonewton')>
+    >>> print(rf.Tendon(stiffness="5 MN/m", preload="200 kN").preload.to("kN"))
+    200.0 kilonewton
     """
 
     noun: ClassVar[str] = "tendon"
@@ -283,8 +283,8 @@ class Load(Link):
     Examples
     --------
     >>> import rockframe as rf
-    >>> rf.Load(at=("-0.1 m", "3 m"), vertical="10 kN").vertical.to("kN")
-    <Quantity(10.0, 'kilonewton')>
+    >>> print(rf.Load(at=("-0.1 m", "3 m"), vertical="10 kN").vertical.to("kN"))
+    10.0 kilonewton
     """
 
     noun: ClassVar[str] = "load"

@@ -150,13 +150,13 @@ class Parameter(Declared[Quantity, Default]):
     >>> from rockframe.units import FORCE
     >>> class Anchor(Component):
     ...     strength = Parameter(FORCE, doc="Force at which it breaks.")
-    >>> Anchor(strength="3 kN").strength
-    <Quantity(3000.0, 'newton')>
+    >>> print(Anchor(strength="3 kN").strength)
+    3000.0 newton
     >>> strength = Anchor.declared()["strength"]
     >>> strength.accept("3 kN", "Anchor"), strength.read("3 kN", "Anchor"), strength.write(3000.0)
     (3000.0, 3000.0, '3000.0 N')
-    >>> strength.public(3000.0), strength.caution(3000.0)
-    (<Quantity(3000.0, 'newton')>, None)
+    >>> print(strength.public(3000.0), strength.caution(3000.0))
+    3000.0 newton None
     """
 
     written_as = "str or Quantity"

@@ -80,8 +80,8 @@ class RockingFrame(Component):
     >>> import rockframe as rf
     >>> pier = rf.Block(width="1.6 m", height="9.6 m", mass="60 t")
     >>> bent = rf.RockingFrame(pier, columns=3, beam_mass="200 t")
-    >>> bent.beam_mass.to("t")
-    <Quantity(200.0, 'metric_ton')>
+    >>> print(bent.beam_mass.to("t"))
+    200.0 metric_ton
     """
 
     si: RockingFrameSI

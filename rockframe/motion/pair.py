@@ -64,8 +64,8 @@ class HorizontalPair(metaclass=SuggestingMeta):
     >>> north = GroundMotion.sine_pulse("3 m/s^2", "1 Hz")
     >>> east = GroundMotion.sine_pulse("4 m/s^2", "1 Hz")
     >>> pair = HorizontalPair(north, east)
-    >>> pair.rotated("53.1301 deg").peak_acceleration.round(3)
-    <Quantity(5.0, 'meter / second ** 2')>
+    >>> print(pair.rotated("53.1301 deg").peak_acceleration.round(3))
+    5.0 meter / second ** 2
     """
 
     first: GroundMotion
@@ -133,8 +133,8 @@ class HorizontalPair(metaclass=SuggestingMeta):
         >>> rows = [f"{0.01 * k:.2f}, {0.1 * k:.1f}, {0.2 * k:.1f}" for k in range(5)]
         >>> with open(path, "w") as file:
         ...     print("time [s], N [g], E [g]", *rows, sep=chr(10), file=file)
-        >>> rf.HorizontalPair.read(path).principal_axis.to("deg").round(1)
-        <Quantity(63.4, 'degree')>
+        >>> print(rf.HorizontalPair.read(path).principal_axis.to("deg").round(1))
+        63.4 degree
         """
         source = read_source(path)
         readings: list[Reading] = []
@@ -212,8 +212,8 @@ class HorizontalPair(metaclass=SuggestingMeta):
         --------
         >>> import rockframe as rf
         >>> north, east = (rf.GroundMotion.sine_pulse(f"{a} m/s^2", "1 Hz") for a in (3, 4))
-        >>> rf.HorizontalPair(north, east).rotated("90 deg").peak_acceleration.round(3)
-        <Quantity(4.0, 'meter / second ** 2')>
+        >>> print(rf.HorizontalPair(north, east).rotated("90 deg").peak_acceleration.round(3))
+        4.0 meter / second ** 2
         """
         component = self.first.rotated(self.second, angle, azimuth=azimuth)
         return component if self.vertical is None else component.with_vertical(self.vertical)
@@ -246,8 +246,8 @@ class HorizontalPair(metaclass=SuggestingMeta):
         --------
         >>> import rockframe as rf
         >>> north, east = (rf.GroundMotion.type_a_pulse(f"{v} m/s", "2 s") for v in (0.3, 0.4))
-        >>> rf.HorizontalPair(north, east).velocity_pulse().angle.to("deg").round()
-        <Quantity(53.0, 'degree')>
+        >>> print(rf.HorizontalPair(north, east).velocity_pulse().angle.to("deg").round())
+        53.0 degree
         """
         dt = self.first.si.time_step
         owner = f"{type(self).__name__}.velocity_pulse"
@@ -281,8 +281,10 @@ class HorizontalPair(metaclass=SuggestingMeta):
         >>> import rockframe as rf
         >>> north, east = (rf.GroundMotion.sine_pulse(f"{a} m/s^2", "1 Hz") for a in (3, 4))
         >>> along, across = rf.HorizontalPair(north, east).in_axes("53.1301 deg").components
-        >>> along.peak_acceleration.round(3), across.peak_acceleration.round(3)
-        (<Quantity(5.0, 'meter / second ** 2')>, <Quantity(0.0, 'meter / second ** 2')>)
+        >>> print(along.peak_acceleration.round(3))
+        5.0 meter / second ** 2
+        >>> print(across.peak_acceleration.round(3))
+        0.0 meter / second ** 2
         """
         along = self.first.rotated(self.second, angle)
         # the second rotated axis lies between the second component and the reversed first one

@@ -57,8 +57,8 @@ class VelocityPulse(Generic[MotionType]):
     --------
     >>> import rockframe as rf
     >>> pulse = rf.GroundMotion.type_a_pulse("0.5 m/s", "2 s").velocity_pulse()
-    >>> pulse.period.round(2), pulse.pulse_like
-    (<Quantity(3.91, 'second')>, True)
+    >>> print(pulse.period.round(2), pulse.pulse_like)
+    3.91 second True
     """
 
     period: Quantity

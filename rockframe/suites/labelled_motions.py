@@ -275,8 +275,8 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=SuggestingMeta):
         >>> suite = rf.MotionSuite(
         ...     {f"{f} Hz": rf.GroundMotion.sine_pulse("2 m/s^2", f"{f} Hz") for f in (1, 2)}
         ... )
-        >>> suite.changed(lambda motion: motion.scaled(2))["1 Hz"].peak_acceleration
-        <Quantity(4.0, 'meter / second ** 2')>
+        >>> print(suite.changed(lambda motion: motion.scaled(2))["1 Hz"].peak_acceleration)
+        4.0 meter / second ** 2
         """
         step = checked_function(step, "motion", owner=f"{type(self).__name__}.changed", name="step")
         motions = {label: step(motion) for label, motion in self._motions.items()}
@@ -310,8 +310,8 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=SuggestingMeta):
         ...     for a in ("3 m/s^2", "1 m/s^2")
         ... )
         >>> suite = rf.MotionSuite({"N": across}, verticals={"UP": up}).with_verticals()
-        >>> suite["N"].vertical_acceleration.max().round(3)
-        <Quantity(1.0, 'meter / second ** 2')>
+        >>> print(suite["N"].vertical_acceleration.max().round(3))
+        1.0 meter / second ** 2
         """
         by_record = {one.metadata.get("record"): one for one in self._verticals.values()}
         by_record.pop(None, None)

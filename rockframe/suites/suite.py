@@ -208,8 +208,8 @@ class MotionSuite(LabelledMotions):
         ...     {f"{f} Hz": rf.GroundMotion.sine_pulse("2 m/s^2", f"{f} Hz") for f in (1, 2)}
         ... )
         >>> found = suite.scaling_to(rf.TargetSpectrum.eurocode_8("0.2 g_0"), bounds=None)
-        >>> suite.scaled_to(found)["1 Hz"].peak_acceleration.round(2)
-        <Quantity(1.67, 'meter / second ** 2')>
+        >>> print(suite.scaled_to(found)["1 Hz"].peak_acceleration.round(2))
+        1.67 meter / second ** 2
         """
         found = target
         if not isinstance(found, xr.Dataset):

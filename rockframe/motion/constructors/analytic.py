@@ -54,8 +54,8 @@ class AnalyticMotion(MotionValue):
         Examples
         --------
         >>> import rockframe as rf
-        >>> rf.GroundMotion.sine_pulse("3 m/s^2", "2 Hz", cycles=3).duration
-        <Quantity(1.5, 'second')>
+        >>> print(rf.GroundMotion.sine_pulse("3 m/s^2", "2 Hz", cycles=3).duration)
+        1.5 second
         """
         ...
 
@@ -87,8 +87,8 @@ class AnalyticMotion(MotionValue):
         Examples
         --------
         >>> import rockframe as rf
-        >>> rf.GroundMotion.cosine_pulse("3 m/s^2", "2 Hz").acceleration[0]
-        <Quantity(3.0, 'meter / second ** 2')>
+        >>> print(rf.GroundMotion.cosine_pulse("3 m/s^2", "2 Hz").acceleration[0])
+        3.0 meter / second ** 2
         """
         ...
 
@@ -115,8 +115,8 @@ class AnalyticMotion(MotionValue):
         Examples
         --------
         >>> import rockframe as rf
-        >>> rf.GroundMotion.half_sine_pulse("3 m/s^2", "0.5 s").velocity[-1].round(4)
-        <Quantity(0.9549, 'meter / second')>
+        >>> print(rf.GroundMotion.half_sine_pulse("3 m/s^2", "0.5 s").velocity[-1].round(4))
+        0.9549 meter / second
         """
         ...
 
@@ -187,8 +187,8 @@ class AnalyticMotion(MotionValue):
         Examples
         --------
         >>> import rockframe as rf
-        >>> rf.GroundMotion.type_a_pulse("0.5 m/s", "0.8 s").displacement[-1].round(4)
-        <Quantity(0.2, 'meter')>
+        >>> print(rf.GroundMotion.type_a_pulse("0.5 m/s", "0.8 s").displacement[-1].round(4))
+        0.2 meter
         """
         ...
 
@@ -222,8 +222,8 @@ class AnalyticMotion(MotionValue):
         Examples
         --------
         >>> import rockframe as rf
-        >>> rf.GroundMotion.type_b_pulse("0.5 m/s", "0.8 s").velocity.max().round(4)
-        <Quantity(0.5, 'meter / second')>
+        >>> print(rf.GroundMotion.type_b_pulse("0.5 m/s", "0.8 s").velocity.max().round(4))
+        0.5 meter / second
         """
         ...
 
@@ -265,8 +265,8 @@ class AnalyticMotion(MotionValue):
         Examples
         --------
         >>> import rockframe as rf
-        >>> rf.GroundMotion.type_c_pulse("0.5 m/s", "0.8 s", order=2).duration.round(4)
-        <Quantity(1.9672, 'second')>
+        >>> print(rf.GroundMotion.type_c_pulse("0.5 m/s", "0.8 s", order=2).duration.round(4))
+        1.9672 second
         """
         ...
 
@@ -309,8 +309,8 @@ class AnalyticMotion(MotionValue):
         Examples
         --------
         >>> import rockframe as rf
-        >>> rf.GroundMotion.ricker_wavelet("3 m/s^2", "0.8 s").peak_acceleration
-        <Quantity(3.0, 'meter / second ** 2')>
+        >>> print(rf.GroundMotion.ricker_wavelet("3 m/s^2", "0.8 s").peak_acceleration)
+        3.0 meter / second ** 2
         """
         ...
 
@@ -361,8 +361,8 @@ class AnalyticMotion(MotionValue):
         --------
         >>> import rockframe as rf
         >>> pulse = rf.GroundMotion.mavroeidis_papageorgiou_pulse("0.5 m/s", "1 Hz", 2)
-        >>> pulse.velocity.max().round(4)
-        <Quantity(0.5, 'meter / second')>
+        >>> print(pulse.velocity.max().round(4))
+        0.5 meter / second
         """
         ...
 
@@ -411,7 +411,7 @@ class AnalyticMotion(MotionValue):
         Examples
         --------
         >>> import rockframe as rf
-        >>> rf.GroundMotion.double_impulse("0.5 m/s", "0.8 s").displacement[-1].round(3)
-        <Quantity(0.4, 'meter')>
+        >>> print(rf.GroundMotion.double_impulse("0.5 m/s", "0.8 s").displacement[-1].round(3))
+        0.4 meter
         """
         ...

@@ -101,8 +101,8 @@ def read(
     >>> import rockframe as rf
     >>> path = f"{tempfile.mkdtemp()}/record.AT2"
     >>> rf.GroundMotion.sine_pulse("3 m/s^2", "2 Hz").to_at2(path)
-    >>> rf.GroundMotion.read(path).peak_acceleration.to("m/s^2").round(3)
-    <Quantity(3.0, 'meter / second ** 2')>
+    >>> print(rf.GroundMotion.read(path).peak_acceleration.to("m/s^2").round(3))
+    3.0 meter / second ** 2
     """
     requested = request_of(
         owner=f"{kind.__name__}.read",
@@ -163,8 +163,9 @@ def from_arrays(
     --------
     >>> import rockframe as rf
     >>> samples = ([0.0, 1.2, -2.5, 0.4], "m/s^2")
-    >>> rf.GroundMotion.from_arrays(samples, time_step="0.02 s", name="shaken").peak_acceleration
-    <Quantity(2.5, 'meter / second ** 2')>
+    >>> motion = rf.GroundMotion.from_arrays(samples, time_step="0.02 s", name="shaken")
+    >>> print(motion.peak_acceleration)
+    2.5 meter / second ** 2
     """
     owner = f"{kind.__name__}.from_arrays"
     if time_step is None:
@@ -249,8 +250,8 @@ def example(
     --------
     >>> import rockframe as rf
     >>> motion = rf.GroundMotion.example("loma-prieta")
-    >>> motion.peak_acceleration.to("g_0").round(3)
-    <Quantity(0.106, 'standard_gravity')>
+    >>> print(motion.peak_acceleration.to("g_0").round(3))
+    0.106 standard_gravity
     """
     folder = resources.files("rockframe.motion") / "embedded"
     records = record_sources(folder)

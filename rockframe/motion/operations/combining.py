@@ -65,8 +65,8 @@ def with_vertical(motion: MotionType, other: MotionValue | None) -> MotionType:
     --------
     >>> import rockframe as rf
     >>> across, up = (rf.GroundMotion.sine_pulse(f"{a} m/s^2", "2 Hz") for a in (3, 1))
-    >>> across.with_vertical(up).vertical_acceleration.max().round(3)
-    <Quantity(1.0, 'meter / second ** 2')>
+    >>> print(across.with_vertical(up).vertical_acceleration.max().round(3))
+    1.0 meter / second ** 2
     >>> across.with_vertical(up).with_vertical(None).sha256 == across.sha256
     True
     """
@@ -164,8 +164,8 @@ def rotated(
     --------
     >>> import rockframe as rf
     >>> north, east = (rf.GroundMotion.sine_pulse(f"{a} m/s^2", "2 Hz") for a in (3, 4))
-    >>> north.rotated(east, "53.1301 deg").peak_acceleration.round(3)
-    <Quantity(5.0, 'meter / second ** 2')>
+    >>> print(north.rotated(east, "53.1301 deg").peak_acceleration.round(3))
+    5.0 meter / second ** 2
     """
     owner, si = f"{type(motion).__name__}.rotated", motion.si
     theirs = checked_other_motion(other, si, owner).si

@@ -185,8 +185,8 @@ def baseline_corrected(
     --------
     >>> import rockframe as rf
     >>> record = rf.GroundMotion.from_arrays(([0.1, 1.1, -0.9, 0.1], "m/s^2"), time_step="0.02 s")
-    >>> record.baseline_corrected().acceleration.round(6)
-    <Quantity([-0.3  0.9 -0.9  0.3], 'meter / second ** 2')>
+    >>> print(record.baseline_corrected().acceleration.round(6))
+    [-0.3  0.9 -0.9  0.3] meter / second ** 2
     """
     owner, si = f"{type(motion).__name__}.baseline_corrected", motion.si
     fitted = checked_choice(Baseline, fit, owner=owner, name="fit")

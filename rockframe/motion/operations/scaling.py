@@ -92,8 +92,10 @@ def scaled(
     --------
     >>> import rockframe as rf
     >>> pulse = rf.GroundMotion.sine_pulse("3 m/s^2", "2 Hz")
-    >>> pulse.scaled(2).peak_acceleration, pulse.scaled(peak="0.5 g_0").peak_acceleration.to("g_0")
-    (<Quantity(6.0, 'meter / second ** 2')>, <Quantity(0.5, 'standard_gravity')>)
+    >>> print(pulse.scaled(2).peak_acceleration)
+    6.0 meter / second ** 2
+    >>> print(pulse.scaled(peak="0.5 g_0").peak_acceleration.to("g_0"))
+    0.5 standard_gravity
     """
     owner = f"{type(motion).__name__}.scaled"
     targets = {

@@ -71,8 +71,8 @@ def to_at2(
     >>> pulse = rf.GroundMotion.sine_pulse("3 m/s^2", "2 Hz")
     >>> path = f"{tempfile.mkdtemp()}/pulse.AT2"
     >>> pulse.to_at2(path)
-    >>> rf.GroundMotion.read(path).peak_acceleration.to("m/s^2").round(3)
-    <Quantity(3.0, 'meter / second ** 2')>
+    >>> print(rf.GroundMotion.read(path).peak_acceleration.to("m/s^2").round(3))
+    3.0 meter / second ** 2
     """
     owner = f"{type(motion).__name__}.to_at2"
     which = checked_choice(WrittenComponent, component, owner=owner, name="component")
