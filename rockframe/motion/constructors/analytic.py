@@ -309,7 +309,7 @@ class AnalyticMotion(MotionValue):
         Examples
         --------
         >>> import rockframe as rf
-        >>> print(rf.GroundMotion.ricker_wavelet("3 m/s^2", "0.8 s").peak_acceleration)
+        >>> print(rf.GroundMotion.ricker_wavelet("3 m/s^2", "0.8 s").peak_acceleration.round(9))
         3.0 meter / second ** 2
         """
         ...

@@ -92,9 +92,9 @@ def scaled(
     --------
     >>> import rockframe as rf
     >>> pulse = rf.GroundMotion.sine_pulse("3 m/s^2", "2 Hz")
-    >>> print(pulse.scaled(2).peak_acceleration)
+    >>> print(pulse.scaled(2).peak_acceleration.round(9))
     6.0 meter / second ** 2
-    >>> print(pulse.scaled(peak="0.5 g_0").peak_acceleration.to("g_0"))
+    >>> print(pulse.scaled(peak="0.5 g_0").peak_acceleration.to("g_0").round(9))
     0.5 standard_gravity
     """
     owner = f"{type(motion).__name__}.scaled"

@@ -176,7 +176,7 @@ def resampled(
     >>> import rockframe as rf
     >>> record = rf.GroundMotion.from_arrays(([0.0, 1.0, -1.0], "m/s^2"), time_step="0.02 s")
     >>> print(record.resampled("0.01 s").acceleration.round(2))
-    [ 0.   0.7  1.   0.2 -1. ] meter / second ** 2
+    [0.0 0.7 1.0 0.2 -1.0] meter / second ** 2
     """
     owner, si = f"{type(motion).__name__}.resampled", motion.si
     method = checked_choice(Interpolation, interpolation, owner=owner, name="interpolation")
