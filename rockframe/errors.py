@@ -218,9 +218,13 @@ _SYMBOLS: Final = {
     "im": ("intensity",),
     "ida": ("incremental_dynamic_analysis",),
     "prestress": ("preload",),
+    "pretension": ("preload",),
+    "friction_coefficient": ("friction",),
+    "run": ("simulate",),
+    "solve": ("simulate",),
 }
-"""Symbols of the literature for arguments, parameters and functions. The symbols b and h are left
-out: in papers they are half the width and half the height."""
+"""Symbols and words of the literature for arguments, parameters and functions. The symbols b and h
+are left out: in papers they are half the width and half the height."""
 
 
 def did_you_mean(value: object, known: Iterable[str]) -> str:

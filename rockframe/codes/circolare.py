@@ -9,7 +9,7 @@ import numpy as np
 
 from rockframe.arguments import checked_name
 from rockframe.codes.check import peak_responses, read_motions, rigid_block_setting, scene_summary
-from rockframe.components import Load
+from rockframe.components import Block, Load
 from rockframe.errors import ComponentError
 from rockframe.measures import response_spectrum
 from rockframe.motion import GroundMotion
@@ -45,7 +45,7 @@ _SHORTEST_PERIOD: Final = 0.2
 
 @with_hints()
 def circolare_2019(
-    system: System,
+    system: Block | System,
     demand: TargetSpectrum | GroundMotion | Mapping[str, GroundMotion],
     *,
     confidence_factor: RatioLike = 1.35,
@@ -61,7 +61,7 @@ def circolare_2019(
 
     Parameters
     ----------
-    system : System
+    system : Block or System
         A :class:`~rockframe.Block` on level rigid ground, with a :class:`~rockframe.RearWall` or
         without. Overburden is a :class:`~rockframe.Load` with a `moving_mass` for each mass.
     demand : TargetSpectrum, GroundMotion, or mapping of str to GroundMotion
@@ -102,6 +102,7 @@ def circolare_2019(
     >>> round(check.value("T_SLV"), 6)
     2.383086
     """
+    system = System(system) if isinstance(system, Block) else system
     setting = rigid_block_setting(system, _OWNER, allow_loads=True)
     confidence = to_ratio(
         confidence_factor,

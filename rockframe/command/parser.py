@@ -14,7 +14,7 @@ from rockframe.version import __version__
 
 _HYPHENED_VALUE: Final = re.compile(r"-[\d.]|-.* ")
 """Values that begin with a hyphen: a number, or a quantity with its unit."""
-_KEYWORD_EXAMPLE: Final = re.compile(r"\b(\w+)='([^']*)'")
+_KEYWORD_EXAMPLE: Final = re.compile(r"\b(\w+)=(?:'([^']*)'|\(([^()]*)\))")
 _FUNCTION_PREFIX: Final = re.compile(
     r"^(case|critical_scale|fragility|incremental_dynamic_analysis|overturning_map|report|sweep|"
     r"simulate|rf\.plot\.\w+): "
@@ -113,7 +113,8 @@ def rewrite_for_command_line(words: str, name: str) -> str:
 
     def typed(match: re.Match[str]) -> str:
         option = f"--{match[1].replace('_', '-')}"
-        return f"{option} '{match[2]}'" if option in options else match[0]
+        value = f"'{match[2]}'" if match[3] is None else match[3].replace(",", "")
+        return f"{option} {value}" if option in options else match[0]
 
     words = _KEYWORD_EXAMPLE.sub(typed, _FUNCTION_PREFIX.sub("", words))
     if not any(_SCENE_ARGUMENT in argument.names for argument in command.arguments):
@@ -137,7 +138,10 @@ def _is_option(word: str, options: Sequence[str]) -> bool:
 
 def _unknown_option_message(word: str, command: Command | None, options: Sequence[str]) -> str:
     program = "rockframe" if command is None else f"rockframe {command.name}"
-    near = suggestion(word, [name for name in options if name.startswith("--")])
+    names = {name[2:].replace("-", "_"): name for name in options if name.startswith("--")}
+    near = suggestion(word[2:].replace("-", "_"), names)
+    for name, option in names.items():
+        near = near.replace(repr(name), repr(option))
     also = [one.name for one in COMMANDS if word in _options(one)]
     if also:
         others = f"{', '.join(also)} {'takes' if len(also) == 1 else 'take'} it"

@@ -45,8 +45,10 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
             msg = "--panels: only a run over time has panels to choose from"
             raise ComponentError(msg)
         named["panels"] = tuple(arguments.panels)
-    if name == plot.sweep.__name__ and "status" in dataset and dataset["status"].ndim > _MAX_AXES:
-        axes = ", ".join(str(dim) for dim in dataset["status"].dims)
+    sizes = dataset["status"].sizes if "status" in dataset else {}
+    drawn_over = [str(dim) for dim, size in sizes.items() if size > 1]
+    if name == plot.sweep.__name__ and len(drawn_over) > _MAX_AXES:
+        axes = ", ".join(drawn_over)
         words = (
             f"found a study with more than {_MAX_AXES} axes ({axes}), which "
             "no figure shows; 'rockframe report' lists its cases in a table"

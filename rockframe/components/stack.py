@@ -35,11 +35,11 @@ class Stack(Component):
     ----------
     *bodies : Block
         At least two bodies, from the top down, such as statue and plinth or drums of a column.
-    interfaces : sequence of Component
+    interfaces : Component or sequence of Component
         The bases between the bodies, from the top down, one fewer than the bodies: each is a
-        :class:`TwoSpringSupport`, a :class:`WinklerSoil` or a :class:`RigidGround`. The base of
-        the lowest body is a part of the system. Frequency ratio and damping ratio of a base refer
-        to all bodies above it as one body.
+        :class:`TwoSpringSupport`, a :class:`WinklerSoil` or a :class:`RigidGround`; or one base
+        for all of them. The base of the lowest body is a part of the system. Frequency ratio and
+        damping ratio of a base refer to all bodies above it as one body.
     offsets : sequence of str or pint.Quantity, optional
         Horizontal distance from the middle of the base of the body below to that of each body but
         the lowest, positive to the right [m]; zero unless given.
@@ -68,7 +68,7 @@ class Stack(Component):
     def __init__(
         self,
         *bodies: Block,
-        interfaces: Sequence[Component],
+        interfaces: Component | Sequence[Component],
         offsets: Sequence[QuantityLike] | None = None,
     ) -> None:
         self._set_parts(bodies, interfaces, offsets)
@@ -76,6 +76,8 @@ class Stack(Component):
 
     def _set_parts(self, bodies: Sequence[Any], interfaces: object, offsets: object) -> None:
         """Check the arguments and store them."""
+        if isinstance(interfaces, Component):
+            interfaces = [interfaces] * max(len(bodies) - 1, 0)
         interfaces = checked_list(interfaces, owner="Stack", name="interfaces", of="bases")
         distances = None if offsets is None else [
             to_si(one, LENGTH, owner="Stack", name=f"offsets[{i}]") for i, one in

@@ -146,7 +146,9 @@ def uncertainty_of(solution: Solution, confidence: float) -> Uncertainty:
     variance = float(solution.residuals @ solution.residuals) / degrees_of_freedom
     spread = np.sqrt(np.diag(inverse))
     error = math.sqrt(variance) * spread / solution.norms
-    correlation = inverse / np.where(spread > 0.0, np.outer(spread, spread), 1.0)
+    products = np.outer(spread, spread)
+    correlation = np.full_like(inverse, math.nan)
+    np.divide(inverse, products, out=correlation, where=products > 0.0)
     correlation[undetermined, :] = correlation[:, undetermined] = math.nan
     return Uncertainty(np.where(undetermined, math.nan, error), correlation, half_width)
 

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Final
 
+import pandas as pd
 import xarray as xr
 
 from rockframe.arguments import checked_choice, checked_list
@@ -33,7 +34,7 @@ _CONFIDENCE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value 
 @with_hints()
 def fit_free_decay(
     system: System,
-    measured: xr.DataArray | tuple[object, object] | None = None,
+    measured: xr.DataArray | pd.DataFrame | tuple[object, object] | None = None,
     parameters: Sequence[str] | str = ("restitution",),
     *,
     peaks: tuple[object, object] | QuantityLike | None = None,
@@ -48,9 +49,10 @@ def fit_free_decay(
     system : System
         The system that was tested, with start values of the parameters that are to be found. A
         ground motion among its parts is left out, since the ground is at rest.
-    measured : xarray.DataArray or ((times, unit), (rotations, unit)), optional
+    measured : xarray.DataArray, ((times, unit), (rotations, unit)) or DataFrame, optional
         History of the block's rotation, from the release or from before it. A DataArray has
-        the times as its coordinate, and both have the attribute ``units``.
+        the times as its coordinate, and both have the attribute ``units``. A DataFrame has two
+        columns with their units in brackets, such as ``time [s]`` and ``rotation [deg]``.
     parameters : str or sequence of str, optional
         Dimensionless parameters of the system's parts, such as ``"restitution"``,
         ``"frequency_ratio"``, ``"damping_ratio"``. If several parts have a parameter of this

@@ -1,10 +1,12 @@
 """Measured data, read and checked: a history of the rotation, or its peaks."""
 
 import math
+import re
 from dataclasses import dataclass
 from typing import Any, Final, cast
 
 import numpy as np
+import pandas as pd
 import pint
 import xarray as xr
 
@@ -17,7 +19,8 @@ from rockframe.units.display import degrees_text
 OWNER: Final = "fit_free_decay"
 _EXAMPLE_UNITS: Final = {"rotation": "deg", "time": "s"}
 _HISTORY: Final = (
-    "write measured=((times, 's'), (rotations, 'deg')), or give a DataArray over time with units"
+    "write measured=((times, 's'), (rotations, 'deg')), or give a DataArray over time with units, "
+    "or a DataFrame with two columns such as 'time [s]' and 'rotation [deg]'"
 )
 _PEAKS: Final = (
     "write peaks=([6.0, 5.2, 4.6], 'deg'), or with their times peaks=((times, 's'), "
@@ -124,12 +127,26 @@ def check_below_overturning(measured: History | MeasuredPeaks, angles: Overturni
 
 def _pair_of_arrays(value: object) -> tuple[object, object] | None:
     """Return the two items of a pair of arrays with units, or None of anything else."""
+    if isinstance(value, pd.DataFrame):
+        return _pair_of_columns(value)
     if not isinstance(value, tuple | list):
         return None
     items = cast("tuple[object, ...]", value)
     if len(items) != 2 or any(isinstance(item, str | float | int) for item in items):
         return None
     return items[0], items[1]
+
+
+_UNIT_IN_NAME: Final = re.compile(r".*\[(.+)\]\s*")
+
+
+def _pair_of_columns(frame: pd.DataFrame) -> tuple[object, object] | None:
+    """Return both columns of a DataFrame, with the units in their names."""
+    units = [_UNIT_IN_NAME.fullmatch(str(name)) for name in frame.columns]
+    if len(units) != 2 or units[0] is None or units[1] is None:
+        return None
+    time, rotation = (frame.iloc[:, number].to_numpy() for number in range(2))
+    return (time, units[0][1]), (rotation, units[1][1])
 
 
 def _read_array(value: object, measure: Measure, name: str) -> Array:

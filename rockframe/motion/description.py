@@ -28,6 +28,7 @@ _PROCESSING_WORDS: Final = {
     "absolute acceleration of a floor": "at a floor",
 }
 """Beginnings of the steps of a history that change a motion, and the words for its name."""
+_FLOOR_STEP: Final = re.compile(r"absolute acceleration of a floor, floor (\d+) ")
 _MATCHED_STEP: Final = re.compile(r"scaled by \S+ and matched to ")
 
 
@@ -44,6 +45,8 @@ def _processing_word(step: str) -> str:
     """Return the word for a step of a history that changes a motion; nothing for another."""
     if _MATCHED_STEP.match(step):
         return "matched"
+    if floor := _FLOOR_STEP.match(step):
+        return f"at floor {floor[1]}"
     return next((words for start, words in _PROCESSING_WORDS.items() if step.startswith(start)), "")
 
 

@@ -136,9 +136,12 @@ class MotionValue(Immutable):
         return int(self.si.horizontal.samples.size)
 
     def __repr__(self) -> str:
+        from rockframe.motion.description import display_name
+
         vertical = "" if self.si.vertical is None else ", with vertical"
         return (
-            f"<{type(self).__name__} {self.name!r}: {len(self)} samples at "
+            f"<{type(self).__name__} {display_name(self.name, self.history)!r}: "
+            f"{len(self)} samples at "
             f"{self.si.time_step:.6g} s, {self.si.duration:.6g} s long, "
             f"peak {self.si.peak:.5g} m/s^2{vertical}>"
         )

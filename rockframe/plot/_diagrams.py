@@ -133,7 +133,7 @@ def moment_rotation(
     ----------
     given : System, or xarray.Dataset, or sequence or mapping of them
         A system, whose base moment is drawn in vertical equilibrium by
-        :meth:`rockframe.System.moment_rotation`; or runs with
+        :meth:`rockframe.System.moment_rotation`; or a result of that method; or runs with
         ``outputs=("base_overturning_moment",)``. For a single run of one body the moment in
         equilibrium is dashed.
     largest : float, optional
@@ -169,9 +169,10 @@ def moment_rotation(
     angle_unit = axis_units.axis_unit(ANGLE, "deg", rotation=rotation)
     moment_unit = axis_units.axis_unit(MOMENT, "kN*m", moment=moment)
     if isinstance(given, System):
-        equilibrium = _static_moments(given, largest)
+        given = _static_moments(given, largest)
+    if isinstance(given, xr.Dataset) and "base_moment" in given and "angle" in given.dims:
         sheet = make_single_panel(ax, "moment_rotation", (5.6, 4.2))
-        _draw_static_moments(sheet.axes, equilibrium, angle_unit, moment_unit)
+        _draw_static_moments(sheet.axes, given, angle_unit, moment_unit)
         sheet.set_title("", title)
     else:
         runs = read_runs(given, "moment_rotation", window)

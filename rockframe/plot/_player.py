@@ -29,6 +29,7 @@ from rockframe.plot._scene import SceneHistory
 from rockframe.results.outcome import MIN_REPORTED_SLIP
 from rockframe.results.variables.variable import flag_words
 from rockframe.signals.arrays import Array
+from rockframe.simulation.provenance import motion_words
 from rockframe.suggestions import suggests_names
 from rockframe.units import ACCELERATION, ANGLE, LENGTH
 from rockframe.units.display import UnitsLike, with_superscripts
@@ -219,7 +220,7 @@ def player(
         "nowhere": _MISSING,
         "numbers": store.packed(),
     }
-    html = _fill_template(sentence, str(run.attrs.get("motion", "")), data)
+    html = _fill_template(sentence, motion_words(run.attrs), data)
     return Player(html, end - start)
 
 

@@ -13,6 +13,7 @@ from rockframe.plot._axes import line_colour, line_style, unique_labels
 from rockframe.plot._checks import checked_run
 from rockframe.results.outcome import verdict_of
 from rockframe.results.variables.variable import flag_words, unit_suffix_of
+from rockframe.simulation.provenance import motion_words
 from rockframe.units import TIME, QuantityLike, to_si
 from rockframe.units.display import DisplayUnits
 
@@ -74,7 +75,7 @@ def read_window(window: object, function: str, name: str = "window") -> tuple[fl
         )
         raise ComponentError(msg)
     start, end = (
-        none if one is None else to_si(one, TIME, owner=owner, name=name)
+        none if one is None else to_si(one, TIME.like("('2 s', '8 s')"), owner=owner, name=name)
         for one, none in zip(ends, (-np.inf, np.inf), strict=True)
     )  # fmt: skip
     if start >= end:
@@ -87,7 +88,7 @@ def runs_title(runs: list[Run], units: DisplayUnits) -> str:
     """Return the title of a figure: the verdict of one run, or the common motion of several."""
     if len(runs) == 1:
         return verdict_of_case(runs[0].dataset, units)
-    motions = {str(run.dataset.attrs.get("motion", "")) for run in runs}
+    motions = {motion_words(run.dataset.attrs) for run in runs}
     return motions.pop() if len(motions) == 1 else ""
 
 

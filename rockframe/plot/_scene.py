@@ -1,7 +1,7 @@
 """Scenes to scale: at rest, and at an instant of a run."""
 
 from collections.abc import Mapping
-from typing import Final, cast
+from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 import xarray as xr
@@ -28,6 +28,9 @@ from rockframe.system.geometry import Geometry, geometry_of
 from rockframe.units import ANGLE, LENGTH, TIME, QuantityLike, to_si
 from rockframe.units.display import UnitsLike, unit_suffix
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 _PLACEMENT_HISTORIES: Final = (
     "rotation",
     "horizontal_displacement",
@@ -44,6 +47,7 @@ _BODY_HISTORIES: Final = (
     "body_rotation", "body_horizontal_displacement", "body_vertical_displacement",
 )  # fmt: skip
 """The same for all bodies of a stack."""
+_LEGEND_MARGIN: Final = 0.2  # [in]
 _RESTRAINER_STATE: Final = "restrainer_state"
 _BROKEN_COUNT: Final = "broken_restrainer_count"
 
@@ -117,6 +121,8 @@ def scene(
     ):  # the layout makes room for the legend iteratively
         for _ in range(2):
             sheet.panels.figure.draw_without_rendering()
+            if ax is None:
+                _fit_height_to_legend(sheet.axes)
     return sheet.axes
 
 
@@ -272,6 +278,14 @@ class SceneHistory:
         )
         factor = self.builder.magnify
         return text if factor == 1.0 else f"{text}; displacements times {factor:g}"
+
+
+def _fit_height_to_legend(axes: Axes) -> None:
+    """Make a figure higher if the names of many parts do not fit."""
+    legend, figure = axes.get_legend(), cast("Figure", axes.figure)
+    if legend is not None:
+        needed = legend.get_window_extent().height / figure.dpi + _LEGEND_MARGIN
+        figure.set_figheight(max(figure.get_figheight(), needed))
 
 
 def figure_size(builder: LayoutBuilder, *, wide: bool) -> tuple[float, float]:

@@ -106,7 +106,7 @@ def _joined_proof(known: list[_Part], rest: list[_Part]) -> Proof:
     elif len(every) == 1:
         reason = every[0].reason
     elif rest:
-        reason = f"{rest[0].proof.reason}, in the largest part of which nothing is proved"
+        reason = f"{rest[0].proof.reason}, in the largest undecided part of the set"
     else:
         reason = "the verdict is not the same of all of them"
     falls = [found for found in proofs if found.verdict != SAFE]

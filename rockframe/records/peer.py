@@ -41,6 +41,8 @@ _SUFFIX: Final = ".at2"
 
 HEADER_LINES: Final = 20
 _POINTS: Final = re.compile(r"NPTS\s*[=:]\s*([-+]?[\d.]+)", re.IGNORECASE)
+# a text on records may quote such a line, as this one does
+_POINTS_LINE: Final = re.compile(rf"[\s#%*]*{_POINTS.pattern}", re.IGNORECASE)
 # neither a fraction nor milliseconds are read as so many seconds
 _STEP: Final = re.compile(rf"\bDT\s*[=:]\s*{WHOLE_NUMBER}(?!\s*(?:/|m(?:illi)?s))", re.IGNORECASE)
 _WEST1: Final = re.compile(rf"^\s*([-+]?\d+)\s+({NUMBER})\s+NPTS\b", re.IGNORECASE)
@@ -56,7 +58,7 @@ _DATE: Final = re.compile(r"\d{1,4}[/-]\d{1,2}[/-]\d{1,4}")
 def _recognises(source: Source) -> bool:
     top = source.top(HEADER_LINES)
     other_motion = source.suffix in {_SUFFIX, ".vt2", ".dt2"}
-    return other_motion or any(_POINTS.search(line) or _WEST1.match(line) for line in top)
+    return other_motion or any(_POINTS_LINE.match(line) or _WEST1.match(line) for line in top)
 
 
 def _read(source: Source, request: Request) -> Record:

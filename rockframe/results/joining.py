@@ -51,7 +51,7 @@ _OWNER: Final = "concat"
 
 @with_hints()
 def concat(
-    runs: Iterable[xr.Dataset],
+    runs: Iterable[xr.Dataset] | Mapping[Any, xr.Dataset],
     dim: str = "run",
     labels: Sequence[Any] | np.ndarray | xr.DataArray | None = None,
     *,
@@ -61,14 +61,14 @@ def concat(
 
     Parameters
     ----------
-    runs : iterable of xarray.Dataset
+    runs : iterable of xarray.Dataset, or mapping of labels to them
         Results of :meth:`rockframe.System.simulate`, of
         :func:`rockframe.intensity_measures` or of this function.
     dim : str, optional
         The dimension, such as ``"scale"``; a new one, or one that all of them have.
     labels : sequence or DataArray, optional
         Values along the dimension, one for each run; a DataArray also gives them its
-        attributes, such as ``units``.
+        attributes, such as ``units``. Those of a mapping are its keys unless given.
     histories : bool, optional
         Whether histories are joined too; their times must be the same in all runs.
 
@@ -112,6 +112,9 @@ def concat(
     >>> "overturned" in study.attrs
     False
     """
+    if isinstance(runs, Mapping) and not isinstance(runs, xr.Dataset):
+        labels = list(runs) if labels is None else labels
+        runs = runs.values()
     data = [checked_dataset(run, owner=_OWNER) for run in _each(runs)]
     if not data:
         msg = f"{_OWNER}: found no runs; expected one at least"

@@ -54,7 +54,7 @@ def motion_attributes(motion: GroundMotion | None) -> dict[str, str | float | in
 def motion_words(attributes: Mapping[str, Any]) -> str:
     """Return the name of a result's motion, and the factor by which it was scaled."""
     history = str(attributes.get("motion_history", "")).split(_HISTORY_SEPARATOR)
-    return display_name(str(attributes["motion"]), history)
+    return display_name(str(attributes.get("motion", "")), history)
 
 
 def check_unswept_system(dataset: xr.Dataset) -> None:

@@ -330,7 +330,7 @@ def friction_words(scalars: Mapping[str, Generic | float], found: Sequence[Slidi
     )
     if not math.isfinite(peak):
         return (
-            " Friction needed: more than any, where the base holds without pressing "
+            " Friction needed: more than any, where the base is held without pressure "
             f"(at {when:.4g} s); more than 1 for {duration:.3g} s in all."
         )
     if peak == 0.0:

@@ -117,8 +117,8 @@ def accuracy_of(choice: "str | float | Accuracy", *, owner: str = "simulate") ->
     """Return the settings that a user means by a named level, a tolerance or an `Accuracy`."""
     if isinstance(choice, Accuracy):
         return choice
-    if isinstance(choice, float):
-        return Accuracy(rtol=choice)
+    if isinstance(choice, Real) and not isinstance(choice, bool | Integral):
+        return Accuracy(rtol=float(choice))  # of NumPy, too
     try:
         return LEVELS[AccuracyLevel(choice)]
     except ValueError:

@@ -220,7 +220,8 @@ def _warn_of_unread(reader: _SuiteReader) -> None:
         listed = "; ".join(
             f"{PurePath(one.path).name}: {one.reason}" for one in unread[:_MAX_LISTED]
         )
-        words.append(f"{len(unread)} files not read ({listed}; suite.unread lists all)")
+        files = "1 file" if len(unread) == 1 else f"{len(unread)} files"
+        words.append(f"{files} not read ({listed}; suite.unread lists all)")
     if reader.remarks:
         listed = "; ".join(reader.remarks[:_MAX_LISTED])
         words.append(f"{len(reader.remarks)} worth a look ({listed}; suite.remarks lists all)")

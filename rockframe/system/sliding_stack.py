@@ -142,8 +142,8 @@ def _refuse_many_modes(bases: Sequence[Component], slips: bool) -> None:
 def sheared_tendon_faults(setting: StackSetting) -> list[str]:
     """Return faults for tendons without depth below a joint: a slip would shear them there."""
     return [
-        f"{one.name}: a Tendon is bent over the edges of a duct that goes through, and a block "
-        "that slides shears it there: give the depth below the base at which it is held"
+        f"{one.name}: a Tendon without a depth is bent over the edge of its duct at the base, and "
+        "a block that slides shears it there: give the depth below the base at which it is fixed"
         for one in setting.links
         if isinstance(one.part, Tendon) and one.part.si.depth == 0.0
     ]

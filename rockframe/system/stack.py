@@ -182,7 +182,7 @@ class StackSetting(Setting):
                 ("full, left, right", f"{3 * len(self.bodies)} coordinates less one for each point "
                  f"that is held; {' and '.join(laws)}, along the normal of what a body stands on"),
                 ("flight", "free fall of a body and all above it, apart or together"),
-                ("impact", "an impulse between two bodies; the velocities of all of them answer"),
+                ("impact", "an impulse between two bodies, which changes the velocities of all"),
                 *([("", rigid_impacts)] if any(self.rigid) else []),
                 *(restrainers if self.links else ()),
             ],

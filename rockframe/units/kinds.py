@@ -53,7 +53,8 @@ class Measure:
 
     def example_of(self, argument: str) -> str:
         """Return an example of how to write an argument."""
-        written = self.example if self.unit == Unit.ONE else repr(self.example)
+        plain = self.unit == Unit.ONE or self.example.startswith("(")  # a pair
+        written = self.example if plain else repr(self.example)
         return f"write for example {argument}={written}"
 
 

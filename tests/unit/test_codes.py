@@ -98,7 +98,7 @@ def test_the_motion_beside_the_kinematics():
     assert check.passed["dynamic, SLV"] is False
     for words in ("1 of 2 overturned: 0.6 m/s", "40 % of d_0", "60 % of d_0"):
         assert words in str(check)
-    gentle = rf.codes.circolare_2019(rf.System(WALL), PULSES["0.3 m/s"].scaled(0.5))
+    gentle = rf.codes.circolare_2019(WALL, PULSES["0.3 m/s"].scaled(0.5))
     assert gentle.passed["dynamic, SLV"]
     displacement = rf.response_spectrum(
         PULSES["0.3 m/s"].scaled(0.5), (np.geomspace(0.2, gentle.value("T_SLV"), 80), "s"), 0.08
@@ -126,7 +126,7 @@ def test_a_motion_to_the_stronger_side_counts_in_full():
     ("given", "words"),
     [
         ((rf.System(WALL), spectrum(0.05)), "must be of a damping ratio of 0.08, got 0.05"),
-        ((WALL, spectrum()), "system needs a System"),
+        (("wall.toml", spectrum()), "system needs a System"),
         ((rf.System(WALL), {}), "no motions"),
         ((rf.System(WALL), "record.AT2"), "expected a GroundMotion"),
         (

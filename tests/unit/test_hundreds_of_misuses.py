@@ -259,7 +259,7 @@ VALUES = {
     "rf.RearWall(side='back')": "side must be 'left' or 'right', got 'back'",
     "rf.RearWall(restitution=0.5)": "restitution must be from -1 to 0",
     "rf.Stack(BLOCK, BLOCK)": "'interfaces'",
-    "rf.Stack(BLOCK, BLOCK, interfaces=GROUND)": "interfaces must be a list of bases",
+    "rf.Stack(BLOCK, BLOCK, interfaces=3)": "interfaces must be a list of bases",
     "rf.Stack(BLOCK, BLOCK, interfaces=[GROUND], offsets=3)": "offsets must be a list of lengths",
     "rf.Stack(BLOCK, interfaces=[])": "it has 2 to 12 bodies, got 1",
     "rf.Stack(BLOCK, GROUND, interfaces=[GROUND])": "a body of a stack is a Block",
@@ -481,7 +481,7 @@ VALUES = {
     "rf.plot.velocity_pulse(run)": "rf.plot.velocity_pulse needs a VelocityPulse",
     "rf.plot.player(run, title=3)": "title must be a text, got 3",
     # codes, exports, tests, proofs, parts of one's own
-    "rf.codes.circolare_2019(BLOCK, TARGET)": "system needs a System",
+    "rf.codes.circolare_2019(GROUND, TARGET)": "system needs a System",
     "rf.codes.circolare_2019(SYSTEM, 0.3)": "expected a GroundMotion or several",
     "rf.codes.circolare_2019(SYSTEM, TARGET)": "a damping ratio of 0.08, got 0.05",
     "rf.codes.circolare_2019(SYSTEM, TARGET, free_vibration=20)": "free_vibration needs a time",

@@ -147,6 +147,9 @@ def test_motions_that_differ_are_named_along_the_dimension(runs, tmp_path):
     other = run(STANDS, rf.GroundMotion.sine_pulse("1 m/s^2", "2 Hz"))
     names = [runs[STANDS].attrs["motion"], other.attrs["motion"]]
     along = rf.concat([runs[STANDS], other])
+    named = rf.concat({"first": runs[STANDS], "second": other})
+    assert named.run.values.tolist() == ["first", "second"]
+    xr.testing.assert_identical(named.drop_vars("run").drop_attrs(), along.drop_attrs())
     assert along.motion.dims == ("run",)
     assert along.motion.values.tolist() == names
     assert "motion" not in along.attrs

@@ -12,6 +12,7 @@ from unit.usual_scenes import SCENES, assembled, block, cap, pads, pulse, soil
 
 import rockframe as rf
 from rockframe.errors import AssemblyError, ModelWarning, RockframeError, SolverError
+from rockframe.solve.accuracy import accuracy_of
 
 pytestmark = pytest.mark.unit
 
@@ -135,6 +136,10 @@ def test_more_samples_than_any_machine_holds_are_refused(options):
 
 
 class TestAccuracy:
+    @pytest.mark.parametrize("kind", [np.float64, np.float32])
+    def test_a_tolerance_may_be_a_number_of_numpy(self, kind):
+        assert accuracy_of(kind(1e-6)) == rf.Accuracy(rtol=float(kind(1e-6)))
+
     def test_it_is_a_frozen_value(self):
         accuracy = rf.Accuracy(rtol=1e-8)
         assert accuracy == rf.Accuracy(rtol=1e-8)

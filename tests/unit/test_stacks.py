@@ -38,6 +38,8 @@ def test_a_stack_gives_back_what_it_was_made_of():
     assert made.bodies == (STATUE, PLINTH)
     assert made.interfaces == (JOINT,)
     assert [one.to("cm").magnitude for one in made.offsets] == [2.0]
+    drums = (PLINTH, PLINTH, PLINTH)
+    assert rf.Stack(*drums, interfaces=JOINT) == rf.Stack(*drums, interfaces=[JOINT, JOINT])
     with pytest.raises(UnitsError, match=r"offsets\[0\] needs a length with a unit"):
         made.replace(offsets=([0.1], "m"))
     assert rf.Stack.from_dict(made.to_dict()) == made

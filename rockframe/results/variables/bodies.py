@@ -53,7 +53,7 @@ RESTRAINERS: Final = (
     *rows_over(
         RESTRAINER_TIME,
         restrainer_force="force with which each restrainer pulls its points together [N]",
-        restrainer_elongation="elongation of each restrainer from where it was given [m]",
+        restrainer_elongation="elongation of each restrainer from its initial length [m]",
         restrainer_state=("state of each restrainer", LinkState),
     ),
     *rows_over(

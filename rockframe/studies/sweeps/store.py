@@ -164,7 +164,8 @@ class Store:
             differs = difference(head["study"], json.loads(json.dumps(study.to_dict())))
             msg = (
                 f"{path}: found another study, which differs in {', '.join(differs)}; expected "
-                "the one that is asked for: give another folder"
+                "the one that is asked for: give another folder; to extend this study by motions "
+                f"or by values along its axes, give known={str(path)!r} too"
             )
             raise StudyError(msg)
         if not (path / _LABELS).exists():  # removed, as damaged files should be

@@ -565,8 +565,14 @@ def test_what_no_figure_shows_is_told_with_what_does(typed, folder):
     code, _, err = typed("plot", "runs.nc", "-o", "runs.png")
     assert code == 2
     assert "runs.nc: found a study with more than 2 axes" in err
-    assert "(scale, width, height, motion)" in err
+    assert "(scale, width, height)" in err
     assert "'rockframe report' lists its cases" in err
+
+
+def test_a_study_of_two_axes_and_one_motion_is_drawn(typed, folder):
+    (folder / "study.toml").write_text(TEMPLATES["study"])
+    assert typed("study", "study.toml")[0] == 0
+    assert typed("plot", "study.nc", "-o", "study.png")[0] == 0
 
 
 def test_an_axis_in_a_stack_is_answered_for_a_file(typed, folder):

@@ -25,6 +25,7 @@ WORDS = {
     "run scene.toml --Json": "was '--json' meant?",
     "run scene.toml --nudge 0.1": "no option --nudge here; certify takes it",
     "--motion record.AT2 run scene.toml": "no option --motion before the command",
+    "run scene.toml --dt 0.01": "was '--time-step' meant?",
     "run scene.toml -z": "there is no option -z",
     "template sta": "was 'stack' or 'statue' meant?",
     "completion bahs": "was 'bash' meant?",
@@ -63,7 +64,7 @@ VALUES = {
     "map scene.toml --amplitude 1,2 --frequency '1 Hz'": "followed by their unit",
     "map scene.toml --amplitude '1,2 m' --frequency '1 Hz'": "--amplitude '9.81 m/s^2'",
     "map scene.toml --amplitude '1 g' --frequency '1 Hz' --pulse sine_puls": "was 'sine_pulse'",
-    "animate scene.toml -o x.gif --window 1 2": "--window '20 s'",
+    "animate scene.toml -o x.gif --window 1 2": "--window '2 s' '8 s'",
     "animate scene.toml -o x.html --speed 2": "--speed is for films",
     "motion record.AT2 --unit furlong": "furlong",
 }

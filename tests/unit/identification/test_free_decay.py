@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 
@@ -52,7 +53,8 @@ def test_units_and_arrays_of_all_kinds_mean_the_same(found, run):
         attrs={"units": "degree"},
     )
     pair = ((time.tolist(), "s"), (1e3 * rotation, "mrad"))
-    for given in (labelled, pair):
+    table = pd.DataFrame({"time [ms]": 1e3 * time, "rotation [deg]": np.degrees(rotation)})
+    for given in (labelled, pair, table):
         again = rf.fit_free_decay(START, given)
         np.testing.assert_allclose(again.fitted_value, found.fitted_value, rtol=1e-8)
         np.testing.assert_allclose(again.measured_rotation, rotation, rtol=1e-12)
@@ -106,6 +108,12 @@ def test_what_leaves_no_trace_is_told():
         found = rf.fit_free_decay(system, run.rotation, ("damping_ratio", "restitution"))
     assert float(found.fitted_value[0]) == pytest.approx(0.1, rel=1e-5)
     assert math.isnan(float(found.standard_error[1]))
+
+
+def test_times_in_another_unit_leave_nothing_to_fit(run):
+    with pytest.warns(ModelWarning):
+        found = rf.fit_free_decay(START, ((run.time.values, "ms"), (run.rotation.values, "rad")))
+    assert np.isnan(found.correlation).any()
 
 
 def test_the_motion_between_samples_is_that_of_a_run():

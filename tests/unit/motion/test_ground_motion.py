@@ -320,6 +320,7 @@ def test_repr_says_what_it_is():
         "<GroundMotion 'test': 5 samples at 0.01 s, 0.04 s long, peak 2.25 m/s^2>"
     )
     assert "with vertical" in repr(motion(vertical=VALUES))
+    assert repr(motion(name="test").scaled(-2.0)).startswith("<GroundMotion '-2 times test': ")
 
 
 def test_names_and_history_stay_on_one_line():

@@ -39,6 +39,12 @@ def test_points_line(write, dialect):
     assert motion.metadata["date"] == "10/18/1989"
 
 
+def test_a_text_that_quotes_a_points_line_is_no_record(write):
+    text = "# Records\n\n| TCU128.AT2 | (`NPTS= 18000, DT= .00500 SEC`) | 0.17 g |\n"
+    with pytest.raises(RecordError, match="which no format recognises"):
+        GroundMotion.read(write(text, "INDEX.md"), unit="g")
+
+
 @pytest.mark.parametrize("step", ["10/2000", "5.25 MSEC", "5.0E-0 ms"])
 def test_a_time_step_that_is_written_in_another_way_is_not_read_in_part(write, step):
     text = at2(f"NPTS= {COUNT}, DT= {step}", VALUES)

@@ -241,6 +241,8 @@ def test_scaling_and_misfit():
         (lambda one: one.rotated(motion(EAST), "30 deg"), "one, rotated"),
         (lambda one: one.with_vertical(one), "one"),
         (lambda one: one.through_storeys(periods=["0.5 s"], time_step="0.01 s"), "one, at a floor"),
+        (lambda one: one.through_storeys(storeys=3, floor=2, period="0.5 s", time_step="0.01 s"),
+         "one, at floor 2"),
         (lambda one: one.matched(rf.TargetSpectrum.eurocode_8("0.2 g_0"),
                                  periods=("0.1 s", "0.5 s"), tolerance=0.3), "one, matched"),
     ],

@@ -202,6 +202,9 @@ def test_moments_and_phases_are_those_of_system_and_run(runs):
     (line,) = [line for line in lines(axes) if line.get_label() == "of the base"]
     found = np.interp(0.05, line.get_xdata(), line.get_ydata())
     assert found == pytest.approx(held.base_moment.item(), rel=1e-4)
+    curve = SYSTEM.moment_rotation(([0.0, 0.02, 0.04, 0.06], "rad"))
+    line = lines(rf.plot.moment_rotation(curve, moment="N*m"))[0]
+    np.testing.assert_allclose(line.get_ydata(), curve.base_moment)
     axes = rf.plot.moment_rotation(run)
     drawn = lines(axes)[1]
     np.testing.assert_allclose(drawn.get_ydata(), 1e-3 * run.base_overturning_moment, rtol=1e-12)

@@ -328,7 +328,9 @@ def test_the_legend_tells_bases_loads_and_restrainers_with_their_numbers():
         axes = rf.plot.scene(rf.System(*parts), **options)
         figure = axes.figure
         figure.canvas.draw()
-        assert axes.get_legend().get_window_extent().x1 <= figure.bbox.width
+        extent = axes.get_legend().get_window_extent()
+        assert extent.x1 <= figure.bbox.width
+        assert 0.0 <= extent.y0 < extent.y1 <= figure.bbox.height
         assert axes.get_tightbbox().x0 >= 0.0
         return "\n".join(text.get_text() for text in axes.get_legend().get_texts())
 
@@ -342,6 +344,9 @@ def test_the_legend_tells_bases_loads_and_restrainers_with_their_numbers():
     assert "rigid ground" not in words
     for one in ("body 2: Block", "on RigidGround, friction 0.4", "TwoSpringSupport\n   stiffness"):
         assert one in words
+    drums = rf.Stack(*[SLIM] * 6, interfaces=rf.RigidGround(friction=0.4))
+    tendons = [rf.Tendon(stiffness="1 MN/m", on_body=k, depth="1 m") for k in range(1, 7)]
+    told(drums, rf.RigidGround(friction=0.4), *tendons)
     in_units = told(SLIM, units={"length": "cm", "mass": "kg"})
     assert "width 80 cm\n   height 400 cm\n   mass 2000 kg" in in_units
 

@@ -79,7 +79,7 @@ def test_a_peer_download_in_every_wrapping(folder, tmp_path_factory):
 
 def test_files_that_the_table_names_are_missed(folder):
     (folder / "RSN6_MADE_S6090.AT2").unlink()
-    with pytest.warns(RecordWarning, match=r"1 files not read \(.*RSN6_MADE_S6090.AT2: found no"):
+    with pytest.warns(RecordWarning, match=r"1 file not read \(.*RSN6_MADE_S6090.AT2: found no"):
         suite = rf.read_suite(folder)
     assert "RSN6" not in suite.pairs
     assert suite["RSN6_MADE_S6000"].metadata["axis"] == "H1"
@@ -161,7 +161,7 @@ def test_copies_of_a_file_are_read_once(tmp_path):
     for name in ("x.csv", "x (1).csv"):
         (tmp_path / name).write_text(TEXT.format(0.1))
     for given in (tmp_path, [tmp_path / "x.csv"] * 2, [TEXT.format(0.1).encode()] * 2):
-        with pytest.warns(RecordWarning, match="1 files not read .*a copy of "):
+        with pytest.warns(RecordWarning, match="1 file not read .*a copy of "):
             suite = rf.read_suite(given)
         assert len(suite) == 1
         (reason,) = suite.unread.values()

@@ -127,7 +127,7 @@ class TestWorkspace:
         (tmp_path / "w.h5").write_bytes(asdf(tmp_path, channels=channels))
         (tmp_path / "made.h5").unlink()
         (tmp_path / "a.csv").write_text("time (s),acc (g)\n0,0\n0.01,0.1\n0.02,0\n")
-        with pytest.warns(RecordWarning, match="1 files not read .*'HHE'"):
+        with pytest.warns(RecordWarning, match="1 file not read .*'HHE'"):
             suite = rf.read_suite(tmp_path)
         ((path, reason),) = suite.unread.items()
         assert "'HHE'" in path
@@ -181,7 +181,7 @@ class TestOneBadFile:
         monkeypatch.setattr(
             known_formats, "_PLAIN_TEXT", type(entry)(**{**vars(entry), where: failing})
         )
-        with pytest.warns(RecordWarning, match=f"1 files not read .*{type(fault).__name__}"):
+        with pytest.warns(RecordWarning, match=f"1 file not read .*{type(fault).__name__}"):
             suite = rf.read_suite(tmp_path)
         assert list(suite) == ["good"]
         ((path, reason),) = suite.unread.items()
