@@ -103,6 +103,9 @@ class AlongSteps:
         per_length = np.divide(1.0, length, out=np.full(len(length), np.nan), where=length > 0.0)
         step_bounds(shown, length, per_length, bounds)
         tops = np.fmax.reduce(shown, axis=1)
+        # a step that has the largest value at one of its ends is never left out
+        reached = np.fmax(shown[:, 1:], shown[:, :-1]) >= tops[:, None]
+        bounds[:, 1:][reached & (length[1:] > 0.0)] = np.inf
         rows = zip(bounds[:, 1:], tops, strict=True)
         return np.unique(np.concatenate([1 + _highest_bounds(row, top) for row, top in rows]))
 

@@ -184,8 +184,9 @@ def _with_reset_peaks(ending: Ending, system: Assembly) -> Ending:
     peaks = [k for k, name in enumerate(system.model.memory) if name.startswith("peak_slip_")]
     memory[peaks] = 0.0
     start = replace(ending, memory=memory)
-    slips = system.setting.slips_of(start)
-    memory[peaks] = [side for one in slips for side in (one.left, one.right)]
+    slips = system.setting.slips_of(start)  # of the highest bodies, as far as they can slip
+    sides = [side for one in slips for side in (one.left, one.right)]
+    memory[peaks[: len(sides)]] = sides
     return start
 
 

@@ -163,8 +163,11 @@ def update_peaks(
     for row in range(WEIGHTS + size, len(w.limits), WEIGHTS + size):
         left, right = w.limits[row + LEFT_LIMIT], w.limits[row + RIGHT_LIMIT]
         ratio = clock[at.OTHER_ROTATION_RATIO]
-        peaks = peaks_in_step(row, size, count, h, ratio * left, ratio * right, w)
-        clock[at.OTHER_ROTATION_RATIO] = max(ratio, peaks[0] / left, peaks[1] / right)
+        known = ratio * left, ratio * right
+        peaks = peaks_in_step(row, size, count, h, known[0], known[1], w)
+        if peaks != known:  # a product and its quotient may be greater than the ratio was
+            ratio = max(ratio, peaks[0] / left, peaks[1] / right)
+        clock[at.OTHER_ROTATION_RATIO] = ratio
 
 
 @inlined

@@ -160,13 +160,14 @@ def test_units_do_not_matter():
     assert run.rotation.values == pytest.approx(whole_of("pads").rotation.values, abs=1e-9)
 
 
-@pytest.mark.parametrize("base", ["ground", "pads", "stack"])
+@pytest.mark.parametrize("base", ["ground", "pads", "stack", "cap"])
 def test_the_greatest_slip_is_that_of_the_run_that_goes_on(base):
     block = rf.Block(width="1 m", height="2 m", mass="4 t")
     statue, pads = rf.Block(width="0.5 m", height="1 m", mass="1 t"), PADS.replace(friction=0.25)
     parts = {
         "ground": (block, rf.RigidGround(friction=0.25)),
         "pads": (block, pads),
+        "cap": (block, pads, CAP.replace(width="2 m", mass="4 t"), SOIL),
         "stack": (rf.Stack(statue, block.replace(height="0.6 m"), interfaces=[PADS]), pads),
     }[base]
     system = rf.System(*parts)

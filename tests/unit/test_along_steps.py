@@ -81,6 +81,13 @@ def test_of_many_that_are_as_large_the_first_is_told():
     assert 0.5 < time <= 1.5
 
 
+def test_the_largest_end_is_found_among_many_steps_that_might_exceed_it():
+    """Kinks of the ground motion have high bounds; the peak is at the end of a smooth rise."""
+    kinks, rise = [1.0, 6.0] * 100, list(np.linspace(1.0, 7.0, 50))
+    (peak,), (time,) = along(kinks + rise, {0: 1.0}).largest(demand)
+    assert (peak, time) == (7.0, 125.0)
+
+
 @pytest.mark.parametrize("jump", [1, 4])
 def test_no_parabola_goes_through_a_kink(jump):
     """A base that presses again and slips needs its friction at once, and no more than that."""

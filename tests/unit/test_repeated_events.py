@@ -1,4 +1,4 @@
-"""Events that change nothing, and would do so without end."""
+"""Events, and steps, that change nothing."""
 
 from types import SimpleNamespace
 
@@ -7,7 +7,7 @@ import pytest
 
 from rockframe.dynamics.events import SILENT, ContactState
 from rockframe.solve import workspace as at
-from rockframe.solve.bookkeeping import record_event
+from rockframe.solve.bookkeeping import record_event, update_peaks
 from rockframe.solve.workspace import EventTable, Progress, Status, UnpackedMode
 
 STATE = (0.1, -0.2)
@@ -43,3 +43,14 @@ def test_an_event_that_repeats_itself_is_chatter():
 )
 def test_any_other_event_is_not(rows, modes):
     assert recorded(rows, modes) == Status.COMPLETED
+
+
+def test_steps_at_rest_leave_the_largest_share_of_a_lower_body_to_the_last_bit():
+    """However many outputs a run has, each of which ends such a step."""
+    rows = [[0.2, 0.2, 1.0], [0.11, 0.39, 1.0]]  # of the highest body, and of a lower one
+    rest = {name: np.zeros(2) for name in ("state", "new_state", "slope", "new_slope")}
+    place, clock = SimpleNamespace(limits=np.ravel(rows), **rest), np.zeros(at.CLOCK)
+    for share in np.linspace(0.01, 0.9, 50):
+        clock[at.OTHER_ROTATION_RATIO] = share
+        update_peaks(SimpleNamespace(coordinate_count=1), 1, 0.1, clock, place)
+        assert clock[at.OTHER_ROTATION_RATIO] == share
