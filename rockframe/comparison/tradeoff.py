@@ -15,9 +15,10 @@ from rockframe.comparison.models import model_ladder
 from rockframe.comparison.recommend import recommend
 from rockframe.errors import ComponentError, ModelWarning, SolverWarning, did_you_mean, short_repr
 from rockframe.motion import GroundMotion
-from rockframe.results.outcome import MIN_REPORTED_SLIP, PEAK_SLIPS, Generic, verdict_of
+from rockframe.results.outcome import MIN_REPORTED_SLIP, PEAK_SLIPS, verdict_of
 from rockframe.results.schema import build_dataset
 from rockframe.shared_arguments import with_shared_arguments
+from rockframe.signals.arrays import AnyArray
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.provenance import motion_attributes
 from rockframe.simulation.run import compute_response, run
@@ -50,7 +51,7 @@ def relative_peak_error(run: xr.Dataset, reference: xr.Dataset) -> float:
     return max(error, float(np.max(np.abs(_slips(run) - slips))) / slip)
 
 
-def _slips(run: xr.Dataset) -> Generic:
+def _slips(run: xr.Dataset) -> AnyArray:
     """Return the peak slips of all bodies of a run, or zero if its model has no sliding [m]."""
     found = [np.atleast_1d(run[name].to_numpy()) for name in PEAK_SLIPS if name in run]
     return np.concatenate(found) if found else np.zeros(1)

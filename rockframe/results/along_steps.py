@@ -13,11 +13,10 @@ from typing import Final
 import numpy as np
 
 from rockframe.compiled import Integers, Matrix, Vector, background_entry, inlined
-from rockframe.results.outcome import Generic
-from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import AnyArray, Array
 from rockframe.solve.trajectory import Steps
 
-Values = Mapping[str, Generic]
+Values = Mapping[str, AnyArray]
 
 PARTS: Final = 8
 """Parts into which a step is divided for its peak. Steps resolve the fastest vibration, so that a

@@ -7,14 +7,13 @@ from typing import Any, Final
 import numpy as np
 
 from rockframe.errors import SchemaError
-from rockframe.results.outcome import Generic
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.variable import TIME, Variable
-from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import AnyArray, Array
 from rockframe.suggestions import suggests_names
 from rockframe.units import Unit
 
-State = Mapping[str, Generic]
+State = Mapping[str, AnyArray]
 """Arrays over instants, by their names in the schema, in SI units."""
 
 

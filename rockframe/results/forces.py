@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockframe.results.along_steps import AlongSteps, Values
-from rockframe.results.outcome import Generic, sines_cosines
-from rockframe.signals.arrays import Array
+from rockframe.results.outcome import sines_cosines
+from rockframe.signals.arrays import AnyArray, Array
 from rockframe.system.bodies import BaseLoad
 
 ROTATION_ON_CAP: Final = "rotation_on_cap"
@@ -33,14 +33,14 @@ FORCE_TOLERANCE: Final = 1e-10
 the square root of h/g, h the height of the centre of mass."""
 
 
-def force_histories(values: Values, ground: Array, load: BaseLoad) -> dict[str, Generic]:
+def force_histories(values: Values, ground: Array, load: BaseLoad) -> dict[str, AnyArray]:
     """Return absolute accelerations, :eq:`eq-base-moment`, and the friction demand."""
     small = load.options.small
     on_base = next(
         (values[name] for name in ROTATIONS_ON_BASE if name in values), values["rotation"]
     )
     sine, cosine = sines_cosines(on_base, small=small)
-    found: dict[str, Generic] = {
+    found: dict[str, AnyArray] = {
         "absolute_horizontal_acceleration": values["horizontal_acceleration"] + ground[:, 0],
         "absolute_vertical_acceleration": values["vertical_acceleration"] + ground[:, 1],
         "base_overturning_moment": load.body.base_moment(values, sine, cosine, small=small),
@@ -48,10 +48,10 @@ def force_histories(values: Values, ground: Array, load: BaseLoad) -> dict[str, 
     return found | friction_demands(values, load)
 
 
-def friction_demands(values: Values, load: BaseLoad) -> dict[str, Generic]:
+def friction_demands(values: Values, load: BaseLoad) -> dict[str, AnyArray]:
     """Return the friction demand of the bases, by their names in the schema."""
     least = FORCE_TOLERANCE * load.weight
-    found: dict[str, Generic] = {
+    found: dict[str, AnyArray] = {
         "friction_demand": friction_demand(
             values["horizontal_reaction"], values["vertical_reaction"], least
         )
@@ -102,12 +102,12 @@ class EventStates:
         )
         return EventStates(self.time[kept], self.is_impact[kept], before, after)
 
-    def impulses(self, mass: float) -> dict[str, Generic]:
+    def impulses(self, mass: float) -> dict[str, AnyArray]:
         """Return the impulses of the base on the body at the events [N s].
 
         Their ratio at an impact on rigid ground is :eq:`eq-impact-friction`.
         """
-        found: dict[str, Generic] = {}
+        found: dict[str, AnyArray] = {}
         for way in ("horizontal", "vertical"):
             shown = f"{way}_velocity_on_base"  # in a cascade that of the second stage
             name = shown if shown in self.after else f"{way}_velocity"

@@ -9,7 +9,6 @@ from typing import Any, Final, cast
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from rockframe.case_arrays import maximum
 from rockframe.dynamics.events import OVERTURNING, SILENT, TOPPLED, LinkState
@@ -25,7 +24,7 @@ from rockframe.dynamics.protocol import (
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.bodies import OF_EACH_BODY, OF_EACH_LINK
 from rockframe.results.variables.runs import Direction
-from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import AnyArray, Array
 from rockframe.signals.motion import Incline
 from rockframe.solve.observe import energies_of, memory_at_outputs
 from rockframe.solve.trajectory import Summary, Trajectory
@@ -45,8 +44,7 @@ MIN_REPORTED_SLIP: Final = 1e-6
 """Least slip that is reported; changes of the held point leave less [m]."""
 PEAK_SLIPS: Final = ("peak_slip", "peak_body_slip", "peak_cap_slip")
 """Peak slips of the block, of all bodies of a stack, and of a cap, where a scene has them."""
-Generic = NDArray[Any]
-Values = Mapping[str, "Generic | float | int | bool"]
+Values = Mapping[str, "AnyArray | float | int | bool"]
 
 
 def peak_share(run: Summary, angles: OverturningAngles) -> float:
@@ -61,12 +59,12 @@ def numbered_columns(name: str, count: int) -> tuple[str, ...]:
 
 
 def body_histories(
-    model: ContactModel, run: Trajectory, values: Mapping[str, Generic]
-) -> dict[str, Generic]:
+    model: ContactModel, run: Trajectory, values: Mapping[str, AnyArray]
+) -> dict[str, AnyArray]:
     """Return histories, those of all bodies and of all restrainers stacked in one array each."""
     kept = {name: each for name, each in values.items() if name in SCHEMA}
 
-    def of_each(name: str, count: int) -> Generic:
+    def of_each(name: str, count: int) -> AnyArray:
         return np.array([values[each] for each in numbered_columns(name, count)])
 
     if model.links:
@@ -93,12 +91,12 @@ def broken_links(model: ContactModel, ending: Ending) -> list[int]:
     ]
 
 
-def relative_histories(values: Mapping[str, Generic], setting: Setting) -> dict[str, Generic]:
+def relative_histories(values: Mapping[str, AnyArray], setting: Setting) -> dict[str, AnyArray]:
     """Return the rotation over the overturning angle, and vertical displacement over settlement."""
     left, right = setting.overturning_angles
     rotation = values["rotation"]
     limit = np.where(rotation < 0.0, left, right) if left != right else left
-    relative: dict[str, Generic] = {"relative_rotation": rotation / limit}
+    relative: dict[str, AnyArray] = {"relative_rotation": rotation / limit}
     if setting.settlement is not None:
         relative["relative_vertical_displacement"] = (
             values["vertical_displacement"] / setting.settlement
@@ -106,9 +104,9 @@ def relative_histories(values: Mapping[str, Generic], setting: Setting) -> dict[
     return relative
 
 
-def ground_histories(ground: Array, *, has_vertical_motion: bool) -> dict[str, Generic]:
+def ground_histories(ground: Array, *, has_vertical_motion: bool) -> dict[str, AnyArray]:
     """Return the ground acceleration at the output times."""
-    values: dict[str, Generic] = {"ground_acceleration": ground[:, 0].copy()}
+    values: dict[str, AnyArray] = {"ground_acceleration": ground[:, 0].copy()}
     if has_vertical_motion:
         values["vertical_ground_acceleration"] = ground[:, 1].copy()
     return values
@@ -122,8 +120,8 @@ def sines_cosines(rotation: Array, *, small: bool) -> tuple[Array, Array]:
 
 
 def cap_histories(
-    values: Mapping[str, Generic], setting: Setting, offset: float
-) -> dict[str, Generic]:
+    values: Mapping[str, AnyArray], setting: Setting, offset: float
+) -> dict[str, AnyArray]:
     """Return the motion of a cap that is a part of the body, :eq:`eq-carried`."""
     rotation = values["rotation"]
     small, beside = setting.options.small, setting.body.eccentricity
@@ -145,7 +143,7 @@ def cap_histories(
 
 def energy_histories(
     model: ContactModel, run: Trajectory, displacement: Array, slope: Incline
-) -> dict[str, Generic]:
+) -> dict[str, AnyArray]:
     """Return the energies at the output times by their names in the schema [J].
 
     The work of gravity along an inclined base, by the displacement along it, counts as potential
@@ -155,7 +153,7 @@ def energy_histories(
     memory, row = memory_at_outputs(run)
     lost = model.mass * memory[row]
     work = model.mass * run.work
-    found: dict[str, Generic] = {
+    found: dict[str, AnyArray] = {
         "kinetic_energy": stored[:, 0].copy(),
         "potential_energy": stored[:, 1].copy(),
         "elastic_energy": stored[:, 2].copy(),
@@ -173,11 +171,11 @@ def energy_histories(
     return found
 
 
-def event_columns(model: ContactModel, run: Trajectory) -> dict[str, Generic]:
+def event_columns(model: ContactModel, run: Trajectory) -> dict[str, AnyArray]:
     """Return the table of events by its names in the schema."""
     events, size, weights = run.events, len(model.rotation_weights), model.rotation_weights
     shown = events.kind != SILENT
-    contacts: dict[str, Generic] = {
+    contacts: dict[str, AnyArray] = {
         f"{name}_{when}": model.contact_states(modes[shown], body).astype(np.int8)
         for body, name in enumerate(model.contacts)
         for when, modes in (("before", events.mode_before), ("after", events.mode_after))
@@ -202,12 +200,12 @@ def event_columns(model: ContactModel, run: Trajectory) -> dict[str, Generic]:
 
 def scalars(
     run: Summary, setting: Setting, *, uplift_angle: float
-) -> dict[str, Generic | float | int | bool]:
+) -> dict[str, AnyArray | float | int | bool]:
     """Return the scalars of a run by their names in the schema, also those of each body."""
     angles = setting.overturning_angles
     # peaks of a body that did not move have no negative zeros
-    sides: dict[str, Generic | float] = {}
-    if setting.leans:
+    sides: dict[str, AnyArray | float] = {}
+    if setting.is_asymmetric:
         sides = {
             "left_overturning_angle": angles.left,
             "right_overturning_angle": angles.right,
@@ -251,7 +249,7 @@ def verdict_of(run: xr.Dataset) -> bool | None:
     return None if math.isnan(found) else bool(found)
 
 
-def overturned_from_status(status: Generic) -> Array:
+def overturned_from_status(status: AnyArray) -> Array:
     """Return the verdicts of statuses: 1, 0, or NaN where there is none."""
     found = np.full(np.shape(status), np.nan)
     for one in Status:
@@ -279,7 +277,7 @@ def verdict(run: Summary, setting: Setting, model: ContactModel) -> str:
         key=lambda peak: peak[0],
     )
     peak = f"peak rotation {rotation:.4g} rad, {100.0 * share:.3g} % of the overturning angle{of}"
-    if setting.leans and rotation > 0.0:
+    if setting.is_asymmetric and rotation > 0.0:
         peak += f" to the {side.name.lower()}"
     if run.other_rotation_ratio > (1.0 + EQUAL_SHARES) * share:
         peak += f", a lower body {100.0 * run.other_rotation_ratio:.3g} % of its own"
@@ -371,7 +369,7 @@ def ground_on_slope(ground: Array, slope: Incline) -> tuple[Array, Array]:
     return moved, moved + np.array([slope.along_gravity, 0.0])
 
 
-def without_gravity(shown: Mapping[str, Generic], slope: Incline) -> dict[str, Generic]:
+def without_gravity(shown: Mapping[str, AnyArray], slope: Incline) -> dict[str, AnyArray]:
     """Subtract gravity from the absolute accelerations among a model's columns."""
     return {
         name: values - slope.along_gravity if name in SUPPORT_ACCELERATIONS else values

@@ -8,9 +8,9 @@ import numpy as np
 from rockframe.dynamics.body import PIVOT_LEFT, PIVOT_RIGHT, pivot_of
 from rockframe.dynamics.events import ContactState
 from rockframe.results.along_steps import AlongSteps
-from rockframe.results.outcome import Generic, sines_cosines
+from rockframe.results.outcome import sines_cosines
 from rockframe.results.variables.requests import POINT_PEAKS
-from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import AnyArray, Array
 from rockframe.system.bodies import BaseLoad
 from rockframe.system.geometry import Geometry
 from rockframe.system.options import RESTRAINT_CODES, Restraint
@@ -38,7 +38,7 @@ def rotated_points(
     return up * sine - right * rise, -right * sine - up * rise
 
 
-def point_labels(points: Sequence[BodyPoint]) -> dict[str, Generic]:
+def point_labels(points: Sequence[BodyPoint]) -> dict[str, AnyArray]:
     """Return names and places of points, by their names in the schema."""
     return {
         "point": np.array([point.name for point in points]),
@@ -48,8 +48,8 @@ def point_labels(points: Sequence[BodyPoint]) -> dict[str, Generic]:
 
 
 def point_histories(
-    points: Sequence[BodyPoint], values: Mapping[str, Generic], load: BaseLoad
-) -> dict[str, Generic]:
+    points: Sequence[BodyPoint], values: Mapping[str, AnyArray], load: BaseLoad
+) -> dict[str, AnyArray]:
     """Return displacements and absolute accelerations of points."""
     rotation, rate = values["rotation"], values["angular_velocity"]
     angular = values["angular_acceleration"]
@@ -78,10 +78,10 @@ def point_histories(
 
 def point_peaks(
     points: Sequence[BodyPoint], along: AlongSteps, load: BaseLoad
-) -> dict[str, Generic]:
+) -> dict[str, AnyArray]:
     """Return peaks of displacements and absolute accelerations of points."""
 
-    def sizes(values: Mapping[str, Generic]) -> Array:
+    def sizes(values: Mapping[str, AnyArray]) -> Array:
         return np.abs(np.concatenate([*point_histories(points, values, load).values()]))
 
     peaks, _ = along.largest(sizes)

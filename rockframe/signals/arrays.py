@@ -1,6 +1,6 @@
 """Arrays of accelerations: checked for shape and finite values, and copied read-only."""
 
-from typing import Final, TypeAlias
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from rockframe.errors import ComponentError
 
 Array: TypeAlias = NDArray[np.float64]
+AnyArray: TypeAlias = NDArray[Any]
 
 OWNER: Final = "GroundMotion"
 """Name of the class that messages speak of."""

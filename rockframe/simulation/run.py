@@ -16,7 +16,6 @@ from rockframe.errors import ModelWarning, RockframeWarning, SolverWarning, warn
 from rockframe.motion import GroundMotion
 from rockframe.proof.verdict import Proof
 from rockframe.results.outcome import (
-    Generic,
     broken_links,
     event_columns,
     ground_on_slope,
@@ -27,6 +26,7 @@ from rockframe.results.outcome import (
 )
 from rockframe.results.schema import build_dataset, schema_row
 from rockframe.results.variables.runs import Direction
+from rockframe.signals.arrays import AnyArray
 from rockframe.simulation.certify.certificate import certify
 from rockframe.simulation.certify.run_summary import RunSummary, run_summary
 from rockframe.simulation.certify.second_look import doubts, peak_error, second_look
@@ -82,12 +82,12 @@ class Response:
     missing: list[str] = field(default_factory=list[str])
 
     @cached_property
-    def events(self) -> dict[str, Generic]:
+    def events(self) -> dict[str, AnyArray]:
         """The table of events, by its names in the schema."""
         return event_columns(self.system.model, self.trajectory)
 
     @cached_property
-    def scalars(self) -> dict[str, Generic | float | int | bool]:
+    def scalars(self) -> dict[str, AnyArray | float | int | bool]:
         """All scalars, and peaks at points, by their names in the schema."""
         scalars = run_scalars(self.system, self.trajectory, self.missing)
         return {**scalars, **self.outputs.scalars}
@@ -159,7 +159,7 @@ def in_motion(system: Assembly, summary: Summary, missing: list[str]) -> bool:
 
 def run_scalars(
     system: Assembly, summary: Summary, missing: list[str]
-) -> dict[str, Generic | float | int | bool]:
+) -> dict[str, AnyArray | float | int | bool]:
     """Return the scalars of a run by their names in the schema, without those of its samples."""
     setting = system.setting
     uplift = compute_or_note(lambda: setting.uplift_angle, math.nan, "the uplift angle", missing)
@@ -173,7 +173,7 @@ def run_scalars(
 class _Labels:
     """Values, attributes and cautions that become the dataset of a run."""
 
-    values: Mapping[str, Generic | float | int | bool]
+    values: Mapping[str, AnyArray | float | int | bool]
     attributes: Mapping[str, str | float | int]
     cautions: Sequence[Caution] = ()
 
@@ -351,7 +351,7 @@ def has_no_cautions(system: Assembly, summary: Summary) -> bool:
 def _separation_cautions(
     system: Assembly,
     motion: GroundMotion | None,
-    values: Mapping[str, Generic],
+    values: Mapping[str, AnyArray],
     overturning_time: float,
 ) -> Iterator[str]:
     """Warn of a block that would lift off the ground, where the equations do not allow flight."""
@@ -365,7 +365,7 @@ def _separation_cautions(
             which = "vertical" if slope.level else "normal"
             found = f"the {which} ground acceleration falls to {lowest:.4g} m s^-2, beyond gravity"
             unless = "unless links press it on, " if links else ""
-            yield f"{found}: {unless}{_SEPARATES}{system.setting.to_fly}"
+            yield f"{found}: {unless}{_SEPARATES}{system.setting.flight_advice}"
     if "left_reaction" not in values:
         return
     stands = ~(values["time"] > overturning_time)  # the fall after overturning does not count
@@ -377,4 +377,4 @@ def _separation_cautions(
             f"the ground would have to pull at the bearing corner, with {-lowest:.4g} N at "
             f"{when:.4g} s"
         )
-        yield f"{found}: {_SEPARATES}{system.setting.to_fly}"
+        yield f"{found}: {_SEPARATES}{system.setting.flight_advice}"

@@ -23,7 +23,6 @@ from rockframe.results.forces import (
     residual_values,
 )
 from rockframe.results.outcome import (
-    Generic,
     body_histories,
     cap_histories,
     energy_histories,
@@ -36,7 +35,7 @@ from rockframe.results.outcome import (
 from rockframe.results.points import point_histories, point_labels, point_peaks
 from rockframe.results.schema import ENERGIES, ON_REQUEST, SCHEMA, checked_results
 from rockframe.results.variables.variable import EVENT, TIME
-from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import AnyArray, Array
 from rockframe.signals.motion import Incline
 from rockframe.simulation.plan import Plan
 from rockframe.simulation.soundness import SlidingCheck, sliding_checks, sliding_scalars
@@ -58,11 +57,11 @@ class RunOutputs:
     """What follows from the samples of a run; empty for a run without samples."""
 
     # histories, and values at events, by their names in the schema
-    values: dict[str, Generic] = field(default_factory=dict[str, Generic])
+    values: dict[str, AnyArray] = field(default_factory=dict[str, AnyArray])
     # peaks of forces, residuals at the end of the run, and peaks at points, shape (points,)
-    scalars: dict[str, Generic | float] = field(default_factory=dict[str, Generic | float])
+    scalars: dict[str, AnyArray | float] = field(default_factory=dict[str, AnyArray | float])
     # names and places of points, names of restrainers
-    points: dict[str, Generic] = field(default_factory=dict[str, Generic])
+    points: dict[str, AnyArray] = field(default_factory=dict[str, AnyArray])
     # checks of the bases with a given friction that the model holds
     sliding_checks: list[SlidingCheck] = field(default_factory=list[SlidingCheck])
 
@@ -97,7 +96,7 @@ def compute_outputs(
         until_overturning = until_overturning.select(kept)
     checks = sliding_checks(system, along)
     of_forces, of_settlement = force_peaks(along, until_overturning, load)
-    scalars: dict[str, Generic | float] = {
+    scalars: dict[str, AnyArray | float] = {
         **of_forces, **sliding_scalars(checks), **residual_values(observed.at_the_end(), load),
         **of_settlement,
     }  # fmt: skip
@@ -105,7 +104,7 @@ def compute_outputs(
         # peaks of the whole run, as for the peak rotation of the highest body
         every = observed.along(math.inf) if overturned else along
         scalars["peak_body_rotation"] = _absolute_peaks("rotation", model.system.bodies(), every)
-    places: dict[str, Generic] = {}
+    places: dict[str, AnyArray] = {}
     if model.links:
         scalars["peak_restrainer_force"] = _absolute_peaks("restrainer_force", model.links, along)
         places = {"restrainer": np.array(setting.link_names)}
@@ -157,7 +156,7 @@ class _ObservedRun:
         # at the samples, horizontal and vertical, and along and normal to the base
         self.ground, self.moved = ground[:count], moved[:count]
 
-    def histories(self) -> dict[str, Generic]:
+    def histories(self) -> dict[str, AnyArray]:
         """Return the histories of a run, without those at points and those that take events."""
         plan, run, setting, model = self.plan, self.run, self.system.setting, self.system.model
         values = dict(self.values)
@@ -177,7 +176,7 @@ class _ObservedRun:
         values["time"] = run.time
         return values
 
-    def at_the_end(self) -> dict[str, Generic]:
+    def at_the_end(self) -> dict[str, AnyArray]:
         """Return the model's columns at the end of a run, which need not be a sample."""
         run, ending, slope = self.run, self.run.ending, self.system.options.slope
         ground = ground_at(self.plan.motion, np.array([run.end_time]))
@@ -209,7 +208,7 @@ class _ObservedRun:
         else:
             shown |= friction_demands(shown, load)
 
-        def inside(which: Integers) -> dict[str, Generic]:
+        def inside(which: Integers) -> dict[str, AnyArray]:
             places, length = len(FRACTIONS), steps.length[which]
             time = (steps.time[which] - length)[:, None] + length[:, None] * FRACTIONS
             time, states = time.ravel(), steps.states_inside(which, self.system.model, FRACTIONS)
@@ -226,8 +225,8 @@ class _ObservedRun:
         return AlongSteps(steps, shown, inside)
 
     def _with_derived(
-        self, shown: dict[str, Generic], time: Array, ground: Array, moved: Array
-    ) -> dict[str, Generic]:
+        self, shown: dict[str, AnyArray], time: Array, ground: Array, moved: Array
+    ) -> dict[str, AnyArray]:
         """Return columns with what follows from them, and with the state that diagnostics take."""
         shown = shown | force_histories(shown, moved, self.system.setting.load)
         return shown | _diagnostic_state(shown, time, ground)
@@ -235,8 +234,8 @@ class _ObservedRun:
 
 def _user_outputs(
     observed: _ObservedRun,
-    values: dict[str, Generic],
-    everything: dict[str, Generic],
+    values: dict[str, AnyArray],
+    everything: dict[str, AnyArray],
     along: AlongSteps,
     missing: list[str],
 ) -> dict[str, Any]:
@@ -282,7 +281,9 @@ def _stopping_events(run: Trajectory, events: EventStates, within: float) -> Int
     return 1 + np.flatnonzero(changes)
 
 
-def _diagnostic_state(values: dict[str, Generic], time: Array, ground: Array) -> dict[str, Generic]:
+def _diagnostic_state(
+    values: dict[str, AnyArray], time: Array, ground: Array
+) -> dict[str, AnyArray]:
     """Return the state that diagnostics take: values at some times, and the ground there."""
     known = {name: each for name, each in values.items() if name in SCHEMA}
     return {

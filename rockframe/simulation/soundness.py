@@ -26,8 +26,8 @@ from rockframe.dynamics.events import (
 from rockframe.dynamics.protocol import ContactModel, Ending, Ground
 from rockframe.results.along_steps import AlongSteps, Values
 from rockframe.results.forces import signed_demand
-from rockframe.results.outcome import MIN_REPORTED_SLIP, Generic
-from rockframe.signals.arrays import Array
+from rockframe.results.outcome import MIN_REPORTED_SLIP
+from rockframe.signals.arrays import AnyArray, Array
 from rockframe.solve.accuracy import LEVELS, AccuracyLevel
 from rockframe.solve.trajectory import Summary, Trajectory
 from rockframe.system.assembly import Assembly
@@ -127,8 +127,8 @@ def may_overturn_later(system: Assembly, summary: Summary) -> bool:
     held = upright or (beyond and bool(setting.link_names))
     if held and bool(np.all(np.abs(rates) < AT_REST_SHARE * sizes)):
         return False
-    # user-defined scenes have no `wholes`
-    if beyond or (setting.wholes and _lower_body_may_overturn(system, ending)):
+    # user-defined scenes have no `joined_bodies`
+    if beyond or (setting.joined_bodies and _lower_body_may_overturn(system, ending)):
         return True
     kinetic, needed = _kinetic_energy(system, ending), setting.overturning_energy
     if kinetic + max_stored_energy(system, rotation) < needed:
@@ -154,7 +154,7 @@ def _lower_body_may_overturn(system: Assembly, ending: Ending) -> bool:
     size = len(system.model.rotation_weights)
     weights = system.model.other_limits.reshape(-1, 2 + size)[:, 2:]
     rotations, rates = (weights @ ending.state[of : of + size] for of in (0, size))
-    for whole, rotation, rate in zip(system.setting.wholes, rotations, rates, strict=True):
+    for whole, rotation, rate in zip(system.setting.joined_bodies, rotations, rates, strict=True):
         across = whole.right if rotation > 0.0 else whole.left
         left = whole.overturning_angles.on_side_of(rotation) - abs(rotation)
         lift = math.hypot(across, whole.centre_height) * (1.0 - math.cos(left))
@@ -312,7 +312,7 @@ def sliding_scalars(found: Sequence[SlidingCheck]) -> dict[str, float | bool]:
     }
 
 
-def friction_words(scalars: Mapping[str, Generic | float], found: Sequence[SlidingCheck]) -> str:
+def friction_words(scalars: Mapping[str, AnyArray | float], found: Sequence[SlidingCheck]) -> str:
     """Say in a sentence whether bodies would slide or, without a check, what friction they needed.
 
     Empty for a run without peaks of forces.
@@ -346,21 +346,21 @@ def sliding_cautions(found: Sequence[SlidingCheck]) -> Iterator[str]:
             yield f"{each.body} {each.words}; the model holds it"
 
 
-def share_words(would_slide: Generic, *, runs: str = "runs") -> str:
+def share_words(would_slide: AnyArray, *, runs: str = "runs") -> str:
     """Say in how many runs of an analysis the block would slide, though its model holds it."""
     slide, hold = count_slides(would_slide)
     some = f"in {slide or 'none'} of {slide + hold} {runs}"
     return f"{some} the block would slide first" if slide + hold else ""
 
 
-def slip_words(slips: Generic, *, runs: str = "runs") -> str:
+def slip_words(slips: AnyArray, *, runs: str = "runs") -> str:
     """Say in how many runs of an analysis a body slid, and how far at most."""
     slid = slips[slips > MIN_REPORTED_SLIP]
     some = f"in {slid.size} of {np.isfinite(slips).sum()} {runs}"
     return f"{some} a body slid, by {slid.max():.3g} m at most" if slid.size else ""
 
 
-def count_slides(would_slide: Generic) -> tuple[int, int]:
+def count_slides(would_slide: AnyArray) -> tuple[int, int]:
     """Return how many runs slide and how many do not; NaN counts as neither."""
     return int((would_slide == 1.0).sum()), int((would_slide == 0.0).sum())
 

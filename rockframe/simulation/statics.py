@@ -8,8 +8,9 @@ import xarray as xr
 
 from rockframe.dynamics.events import ContactState
 from rockframe.errors import AssemblyError, ComponentError, short_repr
-from rockframe.results.outcome import Generic, slope_attributes
+from rockframe.results.outcome import slope_attributes
 from rockframe.results.schema import SCHEMA, build_dataset
+from rockframe.signals.arrays import AnyArray
 from rockframe.system.assembly import Assembly
 from rockframe.system.statics import vibration_modes
 from rockframe.units import ANGLE, to_si_values
@@ -21,7 +22,7 @@ def equilibrium(system: Assembly) -> xr.Dataset:
     values: dict[str, float] = {
         name: value for name, value in setting.equilibrium().items() if name in SCHEMA
     }
-    if setting.leans:
+    if setting.is_asymmetric:
         left, right = setting.overturning_angles
         values |= {
             "left_overturning_angle": left,
@@ -42,7 +43,7 @@ def moment_rotation(system: Assembly, angles: object) -> xr.Dataset:
         msg = f"moment_rotation: angles must be one or more, got {short_repr(angles)}"
         raise ComponentError(msg)
     states = system.setting.held_at(held_at)
-    values: dict[str, Generic] = {
+    values: dict[str, AnyArray] = {
         "angle": np.array(held_at),
         "restoring_moment": _column(state.restoring_moment for state in states),
         "base_moment": _column(state.base_moment for state in states),
@@ -59,7 +60,7 @@ def moment_rotation(system: Assembly, angles: object) -> xr.Dataset:
     )
 
 
-def _column(numbers: Iterable[float]) -> Generic:
+def _column(numbers: Iterable[float]) -> AnyArray:
     return np.array(list(numbers)) + 0.0  # no negative zeros
 
 
@@ -70,7 +71,7 @@ def frequencies(system: Assembly) -> xr.Dataset:
         raise AssemblyError([system.setting.without_small_motion()])
     modes = vibration_modes(motion)
     rate = np.array([mode.angular_frequency for mode in modes])
-    values: dict[str, Generic] = {
+    values: dict[str, AnyArray] = {
         "mode": np.arange(1, len(modes) + 1),
         "angular_frequency": rate,
         "frequency": rate / (2.0 * math.pi),

@@ -198,7 +198,7 @@ class Trajectory(Summary):
 
 def summary_fields(clock: Vector, counters: Integers) -> dict[str, Any]:
     """Return the fields of a summary that follow from the progress of a finished run."""
-    reals, wholes = clock.tolist(), counters.tolist()
+    reals, integers = clock.tolist(), counters.tolist()
     energy, residual = reals[at.LARGEST_ENERGY], reals[at.RESIDUAL]
     return {
         "end_time": reals[at.TIME],
@@ -209,9 +209,9 @@ def summary_fields(clock: Vector, counters: Integers) -> dict[str, Any]:
         "overturning_direction": int(reals[at.OVERTURNING_SIDE]),
         "first_uplift_time": reals[at.FIRST_UPLIFT],
         "flight_time": reals[at.FLIGHT_TIME],
-        "impact_count": wholes[at.IMPACTS],
-        "flight_count": wholes[at.FLIGHTS],
-        "step_count": wholes[at.STEPS],
-        "rejected_count": wholes[at.REJECTED],
+        "impact_count": integers[at.IMPACTS],
+        "flight_count": integers[at.FLIGHTS],
+        "step_count": integers[at.STEPS],
+        "rejected_count": integers[at.REJECTED],
         "energy_residual": residual / energy if energy > 0.0 else 0.0,
     }

@@ -10,12 +10,12 @@ import xarray as xr
 
 from rockframe.arguments import checked_integer, checked_list
 from rockframe.errors import StudyError
-from rockframe.results.outcome import Generic, overturns
+from rockframe.results.outcome import overturns
 from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import unit_suffix_of
-from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import AnyArray, Array
 from rockframe.studies.confidence import read_level
 from rockframe.studies.fragility.labelling import with_stripes
 from rockframe.studies.fragility.trials import (
@@ -124,7 +124,7 @@ class Cloud:
         )
 
     @property
-    def is_regressed(self) -> Generic:
+    def is_regressed(self) -> AnyArray:
         """Which runs moved and did not overturn."""
         return (self.responses > 0.0) & np.isfinite(self.responses)
 
@@ -304,7 +304,7 @@ class CloudFit(NamedTuple):
     """A cloud, and the runs that are in it."""
 
     cloud: Cloud
-    included: Generic  # whether each run is in it, in the order of the dimensions
+    included: AnyArray  # whether each run is in it, in the order of the dimensions
     motions_repeat: bool  # whether motions were run more than once
 
 

@@ -10,8 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from rockframe.results.outcome import Generic
-from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import AnyArray, Array
 from rockframe.studies.confidence import clopper_pearson
 
 DemandFunction = Callable[[str, Array], Array]
@@ -29,8 +28,8 @@ class Level:
     """One level: samples drawn given that the threshold of the level before is exceeded."""
 
     demands: Array  # NaN where a run has none, which occurs at the first level only
-    origins: Generic  # number of each one's run, counted over all levels
-    families: Generic  # number of the sample of the first level from which each descends
+    origins: AnyArray  # number of each one's run, counted over all levels
+    families: AnyArray  # number of the sample of the first level from which each descends
     threshold: float  # demand from which on a sample counts as exceeding
     chains: int  # number of chains
     acceptance: float  # share of accepted candidates; NaN at the first level [1]
@@ -38,7 +37,7 @@ class Level:
     left_out: int  # runs without a verdict
 
     @property
-    def exceeds(self) -> Generic:
+    def exceeds(self) -> AnyArray:
         """Which samples exceed the threshold."""
         return self.demands >= self.threshold
 
@@ -72,7 +71,7 @@ def subset_levels(
     """
     scores = rng.standard_normal((count, size))
     demands = demand("level 01", scores)
-    origins: Generic = np.arange(count)
+    origins: AnyArray = np.arange(count)
     families, total_runs = origins, count
     chains, acceptance, runs, step = count, math.nan, count, _INITIAL_STEP
     left_out = int(np.isnan(demands).sum())

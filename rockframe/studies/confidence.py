@@ -5,8 +5,7 @@ from typing import Final
 import numpy as np
 
 from rockframe.arguments import checked_list
-from rockframe.results.outcome import Generic
-from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import AnyArray, Array
 from rockframe.units import Condition, to_ratio
 
 SHARE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value < 1.0)
@@ -26,7 +25,7 @@ def read_shares(value: object, name: str, *, owner: str) -> Array:
     )
 
 
-def clopper_pearson(exceeded: Generic, trials: Generic, confidence: float) -> tuple[Array, Array]:
+def clopper_pearson(exceeded: AnyArray, trials: AnyArray, confidence: float) -> tuple[Array, Array]:
     """Return the exact bounds of shares (Clopper and Pearson, 1934)."""
     from scipy.special import betaincinv
 

@@ -10,11 +10,11 @@ import xarray as xr
 from rockframe.arguments import checked_list
 from rockframe.errors import ComponentError, StudyError, short_repr
 from rockframe.motion.quantities import ArrayLike
-from rockframe.results.outcome import Generic, overturns
+from rockframe.results.outcome import overturns
 from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import unit_suffix_of
-from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import AnyArray, Array
 from rockframe.studies.confidence import read_shares
 from rockframe.studies.fragility.trials import attributes_of_system
 from rockframe.studies.intensities import PeriodLike, measure_of_runs, period_attribute
@@ -254,7 +254,7 @@ def _response_curve(
     name: str,
     intensities: Array,
     values: Array,
-    overturned: Generic,
+    overturned: AnyArray,
     ranges: list[tuple[float, float]] | None,
 ) -> _ResponseCurve:
     """Return the curve through runs of ascending intensity, some of which may have overturned."""

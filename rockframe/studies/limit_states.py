@@ -11,11 +11,12 @@ import xarray as xr
 
 from rockframe.arguments import checked_dataset, checked_list
 from rockframe.errors import ComponentError, SchemaError, did_you_mean, short_repr
-from rockframe.results.outcome import Generic, overturns
+from rockframe.results.outcome import overturns
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.bodies import BODIES, RESTRAINERS
 from rockframe.results.variables.requests import FORCE_SCALARS, POINT_PEAKS
 from rockframe.results.variables.variable import TIME, unit_suffix_of
+from rockframe.signals.arrays import AnyArray
 from rockframe.studies.confidence import SHARE
 from rockframe.studies.sweeps.axes import in_units_of_schema, labels_in_unit
 from rockframe.units import NOT_NEGATIVE, Condition, Measure, Unit, to_ratio, to_si
@@ -133,7 +134,7 @@ def read_in_unit(
     return to_si(value, measure, owner=owner, name=name, condition=condition)
 
 
-def labels_of_states(states: Sequence[LimitState]) -> dict[str, Generic]:
+def labels_of_states(states: Sequence[LimitState]) -> dict[str, AnyArray]:
     """Return the labels along limit states."""
     return {
         "limit_state": np.array([state.name for state in states], dtype=object),

@@ -10,9 +10,9 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import RockframeError, StudyError, did_you_mean, short_repr
-from rockframe.results.outcome import Generic
 from rockframe.results.schema import with_labels
 from rockframe.results.variables.studies import CASE
+from rockframe.signals.arrays import AnyArray
 from rockframe.studies.sweeps.arguments import SWEEP_ARGUMENT_NAMES
 from rockframe.studies.sweeps.axes import Axis, Changes, faults_of_values
 from rockframe.studies.sweeps.scenes import SweptScene
@@ -31,8 +31,8 @@ class LineAxes:
         return {axis.name: len(axis.values) for axis in self.axes}
 
     def columns(
-        self, rows: Mapping[str, tuple[Generic, str]] = MappingProxyType({})
-    ) -> dict[str, tuple[Generic, str]]:
+        self, rows: Mapping[str, tuple[AnyArray, str]] = MappingProxyType({})
+    ) -> dict[str, tuple[AnyArray, str]]:
         """Return a table of all combinations of values for each of some rows; last axis fastest."""
         places = np.indices(tuple(self.sizes.values()))
         count = math.prod(self.sizes.values())

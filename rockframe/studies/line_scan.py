@@ -24,10 +24,10 @@ from rockframe.errors import (
     warn,
 )
 from rockframe.motion import GroundMotion
-from rockframe.results.outcome import PEAK_SLIPS, Generic
+from rockframe.results.outcome import PEAK_SLIPS
 from rockframe.results.table import head
 from rockframe.results.variables.studies import CASE, MOTION
-from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import AnyArray, Array
 from rockframe.simulation.system import System
 from rockframe.studies.sweeps.arguments import ExecutionArguments, SweepArguments
 from rockframe.studies.sweeps.axes import read_numbers
@@ -213,9 +213,9 @@ class LineVerdicts:
 
     scales: Array  # all scales that were run along some line
     verdicts: Array  # over verdicts, lines and scales; NaN where a line was not run, or has none
-    moved: Generic  # over lines and scales: whether the base left the ground, or slid
+    moved: AnyArray  # over lines and scales: whether the base left the ground, or slid
 
-    def with_runs(self, cases: LineScales, verdicts: Array, moved: Generic) -> "LineVerdicts":
+    def with_runs(self, cases: LineScales, verdicts: Array, moved: AnyArray) -> "LineVerdicts":
         """Add cases, and what they showed."""
         lines, scales = (np.array(each) for each in zip(*cases, strict=True))
         all_scales = np.union1d(self.scales, scales)

@@ -5,9 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from rockframe.results.outcome import Generic
 from rockframe.results.variables.analyses import FragilityStatus
-from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import AnyArray, Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +41,7 @@ class Logistic:
         return np.asarray(expit(coefficients[0] + coefficients[1] * logs))
 
 
-def fit_logistic(logs: Array, verdict: Generic) -> Logistic:
+def fit_logistic(logs: Array, verdict: AnyArray) -> Logistic:
     """Find the most likely coefficients; the log-likelihood is concave, so that there is one."""
     from scipy import optimize
     from scipy.special import expit, log_expit

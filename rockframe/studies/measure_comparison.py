@@ -10,10 +10,9 @@ import xarray as xr
 
 from rockframe.arguments import checked_list
 from rockframe.errors import ComponentError, StudyError, short_repr
-from rockframe.results.outcome import Generic
 from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.studies import MOTION
-from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import AnyArray, Array
 from rockframe.studies.cloud import Cloud, fit_cloud, read_least
 from rockframe.studies.fragility.trials import check_one_structure, flatten_like
 from rockframe.studies.intensities import (
@@ -117,7 +116,7 @@ def compare_intensities(
     runs = check_runs(runs, owner=_OWNER)
     values = scalar_of(runs, response, label, owner=_OWNER)
     floor = read_least(least, values, owner=_OWNER)
-    named, clouds, included_runs = list[str](), list[Cloud](), list[Generic]()
+    named, clouds, included_runs = list[str](), list[Cloud](), list[AnyArray]()
     if isinstance(measures, xr.DataArray):
         measures = [measures]
     listed = [

@@ -16,12 +16,11 @@ from rockframe.errors import (
     collected_warnings,
     short_repr,
 )
-from rockframe.results.outcome import Generic
 from rockframe.results.schema import with_variables
 from rockframe.results.table import head
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import with_shared_arguments
-from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import AnyArray, Array
 from rockframe.simulation.system import System
 from rockframe.studies.confidence import clopper_pearson, read_level
 from rockframe.studies.limit_states import overturns
@@ -221,7 +220,7 @@ class Sensitivity(NamedTuple):
     p_value: float = np.nan  # p-value of the uneven shares if the parameter had no influence [1]
 
 
-def rank_parameters(columns: Mapping[str, Generic], verdict: Array) -> dict[str, Sensitivity]:
+def rank_parameters(columns: Mapping[str, AnyArray], verdict: Array) -> dict[str, Sensitivity]:
     """Return the sensitivity of the verdict to each parameter, the greatest first.
 
     The index is the correlation ratio of groups of equal size, minus its expectation without
@@ -232,7 +231,7 @@ def rank_parameters(columns: Mapping[str, Generic], verdict: Array) -> dict[str,
     return dict(sorted(found.items(), key=lambda one: -one[1].first_order))
 
 
-def _sensitivity(values: Generic, verdict: Array) -> Sensitivity:
+def _sensitivity(values: AnyArray, verdict: Array) -> Sensitivity:
     from scipy.stats import chi2_contingency, ks_2samp
 
     count = len(verdict)
@@ -394,7 +393,7 @@ def _with_probability(
     known = ~np.isnan(verdict)
     falls, count = int(np.nansum(verdict)), int(known.sum())
     lower, upper = clopper_pearson(np.array(falls), np.array(count), level)
-    columns: dict[str, Generic] = {name: runs[name].to_numpy()[known] for name in names}
+    columns: dict[str, AnyArray] = {name: runs[name].to_numpy()[known] for name in names}
     if several:
         columns[MOTION] = runs[MOTION].to_numpy()[known].astype(str)
     sensitivities = rank_parameters(columns, verdict[known])

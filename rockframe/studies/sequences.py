@@ -14,12 +14,11 @@ from rockframe.arguments import checked_list, is_iterable, with_string_keys
 from rockframe.errors import ComponentError, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.results.joining import CASE_COUNT
-from rockframe.results.outcome import Generic
 from rockframe.results.schema import with_variables
 from rockframe.results.variables.studies import MESSAGE, MOTION
 from rockframe.shared_arguments import with_shared_arguments
 from rockframe.signals import Motion, Signal
-from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import AnyArray, Array
 from rockframe.signals.motion import COEFFICIENTS
 from rockframe.simulation.certify.perturbations import divide_intervals
 from rockframe.simulation.run import NONE
@@ -218,7 +217,7 @@ def _padded(pieces: Array) -> Array:
     return np.pad(pieces, ((0, 0), (0, COEFFICIENTS - pieces.shape[1])))
 
 
-def _unstack_sequences(runs: xr.Dataset, exists: Generic) -> xr.Dataset:
+def _unstack_sequences(runs: xr.Dataset, exists: AnyArray) -> xr.Dataset:
     """Return the runs with dimensions of sequence and earthquake instead of motion."""
     found: dict[str, xr.Variable] = {}
     gaps = not exists.all()

@@ -38,7 +38,7 @@ class RearWallSetting(RigidGroundSetting):
     rebound: float  # angular velocity after an impact over that before it [1]
     height: float  # height of the block [m]
     struck_by_base = False
-    to_fly = "; give the wall a stiffness to follow its flight"
+    flight_advice = "; give the wall a stiffness to follow its flight"
 
     @property
     def model(self) -> str:

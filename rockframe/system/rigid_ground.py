@@ -22,7 +22,7 @@ class RigidGroundSetting(Setting):
 
     restitution: Restitutions  # eps of its corners [1]
     flies = False
-    to_fly: ClassVar[str] = "; put it on a TwoSpringSupport to follow its flight"
+    flight_advice: ClassVar[str] = "; put it on a TwoSpringSupport to follow its flight"
     steps_cost_most = False
     source: ClassVar[str] = "Housner; Eq. (6) for omega"
     """Source of the equation of motion, for words."""

@@ -93,7 +93,7 @@ class RockingFrameSetting(RigidGroundSetting):
     frame: RockingFrameSI
     source: ClassVar[str] = "Makris and Vassiliou 2013; omega of columns and beam together"
     greatest: ClassVar[str] = "the greatest value, of columns and beam together"
-    to_fly = ""
+    flight_advice = ""
 
     @property
     def model(self) -> str:

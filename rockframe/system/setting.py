@@ -63,13 +63,13 @@ class Setting(ABC):
     slope: Incline = field(init=False, repr=False, compare=False)
     # whether the body is not symmetric, or stands on a slope; rotations of unstable equilibrium to
     # either side, relative to the base line [rad]
-    leans: bool = field(init=False, repr=False, compare=False)
+    is_asymmetric: bool = field(init=False, repr=False, compare=False)
     overturning_angles: OverturningAngles = field(init=False, repr=False, compare=False)
     stacked: ClassVar[bool] = False
     """Whether the body stands on pads on a cap on soil."""
     flies: ClassVar[bool] = True
     """Whether the equations follow a body that leaves its base."""
-    to_fly: ClassVar[str] = ""
+    flight_advice: ClassVar[str] = ""
     """How to have flight computed where they do not, as the end of a message; or empty."""
     slides: ClassVar[bool] = False
     """Whether the equations have friction, with which a body slides on its base."""
@@ -86,7 +86,7 @@ class Setting(ABC):
         body, options = self.load.body, self.load.options
         vars(self).update(
             body=body, options=options, gravity=options.gravity, slope=options.slope,
-            leans=body.eccentricity != 0.0 or not options.slope.level,
+            is_asymmetric=body.eccentricity != 0.0 or not options.slope.level,
             overturning_angles=self.load.overturning_angles,
         )  # fmt: skip
 
@@ -99,7 +99,7 @@ class Setting(ABC):
     def overturning_rotations(self) -> tuple[float, ...]:
         """Rotations of unstable equilibrium, with signs; one for both sides if symmetric [rad]."""
         left, right = self.overturning_angles
-        return (right, -left) if self.leans else (right,)
+        return (right, -left) if self.is_asymmetric else (right,)
 
     @property
     @abstractmethod
@@ -117,7 +117,7 @@ class Setting(ABC):
         return least_overturning_energy(self)
 
     @cached_property
-    def wholes(self) -> tuple[SupportedBody, ...]:
+    def joined_bodies(self) -> tuple[SupportedBody, ...]:
         """Bodies under the highest, each joined with all above it to one upright body."""
         return ()
 

@@ -68,8 +68,8 @@ class StackSetting(Setting):
         super().__post_init__()
         # bodies, offsets, links or a slope make left and right differ
         eccentric = any(body.eccentricity != 0.0 for body in self.bodies)
-        leans = bool(self.links) or eccentric or any(self.offsets) or not self.slope.level
-        vars(self).update(leans=leans)
+        upright = self.slope.level and not (eccentric or any(self.offsets) or self.links)
+        vars(self).update(is_asymmetric=not upright)
 
     @property
     def model(self) -> str:
@@ -79,7 +79,7 @@ class StackSetting(Setting):
         return "stack-restrained" if self.links else "stack"
 
     @cached_property
-    def wholes(self) -> tuple[SupportedBody, ...]:
+    def joined_bodies(self) -> tuple[SupportedBody, ...]:
         """Bodies under the highest, each joined with all above it to one upright body."""
         return tuple(
             combined_body(self.bodies[: k + 1], self.tops, self.offsets)
@@ -145,7 +145,8 @@ class StackSetting(Setting):
         Links stretch before an end lifts from a deformable base; for these bases it is not given.
         """
         found = dict[str, float]()
-        for k, (rigid, body) in enumerate(zip(self.rigid, (self.body, *self.wholes), strict=True)):
+        bodies = self.body, *self.joined_bodies
+        for k, (rigid, body) in enumerate(zip(self.rigid, bodies, strict=True)):
             name = (
                 FRICTION_TO_ROCK if len(self.bodies) == 1 else f"base {k + 1}: {FRICTION_TO_ROCK}"
             )
@@ -310,7 +311,7 @@ class StackSetting(Setting):
     @cached_property
     def rest_rotation(self) -> float:
         """Rotation of the highest body at rest [rad]."""
-        return math.fsum(one.state.rotation for one in self._rest) if self.leans else 0.0
+        return math.fsum(one.state.rotation for one in self._rest) if self.is_asymmetric else 0.0
 
     @cached_property
     def uplift_angle(self) -> float:
@@ -401,10 +402,10 @@ class StackSetting(Setting):
         from rockframe.dynamics.chain.model import chain_model
 
         rest = self._rest_positions()
-        limits = [whole.overturning_angles for whole in self.wholes]
+        limits = [whole.overturning_angles for whole in self.joined_bodies]
         one_linked_body = bool(self.links) and len(self.bodies) == 1 and bool(self.groups)
         return chain_model(
-            self.chain_bodies, self.body.mass, rest if self.leans else None, limits,
+            self.chain_bodies, self.body.mass, rest if self.is_asymmetric else None, limits,
             self.chain_links, self._equilibrium_height if one_linked_body else None,
             self.frictions,
         )  # fmt: skip

@@ -88,14 +88,15 @@ def describe(
     `written` has names and words for the parts, in place of their notation in Python.
     """
     words, theta = setting.words(), angle_words(setting.overturning_angle)
-    angles = _asymmetric_rows(setting) if setting.leans else [(_OVERTURNING_ANGLE, theta)]
+    angles = _asymmetric_rows(setting) if setting.is_asymmetric else [(_OVERTURNING_ANGLE, theta)]
+    whose = "body 1: " if setting.joined_bodies else ""
     sections = {
         "Parts": [("", repr(part)) for part in parts] if written is None else [*written],
         "Contact states and their equations": words.equations,
         "Horizontal restraint": [("", words.restraint)],
         "Numbers": [
             ("gravity", f"{setting.gravity:.6g} m s^-2"),
-            *((f"body 1: {name}" if setting.wholes else name, value) for name, value in angles),
+            *((f"{whose}{name}", value) for name, value in angles),
             *((name, f"{least:.6g}") for name, least in setting.friction_to_rock().items()),
             *words.numbers,
         ],

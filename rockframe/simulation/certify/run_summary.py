@@ -8,8 +8,7 @@ from typing import Final, TypeAlias
 import numpy as np
 
 from rockframe.dynamics.events import EventKind
-from rockframe.results.outcome import Generic
-from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import AnyArray, Array
 from rockframe.simulation.plan import Plan
 from rockframe.solve.bookkeeping import RIGHT_ANGLE
 from rockframe.solve.trajectory import Summary
@@ -87,7 +86,7 @@ Run: TypeAlias = Callable[[Assembly, Plan], RunSummary]
 
 def run_summary(
     summary: Summary,
-    events: Mapping[str, Generic],
+    events: Mapping[str, AnyArray],
     peak_share: float,
     duration: float,
     *,

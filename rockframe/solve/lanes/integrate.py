@@ -121,10 +121,10 @@ def integrate_lanes(
         batch = made.batch([motions[k] for k in used.tolist()], run_of[some], place)
         advance_batch(batch, made.steps)
         rows = batch.rows.reshape(len(place), -1)
-        wholes = rows.view(np.int64)
+        integers = rows.view(np.int64)
         clock[some] = rows[:, fields.CLOCK : fields.CLOCK + at.CLOCK]
-        counters[some] = wholes[:, fields.COUNTERS : fields.COUNTERS + at.COUNTERS]
-        status[some] = wholes[:, fields.OWN_INTEGERS + fields.STATUS]
+        counters[some] = integers[:, fields.COUNTERS : fields.COUNTERS + at.COUNTERS]
+        status[some] = integers[:, fields.OWN_INTEGERS + fields.STATUS]
         modes[some], states[some], memories[some] = made.endings(rows)
     return Outcomes(clock, counters, status, modes, states, memories)
 
@@ -150,7 +150,7 @@ def initial_rows(model: ContactModel, start: RunStart, count: int = 1) -> Matrix
     memory = indices.numbers + len(numbers)
     tolerance = memory + len(start.memory)
     rows = np.zeros((count, tolerance + len(start.tolerance)))
-    wholes = rows.view(np.int64)
+    integers = rows.view(np.int64)
     for first, row in (
         (fields.CLOCK, start.clock),
         (fields.CONTROLS, start.controls),
@@ -163,8 +163,8 @@ def initial_rows(model: ContactModel, start: RunStart, count: int = 1) -> Matrix
     ):
         for place, number in enumerate(row, start=first):
             rows[:, place] = number.values if isinstance(number, CaseArray) else number
-    wholes[:, fields.COUNTERS : fields.COUNTERS + at.COUNTERS] = start.counters
-    wholes[:, fields.OWN_INTEGERS + fields.BUSY] = 1
+    integers[:, fields.COUNTERS : fields.COUNTERS + at.COUNTERS] = start.counters
+    integers[:, fields.OWN_INTEGERS + fields.BUSY] = 1
     return rows
 
 

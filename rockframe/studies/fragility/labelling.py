@@ -8,10 +8,9 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.results.outcome import Generic
 from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
-from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import AnyArray, Array
 from rockframe.studies.confidence import clopper_pearson
 from rockframe.studies.fragility.likelihood import Bands, Fit, boundary, fit, gap, jackknife
 from rockframe.studies.fragility.trials import StructureTrials, Trials
@@ -133,7 +132,7 @@ def fragility_dataset(
     return dataset
 
 
-def _reshaped(values: Mapping[str, Any], sizes: Mapping[str, int]) -> dict[str, Generic]:
+def _reshaped(values: Mapping[str, Any], sizes: Mapping[str, int]) -> dict[str, AnyArray]:
     """Return values of each structure and limit state, which are counted, their dimensions."""
     arrays = {name: np.asarray(each) for name, each in values.items()}
     return {n: each.reshape(*sizes.values(), *each.shape[1:]) for n, each in arrays.items()}

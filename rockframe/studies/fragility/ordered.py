@@ -11,9 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from rockframe.errors import StudyError
-from rockframe.results.outcome import Generic
 from rockframe.results.variables.analyses import FragilityStatus
-from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import AnyArray, Array
 from rockframe.studies.fragility.likelihood import (
     ZERO_SLOPE,
     Bands,
@@ -26,7 +25,7 @@ from rockframe.studies.fragility.likelihood import (
 
 
 def ordered_fits(
-    logs: Array, verdicts: Array, motions: Generic, names: Sequence[str], bands: Bands
+    logs: Array, verdicts: Array, motions: AnyArray, names: Sequence[str], bands: Bands
 ) -> list[Fit]:
     """Fit all limit states at once; each run must exceed them from the lightest on."""
     for k in range(1, len(names)):
@@ -68,7 +67,7 @@ def ordered_fits(
     return found
 
 
-def _ends(logs: Array, count: Generic, at: Array) -> tuple[Array, Array, Array, Array]:
+def _ends(logs: Array, count: AnyArray, at: Array) -> tuple[Array, Array, Array, Array]:
     """Return the factors of the coefficients at both ends of each verdict, and eta there.
 
     As :func:`rockframe.studies.fragility.likelihood.interval_scores` takes them.
@@ -85,7 +84,7 @@ def _ends(logs: Array, count: Generic, at: Array) -> tuple[Array, Array, Array, 
     return upper, lower, eta_upper, eta_lower
 
 
-def _log_likelihood(logs: Array, count: Generic, at: Array) -> float:
+def _log_likelihood(logs: Array, count: AnyArray, at: Array) -> float:
     """Return the log-likelihood, :eq:`eq-fragility-ordered`; minus infinity if out of order."""
     *_, upper, lower = _ends(logs, count, at)
     if np.any(upper <= lower):
@@ -99,7 +98,7 @@ _SEPARATED_SLOPE = 1e4
 
 
 def _maximum_likelihood(
-    logs: Array, count: Generic, states: int, start: Array | None = None
+    logs: Array, count: AnyArray, states: int, start: Array | None = None
 ) -> Array | None:
     """Find the greatest likelihood by Newton's method; None for separated trials."""
     from scipy.special import ndtri
@@ -137,7 +136,7 @@ def _maximum_likelihood(
 
 
 def _covariance(
-    logs: Array, count: Generic, motions: Generic, best: Array, bands: Bands
+    logs: Array, count: AnyArray, motions: AnyArray, best: Array, bands: Bands
 ) -> tuple[Array, Array | None]:
     """Return covariance by motions, :eq:`eq-fragility-sandwich`, :eq:`eq-fragility-jackknife`."""
     names, place = np.unique(motions, return_inverse=True)
@@ -158,7 +157,7 @@ def _covariance(
     return jackknife(best, rows, np.ones(len(names))), rows
 
 
-def _fit_without_motion(logs: Array, count: Generic, best: Array) -> Array | None:
+def _fit_without_motion(logs: Array, count: AnyArray, best: Array) -> Array | None:
     """Find the greatest likelihood of some of the runs, from that of all; None without one.
 
     Limit states between which none of these runs ends have one capacity. Their intercepts would

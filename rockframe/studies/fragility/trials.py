@@ -16,9 +16,8 @@ import pandas as pd
 import xarray as xr
 
 from rockframe.errors import ComponentError, SchemaError, StudyError, short_repr
-from rockframe.results.outcome import Generic
 from rockframe.results.variables.studies import CASE, MOTION
-from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import AnyArray, Array
 from rockframe.studies.line_scan import SCALE
 from rockframe.studies.sweeps.axes import Changes
 
@@ -30,7 +29,7 @@ class Structures:
     """The structures of a sweep, distinguished by everything except motion and intensity."""
 
     # for each dimension over which structures differ, the number of the structure at each place
-    groups: Mapping[str, Generic]
+    groups: Mapping[str, AnyArray]
     coordinates: Mapping[str, xr.Variable]  # what distinguishes them
 
     @property
@@ -172,7 +171,7 @@ def _group_structures(
     runs: xr.Dataset, dims: Sequence[str], kept: Sequence[str], scalar_names: Sequence[str]
 ) -> Structures:
     """Return structures numbers along each dimension, and labels."""
-    groups: dict[str, Generic] = {}
+    groups: dict[str, AnyArray] = {}
     coordinates = {
         str(name): runs[name].variable
         for name in (*scalar_names, *kept)
@@ -195,7 +194,9 @@ def _group_structures(
     return Structures(groups, coordinates)
 
 
-def _group_rows(columns: Sequence[Generic], size: int, separate: bool) -> tuple[Generic, Generic]:
+def _group_rows(
+    columns: Sequence[AnyArray], size: int, separate: bool
+) -> tuple[AnyArray, AnyArray]:
     """Return the first place of each group of equal rows, and the group of each place."""
     if separate:
         return np.arange(size), np.arange(size)
@@ -211,16 +212,16 @@ class Trials:
     # logarithms of the intensities between which the capacity lies; any number where an end is open
     lower: Array
     upper: Array
-    has_lower: Generic  # which ends there are
-    has_upper: Generic
+    has_lower: AnyArray  # which ends there are
+    has_upper: AnyArray
     weight: Array  # how often the trial was made
     # trials of one cluster, such as those under one motion, depend on one another; None where no
     # two of them do
-    cluster: Generic | None
+    cluster: AnyArray | None
 
     @classmethod
     def from_verdicts(
-        cls, logs: Array, exceeded: Array, trials: Array, cluster: Generic | None = None
+        cls, logs: Array, exceeded: Array, trials: Array, cluster: AnyArray | None = None
     ) -> "Trials":
         """Return the trials of counts."""
         ends = np.concatenate([logs, logs])
@@ -316,7 +317,7 @@ def _first_brackets(
     return lower, np.where(np.isfinite(capacity), capacity, np.inf)
 
 
-def _rows_of_lines(values: xr.DataArray, sizes: Mapping[str, int], along: str = "") -> Generic:
+def _rows_of_lines(values: xr.DataArray, sizes: Mapping[str, int], along: str = "") -> AnyArray:
     """Arrange values in a row for each line, along a dimension; one value each without it."""
     missing = {dim: size for dim, size in sizes.items() if dim not in values.dims}
     own = [along] if along in values.dims else []
@@ -325,19 +326,19 @@ def _rows_of_lines(values: xr.DataArray, sizes: Mapping[str, int], along: str = 
     return laid.to_numpy().reshape((count, values.sizes[along] if own else 1))
 
 
-def flatten_like(values: xr.DataArray, like: xr.DataArray) -> Generic:
+def flatten_like(values: xr.DataArray, like: xr.DataArray) -> AnyArray:
     """Arrange values in a row, in the order of others that have at least their dimensions."""
     return values.broadcast_like(like).transpose(*like.dims).to_numpy().ravel()
 
 
-def motion_numbers(runs: xr.DataArray) -> Generic:
+def motion_numbers(runs: xr.DataArray) -> AnyArray:
     """Return the number of the motion of each run, laid out in a row."""
     if MOTION not in runs.coords:
         return np.zeros(runs.size, dtype=np.intp)
     return np.unique(flatten_like(runs[MOTION], runs).astype(str), return_inverse=True)[1]
 
 
-def at_scales(measure: Generic, known: Array, scales: Array | float) -> Array:
+def at_scales(measure: AnyArray, known: Array, scales: Array | float) -> Array:
     """Return a measure at other scales; it is a power of the scale."""
     near, far = measure[..., 0], measure[..., -1]
     if measure.shape[-1] == 1:

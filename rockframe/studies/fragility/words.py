@@ -7,11 +7,10 @@ from typing import Final, NamedTuple
 import numpy as np
 import xarray as xr
 
-from rockframe.results.outcome import Generic
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.analyses import LIMIT_STATE, FragilityStatus
 from rockframe.results.variables.variable import unit_suffix_of
-from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import AnyArray, Array
 from rockframe.studies.fragility.likelihood import Bands
 from rockframe.studies.intensities import PERIOD_ATTRIBUTE, measure_words
 from rockframe.studies.sweeps.axes import labels_in_unit
@@ -127,7 +126,7 @@ def in_own_units(fragility: xr.Dataset, measure: str, *, owner: str) -> xr.Datas
     })  # fmt: skip
 
 
-def _fit_sentence(last: xr.Dataset, status: Generic, fitted: Generic) -> str:
+def _fit_sentence(last: xr.Dataset, status: AnyArray, fitted: AnyArray) -> str:
     """Tell the fit of one structure, or the range of several."""
     names = measures_of(last)
     over = " and ".join(measure_words(name, last.attrs.get(PERIOD_ATTRIBUTE)) for name in names)
@@ -184,7 +183,7 @@ def _separation_sentence(last: xr.Dataset) -> str:
     )
 
 
-def _near_separation_sentences(last: xr.Dataset, fitted: Generic) -> Iterator[str]:
+def _near_separation_sentences(last: xr.Dataset, fitted: AnyArray) -> Iterator[str]:
     """Say in how many fits a single motion keeps the trials from being separated."""
     if last.attrs["bands"] != Bands.JACKKNIFE or "dispersion" not in last:
         return

@@ -14,9 +14,9 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from rockframe.errors import ComponentError, UnitsError, short_repr
-from rockframe.results.outcome import Generic
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import CASE, MOTION
+from rockframe.signals.arrays import AnyArray
 from rockframe.simulation.provenance import SYSTEM_AXES as SYSTEM_AXES
 from rockframe.simulation.provenance import Changes as Changes
 from rockframe.units import (
@@ -38,7 +38,7 @@ class Axis:
     """Something that varies from case to case."""
 
     name: str  # as the user wrote it; the dimension, or the column, of the result
-    values: Generic  # numbers in SI units, or words
+    values: AnyArray  # numbers in SI units, or words
     unit: str | None  # of the numbers; None for words and truth values
     long_name: str  # what it is
     changes: Changes  # what the values change
@@ -56,12 +56,12 @@ class Axis:
         return {name: value for name, value in described.items() if name != "values"}
 
     @classmethod
-    def from_dict(cls, described: Mapping[str, Any], values: Generic) -> "Axis":
+    def from_dict(cls, described: Mapping[str, Any], values: AnyArray) -> "Axis":
         """Return the axis that :meth:`to_dict` described."""
         return cls(values=values, **{**described, "changes": Changes(described["changes"])})
 
 
-def read_numbers(value: object, measure: Measure, name: str, *, owner: str = OWNER) -> Generic:
+def read_numbers(value: object, measure: Measure, name: str, *, owner: str = OWNER) -> AnyArray:
     """Read the values of an axis that has a unit, or is a pure number."""
     value = _with_own_unit(value)
     if measure.unit == Unit.ONE:
@@ -112,14 +112,14 @@ def _refuse_bare_numbers(value: object, measure: Measure, name: str, owner: str)
     raise UnitsError(msg)
 
 
-def read_words(value: object, read: Callable[[object], object]) -> Generic:
+def read_words(value: object, read: Callable[[object], object]) -> AnyArray:
     """Read the values of an axis that are words."""
     return np.array([str(read(word)) for word in as_list(value)])
 
 
 def read_free_values(
     value: object, name: str, *, owner: str = OWNER, expected: str = ""
-) -> tuple[Generic, str | None]:
+) -> tuple[AnyArray, str | None]:
     """Read values for an argument whose meaning only the user knows.
 
     A unit of several quantities, such as ``g``, is taken as the `expected` one.
@@ -231,7 +231,7 @@ def in_units_of_schema(dataset: xr.Dataset, *, owner: str) -> xr.Dataset:
     return dataset.assign(found)
 
 
-def faults_of_values(name: str, values: Generic) -> list[str]:
+def faults_of_values(name: str, values: AnyArray) -> list[str]:
     """Tell what is wrong with the values of an axis."""
     kept, counts = np.unique(values, return_counts=True)
     if not len(kept):
@@ -252,7 +252,7 @@ class Grid:
     columns: tuple[Axis, ...]  # of the table, all of one length
     motions: int  # number of motions
     # number of the motion of each row of the table; else the motions have a dimension
-    motion_column: Generic | None = None
+    motion_column: AnyArray | None = None
 
     @cached_property
     def sizes(self) -> dict[str, int]:
@@ -286,12 +286,12 @@ class Grid:
         """Lengths of the dimensions in that order."""
         return [self.sizes[name] for name in self.order]
 
-    def indices(self, cases: range | Generic) -> dict[str, Generic]:
+    def indices(self, cases: range | AnyArray) -> dict[str, AnyArray]:
         """Return the places along all dimensions of cases, by their numbers in order of running."""
         found = np.unravel_index(np.asarray(cases, dtype=np.int64), self.shape)
         return dict(zip(self.order, found, strict=True))
 
-    def case_numbers(self, key: Sequence[Any]) -> Generic:
+    def case_numbers(self, key: Sequence[Any]) -> AnyArray:
         """Return the numbers, in the order of running, of the cases at places along all dimensions.
 
         For each dimension, in the order of `sizes`: a place, a slice or a sequence of places.
@@ -304,21 +304,21 @@ class Grid:
             found = np.add.outer(found, np.where(indices < 0, indices + size, indices) * step)
         return found
 
-    def in_dimension_order(self, values: Generic) -> Generic:
+    def in_dimension_order(self, values: AnyArray) -> AnyArray:
         """Rearrange values from the order of running to that of the dimensions."""
         unraveled = values.reshape([*self.shape, *values.shape[1:]])
         axes = [self.order.index(name) for name in self.sizes]
         rest = range(len(axes), unraveled.ndim)
         return np.ascontiguousarray(unraveled.transpose([*axes, *rest]))
 
-    def values_of_cases(self, cases: range | Generic) -> tuple[tuple[Axis, Generic], ...]:
+    def values_of_cases(self, cases: range | AnyArray) -> tuple[tuple[Axis, AnyArray], ...]:
         """Return for each axis its values in some cases."""
         indices = self.indices(cases)
         own = [(axis, axis.values[indices[axis.name]]) for axis in self.axes]
         rows = [(axis, axis.values[indices[CASE]]) for axis in self.columns]
         return (*own, *rows)
 
-    def motions_of(self, cases: range | Generic) -> Generic:
+    def motions_of(self, cases: range | AnyArray) -> AnyArray:
         """Return the numbers of the motions of some cases."""
         indices = self.indices(cases)
         if self.motion_column is not None:

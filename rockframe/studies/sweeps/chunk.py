@@ -13,12 +13,12 @@ import numpy as np
 
 from rockframe.case_arrays import CaseIndices
 from rockframe.errors import PLEASE_REPORT, RockframeError
-from rockframe.results.outcome import Generic
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.requests import POINT_TIME
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.studies import REPEATED, VERDICT_CHANGED
 from rockframe.results.variables.variable import TIME
+from rockframe.signals.arrays import AnyArray
 from rockframe.simulation.certify.second_look import Look, is_sure, look_at, second_look
 from rockframe.simulation.plan import run_length
 from rockframe.simulation.run import NONE, compute_response, in_motion, run_scalars
@@ -59,16 +59,16 @@ class Driver(IntEnum):
 class CaseResults:
     """The results of the cases of a chunk, in order."""
 
-    status: Generic  # how each run ended, or why there is none
+    status: AnyArray  # how each run ended, or why there is none
     # by their names in the schema, and `DRIVER`; NaN where a case has no result
-    scalars: dict[str, Generic]
-    histories: dict[str, Generic]  # the same; NaN beyond a run's end too
-    message: Generic  # places in `texts`
+    scalars: dict[str, AnyArray]
+    histories: dict[str, AnyArray]  # the same; NaN beyond a run's end too
+    message: AnyArray  # places in `texts`
     texts: tuple[str, ...]  # messages of cases, each once; the first is empty
 
 
 def _assign(
-    columns: dict[str, Generic], count: int, name: str, where: Any, values: Generic | float
+    columns: dict[str, AnyArray], count: int, name: str, where: Any, values: AnyArray | float
 ) -> None:
     """Put values of some cases, or of one, into a column.
 
@@ -92,8 +92,8 @@ class CollectedResults:
     def __init__(self, count: int) -> None:
         self._count = count
         self._status = np.full(count, RunStatus.NOT_RUN, dtype=np.int8)
-        self._scalars: dict[str, Generic] = {}
-        self._histories: dict[str, Generic] = {}
+        self._scalars: dict[str, AnyArray] = {}
+        self._histories: dict[str, AnyArray] = {}
         self._message = np.full(count, NO_TEXT, dtype=np.int32)
         self._texts: dict[str, int] = {NONE: NO_TEXT}
 
@@ -205,7 +205,7 @@ def run_chunk(job: SweepJob, stopped: Callable[[], bool] = lambda: False) -> Cas
     return None if stopped() else collected.rows()
 
 
-def _cautions_and_scalars(run: Finished) -> tuple[list[str], Mapping[str, Generic | float]]:
+def _cautions_and_scalars(run: Finished) -> tuple[list[str], Mapping[str, AnyArray | float]]:
     """Return the warnings of a run, its scalars, and how it was run."""
     if run.response is not None:
         driver = Driver.AS_PYTHON if run.response.trajectory.as_python else Driver.ALONE
@@ -276,7 +276,7 @@ class _Collector(CollectedResults):
             changed = verdict is not None and verdict is not first[case].overturned
             self._put_scalars(case, {REPEATED: 1.0, VERDICT_CHANGED: float(changed)})
 
-    def _put_scalars(self, case: int | CaseIndices, values: Mapping[str, Generic | float]) -> None:
+    def _put_scalars(self, case: int | CaseIndices, values: Mapping[str, AnyArray | float]) -> None:
         for name, value in values.items():
             if name == "status":  # which has a place of its own
                 continue
@@ -284,7 +284,7 @@ class _Collector(CollectedResults):
             row = value if np.ndim(value) else np.broadcast_to(value, np.shape(case))
             _assign(self._scalars, self._count, name, case, row)
 
-    def _put_histories(self, case: int, values: dict[str, Generic], kept: Histories) -> None:
+    def _put_histories(self, case: int, values: dict[str, AnyArray], kept: Histories) -> None:
         time = values[TIME[0]]
         count = min(len(time), kept.count)
         # a run that ends between two times has its end as a time too

@@ -14,7 +14,7 @@ import numpy as np
 from rockframe.components import Component
 from rockframe.errors import StudyError, short_repr
 from rockframe.motion import GroundMotion
-from rockframe.results.outcome import Generic
+from rockframe.signals.arrays import AnyArray
 
 _PACKAGE: Final = __name__.partition(".")[0]
 
@@ -26,7 +26,7 @@ def description_of(value: object) -> Any:
     if isinstance(value, np.generic):
         return description_of(value.item())
     if isinstance(value, np.ndarray):
-        return _digest_of_array(cast("Generic", value))
+        return _digest_of_array(cast("AnyArray", value))
     if isinstance(value, GroundMotion):
         return digest_of(description_of(value.si))
     if isinstance(value, Component):
@@ -88,7 +88,7 @@ def _named_entries(described: object) -> dict[str, Any]:
     return {}
 
 
-def _digest_of_array(values: Generic) -> str:
+def _digest_of_array(values: AnyArray) -> str:
     if values.dtype.kind in "OU":
         return digest_of([list(values.shape), values.astype(str).tolist()])
     little = values.astype(values.dtype.newbyteorder("<"))

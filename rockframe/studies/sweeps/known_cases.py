@@ -8,8 +8,8 @@ from typing import Any, Final
 import numpy as np
 
 from rockframe.errors import StudyError
-from rockframe.results.outcome import Generic
 from rockframe.results.variables.studies import MOTION
+from rockframe.signals.arrays import AnyArray
 from rockframe.studies.sweeps.axes import Chunk
 from rockframe.studies.sweeps.chunk import CaseResults, CollectedResults
 from rockframe.studies.sweeps.identity import difference
@@ -29,7 +29,7 @@ class KnownCases:
         self._grid = study.grid
         self._sources = [_Source(study, folder) for folder in folders]
 
-    def missing_cases(self, chunk: Chunk) -> Generic:
+    def missing_cases(self, chunk: Chunk) -> AnyArray:
         """Return the numbers of the cases of a chunk that have not been run."""
         if not self._sources:
             return np.asarray(chunk.cases)
@@ -52,7 +52,7 @@ class KnownCases:
                 whole.put_rows(here, rows, number[here] - old * one.stored.chunk)
         return whole.rows()
 
-    def _locate(self, chunk: Chunk) -> tuple[Generic, Generic]:
+    def _locate(self, chunk: Chunk) -> tuple[AnyArray, AnyArray]:
         """Return who has each case of a chunk, and its number there."""
         places = self._grid.indices(chunk.cases)
         source = np.full(len(chunk.cases), _NOT_RUN)
@@ -102,7 +102,7 @@ class _Source:
         for axis in study.grid.axes:
             self._positions[axis.name] = _positions(axis.values.tolist(), there[axis.name])
 
-    def numbers(self, places: Mapping[str, Generic]) -> Generic:
+    def numbers(self, places: Mapping[str, AnyArray]) -> AnyArray:
         """Return the numbers that cases have here, by their places in the other study."""
         each = [self._positions[dim][places[dim]] for dim in self._grid.order]
         found = np.ravel_multi_index([np.maximum(one, 0) for one in each], self._grid.shape)
@@ -113,7 +113,7 @@ class _Source:
         return found
 
 
-def _positions(wanted: list[Any], there: list[Any]) -> Generic:
+def _positions(wanted: list[Any], there: list[Any]) -> AnyArray:
     """Return the positions of values among others."""
     place = {one: k for k, one in enumerate(there)}
     return np.array([place.get(one, _NOT_RUN) for one in wanted])

@@ -9,7 +9,6 @@ import numpy as np
 import xarray as xr
 
 from rockframe.results.joining import CASE_COUNT
-from rockframe.results.outcome import Generic
 from rockframe.results.points import BodyPoint, point_labels
 from rockframe.results.schema import SCHEMA, build_dataset, with_variables, without_fill_values
 from rockframe.results.variables.bodies import BODY, RESTRAINER
@@ -17,6 +16,7 @@ from rockframe.results.variables.requests import POINT_PEAKS
 from rockframe.results.variables.runs import EVENTS_AND_SCALARS
 from rockframe.results.variables.studies import CASE, MESSAGE, MOTION
 from rockframe.results.variables.variable import TIME
+from rockframe.signals.arrays import AnyArray
 from rockframe.studies.sweeps.axes import Grid
 from rockframe.studies.sweeps.chunk import DRIVER, SCREEN, CaseResults, CollectedResults, Driver
 from rockframe.studies.sweeps.scenes import SystemScene
@@ -166,7 +166,7 @@ def _coordinates(labels: SweepLabels) -> dict[str, xr.Variable]:
     return found
 
 
-def _driver_words(found: Generic) -> str:
+def _driver_words(found: AnyArray) -> str:
     """Say how cases were run, from a `Driver` for each; NaN for those without a result."""
     words = SIDE_BY_SIDE if (found == Driver.IN_LANES).any() else ALONE
     as_python = int((found == Driver.AS_PYTHON).sum())

@@ -19,8 +19,8 @@ from rockframe.case_arrays import (
 )
 from rockframe.compiled import compiling_for
 from rockframe.errors import RockframeError
-from rockframe.results.outcome import Generic
 from rockframe.signals import Motion
+from rockframe.signals.arrays import AnyArray
 from rockframe.simulation.certify.second_look import Look, look_at
 from rockframe.simulation.plan import Plan, run_length, start_of
 from rockframe.simulation.run import Response, has_no_cautions, in_motion, run_scalars
@@ -183,7 +183,7 @@ class FinishedGroup:
     cases: CaseIndices  # their numbers in the job
     status: Status
     warnings: list[str]  # of the assembly of their scenes, and of their runs
-    scalars: dict[str, Generic | float]  # of each, or of all
+    scalars: dict[str, AnyArray | float]  # of each, or of all
     look: Look  # indications of their verdicts, with arrays instead of numbers
 
     def looks(self) -> list[tuple[int, Look]]:

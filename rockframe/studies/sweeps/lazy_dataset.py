@@ -11,10 +11,10 @@ from xarray.backends import BackendArray
 from xarray.core import indexing
 
 from rockframe.results.joining import CASE_COUNT
-from rockframe.results.outcome import Generic
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.studies import MESSAGE
+from rockframe.signals.arrays import AnyArray
 from rockframe.simulation.run import NONE
 from rockframe.studies.sweeps.axes import Chunk, Grid
 from rockframe.studies.sweeps.chunk import CaseResults
@@ -91,7 +91,7 @@ class _Column(BackendArray):
         support = indexing.IndexingSupport.OUTER
         return indexing.explicit_indexing_adapter(key, self.shape, support, self._select)
 
-    def _select(self, key: _Key) -> Generic:
+    def _select(self, key: _Key) -> AnyArray:
         dims = len(self._grid.sizes)
         numbers = self._grid.case_numbers(key[:dims])
         found = self._read_cases(numbers.ravel()).reshape((*numbers.shape, *self._beside))
@@ -99,7 +99,7 @@ class _Column(BackendArray):
             found = found[(*[slice(None)] * axis, one)]
         return found
 
-    def _read_cases(self, numbers: Generic) -> Generic:
+    def _read_cases(self, numbers: AnyArray) -> AnyArray:
         """Read cases by their numbers in the order of running."""
         found = np.full(
             (len(numbers), *self._beside), _FILL_VALUES.get(self._name, np.nan), self.dtype
@@ -126,7 +126,7 @@ def _rows(kept: Store, chunk: Chunk) -> CaseResults:
     return kept.get(chunk)
 
 
-def _values(rows: CaseResults, name: str) -> Generic | None:
+def _values(rows: CaseResults, name: str) -> AnyArray | None:
     if name == _STATUS:
         return rows.status
     if name == MESSAGE:

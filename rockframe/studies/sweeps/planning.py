@@ -20,11 +20,11 @@ from rockframe.errors import (
     warn,
 )
 from rockframe.motion import GroundMotion
-from rockframe.results.outcome import Generic
 from rockframe.results.schema import GROUPS, SCHEMA
 from rockframe.results.variables import analyses, bodies, requests, runs
 from rockframe.results.variables.studies import MOTION, SWEEP
 from rockframe.results.variables.variable import EVENT, FLIP, TIME
+from rockframe.signals.arrays import AnyArray
 from rockframe.simulation.plan import (
     RunRequest,
     default_output_step,
@@ -203,7 +203,7 @@ def _read_grid(
     scene: SweptScene, axes: Mapping[str, object], cases: object, motions: list[str], faults: Faults
 ) -> Grid:
     """Read the axes and the table of cases, and give all cases under the motions of these names."""
-    of_case: Generic | None = None
+    of_case: AnyArray | None = None
     table = faults.attempt(lambda: _read_table(cases), {})
     if MOTION in table:
         column = np.asarray(table.pop(MOTION)).tolist()

@@ -13,9 +13,9 @@ from rockframe.components import Component, InitialState, RockingFrame, Stack
 from rockframe.components.parameters import Choice, Count, Declared, Flag, Text
 from rockframe.errors import ModelWarning, StudyError, short_repr, warn
 from rockframe.motion import GroundMotion
-from rockframe.results.outcome import Generic
 from rockframe.results.schema import SCHEMA
 from rockframe.shared_arguments import suggestion
+from rockframe.signals.arrays import AnyArray
 from rockframe.simulation.system import System
 from rockframe.studies.sweeps.arguments import SWEEP_ARGUMENT_NAMES
 from rockframe.studies.sweeps.axes import (
@@ -371,7 +371,7 @@ def _option_value(name: str, value: Any) -> Any:
 
 def _declared_values(
     value: object, one: Declared[Any, Any], name: str
-) -> tuple[Generic, str | None]:
+) -> tuple[AnyArray, str | None]:
     if isinstance(one, Count):
         numbers = read_numbers(value, Measure("a whole number", Unit.ONE, "2"), name)
         return np.array([one.read(number, OWNER) for number in numbers.tolist()]), str(Unit.ONE)
@@ -382,7 +382,7 @@ def _declared_values(
     return read_numbers(value, one.measure, name), str(one.measure.unit)
 
 
-def _warn_of_unusual_values(one: Declared[Any, Any], values: Generic, owner: str) -> None:
+def _warn_of_unusual_values(one: Declared[Any, Any], values: AnyArray, owner: str) -> None:
     """Warn of unusual values, as the part itself would."""
     if isinstance(one, Choice | Text) or type(one).caution is Declared.caution:
         return

@@ -19,9 +19,9 @@ import numpy as np
 
 from rockframe.errors import StudyError
 from rockframe.motion import GroundMotion
-from rockframe.results.outcome import Generic
 from rockframe.results.points import BodyPoint
 from rockframe.results.schema import SOURCE, history_line
+from rockframe.signals.arrays import AnyArray
 from rockframe.studies.sweeps.axes import Axis, Chunk, Grid, chunks_of
 from rockframe.studies.sweeps.chunk import CaseResults
 from rockframe.studies.sweeps.identity import difference
@@ -37,7 +37,7 @@ _BLOCK: Final = 4096
 """Usual allocation unit of file systems [bytes]."""
 
 
-def write_arrays(path: Path, described: Mapping[str, Any], arrays: Mapping[str, Generic]) -> None:
+def write_arrays(path: Path, described: Mapping[str, Any], arrays: Mapping[str, AnyArray]) -> None:
     """Write a file."""
     plain = {
         name: np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("<"))
@@ -50,7 +50,7 @@ def write_arrays(path: Path, described: Mapping[str, Any], arrays: Mapping[str, 
     write_atomically(path, b"".join([_MAGIC, digest, b"\n", body]))
 
 
-def read_arrays(path: Path) -> tuple[dict[str, Any], dict[str, Generic]]:
+def read_arrays(path: Path) -> tuple[dict[str, Any], dict[str, AnyArray]]:
     """Read a file."""
     content = path.read_bytes()
     start = len(_MAGIC) + _DIGEST_LENGTH + 1
@@ -69,7 +69,7 @@ def read_arrays(path: Path) -> tuple[dict[str, Any], dict[str, Generic]]:
         raise StudyError(msg)
     end = content.index(b"\n", start)
     head = json.loads(content[start:end])
-    arrays: dict[str, Generic] = {}
+    arrays: dict[str, AnyArray] = {}
     place = end + 1
     for name, kind, shape in head["arrays"]:
         dtype = np.dtype(kind)
@@ -333,7 +333,7 @@ def _create(path: Path, study: Study, chunk: int) -> None:
     """Write what a study is; ``study.json`` comes last, and stays what it is."""
     path.mkdir(parents=True, exist_ok=True)
     labels = sweep_labels(study)
-    arrays: dict[str, Generic] = {}
+    arrays: dict[str, AnyArray] = {}
     described: dict[str, Any] = {
         "attributes": dict(labels.attributes),
         "histories": None if labels.histories is None else vars(labels.histories),
@@ -382,7 +382,7 @@ def _sampled_components(one: Mapping[str, Any] | None) -> dict[str, dict[str, An
     return {component: one[component] for component in _SAMPLED if one[component]}
 
 
-def _read(path: Path) -> tuple[dict[str, Any], dict[str, Generic]]:
+def _read(path: Path) -> tuple[dict[str, Any], dict[str, AnyArray]]:
     try:
         return read_arrays(path)
     except OSError as problem:

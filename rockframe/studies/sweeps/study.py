@@ -10,7 +10,7 @@ import numpy as np
 from rockframe.compiled import COMPILED
 from rockframe.errors import collected_warnings
 from rockframe.motion import GroundMotion
-from rockframe.results.outcome import Generic
+from rockframe.signals.arrays import AnyArray
 from rockframe.simulation.plan import RunRequest, default_output_step, run_length
 from rockframe.studies.sweeps.axes import SYSTEM_AXES, Axis, Grid
 from rockframe.studies.sweeps.identity import description_of, digest_of
@@ -54,7 +54,7 @@ class Histories:
     count: int  # of the times
 
     @property
-    def times(self) -> Generic:
+    def times(self) -> AnyArray:
         """The times [s]."""
         return np.arange(self.count, dtype=np.float64) * self.step
 
@@ -64,9 +64,9 @@ class SweepJob:
     """Some cases, with all that is needed to run them, also in another process."""
 
     scene: SweptScene  # what is simulated
-    axes: tuple[tuple[Axis, Generic], ...]  # what varies, and its value in each case
+    axes: tuple[tuple[Axis, AnyArray], ...]  # what varies, and its value in each case
     motions: tuple[GroundMotion | None, ...]  # those of the cases; None leaves it to the scene
-    motion_of_case: Generic  # which of them each case has
+    motion_of_case: AnyArray  # which of them each case has
     arguments: RunRequest  # of every run
     period: float | None  # of the oscillator, where spectral values are a target [s]
     histories: Histories | None  # what is kept beside scalars
@@ -94,7 +94,7 @@ class Study:
     # whether the result is larger than the memory, which is no part of what it is
     lazy: bool = field(default=False, compare=False)
 
-    def job(self, cases: range | Generic) -> SweepJob:
+    def job(self, cases: range | AnyArray) -> SweepJob:
         """Return the job of some cases."""
         number = self.grid.motions_of(cases)
         used, place = np.unique(number, return_inverse=True)

@@ -11,10 +11,11 @@ import xarray as xr
 
 from rockframe.errors import ModelWarning, SolverWarning, warn
 from rockframe.results.joining import CASE_COUNT
-from rockframe.results.outcome import MIN_REPORTED_SLIP, PEAK_SLIPS, Generic, overturned_from_status
+from rockframe.results.outcome import MIN_REPORTED_SLIP, PEAK_SLIPS, overturned_from_status
 from rockframe.results.schema import with_variables
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.studies import MESSAGE, REPEATED, VERDICT_CHANGED
+from rockframe.signals.arrays import AnyArray
 from rockframe.simulation.run import NONE
 from rockframe.simulation.soundness import count_slides
 from rockframe.studies.sweeps.axes import OWNER
@@ -76,7 +77,7 @@ def cases_sentence(runs: xr.Dataset, these: str) -> str:
     return f"{text}."
 
 
-def _counts(runs: xr.Dataset, slips: Generic) -> dict[str, int]:
+def _counts(runs: xr.Dataset, slips: AnyArray) -> dict[str, int]:
     """Count cases by outcome."""
     status = runs["status"].to_numpy()
     overturned = overturned_from_status(status)
@@ -111,7 +112,7 @@ def _stored_parts(runs: xr.Dataset) -> Iterator[xr.Dataset]:
         yield runs.isel(dict(zip(status.dims, part, strict=True)))
 
 
-def slips_of_cases(runs: xr.Dataset) -> Generic:
+def slips_of_cases(runs: xr.Dataset) -> AnyArray:
     """Return the largest slip of each case, over all bodies [m]."""
     most = np.full(runs["status"].shape, np.nan)
     for found in (runs[name] for name in PEAK_SLIPS if name in runs):
@@ -163,7 +164,9 @@ def _most_frequent(texts: Sequence[str]) -> tuple[str, int]:
     return _text_with_ranges(words, counts), counts.total()
 
 
-def merge_similar_texts(texts: Sequence[str], message: Generic) -> tuple[tuple[str, ...], Generic]:
+def merge_similar_texts(
+    texts: Sequence[str], message: AnyArray
+) -> tuple[tuple[str, ...], AnyArray]:
     """Report texts that differ only in their numbers as one, if there are more than a few."""
     alike: dict[tuple[str, ...], list[int]] = {}
     for place, text in enumerate(texts):
