@@ -478,7 +478,7 @@ def _sentence(found: xr.Dataset, motions_repeat: bool) -> str:
     text = f"Of {count} runs {overturned} overturned"
     text += f" and {resting} show no {response}" if resting else ""
     if math.isnan(float(found["regression_slope"])):
-        text += "; too few are between for a line"
+        text += "; those between are too few, or of one intensity, for a line"
     else:
         text += (
             f"; the {response} of the others grows with "

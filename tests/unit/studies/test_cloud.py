@@ -216,6 +216,15 @@ def test_a_logistic_curve_without_a_fit_is_a_step_or_level():
         assert np.isnan(one.probability(logs)).all()
 
 
+def test_motions_of_one_intensity_have_no_fragility(base):
+    runs = made(base, seed=3)
+    rounding = 1.0 + 1e-15 * (np.arange(runs.sizes["motion"]) % 3)
+    found = rf.cloud_analysis(runs.assign_coords(strength=("motion", rounding)), "strength")
+    assert np.isnan(found.median_intensity).all()
+    assert np.isnan(found.regression_slope)
+    assert "of one intensity, for a line" in found.verdict
+
+
 def test_motions_that_are_run_twice_have_no_bounds(base):
     runs = made(base, seed=3)
     twice = xr.concat([runs, runs], "motion", data_vars="minimal", combine_attrs="override")
