@@ -18,6 +18,7 @@ from rockframe.results.variables.variable import unit_suffix_of
 from rockframe.signals.arrays import AnyArray, Array
 from rockframe.studies.confidence import read_level
 from rockframe.studies.fragility.labelling import with_stripes
+from rockframe.studies.fragility.likelihood import SAME_INTENSITY
 from rockframe.studies.fragility.trials import (
     attributes_of_system,
     check_one_structure,
@@ -113,7 +114,7 @@ class Cloud:
         """Fit a line, and logistic curves for overturning and for staying at rest."""
         overturned, moved = np.isinf(responses), responses > 0.0
         between = moved & ~overturned
-        enough = between.sum() >= _MIN_RUNS and np.ptp(logs[between]) > 0.0
+        enough = between.sum() >= _MIN_RUNS and np.ptp(logs[between]) > SAME_INTENSITY
         regression = Regression.fit(logs[between], np.log(responses[between])) if enough else None
         return cls(
             logs,
@@ -477,7 +478,7 @@ def _sentence(found: xr.Dataset, motions_repeat: bool) -> str:
     text = f"Of {count} runs {overturned} overturned"
     text += f" and {resting} show no {response}" if resting else ""
     if math.isnan(float(found["regression_slope"])):
-        text += "; too few are between for a line"
+        text += "; those between are too few, or of one intensity, for a line"
     else:
         text += (
             f"; the {response} of the others grows with "

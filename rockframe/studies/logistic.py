@@ -7,6 +7,7 @@ import numpy as np
 
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.signals.arrays import AnyArray, Array
+from rockframe.studies.fragility.likelihood import SAME_INTENSITY
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +53,8 @@ def fit_logistic(logs: Array, verdict: AnyArray) -> Logistic:
         return Logistic(FragilityStatus.NONE_EXCEEDED, *undefined)
     if exceeded.all():
         return Logistic(FragilityStatus.ALL_EXCEEDED, *undefined)
+    if np.ptp(logs) <= SAME_INTENSITY:
+        return Logistic(FragilityStatus.ONE_INTENSITY, *undefined)
     least, most = float(logs[exceeded].min()), float(logs[~exceeded].max())
     if most <= least:
         middle = np.array([0.5 * (most + least), np.inf])

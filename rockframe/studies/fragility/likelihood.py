@@ -21,6 +21,9 @@ RAY_COUNT: Final = 360
 """Rays on which the boundary of a confidence region is found."""
 ZERO_SLOPE: Final = 1e-9
 """Slope, over the spread of the logarithms of intensities, up to which it is a rounding error."""
+SAME_INTENSITY: Final = 1e-9
+"""Range of logarithms of intensities up to which it is a rounding error: they are one intensity, as
+those of motions that were scaled to it."""
 _DOUBLINGS: Final = 30
 """Number of times that the length of a ray is doubled; if its end is then still within the region,
 the region is unbounded along the ray."""
@@ -214,14 +217,16 @@ def boundary(trials: Trials, found: Fit, level: float) -> Array:
     The range of any function of the coefficients in this region is its interval by profile
     likelihood. The likelihood of separated trials has a bound but no maximum, and the region is
     unbounded towards small dispersions: its boundary is set there where the dispersion is almost
-    zero.
+    zero. This likelihood is itself the probability of the verdicts, so that both coefficients are
+    rejected together, where it is below `1 - level` of its bound, :eq:`eq-fragility-separated`.
     """
     from scipy import linalg
     from scipy.special import chdtri
 
-    drop = float(chdtri(1.0, 1.0 - level))
+    separated = found.status is FragilityStatus.SEPARATED
+    drop = float(chdtri(2.0 if separated else 1.0, 1.0 - level))
     best, observed = found.coefficients, found.information
-    if found.status is FragilityStatus.SEPARATED:
+    if separated:
         best, observed, greatest = _point_within_region(trials, 0.25 * drop)
     else:
         greatest = float(log_likelihood(trials, best[:, None])[0])
@@ -257,7 +262,7 @@ def boundary(trials: Trials, found: Fit, level: float) -> Array:
                 break
         length[part] = reach
     edge = best[:, None] + length * rays
-    if found.status is not FragilityStatus.SEPARATED:
+    if not separated:
         return edge
     far = np.stack([np.array([-end, 1.0]) for end in gap(trials) or (0.0, 0.0)], axis=1)
     return np.concatenate([edge, best[:, None] + 2.0**_DOUBLINGS * far], axis=1)
@@ -313,7 +318,8 @@ def _why_no_maximum(trials: Trials) -> FragilityStatus | None:
         return FragilityStatus.ALL_EXCEEDED
     upper, lower = _design(trials)
     ends = np.concatenate([upper[trials.has_upper], lower[trials.has_lower]])
-    if np.linalg.matrix_rank(ends - ends.mean(axis=0)) < trials.measures:
+    rounding = SAME_INTENSITY * math.sqrt(len(ends))
+    if np.linalg.matrix_rank(ends - ends.mean(axis=0), rounding) < trials.measures:
         return FragilityStatus.ONE_INTENSITY
     signed = np.concatenate([upper[trials.has_upper], -lower[trials.has_lower]])
     signed = np.unique(signed, axis=0)

@@ -14,6 +14,7 @@ from rockframe.errors import StudyError
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.signals.arrays import AnyArray, Array
 from rockframe.studies.fragility.likelihood import (
+    SAME_INTENSITY,
     ZERO_SLOPE,
     Bands,
     Fit,
@@ -49,9 +50,12 @@ def ordered_fits(
     ranks = ranks.max() - ranks
     first = [int(np.flatnonzero(ranks == k)[0]) for k in range(ranks.max() + 1)]
     count = np.asarray(verdicts[informative][first].sum(axis=0), dtype=np.intp)
-    best = _maximum_likelihood(logs, count, len(first))
+    one_intensity = np.ptp(logs) <= SAME_INTENSITY
+    best = None if one_intensity else _maximum_likelihood(logs, count, len(first))
     if best is None or best[-1] * float(logs.std()) <= ZERO_SLOPE:
         status = FragilityStatus.SEPARATED if best is None else FragilityStatus.NOT_RISING
+        if one_intensity:
+            status = FragilityStatus.ONE_INTENSITY
         return [
             Fit.none(status, 1) if one else f for one, f in zip(informative, found, strict=True)
         ]
@@ -104,7 +108,7 @@ def _maximum_likelihood(
     from scipy.special import ndtri
 
     middle, spread = float(logs.mean()), float(logs.std())
-    if spread == 0.0:
+    if spread <= SAME_INTENSITY:
         return None
     scaled = (logs - middle) / spread
     if start is None:

@@ -226,6 +226,14 @@ def test_the_cheapest_rung_that_meets_the_tolerance(tolerance, rung, met):
     assert ("No rung tried" in str(advice)) == (not met)
 
 
+def test_a_part_of_a_comparison_in_any_order_of_dimensions(measured):
+    best = rf.recommend(measured, 0.01)
+    assert rf.recommend(measured.transpose("accuracy", "model"), 0.01) == best
+    chosen = measured.sel(accuracy=best.accuracy)
+    assert rf.recommend(chosen, 0.01).model == best.model
+    assert rf.recommend(chosen.sel(model=best.model), 0.01).met
+
+
 def test_an_error_as_large_as_the_tolerance_meets_it():
     assert rf.recommend(made(TIMES, ERRORS), 0.1).accuracy == "standard"
 

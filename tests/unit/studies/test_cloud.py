@@ -210,6 +210,19 @@ def test_a_logistic_curve_without_a_fit_is_a_step_or_level():
     assert fit_logistic(logs, np.zeros(4)).probability(logs).tolist() == [0.0] * 4
     assert fit_logistic(logs, np.ones(4)).probability(logs).tolist() == [1.0] * 4
     assert fit_logistic(logs, np.array([1, 1, 0, 0])).status is FragilityStatus.NOT_RISING
+    for same in (np.zeros(4), 1e-15 * logs):  # motions that were scaled to one intensity
+        one = fit_logistic(same, np.array([0, 1, 0, 1]))
+        assert one.status is FragilityStatus.ONE_INTENSITY
+        assert np.isnan(one.probability(logs)).all()
+
+
+def test_motions_of_one_intensity_have_no_fragility(base):
+    runs = made(base, seed=3)
+    rounding = 1.0 + 1e-15 * (np.arange(runs.sizes["motion"]) % 3)
+    found = rf.cloud_analysis(runs.assign_coords(strength=("motion", rounding)), "strength")
+    assert np.isnan(found.median_intensity).all()
+    assert np.isnan(found.regression_slope)
+    assert "of one intensity, for a line" in found.verdict
 
 
 def test_motions_that_are_run_twice_have_no_bounds(base):

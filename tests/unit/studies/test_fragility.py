@@ -210,8 +210,9 @@ def test_what_has_no_fit_says_so():
     few = of_counts(([1.0, 2.0, 4.0], "m/s^2"), [0, 0, 1], 1)
     bounds = [few[name] for name in few if str(name).endswith("_bound")]
     assert all(np.isnan(one).all() for one in bounds if not one.name.startswith("stripe"))
-    one = of_counts(([2.0, 2.0], "m/s^2"), [1, 2], 5)
-    assert one.fragility_status.item() == FragilityStatus.ONE_INTENSITY
+    for rounding in (0.0, 1e-15):  # of motions that were scaled to the intensity
+        one = of_counts(([2.0, 2.0 + rounding, 2.0], "m/s^2"), [1, 2, 3], 5)
+        assert one.fragility_status.item() == FragilityStatus.ONE_INTENSITY
     reversed_ = of_counts(([1.0, 2.0], "m/s^2"), [5, 0], 5)
     assert reversed_.fragility_status.item() == FragilityStatus.NOT_RISING
 

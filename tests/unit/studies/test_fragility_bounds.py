@@ -129,7 +129,7 @@ def test_separated_counts_have_the_bounds_of_their_likelihood():
         {"intensity": ([1.0, 2.0, 3.0, 4.0], "m/s^2"), "exceeded": [0, 0, 3, 5], "trials": 5}
     )
     assert found.fragility_status == FragilityStatus.SEPARATED
-    drop = stats.chi2.ppf(0.95, 1)
+    drop = -2.0 * np.log(0.05)
     dispersions = np.geomspace(0.01, 1.0, 400)[:, None, None]
     medians = np.linspace(2.0, 4.0, 401)[None, :, None]
     eta = np.log(np.array([1.0, 2.0, 3.0, 4.0]) / medians) / dispersions
@@ -144,6 +144,26 @@ def test_separated_counts_have_the_bounds_of_their_likelihood():
     assert found.dispersion_upper_bound == pytest.approx(dispersions[rows.max(), 0, 0], rel=0.02)
     assert found.dispersion_lower_bound == 0.0
     assert "the median lies from" in found.verdict
+
+
+def test_bounds_of_single_runs_hold_also_where_an_intensity_separates_them():
+    """One sample in three of ten runs is separated, and has bounds like the others."""
+    rng, samples, runs = np.random.default_rng(5), [], 10
+    for _ in range(150):
+        logs = 0.6 * rng.standard_normal(runs)
+        over = (0.4 * rng.standard_normal(runs) < logs).astype(float)
+        trials = Trials.from_verdicts(logs[:, None], over, np.ones(runs))
+        samples.append(StructureTrials(trials, None, 0, runs))
+    found = fragility_dataset(
+        samples, {"limit_state": len(samples)}, [MEASURE], BoundSettings(Bands.PROFILE, 0.95),
+        {"trials": "runs"},
+    )  # fmt: skip
+    bounded = found.dispersion_upper_bound.notnull()
+    separated = found.fragility_status == FragilityStatus.SEPARATED
+    assert bounded.where(separated).sum() == separated.sum() > 0
+    for name, truth in (("median_intensity", 1.0), ("dispersion", 0.4)):
+        inside = (found[f"{name}_lower_bound"] <= truth) & (found[f"{name}_upper_bound"] >= truth)
+        assert float(inside[bounded].mean()) >= 0.9, name
 
 
 def test_brackets_have_the_bounds_of_their_likelihood():

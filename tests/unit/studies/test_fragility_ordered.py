@@ -114,6 +114,9 @@ def test_limit_states_without_a_fit_leave_the_others():
     parted = np.stack([logs > -0.2, logs > 0.3]).astype(float)
     fits = ordered_fits(logs, parted, np.arange(len(logs)), NAMES[:2], Bands.SANDWICH)
     assert fits[0].status is FragilityStatus.SEPARATED
+    same = 1e-15 * logs
+    fits = ordered_fits(same, verdicts[:2], np.arange(len(logs)), NAMES[:2], Bands.SANDWICH)
+    assert {one.status for one in fits} == {FragilityStatus.ONE_INTENSITY}
 
 
 def test_what_has_no_order_is_refused():
