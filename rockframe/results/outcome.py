@@ -205,7 +205,7 @@ def scalars(
     angles = setting.overturning_angles
     # peaks of a body that did not move have no negative zeros
     sides: dict[str, AnyArray | float] = {}
-    if setting.is_asymmetric:
+    if setting.leans:
         sides = {
             "left_overturning_angle": angles.left,
             "right_overturning_angle": angles.right,
@@ -277,7 +277,7 @@ def verdict(run: Summary, setting: Setting, model: ContactModel) -> str:
         key=lambda peak: peak[0],
     )
     peak = f"peak rotation {rotation:.4g} rad, {100.0 * share:.3g} % of the overturning angle{of}"
-    if setting.is_asymmetric and rotation > 0.0:
+    if setting.leans and rotation > 0.0:
         peak += f" to the {side.name.lower()}"
     if run.other_rotation_ratio > (1.0 + EQUAL_SHARES) * share:
         peak += f", a lower body {100.0 * run.other_rotation_ratio:.3g} % of its own"

@@ -22,7 +22,7 @@ def equilibrium(system: Assembly) -> xr.Dataset:
     values: dict[str, float] = {
         name: value for name, value in setting.equilibrium().items() if name in SCHEMA
     }
-    if setting.is_asymmetric:
+    if setting.leans:
         left, right = setting.overturning_angles
         values |= {
             "left_overturning_angle": left,

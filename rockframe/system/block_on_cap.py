@@ -98,7 +98,7 @@ class BlockOnCapSetting(Setting):
         """Rotations and heights of block and cap at rest, for the coupled equations."""
         from rockframe.dynamics.coupled.model import UPRIGHT, StackRest
 
-        if not self.is_asymmetric:
+        if not self.leans:
             return UPRIGHT
         block, cap = (pose.state for pose in self._rest)
         return StackRest(block.rotation, block.vertical, cap.rotation, cap.vertical)
@@ -195,7 +195,7 @@ class CoupledSetting(BlockOnCapSetting):
     def equilibrium(self) -> dict[str, float]:
         """Return settlements and reactions at rest, by their names in the schema."""
         found = super().equilibrium()
-        if not self.is_asymmetric:
+        if not self.leans:
             return found
         return found | static_values(self._effective_statics.reactions(self._rest))
 
@@ -232,7 +232,7 @@ class SlidingCoupledSetting(CoupledSetting):
         from rockframe.dynamics.chain.on_cap import block_on_cap
 
         rest = None
-        if self.is_asymmetric:
+        if self.leans:
             rest = [AtRest(one.state.rotation, one.state.vertical) for one in self._rest]
         return block_on_cap(*self.bodies(), self.body.mass, rest, self.frictions)
 

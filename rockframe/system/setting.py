@@ -63,7 +63,7 @@ class Setting(ABC):
     slope: Incline = field(init=False, repr=False, compare=False)
     # whether the body is not symmetric, or stands on a slope; rotations of unstable equilibrium to
     # either side, relative to the base line [rad]
-    is_asymmetric: bool = field(init=False, repr=False, compare=False)
+    leans: bool = field(init=False, repr=False, compare=False)
     overturning_angles: OverturningAngles = field(init=False, repr=False, compare=False)
     stacked: ClassVar[bool] = False
     """Whether the body stands on pads on a cap on soil."""
@@ -86,7 +86,7 @@ class Setting(ABC):
         body, options = self.load.body, self.load.options
         vars(self).update(
             body=body, options=options, gravity=options.gravity, slope=options.slope,
-            is_asymmetric=body.eccentricity != 0.0 or not options.slope.level,
+            leans=body.eccentricity != 0.0 or not options.slope.level,
             overturning_angles=self.load.overturning_angles,
         )  # fmt: skip
 
@@ -99,7 +99,7 @@ class Setting(ABC):
     def overturning_rotations(self) -> tuple[float, ...]:
         """Rotations of unstable equilibrium, with signs; one for both sides if symmetric [rad]."""
         left, right = self.overturning_angles
-        return (right, -left) if self.is_asymmetric else (right,)
+        return (right, -left) if self.leans else (right,)
 
     @property
     @abstractmethod

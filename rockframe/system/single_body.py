@@ -51,7 +51,7 @@ class SingleBodySetting(Setting):
     @cached_property
     def rest_rotation(self) -> float:
         """Rotation of the body at rest under its weight; :eq:`eq-incline-lean` if small [rad]."""
-        if not self.is_asymmetric:
+        if not self.leans:
             return 0.0
         found = self.support.standing.rest
         if found is None:
@@ -123,7 +123,7 @@ class SlidingBodySetting(SingleBodySetting):
         from rockframe.dynamics.chain.model import AtRest, ChainBody, chain_model
 
         body, rest = self.load.rigid_body, None
-        if self.is_asymmetric and self.support.standing.rest is not None:
+        if self.leans and self.support.standing.rest is not None:
             state = self.support.standing.rest[0].state
             rest = [AtRest(state.rotation, state.vertical)]
         one = ChainBody(body, self.support.base_numbers, 1.0, 0.0, 0.0)

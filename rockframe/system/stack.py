@@ -69,7 +69,7 @@ class StackSetting(Setting):
         # bodies, offsets, links or a slope make left and right differ
         eccentric = any(body.eccentricity != 0.0 for body in self.bodies)
         upright = self.slope.level and not (eccentric or any(self.offsets) or self.links)
-        vars(self).update(is_asymmetric=not upright)
+        vars(self).update(leans=not upright)
 
     @property
     def model(self) -> str:
@@ -311,7 +311,7 @@ class StackSetting(Setting):
     @cached_property
     def rest_rotation(self) -> float:
         """Rotation of the highest body at rest [rad]."""
-        return math.fsum(one.state.rotation for one in self._rest) if self.is_asymmetric else 0.0
+        return math.fsum(one.state.rotation for one in self._rest) if self.leans else 0.0
 
     @cached_property
     def uplift_angle(self) -> float:
@@ -405,7 +405,7 @@ class StackSetting(Setting):
         limits = [whole.overturning_angles for whole in self.joined_bodies]
         one_linked_body = bool(self.links) and len(self.bodies) == 1 and bool(self.groups)
         return chain_model(
-            self.chain_bodies, self.body.mass, rest if self.is_asymmetric else None, limits,
+            self.chain_bodies, self.body.mass, rest if self.leans else None, limits,
             self.chain_links, self._equilibrium_height if one_linked_body else None,
             self.frictions,
         )  # fmt: skip

@@ -88,7 +88,7 @@ def describe(
     `written` has names and words for the parts, in place of their notation in Python.
     """
     words, theta = setting.words(), angle_words(setting.overturning_angle)
-    angles = _asymmetric_rows(setting) if setting.is_asymmetric else [(_OVERTURNING_ANGLE, theta)]
+    angles = _asymmetric_rows(setting) if setting.leans else [(_OVERTURNING_ANGLE, theta)]
     whose = "body 1: " if setting.joined_bodies else ""
     sections = {
         "Parts": [("", repr(part)) for part in parts] if written is None else [*written],

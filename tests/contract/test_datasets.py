@@ -589,7 +589,7 @@ def test_a_verdict_in_words(found, pads_on_cap, words):
     )
     angles = OverturningAngles(0.2, 0.2)
     setting = SimpleNamespace(
-        overturning_angles=angles, is_asymmetric=False, stacked=pads_on_cap, slips_of=lambda _: []
+        overturning_angles=angles, leans=False, stacked=pads_on_cap, slips_of=lambda _: []
     )
     model = SimpleNamespace(
         system=None, links=0, shows_bodies=False, rotation_in=lambda _: 0.1,
@@ -600,7 +600,7 @@ def test_a_verdict_in_words(found, pads_on_cap, words):
     upper = verdict(replace(summary, first_uplift_time=math.nan), setting, of_several)
     assert pads_on_cap or "1 impact, no uplift of body 1." in upper
     if not summary.overturned and summary.status.finished and not found:
-        setting.overturning_angles, setting.is_asymmetric = OverturningAngles(0.2, 0.025), True
+        setting.overturning_angles, setting.leans = OverturningAngles(0.2, 0.025), True
         told = verdict(summary, setting, model)
         assert "peak rotation 0.005 rad, 20 % of the overturning angle to the right;" in told
 
