@@ -8,9 +8,8 @@ from typing import Final, Protocol
 
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.body import BodyState
-from rockframe.dynamics.on_base import Mode, VelocityChange
+from rockframe.dynamics.on_base import Mode, VelocityChange, blend
 from rockframe.dynamics.protocol import Ground
-from rockframe.dynamics.sliding import blend
 
 ROTATION: Final = 0
 VERTICAL: Final = 1

@@ -3,9 +3,17 @@
 One equation of motion, :eq:`eq-two-spring`, serves all contact states and all bases: the
 paper's Eqs. (12), (15), (18) and (19), corrected, are its special cases. Events are
 carried out in :mod:`rockframe.dynamics.switching`. All quantities per unit mass.
+
+An end can land while the horizontal restraint that its contact causes would lift it off again.
+Then neither contact nor flight is a solution: a held end lifts off, a free one lands again. The
+restraint can act only while the end presses, so its impulse ends when the end's speed equals that
+of the base beneath it, :eq:`eq-partial-hold`. With the rest of its slip the end *slides*: it
+remains at its level with no reaction, and the held point slips against a force that is just large
+enough to keep the end there, :eq:`eq-sliding-contact`.
 """
 
 import math
+import sys
 from typing import Any, Final, NamedTuple
 
 from rockframe.compiled import constant, inlined, kernel
@@ -23,7 +31,6 @@ from rockframe.dynamics.body import (
 )
 from rockframe.dynamics.events import FLIGHT, FULL, LEFT, RIGHT
 from rockframe.dynamics.protocol import Ground
-from rockframe.dynamics.sliding import NEGLIGIBLE_LIFT
 
 # guards of a body, behind those of both ends of its base
 HOLD: Final = 0  # of a sliding end: the force of the hold that keeps it at its level
@@ -37,6 +44,13 @@ SLIDING_BIT: Final = 4
 CONTACT_SHIFT: Final = 3
 MODES_PER_CONTACT: Final = 1 << CONTACT_SHIFT
 """Modes of each contact."""
+
+SPEED_ROUNDING: Final = 16.0 * sys.float_info.epsilon
+"""Rounding noise of an end's speed, over the sum of the sizes of its two parts [1]."""
+NEGLIGIBLE_LIFT: Final = 1e-7
+"""Speed at which a hold lifts an end, over that of the slip, that is negligible [1]."""
+LIFT_OFF_NOISE: Final = 1e3
+"""Excess speed of a sliding end over its rounding noise above which it lifts off [1]."""
 
 
 class Mode(NamedTuple):
@@ -312,3 +326,41 @@ class BodyOnBase(NamedTuple):
         reach = self.body.reach(self.body.pin(mode.pivot), attitude).derivative
         angular = (moment + reach * slip) / (self.body.inertia + reach * reach)
         return VelocityChange(angular, impulse, reach * angular - slip, ())
+
+
+@inlined
+def speed_noise(speed: float, lever: float, angular_velocity: float) -> float:
+    """Return the rounding noise of an end's speed, the sum of two velocities."""
+    return SPEED_ROUNDING * (abs(speed) + abs(lever * angular_velocity))
+
+
+@inlined
+def is_lifted(before: float, after: float, noise: float) -> bool:
+    """Whether a hold would stop or lift an end that comes down, by its speeds before and after.
+
+    An end that rises, though by rounding below its level, is about to lift off anyway.
+    """
+    return before <= noise and after >= -noise
+
+
+@inlined
+def share_at_lift_off(before: float, after: float) -> float:
+    """Return the share of the hold's impulse that stops a landing end, :eq:`eq-partial-hold`.
+
+    `before` and `after` are the end's speeds without the impulse and with all of it.
+    """
+    if before >= 0.0:
+        return 0.0
+    return min(before / (before - after), 1.0) if before < after else 1.0
+
+
+@inlined
+def blend(before: float, after: float, share: float) -> float:
+    """Return a rate after a share of an impulse, from the rates without and with all of it."""
+    return before + share * (after - before)
+
+
+@inlined
+def loss_share(share: float) -> float:
+    """Return the energy loss of a share of a plastic impulse, over that of the whole one [1]."""
+    return share * (2.0 - share)

@@ -23,21 +23,25 @@ from rockframe.dynamics.events import (
     SEPARATION,
     SILENT,
 )
-from rockframe.dynamics.on_base import HOLD, PIVOT, SLIP, BodyOnBase, Mode
+from rockframe.dynamics.on_base import (
+    HOLD,
+    LIFT_OFF_NOISE,
+    PIVOT,
+    SLIP,
+    BodyOnBase,
+    Mode,
+    blend,
+    is_lifted,
+    loss_share,
+    share_at_lift_off,
+    speed_noise,
+)
 from rockframe.dynamics.protocol import (
     HELD_PLACE,
     IMPACT_LOSS,
     LAST_EVENT,
     REPINNING_LOSS,
     Ground,
-)
-from rockframe.dynamics.sliding import (
-    LIFT_OFF_NOISE,
-    blend,
-    is_lifted,
-    loss_share,
-    share_at_lift_off,
-    speed_noise,
 )
 
 

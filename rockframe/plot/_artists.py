@@ -26,7 +26,6 @@ from rockframe.plot._panels import NO_BREAK, Axes
 from rockframe.results.points import Placement
 from rockframe.signals.arrays import Array
 from rockframe.system.geometry import Geometry, LinkedPoints
-from rockframe.system.links import link_labels
 from rockframe.system.parts import Parts
 from rockframe.units.display import DisplayUnits, with_superscripts
 
@@ -433,7 +432,7 @@ def part_labels(parts: Parts, geometry: Geometry, units: DisplayUnits) -> dict[s
         found["ground"] = found.pop("pads")
     elif geometry.soil_settlement is None:
         found["ground"] = ["rigid ground", *_parameter_texts(parts.components.get("ground"), units)]
-    for number, (name, link) in enumerate(zip(link_labels(parts.links), parts.links, strict=True)):
+    for number, (name, link) in enumerate(parts.named_links):
         lines = [as_label(name), *_parameter_texts(link, units, _DRAWN_ARGUMENTS)]
         if number < len(geometry.links):
             found[f"tie {number}"] = lines[:1] if link is parts.wall else lines

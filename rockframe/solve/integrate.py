@@ -44,7 +44,7 @@ from rockframe.solve.equations import (
     runs_as_python,
     steps_are_compiled,
 )
-from rockframe.solve.outputs import OutputRows
+from rockframe.solve.observe import OutputRows
 from rockframe.solve.schemes import STAGES
 from rockframe.solve.trajectory import Events, Steps, Trajectory, steps_of, summary_fields
 from rockframe.solve.workspace import (

@@ -17,7 +17,6 @@ from rockframe.components import (
 )
 from rockframe.components.bases import Impact
 from rockframe.components.block_numbers import BlockSI, squat_body_warnings
-from rockframe.system.links import link_labels
 from rockframe.system.options import Coupling, Options, Restraint, Sliding
 from rockframe.system.own_base import OwnBase
 from rockframe.system.parts import Parts, slot_of_class
@@ -208,7 +207,7 @@ def _outside_point_cautions(parts: Parts) -> list[str]:
     """
     messages = list[str]()
     bodies = _linked_bodies(parts)
-    for name, link in zip(link_labels(parts.links), parts.links, strict=True):
+    for name, link in parts.named_links:
         points = list[tuple[int | None, tuple[float, float]]]()
         if isinstance(link, PointLink):
             points = [(link.si.on_body, link.si.on), (link.si.to_body, link.si.to)]
@@ -232,7 +231,7 @@ def _tendon_and_wall_faults(parts: Parts) -> list[str]:
     """Return the faults of tendons and walls that miss their bodies."""
     faults = list[str]()
     bodies = _linked_bodies(parts)
-    for name, link in zip(link_labels(parts.links), parts.links, strict=True):
+    for name, link in parts.named_links:
         if not isinstance(link, Tendon | RearWall) or link.si.on_body > len(bodies):
             continue
         body = bodies[link.si.on_body - 1]
@@ -278,7 +277,7 @@ def unused_option_cautions(parts: Parts, options: Options) -> list[str]:
             f"sliding={str(options.sliding)!r} changes nothing here: no base has a friction that "
             "could be compared with what is needed"
         )
-    for name, link in zip(link_labels(parts.links), parts.links, strict=True):
+    for name, link in parts.named_links:
         if not isinstance(link, Restrainer | Tendon) or link.si.strength is not None:
             continue
         ends = getattr(link.si, "breaking_elongation", None) is not None

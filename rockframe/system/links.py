@@ -12,6 +12,7 @@ from rockframe.dynamics.chain.link_rows import ChainLink
 from rockframe.dynamics.links import Bumper, LinkNumbers, SteadyForce, Tie
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import SupportedBody
+from rockframe.system.parts import link_labels
 
 
 class OwnLink(PointLink):
@@ -260,14 +261,6 @@ def _end_points(
         return (x, y), (x + part.direction * (part.si.gap or 0.0), y)
     point = (x + part.si.at[0], y + part.si.at[1])
     return point, point
-
-
-def link_labels(parts: Sequence[Link]) -> list[str]:
-    """Return the names of links in results: their own, or a number."""
-    return [
-        part.si.name or f"{'load' if isinstance(part, Load) else 'restrainer'} {i}"
-        for i, part in enumerate(parts, 1)
-    ]
 
 
 def axis_name(name: str) -> str:

@@ -150,6 +150,14 @@ def _registration_hint(kind: type) -> str:
     return "is no OwnBase; derive it from rockframe.extension.OwnBase, and register it"
 
 
+def link_labels(parts: Sequence[Link]) -> list[str]:
+    """Return the names of links in results: their own, or a number."""
+    return [
+        part.si.name or f"{'load' if isinstance(part, Load) else 'restrainer'} {i}"
+        for i, part in enumerate(parts, 1)
+    ]
+
+
 @dataclass(frozen=True)
 class Parts:
     """The parts of a scene by their slots; a shipped slot that is empty is None."""
@@ -231,6 +239,11 @@ class Parts:
         """Return the parts, with rigid ground if no base is given."""
         bases = {"pads", "soil", "ground"}.intersection(self.components)
         return self if bases or self.own else self.replace(ground=RigidGround())
+
+    @property
+    def named_links(self) -> list[tuple[str, Link]]:
+        """All links with their names in results."""
+        return list(zip(link_labels(self.links), self.links, strict=True))
 
     @property
     def block_si(self) -> BlockSI:

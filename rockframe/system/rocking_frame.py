@@ -15,9 +15,9 @@ from rockframe.dynamics.protocol import ContactModel
 from rockframe.errors import AssemblyError
 from rockframe.signals.arrays import Array
 from rockframe.system.bodies import BaseLoad, CornerSupportedBody, Restitutions, base_restitution
-from rockframe.system.links import duplicate_name_faults, link_labels, tie_law, tie_law_words
+from rockframe.system.links import duplicate_name_faults, tie_law, tie_law_words
 from rockframe.system.options import Options
-from rockframe.system.parts import Parts
+from rockframe.system.parts import Parts, link_labels
 from rockframe.system.rigid_ground import RigidGroundSetting, refuse_fall
 from rockframe.system.stack import refuse_options
 from rockframe.system.statics import Statics

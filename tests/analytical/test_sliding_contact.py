@@ -12,9 +12,9 @@ from scipy.integrate import solve_ivp
 from rockframe.dynamics.base_numbers import bed_numbers, pads_numbers
 from rockframe.dynamics.body import CENTRE
 from rockframe.dynamics.events import EventKind
+from rockframe.dynamics.on_base import is_lifted, speed_noise
 from rockframe.dynamics.protocol import Start
 from rockframe.dynamics.single_body import rigid_body, single_body
-from rockframe.dynamics.sliding import is_lifted, speed_noise
 from rockframe.signals import Motion
 from rockframe.solve.accuracy import accuracy_of
 from rockframe.solve.integrate import integrate

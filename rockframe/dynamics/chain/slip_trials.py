@@ -27,8 +27,7 @@ from rockframe.dynamics.chain.rigid import RigidChain
 from rockframe.dynamics.chain.rows import BODY_STRIDE, CONSTRAINT_STRIDE, MAX_CONSTRAINTS
 from rockframe.dynamics.chain.slippery import SlipperyBases
 from rockframe.dynamics.chain.slips import IMPULSIVE, KINETIC, MAX_SLIP_CHANGES, ROUNDING, STATIC
-from rockframe.dynamics.on_base import Mode
-from rockframe.dynamics.sliding import SPEED_ROUNDING
+from rockframe.dynamics.on_base import SPEED_ROUNDING, Mode
 
 NO_PIVOT: Final = -1
 """In place of a pivot, where a body neither slips nor is held by friction."""

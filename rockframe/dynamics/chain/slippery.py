@@ -22,10 +22,9 @@ from rockframe.dynamics.chain.rows import BODY_STRIDE
 from rockframe.dynamics.chain.slips import IMPULSIVE, SlippingBodies
 from rockframe.dynamics.coulomb import ImpulseResponse, coulomb_impulse
 from rockframe.dynamics.events import IMPACT, PIVOT_CHANGE, REENGAGEMENT, SEPARATION, SILENT
-from rockframe.dynamics.on_base import Mode
+from rockframe.dynamics.on_base import SPEED_ROUNDING, Mode
 from rockframe.dynamics.pads import CORNER_GUARDS
 from rockframe.dynamics.protocol import IMPACT_LOSS, LAST_EVENT, Ground
-from rockframe.dynamics.sliding import SPEED_ROUNDING
 from rockframe.dynamics.switching import end_speed, next_pivot
 
 

@@ -18,9 +18,8 @@ from rockframe.dynamics.chain.motion import add_tangential_load
 from rockframe.dynamics.chain.rows import BODY_STRIDE, COLUMNS
 from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.events import SILENT
-from rockframe.dynamics.on_base import Mode, SlidingGuards
+from rockframe.dynamics.on_base import SPEED_ROUNDING, Mode, SlidingGuards
 from rockframe.dynamics.protocol import HELD_PLACE, Ending, Slope
-from rockframe.dynamics.sliding import SPEED_ROUNDING
 
 # coefficients of friction [1]
 STATIC: Final = 0

@@ -13,7 +13,6 @@ from rockframe.simulation.plan import Plan
 from rockframe.solve.accuracy import LEVELS, Accuracy, AccuracyLevel
 from rockframe.system.assembly import Assembly, assemble_parts
 from rockframe.system.bodies import OverturningAngles
-from rockframe.system.links import link_labels
 
 FIRST_SHARES: Final = (0.25, 0.5)
 """First changes of scale, as shares of the nudge."""
@@ -39,8 +38,8 @@ def parameters(system: Assembly) -> Iterator[tuple[str, SceneAt]]:
 
         return at
 
-    links = parts.links
-    labels = dict(zip(map(id, links), link_labels(links), strict=True)) if len(links) > 1 else {}
+    named = parts.named_links
+    labels = {id(link): name for name, link in named} if len(named) > 1 else {}
     for slot, part in parts.components.items():
         owner = labels.get(id(part), f"the {part.noun}")
         for name in part.parameters():

@@ -30,7 +30,7 @@ from rockframe.studies.sweeps.axes import (
 from rockframe.studies.sweeps.identity import name_of_function
 from rockframe.studies.sweeps.motions import MOTION_AXES, full_name, named_motions
 from rockframe.system.assembly import Assembly, assemble_parts
-from rockframe.system.links import axis_name, link_labels
+from rockframe.system.links import axis_name
 from rockframe.system.options import NUMERIC_OPTIONS, Coupling, Restraint, Rotation, Sliding
 from rockframe.units import Measure, Unit, quantity
 
@@ -174,9 +174,7 @@ class SystemScene:
 
         A link first what results call it, in one word: "restrainer 1" is restrainer_1.
         """
-        links = self.assembly.parts.links
-        labels = zip(links, link_labels(links), strict=True)
-        own = [name for one, name in labels if one is part]
+        own = [name for name, one in self.assembly.parts.named_links if one is part]
         kinds = [kind for kind in type(part).__mro__ if issubclass(kind, Component)]
         words = map(axis_name, own)
         return [*words, *own, *(kind.__name__ for kind in kinds if kind != Component)]
