@@ -160,7 +160,9 @@ def test_units_do_not_matter():
     assert run.rotation.values == pytest.approx(whole_of("pads").rotation.values, abs=1e-9)
 
 
-@pytest.mark.parametrize("base", ["ground", "pads", "stack", "cap"])
+@pytest.mark.parametrize(
+    "base", ["ground", "pads", "stack", pytest.param("cap", marks=pytest.mark.wide)]
+)
 def test_the_greatest_slip_is_that_of_the_run_that_goes_on(base):
     block = rf.Block(width="1 m", height="2 m", mass="4 t")
     statue, pads = rf.Block(width="0.5 m", height="1 m", mass="1 t"), PADS.replace(friction=0.25)
