@@ -20,6 +20,7 @@ from unit.dimensional_arguments import (
 import rockframe as rf
 from rockframe.errors import ComponentError, RockframeError
 from rockframe.units import LENGTH, to_si_values
+from rockframe.units.spelling import pint_spelling
 
 pytestmark = pytest.mark.unit
 
@@ -458,3 +459,18 @@ def test_accelerations_are_converted(text, expected):
 @pytest.mark.parametrize("text", ["60 /min", "1 Hz", "1000 mHz", "1/s"])
 def test_frequencies_are_converted(text):
     assert make_pulse(frequency=text).si.duration == pytest.approx(1.0, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("written", "read"),
+    [
+        ("50 in.", "50.0 in"),
+        ("5 t.m^2", "5.0 t*m^2"),
+        ("3 lb.in.", "3.0 lb*in"),
+        ("2 m^0.5", "2.0 m^0.5"),
+        ("3 ft./s", "3.0 ft/s"),
+    ],
+)
+def test_dots_of_units_are_products_or_those_of_abbreviations(written, read):
+    """Versions of pint read dots differently, or not at all."""
+    assert pint_spelling(written) == read
