@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rockframe.compiled.callbacks import PythonCallback
 from rockframe.compiled.language import Vector, tuple_from
 
 if TYPE_CHECKING:
@@ -87,11 +86,6 @@ class BoundSource:
         from rockframe.compiled.jobs import Job
 
         return Job(self.function, self.structure, True, self.in_lanes)
-
-    @cached_property
-    def callback(self) -> PythonCallback:
-        """The Python function that machine code calls as long as this is not compiled."""
-        return PythonCallback(self)
 
     @cached_property
     def signature(self) -> Signature:

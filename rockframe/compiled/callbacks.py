@@ -9,13 +9,12 @@ import ctypes
 import inspect
 import threading
 from collections.abc import Callable
+from functools import cache
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, Final, get_type_hints
+from typing import Any, Final, get_type_hints
 
+from rockframe.compiled.bound import BoundSource
 from rockframe.compiled.language import Integers, ReadOnlyMatrix, Vector, tuple_from
-
-if TYPE_CHECKING:
-    from rockframe.compiled.bound import BoundSource
 
 _WORD: Final = ctypes.c_int64
 _NUMBERS: Final[dict[Any, Any]] = {int: _WORD, float: ctypes.c_double, type(None): None}
@@ -40,7 +39,7 @@ _raised: Final = _Raised()
 class PythonCallback:
     """A bound function that runs as plain Python and has an address for machine code to call."""
 
-    def __init__(self, source: "BoundSource") -> None:
+    def __init__(self, source: BoundSource) -> None:
         make_tuple = tuple_from(source.structure)
         hints = get_type_hints(source.function, include_extras=True)
         names = [*inspect.signature(source.function).parameters][1:]
@@ -62,6 +61,10 @@ class PythonCallback:
 
         self._c_function = ctypes.CFUNCTYPE(_NUMBERS[hints["return"]], *words)(callback)
         self.address = ctypes.cast(self._c_function, ctypes.c_void_p).value or 0
+
+
+python_callback = cache(PythonCallback)
+"""The Python function that machine code calls as long as a bound function is not compiled."""
 
 
 def _arguments(types: list[Any], words: tuple[Any, ...]) -> list[Any]:

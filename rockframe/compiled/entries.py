@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Final, ParamSpec, TypeVar, cast
 import numpy as np
 
 from rockframe.compiled.bound import BoundFunction, BoundSource
-from rockframe.compiled.callbacks import run_and_raise
+from rockframe.compiled.callbacks import python_callback, run_and_raise
 from rockframe.compiled.language import PURPOSE, PYTHON_SECONDS, REMAINING_SECONDS, Vector, inlined
 
 if TYPE_CHECKING:
@@ -178,7 +178,7 @@ class Entry:
             with compilation or nullcontext():
                 return self._plain(*arguments)
         words = [
-            word.address or word.callback.address if isinstance(word, BoundSource) else word
+            word.address or python_callback(word).address if isinstance(word, BoundSource) else word
             for word in words
         ]
         return run_and_raise(routine, words)

@@ -7,7 +7,7 @@ elongation, which is lost in rounding.
 
 import math
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -22,9 +22,7 @@ from rockframe.dynamics.body_statics import (
 )
 from rockframe.dynamics.chain.link_rows import ChainLink
 from rockframe.dynamics.link_statics import LinkForce, is_broken, static_link_force
-
-if TYPE_CHECKING:
-    from rockframe.dynamics.statics import StandingChain
+from rockframe.dynamics.loaded_chain import LoadedChain
 
 MAX_ITERATIONS: Final = 40
 """Largest number of steps of Newton's method."""
@@ -53,7 +51,7 @@ SECANT: Final = ((1.0, 0.5),)
 class HeldBodies(NamedTuple):
     """Bodies under their loads, and rotations that couples hold."""
 
-    chain: "StandingChain"
+    chain: LoadedChain
     rotation_weights: Matrix  # weights of the rotations on bases in each rotation that is held
     rotations: Vector
 
@@ -68,9 +66,14 @@ class ChainEquilibrium(NamedTuple):
     link_forces: Matrix  # forces of links, to the right and up
     couples: Vector  # couples that hold rotations, against them
 
+    @property
+    def positions(self) -> tuple[Vector, Vector, Vector]:
+        """Rotations, heights and normal forces, from which the poses of the bodies follow."""
+        return self.rotations, self.heights, self.normal_forces
+
     @classmethod
     def from_poses(
-        cls, chain: "StandingChain", poses: Sequence[Pose], held: int = 1
+        cls, chain: LoadedChain, poses: Sequence[Pose], held: int = 1
     ) -> "ChainEquilibrium":
         """Return the equilibrium of poses, without couples as yet on `held` rotations."""
         links = chain.link_forces(poses)
@@ -137,7 +140,7 @@ def find_equilibrium(held: HeldBodies, guess: ChainEquilibrium) -> ChainEquilibr
 
     Heights follow from the forces of bases, so that contact may be lost within a step.
     """
-    equilibrium, poses = guess, held.chain.poses_of(guess)
+    equilibrium, poses = guess, held.chain.poses_of(*guess.positions)
     damped, before = 1.0, np.zeros(2 * len(guess.rotations))
     for count in range(MAX_ITERATIONS):
         now = _Step(held, poses, equilibrium)
@@ -153,12 +156,12 @@ def find_equilibrium(held: HeldBodies, guess: ChainEquilibrium) -> ChainEquilibr
         equilibrium = now.after(share)
         if share == 1.0 and now.has_converged:
             return equilibrium if now.is_stable() else None
-        poses = held.chain.poses_of(equilibrium)
+        poses = held.chain.poses_of(*equilibrium.positions)
     return None
 
 
 def load_stiffness(
-    chain: "StandingChain", poses: Sequence[Pose],
+    chain: LoadedChain, poses: Sequence[Pose],
     of_links: Callable[[Sequence[Pose]], Vector],
     stencil: Sequence[tuple[float, float]] = STENCIL,
 ) -> Matrix:  # fmt: skip
@@ -177,9 +180,7 @@ def load_stiffness(
     return found
 
 
-def base_stiffness(
-    chain: "StandingChain", poses: Sequence[Pose], *, from_rest: bool = False
-) -> Matrix:
+def base_stiffness(chain: LoadedChain, poses: Sequence[Pose], *, from_rest: bool = False) -> Matrix:
     """Return minus the derivatives of the generalised forces of bases, zero for rigid ones.
 
     With loads that grow `from_rest`, variables of a base's own follow them.
@@ -196,7 +197,7 @@ def base_stiffness(
     return found
 
 
-def _link_breaks(chain: "StandingChain", before: ChainEquilibrium, after: ChainEquilibrium) -> bool:
+def _link_breaks(chain: LoadedChain, before: ChainEquilibrium, after: ChainEquilibrium) -> bool:
     """Whether a link breaks between two equilibria."""
     pairs = zip(chain.ties, before.elongations.tolist(), after.elongations.tolist(), strict=True)
     return any(is_broken(one, now) and not is_broken(one, was) for one, was, now in pairs)
