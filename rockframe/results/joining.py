@@ -45,6 +45,8 @@ CASE_COUNT: Final = "case_count"
 
 MOTION_ATTRIBUTES: Final = ("motion_names", "motions_json")
 """Attributes that describe the motions of a sweep."""
+SWEEP_ATTRIBUTES: Final = (*MOTION_ATTRIBUTES, "axes_json", "run_json", "study_sha256")
+"""Attributes that every sweep has."""
 
 _OWNER: Final = "concat"
 
@@ -234,7 +236,6 @@ def _shared(values: Sequence[Mapping[Any, Any]], context: object = None) -> dict
     }
 
 
-_SWEEP_ATTRIBUTES: Final = (*MOTION_ATTRIBUTES, "axes_json", "run_json", "study_sha256")
 _EQUAL_ATTRIBUTES: Final = (
     "axes_json", "run_json", "accuracy", "system_json", "function", "spectral_period",
     "rockframe_version",
@@ -245,7 +246,7 @@ _EQUAL_ATTRIBUTES: Final = (
 def _as_one_sweep(values: Sequence[xr.Dataset], dim: str, joined: xr.Dataset) -> dict[str, Any]:
     """Return the attributes of one sweep to sweeps that differ only along `dim`; else none."""
     attributes = [run.attrs for run in values]
-    if not all(name in one for one in attributes for name in _SWEEP_ATTRIBUTES):
+    if not all(name in one for one in attributes for name in SWEEP_ATTRIBUTES):
         return {}
     first = attributes[0]
     alike = _EQUAL_ATTRIBUTES if dim == MOTION else (*_EQUAL_ATTRIBUTES, *MOTION_ATTRIBUTES)

@@ -14,10 +14,10 @@ from rockframe.results.outcome import overturns
 from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.studies import MOTION
-from rockframe.results.variables.variable import unit_suffix_of
+from rockframe.results.variables.variable import unit_of, unit_suffix_of
 from rockframe.signals.arrays import AnyArray, Array
-from rockframe.studies.confidence import read_level
-from rockframe.studies.fragility.labelling import with_stripes
+from rockframe.studies.confidence import normal_scores, read_level
+from rockframe.studies.fragility.labelling import BOUND_SUFFIXES, with_stripes
 from rockframe.studies.fragility.likelihood import SAME_INTENSITY
 from rockframe.studies.fragility.trials import (
     attributes_of_system,
@@ -29,7 +29,6 @@ from rockframe.studies.fragility.words import POOLED_ATTRIBUTE
 from rockframe.studies.intensities import (
     PERIOD_ATTRIBUTE,
     PeriodLike,
-    column_of_runs,
     measure_of_runs,
     measure_words,
     period_attribute,
@@ -55,11 +54,6 @@ _POSTERIOR_DRAWS: Final = 4000
 _SEARCH_MARGIN: Final = 3.0
 """Range beyond the intensities of the runs in which medians are searched, as a logarithm."""
 _SEARCH_POINTS: Final = 601
-_BOUND_SUFFIXES: Final = ("", "_lower_bound", "_upper_bound")
-_INTENSITY_VARIABLES: Final = (
-    "median_intensity", "median_intensity_lower_bound", "median_intensity_upper_bound",
-    "stripe_intensity", "cloud_intensity",
-)  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,6 +91,11 @@ class Regression:
         root = np.linalg.cholesky(self.covariance)
         about = rng.standard_normal((count, 2)) @ root.T * scale[:, None]
         return self.intercept + about[:, 0], self.slope + about[:, 1], self.dispersion * scale
+
+
+_NO_LINE: Final = Regression(
+    math.nan, math.nan, math.nan, math.nan, np.full((2, 2), math.nan), 0, np.empty(0)
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,36 +150,29 @@ class Cloud:
 
     def probabilities(self, logs: Array, level: float) -> Array:
         """Return the probability that a level is exceeded, :eq:`eq-cloud-fragility`."""
-        line = self.regression
-        coefficients = None if line is None else (line.intercept, line.slope, line.dispersion)
-        return _exceedance_probability(
-            self.overturning.probability(logs),
-            self.moving.probability(logs),
-            coefficients,
-            logs,
-            level,
-        )
+        overturning, line = self.overturning.probability(logs), self.regression or _NO_LINE
+        if math.isinf(level):
+            return overturning
+        coefficients = line.intercept, line.slope, line.dispersion
+        moving = self.moving.probability(logs)
+        return _exceedance_probability(overturning, moving, coefficients, logs, level)
 
     def draw_curves(self, logs: Array, level: float, rng: np.random.Generator, count: int) -> Array:
         """Draw fragility curves from the posterior; shape (count, intensities)."""
         overturning = self.overturning.draw_curves(logs, rng, count)
+        if self.regression is None or math.isinf(level):
+            return overturning
         moving = self.moving.draw_curves(logs, rng, count)
-        coefficients = None
-        if self.regression is not None and not math.isinf(level):
-            coefficients = [one[:, None] for one in self.regression.draw_coefficients(rng, count)]
+        coefficients = [one[:, None] for one in self.regression.draw_coefficients(rng, count)]
         return _exceedance_probability(overturning, moving, coefficients, logs, level)
 
 
 def _exceedance_probability(
-    overturning: Array, moving: Array, coefficients: Sequence[Any] | None, logs: Array, level: float
+    overturning: Array, moving: Array, coefficients: Sequence[Any], logs: Array, level: float
 ) -> Array:
     """Return the probability beyond a level: of overturning, of moving, and by the line."""
     from scipy.special import ndtr
 
-    if math.isinf(level):
-        return overturning
-    if coefficients is None:
-        return np.full(np.shape(overturning), np.nan)
     intercept, slope, dispersion = coefficients
     regressed = np.asarray(ndtr((intercept + slope * logs - math.log(level)) / dispersion))
     return overturning + (1.0 - overturning) * moving * regressed
@@ -279,18 +271,17 @@ def cloud_analysis(
     level = read_level(confidence, owner=_OWNER)
     seed = checked_integer(seed, owner=_OWNER, name="seed", lowest=0)
     pooled_axes = checked_list(pooled, owner=_OWNER, name="pooled", of="names")
-    check_one_structure(runs, pooled_axes, [column_of_runs(runs, intensity)], owner=_OWNER)
+    check_one_structure(runs, pooled_axes, [intensity], owner=_OWNER)
     measure = measure_of_runs(runs, intensity, period, motions, owner=_OWNER)
     values = scalar_of(runs, response, label, owner=_OWNER)
     levels = listed_limits(limits, owner=_OWNER)
     requested = [_read_level(one, values, _OWNER, "limits") for one in levels if one != OVERTURNING]
-    floor = read_least(least, values, owner=_OWNER)
-    found = fit_cloud(runs, measure, values, least=floor, owner=_OWNER)
+    found = fit_cloud(runs, measure, values, least=least, owner=_OWNER)
     words = " ".join(filter(None, [response.replace("_", " "), label]))
     named = {f"{words} {one:g}{unit_suffix_of(values.attrs)}": one for one in requested}
     dataset = _cloud_dataset(found, named | {OVERTURNING: math.inf}, measure, level, seed)
     for one in ("cloud_response", "response_limit"):
-        dataset[one].attrs["units"] = str(values.attrs.get("units", "1"))
+        dataset[one].attrs["units"] = unit_of(values.attrs)
     dataset.attrs |= {
         **attributes_of_system(runs),
         **period_attribute(runs, [intensity], period, owner=_OWNER),
@@ -310,9 +301,10 @@ class CloudFit(NamedTuple):
 
 
 def fit_cloud(
-    runs: xr.Dataset, measure: xr.DataArray, values: xr.DataArray, *, least: float, owner: str
+    runs: xr.Dataset, measure: xr.DataArray, values: xr.DataArray, *, least: Any, owner: str
 ) -> CloudFit:
     """Fit a cloud to the runs that have a verdict, an intensity and a response."""
+    floor = 0.0 if least is None else _read_level(least, values, owner, "least")
     if MOTION not in runs.coords:
         msg = f"{owner}: found runs without motions; expected those of many motions"
         raise StudyError(msg)
@@ -321,27 +313,24 @@ def fit_cloud(
         for one in (measure, values, overturns(runs))
     )
     response = np.abs(response)
-    response = np.where(overturned == 1.0, np.inf, np.where(response < least, 0.0, response))
+    response = np.where(overturned == 1.0, np.inf, np.where(response < floor, 0.0, response))
     known = (
         ~np.isnan(overturned) & (intensities > 0.0) & np.isfinite(intensities) & ~np.isnan(response)
     )
     if known.sum() < _MIN_RUNS:
         count = int(known.sum())
-        msg = f"{owner}: {count} run{'s have' if count != 1 else ' has'} a verdict and an "
-        msg += f"intensity; {_MIN_RUNS} are needed"
+        msg = (
+            f"{owner}: {count} run{'s have' if count != 1 else ' has'} a verdict and an intensity; "
+            f"{_MIN_RUNS} are needed"
+        )
         raise StudyError(msg)
     used = motion_numbers(overturns(runs))[known]
     cloud = Cloud.fit(np.log(intensities[known]), response[known])
     return CloudFit(cloud, known, len(np.unique(used)) < len(used))
 
 
-def read_least(value: Any, values: xr.DataArray, *, owner: str) -> float:
-    """Read the response below which a run counts as one at rest, in the response's unit."""
-    return 0.0 if value is None else _read_level(value, values, owner, "least")
-
-
 def _read_level(value: Any, values: xr.DataArray, owner: str, name: str) -> float:
-    unit, words = str(values.attrs.get("units", "1")), f"a value of {values.name}"
+    unit, words = unit_of(values.attrs), f"a value of {values.name}"
     return read_in_unit(value, unit, words, owner=owner, name=name, condition=POSITIVE)
 
 
@@ -394,9 +383,7 @@ def _status(cloud: Cloud, level: float) -> FragilityStatus:
 
 def _median_dispersion(curves: Array, logs: Array) -> tuple[Array, Array]:
     """Return the logarithms at which curves reach one half, and their dispersions."""
-    from scipy.special import ndtri
-
-    eta = ndtri(np.clip(curves, 1e-300, 1.0 - 1e-16))
+    eta = normal_scores(curves)
     at = [_crossings(eta, logs, level) for level in (-1.0, 0.0, 1.0)]
     return at[1], 0.5 * (at[2] - at[0])
 
@@ -422,18 +409,14 @@ def _cloud_dataset(
     logs = np.linspace(cloud.logs.min(), cloud.logs.max(), _CURVE_POINTS)
     curves = [_curve(cloud, level, logs, of_bounds, seed) for level in levels.values()]
     name, over = str(measure.name), {"limit_state": len(levels)}
-    regression, logistic = cloud.regression, cloud.overturning
-    regressed = [math.nan] * 5 if regression is None else [
-        regression.intercept, regression.slope, math.sqrt(regression.covariance[1, 1]),
-        regression.dispersion, regression.determination,
-    ]  # fmt: skip
-    names = (
-        "regression_intercept", "regression_slope", "regression_slope_error",
-        "residual_dispersion", "determination",
-    )  # fmt: skip
+    line, logistic = cloud.regression or _NO_LINE, cloud.overturning
     found = build_dataset(
         {
-            **dict(zip(names, regressed, strict=True)),
+            "regression_intercept": line.intercept,
+            "regression_slope": line.slope,
+            "regression_slope_error": math.sqrt(line.covariance[1, 1]),
+            "residual_dispersion": line.dispersion,
+            "determination": line.determination,
             "logistic_intercept": logistic.coefficients[0],
             "logistic_slope": logistic.coefficients[1],
             "logistic_slope_error": math.sqrt(logistic.covariance[1, 1]),
@@ -449,13 +432,13 @@ def _cloud_dataset(
     points, medians, spreads = map(np.stack, of_curves)
     of_states = {"fragility_status": np.array(status),
                  "response_limit": np.array([*levels.values()])}  # fmt: skip
-    for k, end in enumerate(_BOUND_SUFFIXES):
+    for k, end in enumerate(BOUND_SUFFIXES):
         of_states[f"median_intensity{end}"] = medians[:, k]
         of_states[f"dispersion{end}"] = spreads[:, k]
     of_states["trial_count"] = np.full(len(levels), len(cloud.logs))
     of_states["left_out_count"] = np.full(len(levels), int((~runs.included).sum()))
     found = with_variables(found, of_states, over=tuple(over))
-    shares = {f"exceedance_probability{end}": points[:, k] for k, end in enumerate(_BOUND_SUFFIXES)}
+    shares = {f"exceedance_probability{end}": points[:, k] for k, end in enumerate(BOUND_SUFFIXES)}
     found = with_variables(found, shares, over=(*over, name))
     found = with_labels(found, {name: (name, np.exp(logs), measure.attrs)})
     found = with_variables(found, {"limit_state": np.array(list(levels), dtype=object)})
@@ -463,10 +446,7 @@ def _cloud_dataset(
         (np.exp(cloud.logs)[:, None], (cloud.responses >= level).astype(np.float64))
         for level in levels.values()
     ]
-    found = with_stripes(found, counted, over, confidence)
-    for one in _INTENSITY_VARIABLES:
-        found[one].attrs["units"] = measure.attrs.get("units", "1")
-    return found
+    return with_stripes(found, counted, over, confidence, measure.attrs)
 
 
 def _sentence(found: xr.Dataset, motions_repeat: bool) -> str:

@@ -11,6 +11,7 @@ import xarray as xr
 
 from rockframe.arguments import checked_dataset, checked_list
 from rockframe.errors import ComponentError, SchemaError, did_you_mean, short_repr
+from rockframe.results.joining import SWEEP_ATTRIBUTES
 from rockframe.results.outcome import overturns
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.bodies import BODIES, RESTRAINERS
@@ -35,8 +36,6 @@ _PEAKS_UP_TO_OVERTURNING: Final = {
 }
 """Scalars that describe a run only up to the overturning angle."""
 _NEEDED_VARIABLES: Final = ("status", "peak_relative_rotation", "first_uplift_time", "overturned")
-_SWEEP_ATTRIBUTES: Final = ("run_json", "axes_json", "motions_json", "motion_names", "study_sha256")
-"""Attributes of a sweep."""
 
 
 @dataclass(frozen=True)
@@ -158,7 +157,7 @@ def check_runs(value: object, *, owner: str) -> xr.Dataset:
     """Refuse anything but the result of a sweep; give its variables in the units of the schema."""
     runs = checked_dataset(value, owner=owner)
     missing = [name for name in _NEEDED_VARIABLES if name not in runs]
-    if missing or not set(_SWEEP_ATTRIBUTES) <= set(runs.attrs):
+    if missing or not set(SWEEP_ATTRIBUTES) <= set(runs.attrs):
         what = f"a dataset without {', '.join(missing)}" if missing else "joined runs"
         what = what if missing or "end_state" not in runs.attrs else "a single run"
         msg = (

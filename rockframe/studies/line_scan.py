@@ -65,6 +65,11 @@ class SweepRounds:
     store: Path | None
     bar: ProgressBar
 
+    @property
+    def advice(self) -> str:
+        """What the message about an interrupt says of the store, if there is one."""
+        return "; the same call goes on, as it has a store" if self.store else ""
+
     def sweep(
         self,
         part: str,
@@ -347,8 +352,7 @@ class LineScan:
             scan.attrs["verdict"] = (
                 f"{str(scan.attrs['verdict']).removesuffix('.')}{INTERRUPTED_ENDING}"
             )
-            advice = "; the same call goes on, as it has a store" if rounds.store else ""
-            msg = f"{self.owner}: interrupted; brackets are wider than asked{advice}"
+            msg = f"{self.owner}: interrupted; brackets are wider than asked{rounds.advice}"
             warn(msg, SolverWarning)
         return LineResults(scan, verdicts, brackets)
 

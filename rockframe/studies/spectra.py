@@ -10,6 +10,7 @@ import xarray as xr
 
 from rockframe.components import Block
 from rockframe.errors import ComponentError, collected_warnings
+from rockframe.results.outcome import overturns
 from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.table import head
 from rockframe.results.variables.studies import CASE, MOTION
@@ -22,7 +23,6 @@ from rockframe.studies.intensities import (
     measure_attributes,
     motions_of_runs,
 )
-from rockframe.studies.limit_states import overturns
 from rockframe.studies.line_axes import read_line_axes, unstack_cases
 from rockframe.studies.line_scan import (
     CAPACITY_DEFINITION,

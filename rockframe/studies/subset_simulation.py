@@ -202,7 +202,7 @@ def subset_simulation(
             max_levels=max_levels,
             rng=np.random.default_rng(first),
         )
-        sampled, completed = _collect_levels(level_iterator, has_store=rounds.store is not None)
+        sampled, completed = _collect_levels(level_iterator, rounds.advice)
     if sampler.warnings and completed:
         warn(f"{_OWNER}: in further rounds: {sampler.warnings[0]}", ModelWarning)
     dataset = _subset_dataset(sampler, sampled, level, completed=completed)
@@ -290,13 +290,12 @@ class _Sampler:
         return table
 
 
-def _collect_levels(iterator: Iterator[Level], *, has_store: bool) -> tuple[list[Level], bool]:
+def _collect_levels(iterator: Iterator[Level], advice: str) -> tuple[list[Level], bool]:
     """Return the levels, and whether sampling was completed."""
     found: list[Level] = []
     try:
         found.extend(iterator)
     except KeyboardInterrupt:
-        advice = "; the same call goes on, as it has a store" if has_store else ""
         message = f"{_OWNER}: interrupted at level {len(found) + 1}{advice}"
         if not found:
             raise StudyError(message) from None

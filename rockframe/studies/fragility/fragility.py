@@ -29,7 +29,6 @@ from rockframe.studies.fragility.words import POOLED_ATTRIBUTE, fragility_senten
 from rockframe.studies.intensities import (
     Intensity,
     PeriodLike,
-    column_of_runs,
     measure_of_runs,
     period_attribute,
 )
@@ -184,15 +183,15 @@ def fragility(
         others = [name for name, one in arguments.items() if one is not None]
         return _fit_counts(runs, intensity, period, bands, confidence, others)
     runs = check_runs(runs, owner=_OWNER)
-    arguments = [column_of_runs(runs, one) for one in _listed_measures(intensity)]
+    listed = _listed_measures(intensity)
     pooled_axes = checked_list(pooled, owner=_OWNER, name="pooled", of="names")
-    structures = structures_of(runs, pooled_axes, arguments, owner=_OWNER)
+    structures = structures_of(runs, pooled_axes, listed, owner=_OWNER)
     of_capacities = checked_name(trials, _TRIALS, owner=_OWNER, name="trials") == _CAPACITIES
     if of_capacities and "capacity_scale" not in runs:
         msg = f"{_OWNER}: capacities are those of rf.incremental_dynamic_analysis, found a sweep"
         raise SchemaError(msg)
     states = _read_states(runs, limits)
-    measures = [measure_of_runs(runs, one, period, motions, owner=_OWNER) for one in arguments]
+    measures = [measure_of_runs(runs, one, period, motions, owner=_OWNER) for one in listed]
     if len({one.name for one in measures}) < len(measures):
         msg = f"{_OWNER}: the two intensity measures are one, {measures[0].name}; give another"
         raise ComponentError(msg)
@@ -239,7 +238,7 @@ def fragility(
     dataset = fragility_dataset(
         found, {**structure_sizes, "limit_state": len(states)},
         [(str(one.name), dict(one.attrs)) for one in measures], settings,
-        attributes | period_attribute(runs, arguments, period, owner=_OWNER), fits,
+        attributes | period_attribute(runs, listed, period, owner=_OWNER), fits,
     )  # fmt: skip
     dataset = with_labels(dataset, structures.coordinates)
     dataset = with_variables(dataset, labels_of_states(states))
