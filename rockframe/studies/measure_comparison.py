@@ -13,7 +13,8 @@ from rockframe.errors import ComponentError, StudyError, short_repr
 from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.studies import MOTION
 from rockframe.signals.arrays import AnyArray, Array
-from rockframe.studies.cloud import Cloud, fit_cloud
+from rockframe.studies.cloud import fit_cloud
+from rockframe.studies.cloud_fit import Cloud
 from rockframe.studies.fragility.trials import check_one_structure, flatten_like
 from rockframe.studies.intensities import (
     PERIOD_ATTRIBUTE,
