@@ -19,8 +19,7 @@ from rockframe.studies.confidence import read_shares
 from rockframe.studies.fragility.trials import attributes_of_system
 from rockframe.studies.intensities import PeriodLike, measure_of_runs, period_attribute
 from rockframe.studies.limit_states import check_runs, scalar_of
-from rockframe.studies.line_scan import SCALE
-from rockframe.studies.sweeps.motions import MotionsLike
+from rockframe.studies.sweeps.motions import SCALE, MotionsLike
 from rockframe.suggestions import with_hints
 from rockframe.units import Measure, RatioLike, Unit, to_ratio, to_si_values
 

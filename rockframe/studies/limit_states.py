@@ -20,6 +20,7 @@ from rockframe.results.variables.variable import TIME, unit_suffix_of
 from rockframe.signals.arrays import AnyArray
 from rockframe.studies.confidence import SHARE
 from rockframe.studies.sweeps.axes import in_units_of_schema, labels_in_unit
+from rockframe.studies.sweeps.motions import SCALE
 from rockframe.units import NOT_NEGATIVE, Condition, Measure, Unit, to_ratio, to_si
 
 UPLIFT: Final = "uplift"
@@ -169,8 +170,8 @@ def check_runs(value: object, *, owner: str) -> xr.Dataset:
     if status.dtype.kind == "f" and np.any(status != np.round(status), where=~np.isnan(status)):
         msg = f"{owner}: found means of runs, which have no verdict; expected the runs themselves"
         raise SchemaError(msg)
-    if "scale" in runs.coords and "capacity_scale" in runs:  # which is in multiples of the motion
-        scales = labels_in_unit(runs["scale"], Unit.ONE, owner=owner)
+    if SCALE in runs.coords and "capacity_scale" in runs:  # which is in multiples of the motion
+        scales = labels_in_unit(runs[SCALE], Unit.ONE, owner=owner)
         runs = runs.assign_coords(scale=scales.variable)
     return in_units_of_schema(runs, owner=owner)
 

@@ -18,7 +18,6 @@ from rockframe.signals.arrays import Array
 from rockframe.signals.motion import absolute_peak
 from rockframe.simulation.system import System, check_system
 from rockframe.studies.line_scan import (
-    SCALE,
     SCAN_SOURCE,
     VERDICT_DIM,
     LineScan,
@@ -26,6 +25,7 @@ from rockframe.studies.line_scan import (
     read_width,
 )
 from rockframe.studies.sweeps.arguments import SweepArguments
+from rockframe.studies.sweeps.motions import SCALE
 from rockframe.system.options import Overturning
 from rockframe.system.rigid_ground import RigidGroundSetting
 from rockframe.units import ACCELERATION, FREQUENCY, RatioLike, quantity

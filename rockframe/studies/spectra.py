@@ -26,7 +26,6 @@ from rockframe.studies.intensities import (
 from rockframe.studies.line_axes import read_line_axes, unstack_cases
 from rockframe.studies.line_scan import (
     CAPACITY_DEFINITION,
-    SCALE,
     SCAN_SOURCE,
     VERDICT_DIM,
     LineScan,
@@ -36,7 +35,7 @@ from rockframe.studies.line_scan import (
     read_width,
 )
 from rockframe.studies.sweeps.arguments import SweepArguments
-from rockframe.studies.sweeps.motions import MotionsLike
+from rockframe.studies.sweeps.motions import SCALE, MotionsLike
 from rockframe.studies.sweeps.scenes import needed_motions, scene_of
 from rockframe.studies.sweeps.sweep import sweep
 from rockframe.units import LENGTH, PERIOD, Measure, QuantityLike, RatioLike, Unit

@@ -17,7 +17,6 @@ from rockframe.errors import (
     short_repr,
     warn,
 )
-from rockframe.motion import GroundMotion
 from rockframe.results.joining import concat
 from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.table import head
@@ -52,6 +51,7 @@ from rockframe.studies.probability import (
 )
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.memory import check_memory
+from rockframe.studies.sweeps.motions import MotionsLike
 from rockframe.studies.sweeps.scenes import motions_of_study, scene_of
 from rockframe.system.options import PointsLike
 from rockframe.units import Condition, RatioLike, to_ratio
@@ -71,7 +71,7 @@ _TABLE_ATTRIBUTES: Final = ("axes_json", "study_sha256")
 @with_shared_arguments(SweepArguments)
 def subset_simulation(
     system: System | Callable[..., System],
-    motions: GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None = None,
+    motions: MotionsLike | None = None,
     *,
     spread: Mapping[str, Any],
     correlation: Mapping[tuple[str, str], RatioLike] | Array | None = None,

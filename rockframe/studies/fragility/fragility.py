@@ -40,9 +40,8 @@ from rockframe.studies.limit_states import (
     limit_states,
     states_of,
 )
-from rockframe.studies.line_scan import SCALE
 from rockframe.studies.sweeps.axes import read_free_values
-from rockframe.studies.sweeps.motions import MotionsLike
+from rockframe.studies.sweeps.motions import SCALE, MotionsLike
 from rockframe.suggestions import with_hints
 from rockframe.units import RatioLike
 

@@ -134,7 +134,7 @@ def fragility_dataset(
 
 
 def _reshaped(values: Mapping[str, Any], sizes: Mapping[str, int]) -> dict[str, AnyArray]:
-    """Return values of each structure and limit state, which are counted, their dimensions."""
+    """Return values in a row as arrays over structures and limit states."""
     arrays = {name: np.asarray(each) for name, each in values.items()}
     return {n: each.reshape(*sizes.values(), *each.shape[1:]) for n, each in arrays.items()}
 

@@ -19,10 +19,10 @@ from rockframe.errors import ComponentError, SchemaError, StudyError, short_repr
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.signals.arrays import AnyArray, Array
 from rockframe.studies.intensities import column_of_runs
-from rockframe.studies.line_scan import SCALE
 from rockframe.studies.sweeps.axes import Changes
+from rockframe.studies.sweeps.motions import SCALE
 
-Values = TypeVar("Values", xr.DataArray, xr.Dataset)
+Labelled = TypeVar("Labelled", xr.DataArray, xr.Dataset)
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +38,7 @@ class Structures:
         """Number of structures along each dimension."""
         return tuple(int(group.max()) + 1 for group in self.groups.values())
 
-    def parts(self, values: Values) -> Iterator[Values]:
+    def parts(self, values: Labelled) -> Iterator[Labelled]:
         """Return what belongs to each structure, the last dimension fastest."""
         for number in np.ndindex(self.shape):
             groups = zip(self.groups.items(), number, strict=True)
@@ -137,7 +137,7 @@ def _changes_of_axes(runs: xr.Dataset) -> dict[str, str]:
 
 
 def _own_measures(runs: xr.Dataset, values: Sequence[object]) -> list[str]:
-    """Return the names of intensities that are numbers of the runs; no others of an axis' name."""
+    """Return names of intensities that are arrays, along the axis of that name if there is one."""
     columns = [column_of_runs(runs, one) for one in values]
     return [
         str(one.name) for one in columns if isinstance(one, xr.DataArray)

@@ -11,7 +11,6 @@ from typing import Any, Final, cast
 import numpy as np
 import pint
 import xarray as xr
-from numpy.typing import NDArray
 
 from rockframe.errors import ComponentError, UnitsError, short_repr
 from rockframe.results.schema import SCHEMA
@@ -90,10 +89,7 @@ def read_number(value: object, measure: Measure, *, owner: str, name: str) -> fl
 
 
 def _with_own_unit(value: object) -> object:
-    """Return an array with an attribute ``units`` beside it, as values and their unit are given.
-
-    An iterator is converted to a list.
-    """
+    """Return an array that has an attribute ``units`` with that unit, and an iterator as a list."""
     if isinstance(value, Iterator):
         return list(cast("Iterator[object]", value))
     own = None if isinstance(value, pint.Quantity | tuple) else attached_unit(value)
@@ -240,7 +236,6 @@ def faults_of_values(name: str, values: AnyArray) -> list[str]:
     return [f"axis {name!r} has the value {twice[0]!s} twice"] if len(twice) else []
 
 
-Places: Final = NDArray[np.intp]
 MAX_CASES: Final = 1_000_000_000
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from rockframe.errors import SolverWarning, warn
+from rockframe.results.outcome import enumeration
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.requests import FORCE_SCALARS, POINT_PEAKS, POINT_TIME, POINTS
 from rockframe.results.variables.runs import EVENTS_AND_SCALARS, HISTORIES
@@ -100,4 +101,4 @@ def memory_remedies(
     ways += ["name fewer points"] if arguments.points else []
     if histories is not None:
         ways += ["name fewer outputs", "give a longer output_step", "keep none: outputs=None"]
-    return f"{', '.join(ways[:-1])} or {ways[-1]}" if len(ways) > 1 else ways[0]
+    return enumeration(ways, "or")
