@@ -90,15 +90,12 @@ def concat(
     Notes
     -----
     An attribute is kept if every run has it with the same value. Attributes that describe the
-    outcome of one run are always left out: `verdict`, `overturned`, `overturning_time`,
-    `overturning_direction`, `cautions`, `certificate`, `certificate_runs`, `proof`,
-    `proof_verdict`, `proof_bits`, `solver_substeps`, `solver_steps`, `solver_rejected_steps`,
-    `solver_end_time`, `end_state`, `impacts_of_several_modes`, `impacts_of_no_mode` and
-    `corners_held_without_pressing`; and `case_count` of a sweep. Sweeps that differ only along one
-    axis, or only in their motions, become one sweep. The order in which runs are joined therefore
-    does not matter. `xarray.concat` with ``combine_attrs="drop_conflicts"`` keeps attributes that
-    only some datasets have: if only some of the joined datasets contain runs that overturned, the
-    result would state that none did.
+    outcome of one run are always left out: the verdict with its certificate and proof, cautions,
+    numbers of the solver (`solver_steps` and others) and of unusual impacts, and the end state; and
+    `case_count` of a sweep. Sweeps that differ only along one axis, or only in their motions,
+    become one sweep. The order in which runs are joined therefore does not matter. `xarray.concat`
+    with ``combine_attrs="drop_conflicts"`` keeps attributes that only some datasets have: if only
+    some of the joined datasets contain runs that overturned, the result would state that none did.
 
     Examples
     --------

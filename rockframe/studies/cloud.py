@@ -15,7 +15,7 @@ from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import unit_of, unit_suffix_of
 from rockframe.signals.arrays import AnyArray
 from rockframe.studies.cloud_fit import MIN_RUNS, NO_LINE, Cloud, curve_of_level
-from rockframe.studies.confidence import read_level
+from rockframe.studies.confidence import read_confidence
 from rockframe.studies.fragility.labelling import BOUND_SUFFIXES, with_stripes
 from rockframe.studies.fragility.trials import (
     attributes_of_system,
@@ -136,18 +136,22 @@ def cloud_analysis(
     ['peak relative rotation 0.2', 'overturning']
     """
     runs = check_runs(runs, owner=_OWNER)
-    level = read_level(confidence, owner=_OWNER)
+    nominal = read_confidence(confidence, owner=_OWNER)
     seed = checked_integer(seed, owner=_OWNER, name="seed", lowest=0)
     pooled_axes = checked_list(pooled, owner=_OWNER, name="pooled", of="names")
     check_one_structure(runs, pooled_axes, [intensity], owner=_OWNER)
     measure = measure_of_runs(runs, intensity, period, motions, owner=_OWNER)
     values = scalar_of(runs, response, label, owner=_OWNER)
-    levels = listed_limits(limits, owner=_OWNER)
-    requested = [_read_level(one, values, _OWNER, "limits") for one in levels if one != OVERTURNING]
+    requested = [
+        _read_response(one, values, _OWNER, "limits")
+        for one in listed_limits(limits, owner=_OWNER)
+        if one != OVERTURNING
+    ]
     found = fit_cloud(runs, measure, values, least=least, owner=_OWNER)
     words = " ".join(filter(None, [response.replace("_", " "), label]))
     named = {f"{words} {one:g}{unit_suffix_of(values.attrs)}": one for one in requested}
-    dataset = _cloud_dataset(found, named | {OVERTURNING: math.inf}, measure, level, seed)
+    levels = named | {OVERTURNING: math.inf}
+    dataset = _cloud_dataset(found, levels, measure, nominal, seed)
     for one in ("cloud_response", "response_limit"):
         dataset[one].attrs["units"] = unit_of(values.attrs)
     dataset.attrs |= {
@@ -172,7 +176,7 @@ def fit_cloud(
     runs: xr.Dataset, measure: xr.DataArray, values: xr.DataArray, *, least: Any, owner: str
 ) -> CloudFit:
     """Fit a cloud to the runs that have a verdict, an intensity and a response."""
-    floor = 0.0 if least is None else _read_level(least, values, owner, "least")
+    floor = 0.0 if least is None else _read_response(least, values, owner, "least")
     if MOTION not in runs.coords:
         msg = f"{owner}: found runs without motions; expected those of many motions"
         raise StudyError(msg)
@@ -197,7 +201,7 @@ def fit_cloud(
     return CloudFit(cloud, known, len(np.unique(used)) < len(used))
 
 
-def _read_level(value: Any, values: xr.DataArray, owner: str, name: str) -> float:
+def _read_response(value: Any, values: xr.DataArray, owner: str, name: str) -> float:
     unit, words = unit_of(values.attrs), f"a value of {values.name}"
     return read_in_unit(value, unit, words, owner=owner, name=name, condition=POSITIVE)
 

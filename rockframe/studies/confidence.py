@@ -12,7 +12,7 @@ SHARE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value < 1.0)
 _LEVEL: Final = Condition("from 0.5 to 0.9999", lambda value: 0.5 <= value <= 0.9999)
 
 
-def read_level(value: object, *, owner: str) -> float:
+def read_confidence(value: object, *, owner: str) -> float:
     """Read the argument ``confidence``."""
     return to_ratio(value, owner=owner, name="confidence", condition=_LEVEL, example="0.95")
 

@@ -10,7 +10,7 @@ import xarray as xr
 from numpy.polynomial.legendre import leggauss
 
 from rockframe.arguments import checked_dataset, checked_function
-from rockframe.errors import ComponentError, ModelWarning, SchemaError, UnitsError, short_repr, warn
+from rockframe.errors import ComponentError, ModelWarning, SchemaError, short_repr, warn
 from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.variable import unit_of, unit_suffix_of
@@ -19,7 +19,7 @@ from rockframe.studies.confidence import normal_scores
 from rockframe.studies.fragility.likelihood import log_interval_probability
 from rockframe.studies.fragility.words import in_own_units, measures_of
 from rockframe.studies.intensities import PERIOD_ATTRIBUTE, measure_words
-from rockframe.studies.sweeps.axes import read_free_values
+from rockframe.studies.sweeps.axes import read_free_values, read_in_unit_of
 from rockframe.suggestions import with_hints
 from rockframe.units import POSITIVE, Unit, check_attached_unit, to_ratio
 
@@ -218,11 +218,7 @@ def _read_intensities(value: object, name: str, unit: str) -> Array:
     if len(pair) == 2 and pair[1] == unit and own_measure:
         check_attached_unit(pair[0], unit, owner=_OWNER, name="intensity")
         return np.asarray(read_free_values(list(pair[0]), "intensity", owner=_OWNER)[0], float)
-    values, own = read_free_values(value, "intensity", owner=_OWNER, expected=unit)
-    if own != unit:
-        msg = f"{_OWNER}: {name} is in {unit}, got {short_repr(value)}"
-        raise UnitsError(msg)
-    return np.asarray(values, dtype=np.float64)
+    return read_in_unit_of(name, unit, value, "intensity", owner=_OWNER)
 
 
 def _read_rates(table: Mapping[str, Any]) -> Array:

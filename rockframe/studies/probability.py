@@ -23,7 +23,7 @@ from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import with_shared_arguments
 from rockframe.signals.arrays import AnyArray, Array
 from rockframe.simulation.system import System
-from rockframe.studies.confidence import clopper_pearson, normal_scores, read_level
+from rockframe.studies.confidence import clopper_pearson, normal_scores, read_confidence
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import Axis, read_number
 from rockframe.studies.sweeps.memory import check_memory
@@ -350,7 +350,7 @@ def probability_of_overturning(
     count = checked_integer(cases, owner=_OWNER, name="cases", lowest=2, highest=_MAX_CASES)
     method = checked_choice(Sampling, sampling, owner=_OWNER, name="sampling")
     start_seed = checked_integer(seed, owner=_OWNER, name="seed", lowest=0)
-    level = read_level(confidence, owner=_OWNER)
+    level = read_confidence(confidence, owner=_OWNER)
     named = motions_of_study(motions, scene)
     faults = check_memory(
         {"numbers that are drawn": 1.0 + len(spreads)}, count, "draw fewer cases", owner=_OWNER

@@ -33,7 +33,7 @@ from rockframe.studies.conditional_sampling import (
     subset_probability,
     subset_variation,
 )
-from rockframe.studies.confidence import read_level
+from rockframe.studies.confidence import read_confidence
 from rockframe.studies.limit_states import (
     LIMITS_ATTRIBUTE,
     OVERTURNING,
@@ -183,7 +183,7 @@ def subset_simulation(
         raise ComponentError(msg)
     max_levels = checked_integer(levels, owner=_OWNER, name="levels", lowest=1, highest=_MAX_LEVELS)
     first = checked_integer(seed, owner=_OWNER, name="seed", lowest=0)
-    level = read_level(confidence, owner=_OWNER)
+    nominal = read_confidence(confidence, owner=_OWNER)
     named = motions_of_study(motions, scene)
     wrong = check_memory(
         {"samples": 2.0 + len(spreads)}, count * max_levels, "draw fewer cases", owner=_OWNER
@@ -205,7 +205,7 @@ def subset_simulation(
         sampled, completed = _collect_levels(level_iterator, rounds.advice)
     if sampler.warnings and completed:
         warn(f"{_OWNER}: in further rounds: {sampler.warnings[0]}", ModelWarning)
-    dataset = _subset_dataset(sampler, sampled, level, completed=completed)
+    dataset = _subset_dataset(sampler, sampled, nominal, completed=completed)
     if completed:
         _warn_of_uncertain_probability(dataset)
     return dataset.assign_attrs({
@@ -215,8 +215,8 @@ def subset_simulation(
         SAMPLING_ATTRIBUTE: "subset simulation",
         "seed": first,
         "share": fraction,
-        "confidence": level,
-        "verdict": _sentence(dataset, state, level, len(named or ()), completed=completed),
+        "confidence": nominal,
+        "verdict": _sentence(dataset, state, nominal, len(named or ()), completed=completed),
     })  # fmt: skip
 
 

@@ -8,11 +8,11 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import checked_choice, checked_list, checked_name, is_iterable
-from rockframe.errors import ComponentError, SchemaError, UnitsError, short_repr
+from rockframe.errors import ComponentError, SchemaError, short_repr
 from rockframe.results.schema import with_labels, with_variables
 from rockframe.results.variables.analyses import LIMIT_STATE
 from rockframe.simulation.soundness import share_words
-from rockframe.studies.confidence import read_level
+from rockframe.studies.confidence import read_confidence
 from rockframe.studies.fragility.labelling import BoundSettings, fragility_dataset
 from rockframe.studies.fragility.likelihood import Bands, Fit
 from rockframe.studies.fragility.ordered import ordered_fits
@@ -40,7 +40,7 @@ from rockframe.studies.limit_states import (
     limit_states,
     states_of,
 )
-from rockframe.studies.sweeps.axes import read_free_values
+from rockframe.studies.sweeps.axes import read_in_unit_of
 from rockframe.studies.sweeps.motions import SCALE, MotionsLike
 from rockframe.suggestions import with_hints
 from rockframe.units import RatioLike
@@ -214,7 +214,7 @@ def fragility(
         raise ComponentError(msg)
     default_bands = of_runs if repeated or common else Bands.PROFILE
     settings = BoundSettings(
-        _read_bands(bands, default_bands, len(measures)), read_level(confidence, owner=_OWNER)
+        _read_bands(bands, default_bands, len(measures)), read_confidence(confidence, owner=_OWNER)
     )
     by_motion = settings.bands is not Bands.PROFILE and (repeated or common)
     parts = zip(*(structures.parts(one) for one in (*verdicts, *measures)), strict=True)
@@ -277,11 +277,8 @@ def _fit_counts(
         raise ComponentError(msg)
     intensity, exceeded, trials = (counts[name] for name in _COLUMNS)
     which = Intensity.read(measure, period, owner=_OWNER)
-    expected = which.attributes()["units"]
-    values, unit = read_free_values(intensity, "intensity", owner=_OWNER, expected=expected)
-    if unit != expected:
-        msg = f"{_OWNER}: {which.name} is in {expected}, got {short_repr(intensity)}"
-        raise UnitsError(msg)
+    unit = which.attributes()["units"]
+    values = read_in_unit_of(which.name, unit, intensity, "intensity", owner=_OWNER)
     over = np.asarray(exceeded, dtype=np.float64)
     count = np.broadcast_to(np.asarray(trials, dtype=np.float64), values.shape)
     wrong = over.shape != values.shape or np.any(values <= 0.0)
@@ -296,7 +293,7 @@ def _fit_counts(
         )
         raise ComponentError(msg)
     settings = BoundSettings(
-        _read_bands(bands, Bands.PROFILE, 1), read_level(confidence, owner=_OWNER)
+        _read_bands(bands, Bands.PROFILE, 1), read_confidence(confidence, owner=_OWNER)
     )
     counted_trials = Trials.from_verdicts(np.log(values)[:, None], over, count)
     # the runs: at each intensity first those that exceeded, then the others

@@ -15,7 +15,7 @@ import xarray as xr
 from rockframe.errors import ComponentError, UnitsError, short_repr
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import CASE, MOTION
-from rockframe.signals.arrays import AnyArray
+from rockframe.signals.arrays import AnyArray, Array
 from rockframe.simulation.provenance import SYSTEM_AXES as SYSTEM_AXES
 from rockframe.simulation.provenance import Changes as Changes
 from rockframe.units import (
@@ -141,6 +141,15 @@ def read_free_values(
         measure = Measure("a number", Unit.ONE, "2")
         return read_numbers(items, measure, name, owner=owner), str(Unit.ONE)
     return array, None
+
+
+def read_in_unit_of(measure: str, unit: str, value: object, name: str, *, owner: str) -> Array:
+    """Read values of an argument, which must be in the unit of a measure."""
+    values, own = read_free_values(value, name, owner=owner, expected=unit)
+    if own != unit:
+        msg = f"{owner}: {measure} is in {unit}, got {short_repr(value)}"
+        raise UnitsError(msg)
+    return np.asarray(values, dtype=np.float64)
 
 
 def _values_and_unit(value: object) -> tuple[Any, str] | None:
