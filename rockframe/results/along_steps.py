@@ -76,9 +76,9 @@ class AlongSteps:
         return peak[row, best], time
 
     def above(self, quantity: Callable[[Values], Array], level: float) -> tuple[float, float]:
-        """Return since when and how long in all the magnitude of a quantity is above a level.
+        """Return the time from which a quantity exceeds a level in magnitude, and how long it does.
 
-        NaN, 0 if never. The quantity has a sign where its magnitude goes through zero in a step.
+        NaN and 0 if it never does. A magnitude that reaches zero in a step needs its sign.
         """
         shown = quantity(self.shown)
         beyond = np.maximum(np.abs(shown[:-1]), np.abs(shown[1:])) > level

@@ -45,6 +45,8 @@ CASE_COUNT: Final = "case_count"
 
 MOTION_ATTRIBUTES: Final = ("motion_names", "motions_json")
 """Attributes that describe the motions of a sweep."""
+SWEEP_ATTRIBUTES: Final = (*MOTION_ATTRIBUTES, "axes_json", "run_json", "study_sha256")
+"""Attributes that every sweep has."""
 
 _OWNER: Final = "concat"
 
@@ -88,15 +90,12 @@ def concat(
     Notes
     -----
     An attribute is kept if every run has it with the same value. Attributes that describe the
-    outcome of one run are always left out: `verdict`, `overturned`, `overturning_time`,
-    `overturning_direction`, `cautions`, `certificate`, `certificate_runs`, `proof`,
-    `proof_verdict`, `proof_bits`, `solver_substeps`, `solver_steps`, `solver_rejected_steps`,
-    `solver_end_time`, `end_state`, `impacts_of_several_modes`, `impacts_of_no_mode` and
-    `corners_held_without_pressing`; and `case_count` of a sweep. Sweeps that differ only along one
-    axis, or only in their motions, become one sweep. The order in which runs are joined therefore
-    does not matter. `xarray.concat` with ``combine_attrs="drop_conflicts"`` keeps attributes that
-    only some datasets have: if only some of the joined datasets contain runs that overturned, the
-    result would state that none did.
+    outcome of one run are always left out: the verdict with its certificate and proof, cautions,
+    numbers of the solver (`solver_steps` and others) and of unusual impacts, and the end state; and
+    `case_count` of a sweep. Sweeps that differ only along one axis, or only in their motions,
+    become one sweep. The order in which runs are joined therefore does not matter. `xarray.concat`
+    with ``combine_attrs="drop_conflicts"`` keeps attributes that only some datasets have: if only
+    some of the joined datasets contain runs that overturned, the result would state that none did.
 
     Examples
     --------
@@ -234,7 +233,6 @@ def _shared(values: Sequence[Mapping[Any, Any]], context: object = None) -> dict
     }
 
 
-_SWEEP_ATTRIBUTES: Final = (*MOTION_ATTRIBUTES, "axes_json", "run_json", "study_sha256")
 _EQUAL_ATTRIBUTES: Final = (
     "axes_json", "run_json", "accuracy", "system_json", "function", "spectral_period",
     "rockframe_version",
@@ -245,7 +243,7 @@ _EQUAL_ATTRIBUTES: Final = (
 def _as_one_sweep(values: Sequence[xr.Dataset], dim: str, joined: xr.Dataset) -> dict[str, Any]:
     """Return the attributes of one sweep to sweeps that differ only along `dim`; else none."""
     attributes = [run.attrs for run in values]
-    if not all(name in one for one in attributes for name in _SWEEP_ATTRIBUTES):
+    if not all(name in one for one in attributes for name in SWEEP_ATTRIBUTES):
         return {}
     first = attributes[0]
     alike = _EQUAL_ATTRIBUTES if dim == MOTION else (*_EQUAL_ATTRIBUTES, *MOTION_ATTRIBUTES)

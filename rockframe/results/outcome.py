@@ -4,7 +4,7 @@ Histories, events and scalars, the verdict in words, and the components of gravi
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Final, cast
 
 import numpy as np
@@ -35,16 +35,15 @@ from rockframe.system.words import angle_words
 from rockframe.units import ANGLE
 
 LARGE_RESIDUAL_SHARE: Final = 0.95
-"""Share of the peak slip below which a residual slip is told together with the peak."""
+"""Share of the peak slip below which a residual slip is reported together with the peak."""
 ZERO_RESIDUAL_SHARE: Final = 1e-9
 """Share of the peak slip below which a residual slip is rounding."""
 EQUAL_SHARES: Final = 1e-6
-"""Relative difference up to which two bodies came equally close to overturning."""
+"""Relative difference up to which two bodies count as equally close to overturning."""
 MIN_REPORTED_SLIP: Final = 1e-6
 """Least slip that is reported; changes of the held point leave less [m]."""
 PEAK_SLIPS: Final = ("peak_slip", "peak_body_slip", "peak_cap_slip")
 """Peak slips of the block, of all bodies of a stack, and of a cap, where a scene has them."""
-Values = Mapping[str, "AnyArray | float | int | bool"]
 
 
 def peak_share(run: Summary, angles: OverturningAngles) -> float:
@@ -214,8 +213,8 @@ def scalars(
             "rest_rotation": setting.rest_rotation,
         }
     every = setting.slips_of(run.ending)
-    for slips in every[:1]:
-        sides |= {"peak_slip": slips.peak + 0.0, "residual_slip": slips.residual}
+    if every:
+        sides |= {"peak_slip": every[0].peak + 0.0, "residual_slip": every[0].residual}
     if len(every) > 1 and setting.stacked:
         sides |= {"peak_cap_slip": every[1].peak, "residual_cap_slip": every[1].residual}
     elif len(every) > 1:
@@ -292,7 +291,7 @@ def verdict(run: Summary, setting: Setting, model: ContactModel) -> str:
     if run.flight_time > 0.0:
         text += f", {run.flight_time:.3g} s in flight"
     if broken:
-        text += f"; {', '.join([*broken[:-2], ' and '.join(broken[-2:])])} broke"
+        text += f"; {enumeration(broken)} broke"
     if run.reached_limit and not run.status.finished:
         text += f". Not finished: {_stop_words(run)}"
     slid = [_slip_words(slips) for slips in setting.slips_of(run.ending)]
@@ -305,8 +304,13 @@ def verdict(run: Summary, setting: Setting, model: ContactModel) -> str:
     return text + "."
 
 
+def enumeration(items: Sequence[str], last: str = "and") -> str:
+    """Write items in a row, the last one after a word such as "and"."""
+    return ", ".join([*items[:-2], f" {last} ".join(items[-2:])])
+
+
 def _slip_words(slips: SlipRange) -> str:
-    """Say how far a body slid in the end, and at most where that is much more."""
+    """Describe the slip of a body at the end, and its peak where that is much larger."""
     if slips.peak < MIN_REPORTED_SLIP:
         return "Did not slide"
     most = Direction.RIGHT if slips.right > slips.left else Direction.LEFT

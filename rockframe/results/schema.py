@@ -5,7 +5,7 @@ Also the labelled dataset that is built from it; all datasets of results are bui
 
 from collections.abc import Mapping
 from datetime import UTC, datetime
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 import xarray as xr
@@ -15,10 +15,8 @@ from rockframe.constants import CONVENTIONS, PAPER_TITLE
 from rockframe.errors import SchemaError
 from rockframe.results.variables import analyses, bodies, motions, requests, runs, studies
 from rockframe.results.variables.variable import Variable
+from rockframe.signals.arrays import AnyArray
 from rockframe.version import __version__
-
-if TYPE_CHECKING:
-    from rockframe.results.outcome import Values
 
 _TABLES: Final = (
     runs.HISTORIES,
@@ -100,12 +98,15 @@ ON_REQUEST: Final = (
 
 SCHEMA_VERSION: Final = 3
 
+Results: TypeAlias = Mapping[str, AnyArray | float | int | bool]
+"""Results by their names in the schema."""
+
 SOURCE: Final = "event-driven integration"
 """Method by which the numbers of runs are computed, in the attribute `source`."""
 
 
 def build_dataset(
-    values: "Values",
+    values: Results,
     attributes: Mapping[str, str | float | int],
     *,
     over: tuple[str, ...] = (),
@@ -152,7 +153,7 @@ def build_dataset(
 
 
 def with_variables(
-    dataset: xr.Dataset, values: "Values", *, over: tuple[str, ...] = ()
+    dataset: xr.Dataset, values: Results, *, over: tuple[str, ...] = ()
 ) -> xr.Dataset:
     """Add variables, labelled by the schema, to a dataset; its attributes stay."""
     added = build_dataset(values, {}, over=over)

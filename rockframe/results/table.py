@@ -14,7 +14,7 @@ from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.bodies import BODY, RESTRAINER
 from rockframe.results.variables.requests import POINT
 from rockframe.results.variables.studies import MOTION
-from rockframe.results.variables.variable import EVENT, TIME, TRUTH, flag_words
+from rockframe.results.variables.variable import EVENT, TIME, TRUTH, flag_words, unit_of
 from rockframe.suggestions import with_hints
 from rockframe.units import Unit
 from rockframe.units.display import UnitsLike, display_units
@@ -256,12 +256,12 @@ def _dimensions(run: xr.Dataset, names: Sequence[str]) -> tuple[Hashable, ...]:
 
 
 def _heading(name: Hashable, values: xr.Variable) -> str:
-    return head(str(name), values.attrs.get("units", Unit.ONE))
+    return head(str(name), unit_of(values.attrs))
 
 
 def head_of(name: str) -> str:
     """Return the head of the column of a variable of the schema."""
-    return head(name, SCHEMA[name].attributes().get("units", Unit.ONE))
+    return head(name, unit_of(SCHEMA[name].attributes()))
 
 
 def head(name: str, unit: object) -> str:

@@ -1,8 +1,7 @@
 """Cloud analysis: a straight line in logarithms, runs that overturn being treated separately."""
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -12,13 +11,12 @@ from rockframe.arguments import checked_integer, checked_list
 from rockframe.errors import StudyError
 from rockframe.results.outcome import overturns
 from rockframe.results.schema import build_dataset, with_labels, with_variables
-from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.studies import MOTION
-from rockframe.results.variables.variable import unit_suffix_of
-from rockframe.signals.arrays import AnyArray, Array
-from rockframe.studies.confidence import read_level
-from rockframe.studies.fragility.labelling import with_stripes
-from rockframe.studies.fragility.likelihood import SAME_INTENSITY
+from rockframe.results.variables.variable import unit_of, unit_suffix_of
+from rockframe.signals.arrays import AnyArray
+from rockframe.studies.cloud_fit import MIN_RUNS, NO_LINE, Cloud, curve_of_level
+from rockframe.studies.confidence import read_confidence
+from rockframe.studies.fragility.labelling import BOUND_SUFFIXES, with_stripes
 from rockframe.studies.fragility.trials import (
     attributes_of_system,
     check_one_structure,
@@ -29,7 +27,6 @@ from rockframe.studies.fragility.words import POOLED_ATTRIBUTE
 from rockframe.studies.intensities import (
     PERIOD_ATTRIBUTE,
     PeriodLike,
-    column_of_runs,
     measure_of_runs,
     measure_words,
     period_attribute,
@@ -41,149 +38,12 @@ from rockframe.studies.limit_states import (
     read_in_unit,
     scalar_of,
 )
-from rockframe.studies.logistic import Logistic, fit_logistic
 from rockframe.studies.sweeps.motions import MotionsLike
 from rockframe.suggestions import with_hints
 from rockframe.units import POSITIVE, RatioLike
 
 _OWNER: Final = "cloud_analysis"
-_MIN_RUNS: Final = 4
-"""Least number of runs in a regression, so that its dispersion can be estimated."""
 _CURVE_POINTS: Final = 101
-_POSTERIOR_DRAWS: Final = 4000
-"""Random draws of the coefficients, for bounds."""
-_SEARCH_MARGIN: Final = 3.0
-"""Range beyond the intensities of the runs in which medians are searched, as a logarithm."""
-_SEARCH_POINTS: Final = 601
-_BOUND_SUFFIXES: Final = ("", "_lower_bound", "_upper_bound")
-_INTENSITY_VARIABLES: Final = (
-    "median_intensity", "median_intensity_lower_bound", "median_intensity_upper_bound",
-    "stripe_intensity", "cloud_intensity",
-)  # fmt: skip
-
-
-@dataclass(frozen=True, eq=False)
-class Regression:
-    """A straight line through the logarithms of responses, :eq:`eq-cloud-line`."""
-
-    intercept: float
-    slope: float
-    dispersion: float  # standard deviation of the residuals
-    determination: float
-    covariance: Array  # of intercept and slope
-    dof: int  # degrees of freedom of the residuals
-    residuals: Array
-
-    @classmethod
-    def fit(cls, logs: Array, responses: Array) -> "Regression":
-        """Fit by least squares."""
-        design = np.column_stack([np.ones(len(logs)), logs])
-        (intercept, slope), *_ = np.linalg.lstsq(design, responses)
-        residuals = responses - design @ np.array([intercept, slope])
-        dof = len(logs) - 2
-        squares = float(residuals @ residuals)
-        total = float(((responses - responses.mean()) ** 2).sum())
-        variance = squares / dof
-        return cls(
-            float(intercept), float(slope), math.sqrt(variance),
-            1.0 - squares / total if total > 0.0 else 0.0,
-            np.asarray(variance * np.linalg.inv(design.T @ design), dtype=np.float64), dof,
-            residuals,
-        )  # fmt: skip
-
-    def draw_coefficients(self, rng: np.random.Generator, count: int) -> tuple[Array, Array, Array]:
-        """Draw intercepts, slopes and dispersions of the posterior, :eq:`eq-cloud-posterior`."""
-        scale = np.sqrt(self.dof / rng.chisquare(self.dof, count))
-        root = np.linalg.cholesky(self.covariance)
-        about = rng.standard_normal((count, 2)) @ root.T * scale[:, None]
-        return self.intercept + about[:, 0], self.slope + about[:, 1], self.dispersion * scale
-
-
-@dataclass(frozen=True, eq=False)
-class Cloud:
-    """Runs, each under one motion, and the line and logistic curves fitted to them."""
-
-    logs: Array  # of the intensity
-    responses: Array  # infinite where the block overturned, zero where it stayed at rest
-    regression: Regression | None  # of the runs in between; None if these are too few
-    overturning: Logistic
-    moving: Logistic  # of runs that did not overturn: whether anything moved
-
-    @classmethod
-    def fit(cls, logs: Array, responses: Array) -> "Cloud":
-        """Fit a line, and logistic curves for overturning and for staying at rest."""
-        overturned, moved = np.isinf(responses), responses > 0.0
-        between = moved & ~overturned
-        enough = between.sum() >= _MIN_RUNS and np.ptp(logs[between]) > SAME_INTENSITY
-        regression = Regression.fit(logs[between], np.log(responses[between])) if enough else None
-        return cls(
-            logs,
-            responses,
-            regression,
-            fit_logistic(logs, overturned),
-            fit_logistic(logs[~overturned], moved[~overturned]),
-        )
-
-    @property
-    def is_regressed(self) -> AnyArray:
-        """Which runs moved and did not overturn."""
-        return (self.responses > 0.0) & np.isfinite(self.responses)
-
-    def log_likelihoods(self) -> Array:
-        """Return the logarithm of the likelihood of each run, :eq:`eq-cloud-likelihood`."""
-        if self.regression is None:
-            return np.full(len(self.logs), np.nan)
-        overturning = self.overturning.probability(self.logs)
-        moving = self.moving.probability(self.logs)
-        overturned, dispersion = np.isinf(self.responses), self.regression.dispersion
-        found = np.where(
-            overturned,
-            np.log(np.maximum(overturning, 1e-300)),
-            np.log1p(-np.minimum(overturning, 1.0 - 1e-16)),
-        )
-        probability = np.where(self.responses > 0.0, moving, 1.0 - moving)
-        found[~overturned] += np.log(np.maximum(probability[~overturned], 1e-300))
-        normalized = self.regression.residuals / dispersion
-        found[self.is_regressed] += -0.5 * (normalized**2 + math.log(2.0 * math.pi)) - math.log(
-            dispersion
-        )
-        return found
-
-    def probabilities(self, logs: Array, level: float) -> Array:
-        """Return the probability that a level is exceeded, :eq:`eq-cloud-fragility`."""
-        line = self.regression
-        coefficients = None if line is None else (line.intercept, line.slope, line.dispersion)
-        return _exceedance_probability(
-            self.overturning.probability(logs),
-            self.moving.probability(logs),
-            coefficients,
-            logs,
-            level,
-        )
-
-    def draw_curves(self, logs: Array, level: float, rng: np.random.Generator, count: int) -> Array:
-        """Draw fragility curves from the posterior; shape (count, intensities)."""
-        overturning = self.overturning.draw_curves(logs, rng, count)
-        moving = self.moving.draw_curves(logs, rng, count)
-        coefficients = None
-        if self.regression is not None and not math.isinf(level):
-            coefficients = [one[:, None] for one in self.regression.draw_coefficients(rng, count)]
-        return _exceedance_probability(overturning, moving, coefficients, logs, level)
-
-
-def _exceedance_probability(
-    overturning: Array, moving: Array, coefficients: Sequence[Any] | None, logs: Array, level: float
-) -> Array:
-    """Return the probability beyond a level: of overturning, of moving, and by the line."""
-    from scipy.special import ndtr
-
-    if math.isinf(level):
-        return overturning
-    if coefficients is None:
-        return np.full(np.shape(overturning), np.nan)
-    intercept, slope, dispersion = coefficients
-    regressed = np.asarray(ndtr((intercept + slope * logs - math.log(level)) / dispersion))
-    return overturning + (1.0 - overturning) * moving * regressed
 
 
 @with_hints()
@@ -276,21 +136,24 @@ def cloud_analysis(
     ['peak relative rotation 0.2', 'overturning']
     """
     runs = check_runs(runs, owner=_OWNER)
-    level = read_level(confidence, owner=_OWNER)
+    nominal = read_confidence(confidence, owner=_OWNER)
     seed = checked_integer(seed, owner=_OWNER, name="seed", lowest=0)
     pooled_axes = checked_list(pooled, owner=_OWNER, name="pooled", of="names")
-    check_one_structure(runs, pooled_axes, [column_of_runs(runs, intensity)], owner=_OWNER)
+    check_one_structure(runs, pooled_axes, [intensity], owner=_OWNER)
     measure = measure_of_runs(runs, intensity, period, motions, owner=_OWNER)
     values = scalar_of(runs, response, label, owner=_OWNER)
-    levels = listed_limits(limits, owner=_OWNER)
-    requested = [_read_level(one, values, _OWNER, "limits") for one in levels if one != OVERTURNING]
-    floor = read_least(least, values, owner=_OWNER)
-    found = fit_cloud(runs, measure, values, least=floor, owner=_OWNER)
+    requested = [
+        _read_response(one, values, _OWNER, "limits")
+        for one in listed_limits(limits, owner=_OWNER)
+        if one != OVERTURNING
+    ]
+    found = fit_cloud(runs, measure, values, least=least, owner=_OWNER)
     words = " ".join(filter(None, [response.replace("_", " "), label]))
     named = {f"{words} {one:g}{unit_suffix_of(values.attrs)}": one for one in requested}
-    dataset = _cloud_dataset(found, named | {OVERTURNING: math.inf}, measure, level, seed)
+    levels = named | {OVERTURNING: math.inf}
+    dataset = _cloud_dataset(found, levels, measure, nominal, seed)
     for one in ("cloud_response", "response_limit"):
-        dataset[one].attrs["units"] = str(values.attrs.get("units", "1"))
+        dataset[one].attrs["units"] = unit_of(values.attrs)
     dataset.attrs |= {
         **attributes_of_system(runs),
         **period_attribute(runs, [intensity], period, owner=_OWNER),
@@ -310,9 +173,10 @@ class CloudFit(NamedTuple):
 
 
 def fit_cloud(
-    runs: xr.Dataset, measure: xr.DataArray, values: xr.DataArray, *, least: float, owner: str
+    runs: xr.Dataset, measure: xr.DataArray, values: xr.DataArray, *, least: Any, owner: str
 ) -> CloudFit:
     """Fit a cloud to the runs that have a verdict, an intensity and a response."""
+    floor = 0.0 if least is None else _read_response(least, values, owner, "least")
     if MOTION not in runs.coords:
         msg = f"{owner}: found runs without motions; expected those of many motions"
         raise StudyError(msg)
@@ -321,97 +185,25 @@ def fit_cloud(
         for one in (measure, values, overturns(runs))
     )
     response = np.abs(response)
-    response = np.where(overturned == 1.0, np.inf, np.where(response < least, 0.0, response))
+    response = np.where(overturned == 1.0, np.inf, np.where(response < floor, 0.0, response))
     known = (
         ~np.isnan(overturned) & (intensities > 0.0) & np.isfinite(intensities) & ~np.isnan(response)
     )
-    if known.sum() < _MIN_RUNS:
+    if known.sum() < MIN_RUNS:
         count = int(known.sum())
-        msg = f"{owner}: {count} run{'s have' if count != 1 else ' has'} a verdict and an "
-        msg += f"intensity; {_MIN_RUNS} are needed"
+        msg = (
+            f"{owner}: {count} run{'s have' if count != 1 else ' has'} a verdict and an intensity; "
+            f"{MIN_RUNS} are needed"
+        )
         raise StudyError(msg)
     used = motion_numbers(overturns(runs))[known]
     cloud = Cloud.fit(np.log(intensities[known]), response[known])
     return CloudFit(cloud, known, len(np.unique(used)) < len(used))
 
 
-def read_least(value: Any, values: xr.DataArray, *, owner: str) -> float:
-    """Read the response below which a run counts as one at rest, in the response's unit."""
-    return 0.0 if value is None else _read_level(value, values, owner, "least")
-
-
-def _read_level(value: Any, values: xr.DataArray, owner: str, name: str) -> float:
-    unit, words = str(values.attrs.get("units", "1")), f"a value of {values.name}"
+def _read_response(value: Any, values: xr.DataArray, owner: str, name: str) -> float:
+    unit, words = unit_of(values.attrs), f"a value of {values.name}"
     return read_in_unit(value, unit, words, owner=owner, name=name, condition=POSITIVE)
-
-
-def _curve(
-    cloud: Cloud, level: float, logs: Array, confidence: float, seed: int
-) -> tuple[FragilityStatus, Array, Array, Array]:
-    """Return status, probabilities at some intensities, median and dispersion of a level.
-
-    Each with its bounds, NaN where confidence is.
-    """
-    status = _status(cloud, level)
-    wide = np.linspace(
-        cloud.logs.min() - _SEARCH_MARGIN, cloud.logs.max() + _SEARCH_MARGIN, _SEARCH_POINTS
-    )
-    middle, spread = _median_dispersion(cloud.probabilities(wide, level)[None], wide)
-    points = np.full((3, len(logs)), np.nan)
-    points[0] = cloud.probabilities(logs, level)
-    medians, spreads = np.full((2, 3), np.nan)
-    if status not in (FragilityStatus.FITTED, FragilityStatus.SEPARATED):
-        return status, points, medians, spreads
-    medians[0], spreads[0] = np.exp(middle[0]), spread[0]
-    if status is FragilityStatus.SEPARATED:
-        medians[0], spreads[0] = np.exp(cloud.overturning.coefficients[0]), 0.0
-    elif not math.isnan(confidence):
-        tails = 0.5 * (1.0 - confidence), 0.5 * (1.0 + confidence)
-        rng = np.random.default_rng(seed)
-        drawn = cloud.draw_curves(np.concatenate([logs, wide]), level, rng, _POSTERIOR_DRAWS)
-        points[1:] = np.quantile(drawn[:, : len(logs)], tails, axis=0)
-        each = _median_dispersion(drawn[:, len(logs) :], wide)
-        # a median beyond the searched range is infinite, or zero where all of the curve lies above
-        every = [np.where(np.isnan(one), np.inf, one) for one in each]
-        every[0][np.all(drawn[:, len(logs) :] >= 0.5, axis=1)] = -np.inf
-        medians[1:] = np.exp(np.quantile(every[0], tails, method="inverted_cdf"))
-        spreads[1:] = np.quantile(every[1], tails, method="inverted_cdf")
-    return status, points, medians, spreads
-
-
-def _status(cloud: Cloud, level: float) -> FragilityStatus:
-    """Return whether a limit state has a fragility, or why not."""
-    if math.isinf(level):
-        rises = cloud.overturning.status is not FragilityStatus.FITTED
-        rises = rises or cloud.overturning.coefficients[1] > 0.0
-        return cloud.overturning.status if rises else FragilityStatus.NOT_RISING
-    if cloud.regression is None:
-        return FragilityStatus.NO_TRIALS
-    parted = FragilityStatus.NOT_RISING in (cloud.overturning.status, cloud.moving.status)
-    rises = cloud.regression.slope > 0.0 and not parted
-    return FragilityStatus.FITTED if rises else FragilityStatus.NOT_RISING
-
-
-def _median_dispersion(curves: Array, logs: Array) -> tuple[Array, Array]:
-    """Return the logarithms at which curves reach one half, and their dispersions."""
-    from scipy.special import ndtri
-
-    eta = ndtri(np.clip(curves, 1e-300, 1.0 - 1e-16))
-    at = [_crossings(eta, logs, level) for level in (-1.0, 0.0, 1.0)]
-    return at[1], 0.5 * (at[2] - at[0])
-
-
-def _crossings(eta: Array, logs: Array, level: float) -> Array:
-    """Return where curves first rise above a level; NaN where they do not."""
-    above = eta >= level
-    right = np.argmax(above, axis=1)
-    found = above.any(axis=1) & (right > 0)
-    right = np.maximum(right, 1)
-    rows = np.arange(len(eta))
-    low, high = eta[rows, right - 1], eta[rows, right]
-    with np.errstate(invalid="ignore", divide="ignore"):
-        at = logs[right - 1] + (level - low) / (high - low) * (logs[right] - logs[right - 1])
-    return np.where(found, at, np.nan)
 
 
 def _cloud_dataset(
@@ -420,20 +212,16 @@ def _cloud_dataset(
     """Label a cloud and its fragility against levels of the response, by their names."""
     cloud, of_bounds = runs.cloud, math.nan if runs.motions_repeat else confidence
     logs = np.linspace(cloud.logs.min(), cloud.logs.max(), _CURVE_POINTS)
-    curves = [_curve(cloud, level, logs, of_bounds, seed) for level in levels.values()]
+    curves = [curve_of_level(cloud, level, logs, of_bounds, seed) for level in levels.values()]
     name, over = str(measure.name), {"limit_state": len(levels)}
-    regression, logistic = cloud.regression, cloud.overturning
-    regressed = [math.nan] * 5 if regression is None else [
-        regression.intercept, regression.slope, math.sqrt(regression.covariance[1, 1]),
-        regression.dispersion, regression.determination,
-    ]  # fmt: skip
-    names = (
-        "regression_intercept", "regression_slope", "regression_slope_error",
-        "residual_dispersion", "determination",
-    )  # fmt: skip
+    line, logistic = cloud.regression or NO_LINE, cloud.overturning
     found = build_dataset(
         {
-            **dict(zip(names, regressed, strict=True)),
+            "regression_intercept": line.intercept,
+            "regression_slope": line.slope,
+            "regression_slope_error": math.sqrt(line.covariance[1, 1]),
+            "residual_dispersion": line.dispersion,
+            "determination": line.determination,
             "logistic_intercept": logistic.coefficients[0],
             "logistic_slope": logistic.coefficients[1],
             "logistic_slope_error": math.sqrt(logistic.covariance[1, 1]),
@@ -449,13 +237,13 @@ def _cloud_dataset(
     points, medians, spreads = map(np.stack, of_curves)
     of_states = {"fragility_status": np.array(status),
                  "response_limit": np.array([*levels.values()])}  # fmt: skip
-    for k, end in enumerate(_BOUND_SUFFIXES):
+    for k, end in enumerate(BOUND_SUFFIXES):
         of_states[f"median_intensity{end}"] = medians[:, k]
         of_states[f"dispersion{end}"] = spreads[:, k]
     of_states["trial_count"] = np.full(len(levels), len(cloud.logs))
     of_states["left_out_count"] = np.full(len(levels), int((~runs.included).sum()))
     found = with_variables(found, of_states, over=tuple(over))
-    shares = {f"exceedance_probability{end}": points[:, k] for k, end in enumerate(_BOUND_SUFFIXES)}
+    shares = {f"exceedance_probability{end}": points[:, k] for k, end in enumerate(BOUND_SUFFIXES)}
     found = with_variables(found, shares, over=(*over, name))
     found = with_labels(found, {name: (name, np.exp(logs), measure.attrs)})
     found = with_variables(found, {"limit_state": np.array(list(levels), dtype=object)})
@@ -463,10 +251,7 @@ def _cloud_dataset(
         (np.exp(cloud.logs)[:, None], (cloud.responses >= level).astype(np.float64))
         for level in levels.values()
     ]
-    found = with_stripes(found, counted, over, confidence)
-    for one in _INTENSITY_VARIABLES:
-        found[one].attrs["units"] = measure.attrs.get("units", "1")
-    return found
+    return with_stripes(found, counted, over, confidence, measure.attrs)
 
 
 def _sentence(found: xr.Dataset, motions_repeat: bool) -> str:

@@ -1,4 +1,4 @@
-"""Probabilities as arguments, and exact confidence bounds of shares."""
+"""Probabilities as arguments, their normal scores, and exact confidence bounds of shares."""
 
 from typing import Final
 
@@ -12,7 +12,7 @@ SHARE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value < 1.0)
 _LEVEL: Final = Condition("from 0.5 to 0.9999", lambda value: 0.5 <= value <= 0.9999)
 
 
-def read_level(value: object, *, owner: str) -> float:
+def read_confidence(value: object, *, owner: str) -> float:
     """Read the argument ``confidence``."""
     return to_ratio(value, owner=owner, name="confidence", condition=_LEVEL, example="0.95")
 
@@ -23,6 +23,13 @@ def read_shares(value: object, name: str, *, owner: str) -> Array:
     return np.array(
         [to_ratio(one, owner=owner, name=name, condition=SHARE, example="0.5") for one in listed]
     )
+
+
+def normal_scores(probabilities: Array) -> Array:
+    """Return the normal scores of probabilities, finite also where these are 0 or 1."""
+    from scipy.special import ndtri
+
+    return np.asarray(ndtri(np.clip(probabilities, 1e-300, 1.0 - 1e-16)))
 
 
 def clopper_pearson(exceeded: AnyArray, trials: AnyArray, confidence: float) -> tuple[Array, Array]:

@@ -29,7 +29,6 @@ from rockframe.studies.line_axes import read_line_axes
 from rockframe.studies.line_scan import (
     CAPACITY_DEFINITION,
     INTERRUPTED_ENDING,
-    SCALE,
     SCAN_SOURCE,
     VERDICT_DIM,
     LineScan,
@@ -38,7 +37,7 @@ from rockframe.studies.line_scan import (
     read_width,
 )
 from rockframe.studies.sweeps.arguments import SweepArguments
-from rockframe.studies.sweeps.motions import MotionsLike
+from rockframe.studies.sweeps.motions import SCALE, MotionsLike
 from rockframe.studies.sweeps.scenes import needed_motions, scene_of
 from rockframe.studies.sweeps.words import cases_verdict, slips_of_cases
 from rockframe.system.options import PointsLike
@@ -245,9 +244,8 @@ def _sentence(found: xr.Dataset, structures: Mapping[str, int]) -> str:
     repeated = int((of_overturning["flip_count"].to_numpy() > 1).sum())
     if repeated:
         text += f"; under {repeated} the verdict changed more than once"
-    interrupted = str(found.attrs["verdict"]).endswith(
-        INTERRUPTED_ENDING
-    )  # the verdict of the scan
+    of_scan = str(found.attrs["verdict"])
+    interrupted = of_scan.endswith(INTERRUPTED_ENDING)
     missing = int(overturns(found).isnull().sum())
     if missing and not interrupted:
         text += f"; {missing} of {found['status'].size} runs of the scan have no verdict"

@@ -11,7 +11,7 @@ from rockframe.errors import ComponentError, SchemaError, did_you_mean, short_re
 from rockframe.results.schema import build_dataset
 from rockframe.results.variables.studies import MOTION
 from rockframe.signals.arrays import Array
-from rockframe.studies.confidence import clopper_pearson, read_level, read_shares
+from rockframe.studies.confidence import clopper_pearson, read_confidence, read_shares
 from rockframe.studies.probability import SAMPLING_ATTRIBUTE
 from rockframe.suggestions import with_hints
 from rockframe.units import RatioLike
@@ -80,7 +80,7 @@ def ensemble_statistics(
     >>> found.sizes["rank"]
     20
     """
-    requested = read_level(confidence, owner=_OWNER)
+    requested = read_confidence(confidence, owner=_OWNER)
     shares = read_shares(quantiles, "quantiles", owner=_OWNER)
     values = _values_of(runs, name)
     if values.dtype.kind not in "biuf":

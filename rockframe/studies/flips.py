@@ -9,6 +9,7 @@ from typing import Final
 
 import numpy as np
 
+from rockframe.results.outcome import enumeration
 from rockframe.simulation.certify.run_summary import RunSummary
 from rockframe.simulation.certify.scan import Side, may_change_between
 from rockframe.simulation.soundness import share_words, slip_words
@@ -101,10 +102,7 @@ def scan_scales(
 def _wide_intervals(
     side: Side, resolution: float, *, may_slide: bool, above_first: bool = False
 ) -> Iterator[tuple[float, float]]:
-    """Return the intervals that are wider than the resolution, where the base lifts.
-
-    Those below the least scale that overturns, or also those beyond it.
-    """
+    """Return wide intervals where the base lifts: below the least scale that overturns, or all."""
     for near, far in side.intervals():
         if side.shown[near].overturned and not above_first:
             return
@@ -272,4 +270,4 @@ def _range_words(gaps: list[str]) -> str:
     if more > 0:
         further = "range" if more == 1 else "ranges"
         return f"{', '.join(named)} and in {more} further {further}"
-    return " and ".join([", ".join(named[:-1]), named[-1]] if named[:-1] else named)
+    return enumeration(named)

@@ -13,14 +13,13 @@ from rockframe.motion.quantities import ArrayLike
 from rockframe.results.outcome import overturns
 from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.studies import MOTION
-from rockframe.results.variables.variable import unit_suffix_of
+from rockframe.results.variables.variable import unit_of, unit_suffix_of
 from rockframe.signals.arrays import AnyArray, Array
 from rockframe.studies.confidence import read_shares
 from rockframe.studies.fragility.trials import attributes_of_system
 from rockframe.studies.intensities import PeriodLike, measure_of_runs, period_attribute
 from rockframe.studies.limit_states import check_runs, scalar_of
-from rockframe.studies.line_scan import SCALE
-from rockframe.studies.sweeps.motions import MotionsLike
+from rockframe.studies.sweeps.motions import SCALE, MotionsLike
 from rockframe.suggestions import with_hints
 from rockframe.units import Measure, RatioLike, Unit, to_ratio, to_si_values
 
@@ -136,10 +135,9 @@ def fractile_curves(
     found = with_variables(found, {MOTION: names, "quantile": shares})
     found = with_labels(found, {name: (name, intensities, measure.attrs)})
     found = with_variables(found, {_LEVEL_DIM: requested})
-    unit = values.attrs.get("units", "1")
     for one in ("motion_response", "response_fractile", _LEVEL_DIM):
-        found[one].attrs["units"] = unit
-    found["intensity_fractile"].attrs["units"] = measure.attrs.get("units", "1")
+        found[one].attrs["units"] = unit_of(values.attrs)
+    found["intensity_fractile"].attrs["units"] = unit_of(measure.attrs)
     attributes = period_attribute(runs, [intensity], period, owner=_OWNER)
     return found.assign_attrs(
         {**attributes_of_system(runs), "intensity": name, **attributes,
@@ -299,7 +297,7 @@ def _read_levels(value: Any, values: xr.DataArray, curves: Sequence[_ResponseCur
         every = every[np.isfinite(every)]
         ends = (float(every.min()), float(every.max())) if len(every) else (0.0, 1.0)
         return np.linspace(*ends, _CURVE_POINTS + 1)[1:]  # every motion has reached the least
-    unit = str(values.attrs.get("units", "1"))
+    unit = unit_of(values.attrs)
     if unit == Unit.ONE:
         listed = checked_list(value, owner=_OWNER, name="levels", of="numbers")
         found = np.array([to_ratio(one, owner=_OWNER, name="levels") for one in listed])

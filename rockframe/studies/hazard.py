@@ -10,15 +10,16 @@ import xarray as xr
 from numpy.polynomial.legendre import leggauss
 
 from rockframe.arguments import checked_dataset, checked_function
-from rockframe.errors import ComponentError, ModelWarning, SchemaError, UnitsError, short_repr, warn
+from rockframe.errors import ComponentError, ModelWarning, SchemaError, short_repr, warn
 from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
-from rockframe.results.variables.variable import unit_suffix_of
+from rockframe.results.variables.variable import unit_of, unit_suffix_of
 from rockframe.signals.arrays import Array
+from rockframe.studies.confidence import normal_scores
 from rockframe.studies.fragility.likelihood import log_interval_probability
 from rockframe.studies.fragility.words import in_own_units, measures_of
 from rockframe.studies.intensities import PERIOD_ATTRIBUTE, measure_words
-from rockframe.studies.sweeps.axes import read_free_values
+from rockframe.studies.sweeps.axes import read_free_values, read_in_unit_of
 from rockframe.suggestions import with_hints
 from rockframe.units import POSITIVE, Unit, check_attached_unit, to_ratio
 
@@ -52,18 +53,13 @@ class HazardCurve:
 
     def extrapolations(self) -> tuple["HazardCurve", "HazardCurve"]:
         """Return extrapolations of the curve below and above, by its first and last power law."""
-        first, last = (float(one) for one in self.slopes()[[0, -1]])
         reach = math.exp(_EXTRAPOLATION_RANGE)
-        least, most = float(self.intensities[0]), float(self.intensities[-1])
-        below = np.array(
-            [self.rates[0] * math.exp(min(first * _EXTRAPOLATION_RANGE, 600.0)), self.rates[0]]
-        )
-        above = np.array(
-            [self.rates[-1], self.rates[-1] * math.exp(-min(last * _EXTRAPOLATION_RANGE, 600.0))]
-        )
+        first, last = np.minimum(self.slopes()[[0, -1]] * _EXTRAPOLATION_RANGE, 600.0)
+        below = self.rates[0] * np.array([math.exp(first), 1.0])
+        above = self.rates[-1] * np.array([1.0, math.exp(-last)])
         return (
-            HazardCurve(np.array([least / reach, least]), below),
-            HazardCurve(np.array([most, most * reach]), above),
+            HazardCurve(self.intensities[0] / np.array([reach, 1.0]), below),
+            HazardCurve(self.intensities[-1] * np.array([1.0, reach]), above),
         )
 
 
@@ -152,7 +148,7 @@ def annual_rate(
     found = with_labels(found, {name: curves[name].variable for name in kept})
     found = with_variables(found, labels)
     for name in ("quantile_intensity", "contributing_intensity"):
-        found[name].attrs["units"] = curves[measure].attrs.get("units", "1")
+        found[name].attrs["units"] = unit_of(curves[measure].attrs)
     attributes = {
         key: curves.attrs[key] for key in (PERIOD_ATTRIBUTE, "model") if key in curves.attrs
     }
@@ -165,7 +161,7 @@ def annual_rate(
 
 def read_hazard(value: object, measure: xr.DataArray, between: object) -> HazardCurve:
     """Read a hazard curve over a measure, and refuse one that does not descend."""
-    name, unit = str(measure.name), str(measure.attrs.get("units", "1"))
+    name, unit = str(measure.name), unit_of(measure.attrs)
     if callable(value):
         if between is None:
             msg = f"{_OWNER}: a hazard that is a function needs between, such as ('0.01 g_0', ...)"
@@ -179,8 +175,8 @@ def read_hazard(value: object, measure: xr.DataArray, between: object) -> Hazard
         rates = np.broadcast_to(np.asarray(rate(values), dtype=np.float64), values.shape)
     elif isinstance(value, xr.DataArray) and value.ndim == 1:
         (dim,) = value.dims
-        given_unit = str(value[dim].attrs.get("units", "1"))
-        values = _read_intensities((value[dim].to_numpy(), given_unit), name, unit)
+        pair = value[dim].to_numpy(), unit_of(value[dim].attrs)
+        values = _read_intensities(pair, name, unit)
         rates = value.to_numpy().astype(np.float64)
     elif isinstance(value, Mapping):
         table = cast("Mapping[str, Any]", value)
@@ -222,11 +218,7 @@ def _read_intensities(value: object, name: str, unit: str) -> Array:
     if len(pair) == 2 and pair[1] == unit and own_measure:
         check_attached_unit(pair[0], unit, owner=_OWNER, name="intensity")
         return np.asarray(read_free_values(list(pair[0]), "intensity", owner=_OWNER)[0], float)
-    values, own = read_free_values(value, "intensity", owner=_OWNER, expected=unit)
-    if own != unit:
-        msg = f"{_OWNER}: {name} is in {unit}, got {short_repr(value)}"
-        raise UnitsError(msg)
-    return np.asarray(values, dtype=np.float64)
+    return read_in_unit_of(name, unit, value, "intensity", owner=_OWNER)
 
 
 def _read_rates(table: Mapping[str, Any]) -> Array:
@@ -366,11 +358,10 @@ def _integrated(
 
 def _interpolator(curve: xr.DataArray, along: xr.DataArray) -> Callable[[Array], Array]:
     """Return the probability by log intensity: linear in normal scores, extrapolated."""
-    from scipy.special import ndtr, ndtri
+    from scipy.special import ndtr
 
-    values = curve.to_numpy()
     with np.errstate(invalid="ignore"):
-        eta = ndtri(np.clip(values, 1e-300, 1.0 - 1e-16))
+        eta = normal_scores(curve.to_numpy())
     logs = np.log(along.to_numpy())
     slope = [(eta[k] - eta[k - 1]) / (logs[k] - logs[k - 1]) for k in (1, len(logs) - 1)]
 

@@ -22,6 +22,7 @@ from rockframe.studies.sweeps.axes import labels_in_unit
 from rockframe.studies.sweeps.case import store_of, unscaled_motions
 from rockframe.studies.sweeps.motions import (
     ABBREVIATIONS,
+    SCALE,
     SPECTRAL_ACCELERATION,
     motion_of_case,
     named_motions,
@@ -299,7 +300,7 @@ def _scale_factors(
         return xr.DataArray(1.0)
     name = axes[0]["name"]
     labels = labels_in_unit(runs[name], axes[0]["unit"], owner=owner)
-    if name == "scale":
+    if name == SCALE:
         return labels
 
     def unit_factor(motion: GroundMotion) -> float:

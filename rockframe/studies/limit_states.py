@@ -11,6 +11,7 @@ import xarray as xr
 
 from rockframe.arguments import checked_dataset, checked_list
 from rockframe.errors import ComponentError, SchemaError, did_you_mean, short_repr
+from rockframe.results.joining import SWEEP_ATTRIBUTES
 from rockframe.results.outcome import overturns
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.bodies import BODIES, RESTRAINERS
@@ -19,6 +20,7 @@ from rockframe.results.variables.variable import TIME, unit_suffix_of
 from rockframe.signals.arrays import AnyArray
 from rockframe.studies.confidence import SHARE
 from rockframe.studies.sweeps.axes import in_units_of_schema, labels_in_unit
+from rockframe.studies.sweeps.motions import SCALE
 from rockframe.units import NOT_NEGATIVE, Condition, Measure, Unit, to_ratio, to_si
 
 UPLIFT: Final = "uplift"
@@ -35,8 +37,6 @@ _PEAKS_UP_TO_OVERTURNING: Final = {
 }
 """Scalars that describe a run only up to the overturning angle."""
 _NEEDED_VARIABLES: Final = ("status", "peak_relative_rotation", "first_uplift_time", "overturned")
-_SWEEP_ATTRIBUTES: Final = ("run_json", "axes_json", "motions_json", "motion_names", "study_sha256")
-"""Attributes of a sweep."""
 
 
 @dataclass(frozen=True)
@@ -158,7 +158,7 @@ def check_runs(value: object, *, owner: str) -> xr.Dataset:
     """Refuse anything but the result of a sweep; give its variables in the units of the schema."""
     runs = checked_dataset(value, owner=owner)
     missing = [name for name in _NEEDED_VARIABLES if name not in runs]
-    if missing or not set(_SWEEP_ATTRIBUTES) <= set(runs.attrs):
+    if missing or not set(SWEEP_ATTRIBUTES) <= set(runs.attrs):
         what = f"a dataset without {', '.join(missing)}" if missing else "joined runs"
         what = what if missing or "end_state" not in runs.attrs else "a single run"
         msg = (
@@ -170,8 +170,8 @@ def check_runs(value: object, *, owner: str) -> xr.Dataset:
     if status.dtype.kind == "f" and np.any(status != np.round(status), where=~np.isnan(status)):
         msg = f"{owner}: found means of runs, which have no verdict; expected the runs themselves"
         raise SchemaError(msg)
-    if "scale" in runs.coords and "capacity_scale" in runs:  # which is in multiples of the motion
-        scales = labels_in_unit(runs["scale"], Unit.ONE, owner=owner)
+    if SCALE in runs.coords and "capacity_scale" in runs:  # which is in multiples of the motion
+        scales = labels_in_unit(runs[SCALE], Unit.ONE, owner=owner)
         runs = runs.assign_coords(scale=scales.variable)
     return in_units_of_schema(runs, owner=owner)
 

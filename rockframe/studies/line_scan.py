@@ -33,13 +33,12 @@ from rockframe.studies.sweeps.arguments import ExecutionArguments, SweepArgument
 from rockframe.studies.sweeps.axes import read_numbers
 from rockframe.studies.sweeps.case import cache_study
 from rockframe.studies.sweeps.execution import ProgressBar, progress_bar
-from rockframe.studies.sweeps.motions import MOTION_AXES
+from rockframe.studies.sweeps.motions import MOTION_AXES, SCALE
 from rockframe.studies.sweeps.planning import plan_study
 from rockframe.studies.sweeps.sweep import read_folder, run_study
 from rockframe.units import Condition, Measure, to_ratio
 from rockframe.version import __version__
 
-SCALE: Final = "scale"
 VERDICT_DIM: Final = "number of the verdict"
 """Dimension of verdicts along lines; no axis can have such a name."""
 CAPACITY_DEFINITION: Final = "least scale found to exceed"
@@ -65,6 +64,11 @@ class SweepRounds:
     store: Path | None
     bar: ProgressBar
 
+    @property
+    def advice(self) -> str:
+        """What the message about an interrupt says of the store, if there is one."""
+        return "; the same call goes on, as it has a store" if self.store else ""
+
     def sweep(
         self,
         part: str,
@@ -76,7 +80,7 @@ class SweepRounds:
     ) -> tuple[xr.Dataset, bool]:
         """Run the cases of a part, whose name is used for its folder and on the bar.
 
-        Also return whether this was not interrupted. Parts after the first are not recorded for
+        Also return whether this was completed. Parts after the first are not recorded for
         :func:`rockframe.case`, as no result has them.
         """
         arguments = {**self.options, **options}
@@ -159,9 +163,9 @@ def bisect_brackets(
     *,
     width: float,
 ) -> tuple[list[Bracket], bool]:
-    """Halve brackets in rounds until they are narrow; return whether all of them are.
+    """Halve brackets in rounds until they are narrow; also return whether this was completed.
 
-    This uses the verdicts of the runs of a named part, and whether all were made.
+    `run_at` makes the runs of a named round; it returns their verdicts, and whether all were made.
     """
     done: list[Bracket] = []
     remaining = list(brackets)
@@ -229,8 +233,7 @@ class LineVerdicts:
     def gaps(self, verdict: int, line: int) -> tuple[Array, Array]:
         """Return the intervals between runs, up to the one that ends at the first exceedance.
 
-        Without those at whose upper end nothing moves: a base that holds with elastic parts holds
-        at any lesser scale too.
+        An interval at whose upper end nothing moves is left out: nothing moves at lesser scales.
         """
         along = self.verdicts[verdict, line]
         (known,) = np.nonzero(~np.isnan(along))
@@ -308,8 +311,7 @@ class LineScan:
 
     scene: System | Callable[..., System]  # as for :func:`rockframe.sweep`
     motions: Mapping[str, GroundMotion]  # all of them
-    # further values, and their unit, for each row of a table; one row without values if there are
-    # none
+    # further values, and their unit, for each row of a table; if there are none, there is one row
     columns: Mapping[str, tuple[Array, str]]
     # how all of it is run. The scan and each round have a folder of their own in its store
     options: SweepArguments
@@ -347,8 +349,7 @@ class LineScan:
             scan.attrs["verdict"] = (
                 f"{str(scan.attrs['verdict']).removesuffix('.')}{INTERRUPTED_ENDING}"
             )
-            advice = "; the same call goes on, as it has a store" if rounds.store else ""
-            msg = f"{self.owner}: interrupted; brackets are wider than asked{advice}"
+            msg = f"{self.owner}: interrupted; brackets are wider than asked{rounds.advice}"
             warn(msg, SolverWarning)
         return LineResults(scan, verdicts, brackets)
 
@@ -363,7 +364,7 @@ class LineScan:
     def _refine_gaps(
         self, rounds: SweepRounds, verdicts: LineVerdicts, resolution: float
     ) -> tuple[LineVerdicts, bool]:
-        """Run the gaps below the first exceedance; also return whether this was not interrupted."""
+        """Run the gaps below the first exceedance; also return whether this was completed."""
         tried = set[tuple[int, float]]()
         for number in range(1, MAX_ROUNDS + 1):
             # where a middle has no verdict the gap stays
@@ -383,10 +384,7 @@ class LineScan:
     def _run_at(
         self, rounds: SweepRounds, part: str, requested: LineScales
     ) -> tuple[xr.Dataset, Array, bool]:
-        """Run each line at its own scale.
-
-        Give runs, verdicts over verdicts and cases, and whether this was not interrupted.
-        """
+        """Run lines at their own scales; give runs, verdicts, and whether this was completed."""
         lines, scales = (np.array(each) for each in zip(*requested, strict=True))
         names = list(self.motions)
         rows, motions = np.divmod(lines, len(names))

@@ -13,7 +13,8 @@ from rockframe.errors import ComponentError, StudyError, short_repr
 from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.studies import MOTION
 from rockframe.signals.arrays import AnyArray, Array
-from rockframe.studies.cloud import Cloud, fit_cloud, read_least
+from rockframe.studies.cloud import fit_cloud
+from rockframe.studies.cloud_fit import Cloud
 from rockframe.studies.fragility.trials import check_one_structure, flatten_like
 from rockframe.studies.intensities import (
     PERIOD_ATTRIBUTE,
@@ -115,7 +116,6 @@ def compare_intensities(
     """
     runs = check_runs(runs, owner=_OWNER)
     values = scalar_of(runs, response, label, owner=_OWNER)
-    floor = read_least(least, values, owner=_OWNER)
     named, clouds, included_runs = list[str](), list[Cloud](), list[AnyArray]()
     if isinstance(measures, xr.DataArray):
         measures = [measures]
@@ -124,13 +124,11 @@ def compare_intensities(
         for one in checked_list(measures, owner=_OWNER, name="measures", of="measures")
     ]
     pooled_axes = checked_list(pooled, owner=_OWNER, name="pooled", of="names")
-    check_one_structure(
-        runs, pooled_axes, [column_of_runs(runs, one) for one, _ in listed], owner=_OWNER
-    )
+    check_one_structure(runs, pooled_axes, [one for one, _ in listed], owner=_OWNER)
     for one, period in listed:
         measure = measure_of_runs(runs, one, period, motions, owner=_OWNER)
         attributes = period_attribute(runs, [one], period, owner=_OWNER)
-        cloud, included, _ = fit_cloud(runs, measure, values, least=floor, owner=_OWNER)
+        cloud, included, _ = fit_cloud(runs, measure, values, least=least, owner=_OWNER)
         if cloud.regression is None:
             msg = (
                 f"{_OWNER}: {cloud.is_regressed.sum()} of {len(cloud.responses)} runs have a "

@@ -10,15 +10,14 @@ import xarray as xr
 from rockframe.arguments import checked_function, checked_integer
 from rockframe.errors import ComponentError, short_repr
 from rockframe.motion import GroundMotion
+from rockframe.results.outcome import overturns
 from rockframe.results.schema import SCHEMA, with_labels, with_variables
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import with_shared_arguments
 from rockframe.signals.arrays import Array
 from rockframe.signals.motion import absolute_peak
 from rockframe.simulation.system import System, check_system
-from rockframe.studies.limit_states import overturns
 from rockframe.studies.line_scan import (
-    SCALE,
     SCAN_SOURCE,
     VERDICT_DIM,
     LineScan,
@@ -26,6 +25,7 @@ from rockframe.studies.line_scan import (
     read_width,
 )
 from rockframe.studies.sweeps.arguments import SweepArguments
+from rockframe.studies.sweeps.motions import SCALE
 from rockframe.system.options import Overturning
 from rockframe.system.rigid_ground import RigidGroundSetting
 from rockframe.units import ACCELERATION, FREQUENCY, RatioLike, quantity

@@ -16,14 +16,14 @@ from rockframe.errors import (
     collected_warnings,
     short_repr,
 )
+from rockframe.results.outcome import overturns
 from rockframe.results.schema import with_variables
 from rockframe.results.table import head
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import with_shared_arguments
 from rockframe.signals.arrays import AnyArray, Array
 from rockframe.simulation.system import System
-from rockframe.studies.confidence import clopper_pearson, read_level
-from rockframe.studies.limit_states import overturns
+from rockframe.studies.confidence import clopper_pearson, normal_scores, read_confidence
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import Axis, read_number
 from rockframe.studies.sweeps.memory import check_memory
@@ -121,10 +121,9 @@ def impose_correlation(cube: Array, matrix: Array, *, stratified: bool) -> Array
 
     A stratified sample keeps its values, in another order (Iman and Conover, 1982).
     """
-    from scipy.special import ndtr, ndtri
+    from scipy.special import ndtr
 
-    tiny = np.finfo(np.float64).tiny
-    normal = ndtri(np.clip(cube, tiny, 1.0 - 1e-16)) @ np.linalg.cholesky(matrix).T
+    normal = normal_scores(cube) @ np.linalg.cholesky(matrix).T
     if not stratified:
         return np.asarray(ndtr(normal), dtype=np.float64)
     order = np.argsort(np.argsort(normal, axis=0, kind="stable"), axis=0, kind="stable")
@@ -167,16 +166,13 @@ def _read_parameter(name: str, value: Any, scene: SweptScene, owner: str) -> Ran
             msg = f"{owner}: {name} needs a median above zero, got {short_repr(first)}"
             raise ComponentError(msg)
         return RandomParameter(axis.name, str(axis.unit), stats.lognorm(s=log, scale=start))
-    width = float(_axis_of(scene, name, second, owner).values[0])
-    if kind == "normal" and width > 0.0:
-        return RandomParameter(axis.name, str(axis.unit), stats.norm(loc=start, scale=width))
-    if kind == "uniform" and width > start:
-        return RandomParameter(
-            axis.name, str(axis.unit), stats.uniform(loc=start, scale=width - start)
-        )
-    wrong = "standard deviation above zero" if kind == "normal" else "greatest above the least"
-    msg = f"{owner}: {name} needs a {wrong}, got {short_repr(second)}"
-    raise ComponentError(msg)
+    end = float(_axis_of(scene, name, second, owner).values[0])
+    kind_of, width = (stats.norm, end) if kind == "normal" else (stats.uniform, end - start)
+    if not width > 0.0:
+        wrong = "standard deviation above zero" if kind == "normal" else "greatest above the least"
+        msg = f"{owner}: {name} needs a {wrong}, got {short_repr(second)}"
+        raise ComponentError(msg)
+    return RandomParameter(axis.name, str(axis.unit), kind_of(loc=start, scale=width))
 
 
 def _read_frozen(name: str, parts: list[Any], scene: SweptScene, owner: str) -> RandomParameter:
@@ -354,7 +350,7 @@ def probability_of_overturning(
     count = checked_integer(cases, owner=_OWNER, name="cases", lowest=2, highest=_MAX_CASES)
     method = checked_choice(Sampling, sampling, owner=_OWNER, name="sampling")
     start_seed = checked_integer(seed, owner=_OWNER, name="seed", lowest=0)
-    level = read_level(confidence, owner=_OWNER)
+    level = read_confidence(confidence, owner=_OWNER)
     named = motions_of_study(motions, scene)
     faults = check_memory(
         {"numbers that are drawn": 1.0 + len(spreads)}, count, "draw fewer cases", owner=_OWNER

@@ -14,6 +14,7 @@ from rockframe.arguments import checked_list, is_iterable, with_string_keys
 from rockframe.errors import ComponentError, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.results.joining import CASE_COUNT
+from rockframe.results.outcome import overturns
 from rockframe.results.schema import with_variables
 from rockframe.results.variables.studies import MESSAGE, MOTION
 from rockframe.shared_arguments import with_shared_arguments
@@ -23,7 +24,6 @@ from rockframe.signals.motion import COEFFICIENTS
 from rockframe.simulation.certify.perturbations import divide_intervals
 from rockframe.simulation.run import NONE
 from rockframe.simulation.system import System, check_system
-from rockframe.studies.limit_states import overturns
 from rockframe.studies.sweeps.arguments import SequenceArguments
 from rockframe.studies.sweeps.sweep import sweep
 from rockframe.units import NOT_NEGATIVE, TIME, QuantityLike, to_si

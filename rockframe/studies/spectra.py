@@ -10,6 +10,7 @@ import xarray as xr
 
 from rockframe.components import Block
 from rockframe.errors import ComponentError, collected_warnings
+from rockframe.results.outcome import overturns
 from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.table import head
 from rockframe.results.variables.studies import CASE, MOTION
@@ -22,11 +23,9 @@ from rockframe.studies.intensities import (
     measure_attributes,
     motions_of_runs,
 )
-from rockframe.studies.limit_states import overturns
 from rockframe.studies.line_axes import read_line_axes, unstack_cases
 from rockframe.studies.line_scan import (
     CAPACITY_DEFINITION,
-    SCALE,
     SCAN_SOURCE,
     VERDICT_DIM,
     LineScan,
@@ -36,7 +35,7 @@ from rockframe.studies.line_scan import (
     read_width,
 )
 from rockframe.studies.sweeps.arguments import SweepArguments
-from rockframe.studies.sweeps.motions import MotionsLike
+from rockframe.studies.sweeps.motions import SCALE, MotionsLike
 from rockframe.studies.sweeps.scenes import needed_motions, scene_of
 from rockframe.studies.sweeps.sweep import sweep
 from rockframe.units import LENGTH, PERIOD, Measure, QuantityLike, RatioLike, Unit

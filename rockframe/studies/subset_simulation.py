@@ -17,7 +17,6 @@ from rockframe.errors import (
     short_repr,
     warn,
 )
-from rockframe.motion import GroundMotion
 from rockframe.results.joining import concat
 from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.table import head
@@ -34,7 +33,7 @@ from rockframe.studies.conditional_sampling import (
     subset_probability,
     subset_variation,
 )
-from rockframe.studies.confidence import read_level
+from rockframe.studies.confidence import read_confidence
 from rockframe.studies.limit_states import (
     LIMITS_ATTRIBUTE,
     OVERTURNING,
@@ -52,6 +51,7 @@ from rockframe.studies.probability import (
 )
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.memory import check_memory
+from rockframe.studies.sweeps.motions import MotionsLike
 from rockframe.studies.sweeps.scenes import motions_of_study, scene_of
 from rockframe.system.options import PointsLike
 from rockframe.units import Condition, RatioLike, to_ratio
@@ -71,7 +71,7 @@ _TABLE_ATTRIBUTES: Final = ("axes_json", "study_sha256")
 @with_shared_arguments(SweepArguments)
 def subset_simulation(
     system: System | Callable[..., System],
-    motions: GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None = None,
+    motions: MotionsLike | None = None,
     *,
     spread: Mapping[str, Any],
     correlation: Mapping[tuple[str, str], RatioLike] | Array | None = None,
@@ -183,7 +183,7 @@ def subset_simulation(
         raise ComponentError(msg)
     max_levels = checked_integer(levels, owner=_OWNER, name="levels", lowest=1, highest=_MAX_LEVELS)
     first = checked_integer(seed, owner=_OWNER, name="seed", lowest=0)
-    level = read_level(confidence, owner=_OWNER)
+    nominal = read_confidence(confidence, owner=_OWNER)
     named = motions_of_study(motions, scene)
     wrong = check_memory(
         {"samples": 2.0 + len(spreads)}, count * max_levels, "draw fewer cases", owner=_OWNER
@@ -202,10 +202,10 @@ def subset_simulation(
             max_levels=max_levels,
             rng=np.random.default_rng(first),
         )
-        sampled, completed = _collect_levels(level_iterator, has_store=rounds.store is not None)
+        sampled, completed = _collect_levels(level_iterator, rounds.advice)
     if sampler.warnings and completed:
         warn(f"{_OWNER}: in further rounds: {sampler.warnings[0]}", ModelWarning)
-    dataset = _subset_dataset(sampler, sampled, level, completed=completed)
+    dataset = _subset_dataset(sampler, sampled, nominal, completed=completed)
     if completed:
         _warn_of_uncertain_probability(dataset)
     return dataset.assign_attrs({
@@ -215,8 +215,8 @@ def subset_simulation(
         SAMPLING_ATTRIBUTE: "subset simulation",
         "seed": first,
         "share": fraction,
-        "confidence": level,
-        "verdict": _sentence(dataset, state, level, len(named or ()), completed=completed),
+        "confidence": nominal,
+        "verdict": _sentence(dataset, state, nominal, len(named or ()), completed=completed),
     })  # fmt: skip
 
 
@@ -290,13 +290,12 @@ class _Sampler:
         return table
 
 
-def _collect_levels(iterator: Iterator[Level], *, has_store: bool) -> tuple[list[Level], bool]:
+def _collect_levels(iterator: Iterator[Level], advice: str) -> tuple[list[Level], bool]:
     """Return the levels, and whether sampling was completed."""
     found: list[Level] = []
     try:
         found.extend(iterator)
     except KeyboardInterrupt:
-        advice = "; the same call goes on, as it has a store" if has_store else ""
         message = f"{_OWNER}: interrupted at level {len(found) + 1}{advice}"
         if not found:
             raise StudyError(message) from None

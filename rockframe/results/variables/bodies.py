@@ -79,4 +79,4 @@ RESTRAINER_SCALARS: Final = rows_over(
 )
 
 OF_EACH_LINK: Final = ("restrainer_force", "restrainer_elongation", "restrainer_state")
-"""Histories of all restrainers, and the column of each restrainer that they are made of."""
+"""Histories of all restrainers; the columns of a model have the same names."""

@@ -83,9 +83,14 @@ class Variable:
         return attributes
 
 
+def unit_of(attributes: Mapping[Any, Any]) -> str:
+    """Return the unit of values; 1 where their attributes have none."""
+    return str(attributes.get("units", Unit.ONE))
+
+
 def unit_suffix_of(attributes: Mapping[Any, Any]) -> str:
     """Return the unit of values as it follows a number; empty where it is 1."""
-    return unit_suffix(str(attributes.get("units", Unit.ONE)))
+    return unit_suffix(unit_of(attributes))
 
 
 def flag_words(attributes: Mapping[Any, Any]) -> dict[Any, str]:

@@ -8,11 +8,11 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import checked_choice, checked_list, checked_name, is_iterable
-from rockframe.errors import ComponentError, SchemaError, UnitsError, short_repr
+from rockframe.errors import ComponentError, SchemaError, short_repr
 from rockframe.results.schema import with_labels, with_variables
 from rockframe.results.variables.analyses import LIMIT_STATE
 from rockframe.simulation.soundness import share_words
-from rockframe.studies.confidence import read_level
+from rockframe.studies.confidence import read_confidence
 from rockframe.studies.fragility.labelling import BoundSettings, fragility_dataset
 from rockframe.studies.fragility.likelihood import Bands, Fit
 from rockframe.studies.fragility.ordered import ordered_fits
@@ -29,7 +29,6 @@ from rockframe.studies.fragility.words import POOLED_ATTRIBUTE, fragility_senten
 from rockframe.studies.intensities import (
     Intensity,
     PeriodLike,
-    column_of_runs,
     measure_of_runs,
     period_attribute,
 )
@@ -41,9 +40,8 @@ from rockframe.studies.limit_states import (
     limit_states,
     states_of,
 )
-from rockframe.studies.line_scan import SCALE
-from rockframe.studies.sweeps.axes import read_free_values
-from rockframe.studies.sweeps.motions import MotionsLike
+from rockframe.studies.sweeps.axes import read_in_unit_of
+from rockframe.studies.sweeps.motions import SCALE, MotionsLike
 from rockframe.suggestions import with_hints
 from rockframe.units import RatioLike
 
@@ -184,15 +182,15 @@ def fragility(
         others = [name for name, one in arguments.items() if one is not None]
         return _fit_counts(runs, intensity, period, bands, confidence, others)
     runs = check_runs(runs, owner=_OWNER)
-    arguments = [column_of_runs(runs, one) for one in _listed_measures(intensity)]
+    listed = _listed_measures(intensity)
     pooled_axes = checked_list(pooled, owner=_OWNER, name="pooled", of="names")
-    structures = structures_of(runs, pooled_axes, arguments, owner=_OWNER)
+    structures = structures_of(runs, pooled_axes, listed, owner=_OWNER)
     of_capacities = checked_name(trials, _TRIALS, owner=_OWNER, name="trials") == _CAPACITIES
     if of_capacities and "capacity_scale" not in runs:
         msg = f"{_OWNER}: capacities are those of rf.incremental_dynamic_analysis, found a sweep"
         raise SchemaError(msg)
     states = _read_states(runs, limits)
-    measures = [measure_of_runs(runs, one, period, motions, owner=_OWNER) for one in arguments]
+    measures = [measure_of_runs(runs, one, period, motions, owner=_OWNER) for one in listed]
     if len({one.name for one in measures}) < len(measures):
         msg = f"{_OWNER}: the two intensity measures are one, {measures[0].name}; give another"
         raise ComponentError(msg)
@@ -216,7 +214,7 @@ def fragility(
         raise ComponentError(msg)
     default_bands = of_runs if repeated or common else Bands.PROFILE
     settings = BoundSettings(
-        _read_bands(bands, default_bands, len(measures)), read_level(confidence, owner=_OWNER)
+        _read_bands(bands, default_bands, len(measures)), read_confidence(confidence, owner=_OWNER)
     )
     by_motion = settings.bands is not Bands.PROFILE and (repeated or common)
     parts = zip(*(structures.parts(one) for one in (*verdicts, *measures)), strict=True)
@@ -239,7 +237,7 @@ def fragility(
     dataset = fragility_dataset(
         found, {**structure_sizes, "limit_state": len(states)},
         [(str(one.name), dict(one.attrs)) for one in measures], settings,
-        attributes | period_attribute(runs, arguments, period, owner=_OWNER), fits,
+        attributes | period_attribute(runs, listed, period, owner=_OWNER), fits,
     )  # fmt: skip
     dataset = with_labels(dataset, structures.coordinates)
     dataset = with_variables(dataset, labels_of_states(states))
@@ -279,11 +277,8 @@ def _fit_counts(
         raise ComponentError(msg)
     intensity, exceeded, trials = (counts[name] for name in _COLUMNS)
     which = Intensity.read(measure, period, owner=_OWNER)
-    expected = which.attributes()["units"]
-    values, unit = read_free_values(intensity, "intensity", owner=_OWNER, expected=expected)
-    if unit != expected:
-        msg = f"{_OWNER}: {which.name} is in {expected}, got {short_repr(intensity)}"
-        raise UnitsError(msg)
+    unit = which.attributes()["units"]
+    values = read_in_unit_of(which.name, unit, intensity, "intensity", owner=_OWNER)
     over = np.asarray(exceeded, dtype=np.float64)
     count = np.broadcast_to(np.asarray(trials, dtype=np.float64), values.shape)
     wrong = over.shape != values.shape or np.any(values <= 0.0)
@@ -298,7 +293,7 @@ def _fit_counts(
         )
         raise ComponentError(msg)
     settings = BoundSettings(
-        _read_bands(bands, Bands.PROFILE, 1), read_level(confidence, owner=_OWNER)
+        _read_bands(bands, Bands.PROFILE, 1), read_confidence(confidence, owner=_OWNER)
     )
     counted_trials = Trials.from_verdicts(np.log(values)[:, None], over, count)
     # the runs: at each intensity first those that exceeded, then the others

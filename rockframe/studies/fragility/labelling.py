@@ -10,6 +10,7 @@ import xarray as xr
 
 from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
+from rockframe.results.variables.variable import unit_of
 from rockframe.signals.arrays import AnyArray, Array
 from rockframe.studies.confidence import clopper_pearson
 from rockframe.studies.fragility.likelihood import Bands, Fit, boundary, fit, gap, jackknife
@@ -28,8 +29,11 @@ _BINS: Final = 10
 _INTENSITY_VARIABLES: Final = (
     "median_intensity", "median_intensity_lower_bound", "median_intensity_upper_bound",
     "separation_lower_intensity", "separation_upper_intensity", "stripe_intensity",
+    "cloud_intensity",
 )  # fmt: skip
 """Variables in the unit of the intensity."""
+BOUND_SUFFIXES: Final = ("", "_lower_bound", "_upper_bound")
+"""Endings of the names of an estimate and of its bounds."""
 MeasureLabel = tuple[str, dict[str, Any]]
 """Name and attributes of an intensity measure."""
 
@@ -125,15 +129,12 @@ def fragility_dataset(
     if single_measure:
         runs = [one.runs for one in found if one.runs is not None]
         runs = runs or _capacity_verdicts([one.trials for one in found])
-        dataset = with_stripes(dataset, runs, sizes, settings.confidence)
-        for name in _INTENSITY_VARIABLES:
-            if name in dataset and "units" in measures[0][1]:
-                dataset[name].attrs["units"] = measures[0][1]["units"]
+        dataset = with_stripes(dataset, runs, sizes, settings.confidence, measures[0][1])
     return dataset
 
 
 def _reshaped(values: Mapping[str, Any], sizes: Mapping[str, int]) -> dict[str, AnyArray]:
-    """Return values of each structure and limit state, which are counted, their dimensions."""
+    """Return values in a row as arrays over structures and limit states."""
     arrays = {name: np.asarray(each) for name, each in values.items()}
     return {n: each.reshape(*sizes.values(), *each.shape[1:]) for n, each in arrays.items()}
 
@@ -231,8 +232,7 @@ def _with_curves(
     rows = np.stack([np.ones(mesh[0].size), *(np.log(one).ravel() for one in mesh)])
     shares = ndtr(np.stack([_eta(each, rows, settings) for each in every]))
     shares = shares.reshape(len(every), 3, *mesh[0].shape)
-    ends = ("", "_lower_bound", "_upper_bound")
-    values = {f"exceedance_probability{end}": shares[:, k] for k, end in enumerate(ends)}
+    values = {f"exceedance_probability{end}": shares[:, k] for k, end in enumerate(BOUND_SUFFIXES)}
     dataset = with_variables(dataset, _reshaped(values, sizes), over=(*sizes, *grids))
     return with_labels(dataset, {name: (name, grids[name], about) for name, about in measures})
 
@@ -258,8 +258,12 @@ def with_stripes(
     counted: Sequence[tuple[Array, Array]],
     sizes: Mapping[str, int],
     confidence: float,
+    measure: Mapping[str, Any],
 ) -> xr.Dataset:
-    """Add the number of exceedances by groups of intensities, with Clopper-Pearson bounds."""
+    """Add the number of exceedances by groups of intensities, with Clopper-Pearson bounds.
+
+    All intensities of the dataset get the unit among the attributes of their `measure`.
+    """
     every = np.concatenate([columns[:, 0] for columns, _ in counted])
     every = np.unique(np.round(np.log(every[np.isfinite(every) & (every > 0.0)]), 9))
     if len(every) > _MAX_STRIPES:
@@ -287,7 +291,11 @@ def with_stripes(
         "stripe_fraction_upper_bound": upper,
     }
     dataset = with_variables(dataset, _reshaped(values, sizes), over=tuple(sizes))
-    return with_variables(dataset, {"stripe_intensity": np.exp(middles)})
+    dataset = with_variables(dataset, {"stripe_intensity": np.exp(middles)})
+    for name in _INTENSITY_VARIABLES:
+        if name in dataset:
+            dataset[name].attrs["units"] = unit_of(measure)
+    return dataset
 
 
 def _capacity_verdicts(trials: Sequence[Trials]) -> list[tuple[Array, Array]]:

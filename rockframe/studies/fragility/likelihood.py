@@ -14,7 +14,7 @@ from typing import Any, Final, cast
 import numpy as np
 
 from rockframe.results.variables.analyses import FragilityStatus
-from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import AnyArray, Array
 from rockframe.studies.fragility.trials import Trials
 
 RAY_COUNT: Final = 360
@@ -68,16 +68,18 @@ class Fit:
 
 
 def fit(trials: Trials, bands: Bands) -> Fit:
-    """Find the most likely coefficients.
-
-    By :eq:`eq-fragility-sandwich` and :eq:`eq-fragility-jackknife`.
-    """
+    """Find the most likely coefficients, and their covariance by the given `bands`."""
     found = _maximum_likelihood(trials)
     if found.status is not FragilityStatus.FITTED:
         return found
     if bands is Bands.SANDWICH:
-        score_products = _score_products(trials, found.coefficients)
-        return replace(found, covariance=found.covariance @ score_products @ found.covariance)
+        of_trial, weight = scores(trials, found.coefficients), trials.weight
+        if trials.cluster is None:
+            each = of_trial / weight[:, None]
+        else:
+            each = cluster_sums(of_trial, trials.cluster)
+            weight = np.ones(len(each))
+        return replace(found, covariance=sandwich(found.covariance, each, weight))
     if bands is Bands.JACKKNIFE:
         each = list(_leave_one_out(trials))
         rows = np.array([_refit(rest, found.coefficients) for rest, _ in each])
@@ -90,11 +92,23 @@ def fit(trials: Trials, bands: Bands) -> Fit:
     return found
 
 
-def jackknife(best: Array, rows: Array, multiplicity: Array) -> Array:
-    """Return the covariance of estimates; each of the `rows` omits one cluster.
+def sandwich(inverse: Array, each: Array, weight: Array) -> Array:
+    """Return the covariance from the scores of clusters, :eq:`eq-fragility-sandwich`."""
+    count = float(weight.sum())
+    products = each.T @ (weight[:, None] * each)
+    return inverse @ (products * (count / (count - 1.0) if count > 1.0 else math.inf)) @ inverse
 
-    By :eq:`eq-fragility-jackknife`.
-    """
+
+def cluster_sums(of_trial: Array, cluster: AnyArray) -> Array:
+    """Sum rows over the trials of each cluster."""
+    names, place = np.unique(cluster, return_inverse=True)
+    summed = np.zeros((len(names), of_trial.shape[1]))
+    np.add.at(summed, place, of_trial)
+    return summed
+
+
+def jackknife(best: Array, rows: Array, multiplicity: Array) -> Array:
+    """Return the covariance from rows without one cluster each, :eq:`eq-fragility-jackknife`."""
     count = float(multiplicity.sum())
     differences = rows - best
     return (count - 1.0) / count * (differences.T @ (multiplicity[:, None] * differences))
@@ -184,10 +198,10 @@ def information(trials: Trials, coefficients: Array) -> Array:
 
 
 def interval_scores(upper: Array, lower: Array, eta_upper: Array, eta_lower: Array) -> Array:
-    """Return the derivatives of the log shares between two ends by the coefficients.
+    """Return the derivatives by the coefficients of the logarithms of shares between two ends.
 
-    From the factors of the coefficients at the ends, and eta there; an open end has zeros and an
-    infinite eta.
+    `upper` and `lower` are the factors of the coefficients at the ends; an open end has zeros and
+    an infinite eta.
     """
     at_upper, at_lower = _densities(eta_upper, eta_lower)
     return at_upper[:, None] * upper - at_lower[:, None] * lower
@@ -196,7 +210,7 @@ def interval_scores(upper: Array, lower: Array, eta_upper: Array, eta_lower: Arr
 def interval_information(
     upper: Array, lower: Array, eta_upper: Array, eta_lower: Array, weight: Array | float = 1.0
 ) -> Array:
-    """Return their curvature, summed up with weights, with its sign changed."""
+    """Return minus the second derivatives of the sum of the weighted log shares."""
     at_upper, at_lower = _densities(eta_upper, eta_lower)
     eta_upper, eta_lower = (np.where(np.isfinite(x), x, 0.0) for x in (eta_upper, eta_lower))
     of_upper = weight * at_upper * (eta_upper + at_upper)
@@ -372,19 +386,3 @@ def log_interval_probability(upper: Array, lower: Array) -> Array:
 def _log_density(eta: Array) -> Array:
     """Return the logarithm of the density of the normal distribution."""
     return -0.5 * (eta * eta + math.log(2.0 * math.pi))
-
-
-def _score_products(trials: Trials, best: Array) -> Array:
-    """Return products of the scores, summed over clusters, with the usual small-sample factor."""
-    of_trial = scores(trials, best)
-    if trials.cluster is None:
-        weight = trials.weight
-        count = float(weight.sum())
-        each = of_trial / weight[:, None]
-        total = each.T @ (weight[:, None] * each)
-    else:
-        names, place = np.unique(trials.cluster, return_inverse=True)
-        summed = np.zeros((len(names), of_trial.shape[1]))
-        np.add.at(summed, place, of_trial)
-        count, total = float(len(names)), summed.T @ summed
-    return total * (count / (count - 1.0) if count > 1.0 else math.inf)

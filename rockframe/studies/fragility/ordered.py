@@ -18,10 +18,12 @@ from rockframe.studies.fragility.likelihood import (
     ZERO_SLOPE,
     Bands,
     Fit,
+    cluster_sums,
     interval_information,
     interval_scores,
     jackknife,
     log_interval_probability,
+    sandwich,
 )
 
 
@@ -72,10 +74,7 @@ def ordered_fits(
 
 
 def _ends(logs: Array, count: AnyArray, at: Array) -> tuple[Array, Array, Array, Array]:
-    """Return the factors of the coefficients at both ends of each verdict, and eta there.
-
-    As :func:`rockframe.studies.fragility.likelihood.interval_scores` takes them.
-    """
+    """Return the factors of the coefficients at both ends of each verdict, and eta there."""
     states = len(at) - 1
     upper, lower = np.zeros((2, len(logs), len(at)))
     rows = np.arange(len(logs))
@@ -143,15 +142,12 @@ def _covariance(
     logs: Array, count: AnyArray, motions: AnyArray, best: Array, bands: Bands
 ) -> tuple[Array, Array | None]:
     """Return covariance by motions, :eq:`eq-fragility-sandwich`, :eq:`eq-fragility-jackknife`."""
-    names, place = np.unique(motions, return_inverse=True)
     if bands is Bands.SANDWICH:
         ends = _ends(logs, count, best)
-        inverse = np.linalg.inv(interval_information(*ends))
-        summed = np.zeros((len(names), len(best)))
-        np.add.at(summed, place, interval_scores(*ends))
-        factor = len(names) / (len(names) - 1.0) if len(names) > 1 else math.inf
-        filled = factor * inverse @ summed.T @ summed @ inverse
-        return np.asarray(filled, dtype=np.float64), None
+        inverse = np.asarray(np.linalg.inv(interval_information(*ends)), dtype=np.float64)
+        summed = cluster_sums(interval_scores(*ends), motions)
+        return sandwich(inverse, summed, np.ones(len(summed))), None
+    names, place = np.unique(motions, return_inverse=True)
     rows = np.full((len(names), len(best)), np.nan)
     for k in range(len(names)):
         kept = place != k

@@ -18,10 +18,11 @@ import xarray as xr
 from rockframe.errors import ComponentError, SchemaError, StudyError, short_repr
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.signals.arrays import AnyArray, Array
-from rockframe.studies.line_scan import SCALE
+from rockframe.studies.intensities import column_of_runs
 from rockframe.studies.sweeps.axes import Changes
+from rockframe.studies.sweeps.motions import SCALE
 
-Values = TypeVar("Values", xr.DataArray, xr.Dataset)
+Labelled = TypeVar("Labelled", xr.DataArray, xr.Dataset)
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +38,7 @@ class Structures:
         """Number of structures along each dimension."""
         return tuple(int(group.max()) + 1 for group in self.groups.values())
 
-    def parts(self, values: Values) -> Iterator[Values]:
+    def parts(self, values: Labelled) -> Iterator[Labelled]:
         """Return what belongs to each structure, the last dimension fastest."""
         for number in np.ndindex(self.shape):
             groups = zip(self.groups.items(), number, strict=True)
@@ -136,11 +137,11 @@ def _changes_of_axes(runs: xr.Dataset) -> dict[str, str]:
 
 
 def _own_measures(runs: xr.Dataset, values: Sequence[object]) -> list[str]:
-    """Return the names of intensities that are numbers of the runs; no others of an axis' name."""
-    arrays = [one for one in values if isinstance(one, xr.DataArray)]
+    """Return names of intensities that are arrays, along the axis of that name if there is one."""
+    columns = [column_of_runs(runs, one) for one in values]
     return [
-        str(one.name) for one in arrays
-        if one.name not in runs.coords or set(runs[one.name].dims) <= set(one.dims)
+        str(one.name) for one in columns if isinstance(one, xr.DataArray)
+        and (one.name not in runs.coords or set(runs[one.name].dims) <= set(one.dims))
     ]  # fmt: skip
 
 
@@ -170,7 +171,7 @@ def _check_motions(
 def _group_structures(
     runs: xr.Dataset, dims: Sequence[str], kept: Sequence[str], scalar_names: Sequence[str]
 ) -> Structures:
-    """Return structures numbers along each dimension, and labels."""
+    """Return the structures, numbered along each dimension, with their labels."""
     groups: dict[str, AnyArray] = {}
     coordinates = {
         str(name): runs[name].variable

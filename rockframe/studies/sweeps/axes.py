@@ -11,12 +11,11 @@ from typing import Any, Final, cast
 import numpy as np
 import pint
 import xarray as xr
-from numpy.typing import NDArray
 
 from rockframe.errors import ComponentError, UnitsError, short_repr
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import CASE, MOTION
-from rockframe.signals.arrays import AnyArray
+from rockframe.signals.arrays import AnyArray, Array
 from rockframe.simulation.provenance import SYSTEM_AXES as SYSTEM_AXES
 from rockframe.simulation.provenance import Changes as Changes
 from rockframe.units import (
@@ -90,10 +89,7 @@ def read_number(value: object, measure: Measure, *, owner: str, name: str) -> fl
 
 
 def _with_own_unit(value: object) -> object:
-    """Return an array with an attribute ``units`` beside it, as values and their unit are given.
-
-    An iterator is converted to a list.
-    """
+    """Return an array that has an attribute ``units`` with that unit, and an iterator as a list."""
     if isinstance(value, Iterator):
         return list(cast("Iterator[object]", value))
     own = None if isinstance(value, pint.Quantity | tuple) else attached_unit(value)
@@ -145,6 +141,15 @@ def read_free_values(
         measure = Measure("a number", Unit.ONE, "2")
         return read_numbers(items, measure, name, owner=owner), str(Unit.ONE)
     return array, None
+
+
+def read_in_unit_of(measure: str, unit: str, value: object, name: str, *, owner: str) -> Array:
+    """Read values of an argument, which must be in the unit of a measure."""
+    values, own = read_free_values(value, name, owner=owner, expected=unit)
+    if own != unit:
+        msg = f"{owner}: {measure} is in {unit}, got {short_repr(value)}"
+        raise UnitsError(msg)
+    return np.asarray(values, dtype=np.float64)
 
 
 def _values_and_unit(value: object) -> tuple[Any, str] | None:
@@ -240,7 +245,6 @@ def faults_of_values(name: str, values: AnyArray) -> list[str]:
     return [f"axis {name!r} has the value {twice[0]!s} twice"] if len(twice) else []
 
 
-Places: Final = NDArray[np.intp]
 MAX_CASES: Final = 1_000_000_000
 
 

@@ -17,6 +17,7 @@ from rockframe.arguments import checked_dataset
 from rockframe.components import InitialState
 from rockframe.errors import SchemaError, StudyError, did_you_mean, short_repr
 from rockframe.motion import GroundMotion
+from rockframe.results.joining import SWEEP_ATTRIBUTES
 from rockframe.results.variables.studies import MOTION, REPEATED
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import LEVELS, Accuracy
@@ -138,7 +139,7 @@ def case(
 
         dataset, stored = open_study(runs), Store.open(Path(runs))
     attributes: Mapping[str, Any] = cast("Mapping[str, Any]", dataset.attrs)
-    if not {"axes_json", "motions_json", "run_json", "study_sha256"} <= set(attributes):
+    if not set(SWEEP_ATTRIBUTES) <= set(attributes):
         msg = (
             f"{_OWNER}: found a dataset that is no sweep; expected the result of rf.sweep, or of "
             "rf.concat where sweeps differ along one axis, or in their motions, alone"

@@ -12,7 +12,7 @@ from rockframe.motion.operations.scaling import scaled_components
 from rockframe.signals import Motion
 from rockframe.simulation.plan import Plan, resolve_plan
 from rockframe.studies.sweeps.axes import SYSTEM_AXES, Axis, Changes
-from rockframe.studies.sweeps.motions import SCALE_AXIS, motion_of_case
+from rockframe.studies.sweeps.motions import SCALE, motion_of_case
 from rockframe.studies.sweeps.scenes import SystemScene
 from rockframe.studies.sweeps.study import SweepJob
 from rockframe.system.assembly import Assembly
@@ -106,7 +106,7 @@ class CasesOfJob:
     def ground_motion(self, case: int) -> Motion | None:
         """Return the motion of a case only as numbers, which is cheaper."""
         motion = self.unscaled_motion(case)
-        if motion is None or [axis.name for axis, _ in self._scale] != [SCALE_AXIS]:
+        if motion is None or [axis.name for axis, _ in self._scale] != [SCALE]:
             found = self.motion(case)
             return None if found is None else found.si
         return scaled_components(motion.si, self._scale[0][1][case])

@@ -122,7 +122,7 @@ def run_cases(
     stopped: Callable[[], bool],
     compile_timeout: float | None,
 ) -> Iterator[Finished | FinishedGroup | Failed]:
-    """Run cases."""
+    """Run cases together, side by side or alone, and give the outcome of each or of a group."""
     remaining = set(which)
     faults: dict[int, Exception] = {}
     if compile_timeout is not None:
@@ -206,7 +206,7 @@ def run_chunk(job: SweepJob, stopped: Callable[[], bool] = lambda: False) -> Cas
 
 
 def _cautions_and_scalars(run: Finished) -> tuple[list[str], Mapping[str, AnyArray | float]]:
-    """Return the warnings of a run, its scalars, and how it was run."""
+    """Return the warnings of a run, and its scalars with how it was run."""
     if run.response is not None:
         driver = Driver.AS_PYTHON if run.response.trajectory.as_python else Driver.ALONE
         cautions = [text for _, text in run.response.cautions()]
@@ -228,14 +228,13 @@ class _Collector(CollectedResults):
         """Note runs; for one without a verdict only its message."""
         if isinstance(run, Failed):
             self._add_failure(run.case, run.problem)
-            return
-        if isinstance(run, FinishedGroup):
+        elif isinstance(run, FinishedGroup):
             self._add_group(run)
-            return
-        try:
-            self._add_finished(run)
-        except Exception as problem:  # as in the run itself
-            self._add_failure(run.case, problem)
+        else:
+            try:
+                self._add_finished(run)
+            except Exception as problem:  # as in the run itself
+                self._add_failure(run.case, problem)
 
     def _add_finished(self, run: Finished) -> None:
         case, response = run.case, run.response

@@ -152,10 +152,10 @@ def run_chunks(
     executor: Executor | None,
     on_poll: Callable[[], None] = lambda: None,
 ) -> bool:
-    """Run chunks, and yield their results as they are completed.
+    """Run chunks, several at once, and pass their results on; return whether all of them have run.
 
-    None among the chunks means that all others are being run elsewhere; it is asked again later.
-    `glance` is called periodically.
+    None among the chunks means that all others are being run elsewhere; the iterator is asked
+    again later. `on_poll` is called periodically.
     """
     if executor is not None and not hasattr(executor, "submit"):
         msg = f"{OWNER}: executor must be a concurrent.futures.Executor, got {short_repr(executor)}"
@@ -184,17 +184,15 @@ def run_chunks(
                     time.sleep(_POLL_INTERVAL)
                 on_poll()
             return True
-        except KeyboardInterrupt:
+        except BaseException as problem:
             stop.set()
             for one in running:
                 one.cancel()
+            if not isinstance(problem, KeyboardInterrupt):
+                raise
             done = {one for one in running if one.done() and not one.cancelled()}
             _collect_results({one for one in done if one.exception() is None}, running, collect)
             return False
-        finally:
-            stop.set()
-            for one in running:
-                one.cancel()
 
 
 def _submit(

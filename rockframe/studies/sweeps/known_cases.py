@@ -53,7 +53,7 @@ class KnownCases:
         return whole.rows()
 
     def _locate(self, chunk: Chunk) -> tuple[AnyArray, AnyArray]:
-        """Return who has each case of a chunk, and its number there."""
+        """Return which source has each case of a chunk, and the number of the case there."""
         places = self._grid.indices(chunk.cases)
         source = np.full(len(chunk.cases), _NOT_RUN)
         number = np.zeros(len(chunk.cases), dtype=np.int64)

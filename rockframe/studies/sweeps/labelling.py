@@ -87,7 +87,6 @@ def sweep_dataset(labels: SweepLabels, found: Iterable[tuple[range, CaseResults]
     }
     driver = _driver_words(rows.scalars.get(DRIVER, np.empty(0)))
     scalars |= rows.scalars
-    # what cannot be counted before it has run stays a flag, also where nothing has
     rows.scalars.clear()  # arranged values need not be in memory twice
     values = {
         name: grid.in_dimension_order(scalars.pop(name)) for name in SCHEMA if name in scalars

@@ -4,8 +4,8 @@ Values of many cases are in arrays over the cases, computed by the code of a sin
 :mod:`rockframe.case_arrays`.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
@@ -75,47 +75,26 @@ class LaneScene:
     kind: Any
 
 
-@dataclass(eq=False)
-class _Group:
-    """Cases whose systems are of one kind."""
-
-    scenes: dict[int, LaneScene] = field(default_factory=dict[int, LaneScene])
-    motions: dict[Any, Motion | None] = field(default_factory=dict[Any, Motion | None])
-    # numbers of cases, with the keys of their scenes and motions
-    cases: list[tuple[int, int, Any]] = field(default_factory=list[tuple[int, int, Any]])
-
-    def add(
-        self, case: int, scene: LaneScene, key: Any, ground: Callable[[int], Motion | None]
-    ) -> None:
-        """Add a case."""
-        if key not in self.motions:
-            self.motions[key] = ground(case)  # which may fail
-        self.scenes.setdefault(id(scene), scene)
-        self.cases.append((case, id(scene), key))
-
-    def run(self) -> Iterator[Finished]:
-        """Run them, and give those without warnings."""
-        scene_of, motion_of = (
-            np.array([places[one[k]] for one in self.cases])
-            for k, places in ((1, _positions(self.scenes)), (2, _positions(self.motions)))
-        )
-        found = integrate_lanes(
-            [scene.run for scene in self.scenes.values()], [*self.motions.values()],
-            scene_of, motion_of,
-        )  # fmt: skip
-        for k, (case, number, _) in enumerate(self.cases):
-            scene = self.scenes[number]
-            summary = found.summary(k, scene.run.start.substeps)
-            if has_no_cautions(scene.system, summary):
-                yield Finished(case, scene.system, summary, scene.warnings)
+def _run_in_lanes(rows: Sequence[tuple[int, LaneScene, Motion | None]]) -> Iterator[Finished]:
+    """Run cases whose systems are of one kind, and give those without warnings."""
+    cases, every_scene, every_motion = zip(*rows, strict=True)
+    (scenes, scene_of), (motions, motion_of) = _distinct(every_scene), _distinct(every_motion)
+    found = integrate_lanes([scene.run for scene in scenes], motions, scene_of, motion_of)
+    for k, (case, scene) in enumerate(zip(cases, every_scene, strict=True)):
+        summary = found.summary(k, scene.run.start.substeps)
+        if has_no_cautions(scene.system, summary):
+            yield Finished(case, scene.system, summary, scene.warnings)
 
 
-def _positions(keys: Iterable[Any]) -> dict[Any, int]:
-    return {key: place for place, key in enumerate(keys)}
+def _distinct(objects: Sequence[Any]) -> tuple[list[Any], CaseIndices]:
+    """Return each of several objects once, and the place of each among these."""
+    places: dict[int, int] = {}
+    place_of = np.array([places.setdefault(id(one), len(places)) for one in objects], np.intp)
+    return [objects[k] for k in np.unique(place_of, return_index=True)[1]], place_of
 
 
 def compilation_check(timeout: float) -> Callable[[LaneScene], bool]:
-    """Say whether there is machine code for scenes, compiled within some time [s]."""
+    """Return a function that says whether a scene has machine code, compiled within a time [s]."""
     kinds: dict[Any, bool] = {}
 
     def ready(scene: LaneScene) -> bool:
@@ -134,10 +113,11 @@ def run_assembled_singly(
     stopped: Callable[[], bool],
     ready: Callable[[LaneScene], bool],
 ) -> Iterator[Finished | Failed]:
-    """Run what can run side by side."""
+    """Run side by side the cases whose scenes allow it, assembled one by one."""
     scenes: dict[Any, LaneScene | None] = {}
     for begin in range(0, len(which), BATCH_SIZE):
-        groups: dict[Any, _Group] = {}
+        groups: dict[Any, list[tuple[int, LaneScene, Motion | None]]] = {}
+        motions: dict[Any, Motion | None] = {}
         for case in which[begin : begin + BATCH_SIZE]:
             try:
                 key = (cases.scene_key(case), cases.start_key(case), cases.length_key(case))
@@ -147,8 +127,9 @@ def run_assembled_singly(
                     scenes[key] = found if found is not None and ready(found) else None
                 if (scene := scenes[key]) is not None:
                     moved = (id(cases.unscaled_motion(case)), cases.motion_key(case)[1])
-                    group = groups.setdefault(scene.kind, _Group())
-                    group.add(case, scene, moved, cases.ground_motion)
+                    if moved not in motions:
+                        motions[moved] = cases.ground_motion(case)  # which may fail
+                    groups.setdefault(scene.kind, []).append((case, scene, motions[moved]))
             except RockframeError:  # which is reported when the case runs alone
                 continue
             except Exception as problem:
@@ -156,7 +137,7 @@ def run_assembled_singly(
         for group in groups.values():
             if stopped():
                 return
-            yield from group.run()
+            yield from _run_in_lanes(group)
 
 
 def prepare_lanes(system: Assembly, messages: list[str], plan: Plan) -> LaneScene | None:

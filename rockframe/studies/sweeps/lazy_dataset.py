@@ -80,9 +80,9 @@ class _Column(BackendArray):
     """A variable over the cases of a study."""
 
     def __init__(
-        self, kept: Store, grid: Grid, name: str, kind: str, beside: tuple[int, ...]
+        self, stored: Store, grid: Grid, name: str, kind: str, beside: tuple[int, ...]
     ) -> None:
-        self._kept, self._grid, self._name, self._beside = kept, grid, name, beside
+        self._stored, self._grid, self._name, self._beside = stored, grid, name, beside
         self.shape = (*grid.sizes.values(), *beside)
         self.dtype = np.dtype(kind)
 
@@ -104,13 +104,13 @@ class _Column(BackendArray):
         found = np.full(
             (len(numbers), *self._beside), _FILL_VALUES.get(self._name, np.nan), self.dtype
         )
-        of_chunk = numbers // self._kept.chunk
+        of_chunk = numbers // self._stored.chunk
         order = np.argsort(of_chunk, kind="stable")
         used, firsts = np.unique(of_chunk[order], return_index=True)
         for number, places in zip(used.tolist(), np.split(order, firsts)[1:], strict=True):
-            chunk = self._kept.chunk_at(number)
-            if self._kept.has(chunk):
-                values = _values(_rows(self._kept, chunk), self._name)
+            chunk = self._stored.chunk_at(number)
+            if self._stored.has(chunk):
+                values = _values(_rows(self._stored, chunk), self._name)
                 if values is not None:
                     beside = map(slice, values.shape[1:])
                     found[(places, *beside)] = values[numbers[places] - chunk.cases.start]
@@ -122,8 +122,8 @@ _FILL_VALUES: Final[Mapping[str, Any]] = {_STATUS: RunStatus.NOT_RUN, MESSAGE: N
 
 
 @lru_cache(maxsize=_CACHED_CHUNKS)
-def _rows(kept: Store, chunk: Chunk) -> CaseResults:
-    return kept.get(chunk)
+def _rows(stored: Store, chunk: Chunk) -> CaseResults:
+    return stored.get(chunk)
 
 
 def _values(rows: CaseResults, name: str) -> AnyArray | None:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from rockframe.errors import SolverWarning, warn
+from rockframe.results.outcome import enumeration
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.requests import FORCE_SCALARS, POINT_PEAKS, POINT_TIME, POINTS
 from rockframe.results.variables.runs import EVENTS_AND_SCALARS, HISTORIES
@@ -24,13 +25,13 @@ LAZY_ADVICE: Final = "they are read from the store as they are used (rf.open_stu
 _WARNING_SHARE: Final = 0.5
 """Share of the available memory above which the memory that a study needs is reported."""
 _MEMINFO: Final = Path("/proc/meminfo")
-_CGROUP_FILES: Final = (
-    # most, and now, of a container or a job: control groups of both versions
-    (Path("/sys/fs/cgroup/memory.max"), Path("/sys/fs/cgroup/memory.current")),
-    (
-        Path("/sys/fs/cgroup/memory/memory.limit_in_bytes"),
-        Path("/sys/fs/cgroup/memory/memory.usage_in_bytes"),
-    ),
+_CGROUP_FILES: Final = tuple(
+    # limit, usage and its parts, of a container or a job: control groups of both versions
+    tuple(Path("/sys/fs/cgroup", name) for name in names)
+    for names in (
+        ("memory.max", "memory.current", "memory.stat"),
+        ("memory/memory.limit_in_bytes", "memory/memory.usage_in_bytes", "memory/memory.stat"),
+    )
 )
 
 
@@ -61,10 +62,19 @@ def available_memory() -> float:
     if len(found) == 1 and hasattr(os, "sysconf"):
         with suppress(OSError, ValueError):
             found.append(float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE"))
-    for most, now in _CGROUP_FILES:
+    for most, now, parts in _CGROUP_FILES:
         with suppress(OSError, ValueError):  # "max" where there is no limit
-            found.append(max(float(most.read_text()) - float(now.read_text()), 0.0))
+            used = float(now.read_text()) - _reclaimable(parts)
+            found.append(max(float(most.read_text()) - used, 0.0))
     return min(found)
+
+
+def _reclaimable(parts: Path) -> float:
+    """Return the memory with contents of files that were not used lately, which can be freed."""
+    with suppress(OSError, ValueError):
+        sizes = dict(line.split() for line in parts.read_text().splitlines())
+        return float(sizes.get("total_inactive_file", sizes.get("inactive_file", 0.0)))
+    return 0.0
 
 
 def _size_words(size: float) -> str:
@@ -100,4 +110,4 @@ def memory_remedies(
     ways += ["name fewer points"] if arguments.points else []
     if histories is not None:
         ways += ["name fewer outputs", "give a longer output_step", "keep none: outputs=None"]
-    return f"{', '.join(ways[:-1])} or {ways[-1]}" if len(ways) > 1 else ways[0]
+    return enumeration(ways, "or")

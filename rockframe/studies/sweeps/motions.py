@@ -35,9 +35,9 @@ class MotionAxis:
 
 
 SPECTRAL_ACCELERATION: Final = "pseudo_spectral_acceleration"
-SCALE_AXIS: Final = "scale"
+SCALE: Final = "scale"
 MOTION_AXES: Final = {
-    SCALE_AXIS: MotionAxis("factor", Measure("a pure ratio", Unit.ONE, "2")),
+    SCALE: MotionAxis("factor", Measure("a pure ratio", Unit.ONE, "2")),
     "peak_ground_acceleration": MotionAxis("peak", ACCELERATION),
     "peak_ground_velocity": MotionAxis("peak_velocity", VELOCITY),
     SPECTRAL_ACCELERATION: MotionAxis("spectral_acceleration", ACCELERATION),

@@ -108,7 +108,7 @@ _RESERVED_NAMES: Final = {
     )
     for row in table
 }  # fmt: skip
-"""Names that are not left for axes."""
+"""Names of results and of their dimensions, which axes cannot have."""
 
 
 class Faults:

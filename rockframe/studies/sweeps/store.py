@@ -9,8 +9,8 @@ import hashlib
 import json
 import os
 import time
-from collections.abc import Iterator, Mapping
-from contextlib import suppress
+from collections.abc import Generator, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -38,7 +38,7 @@ _BLOCK: Final = 4096
 
 
 def write_arrays(path: Path, described: Mapping[str, Any], arrays: Mapping[str, AnyArray]) -> None:
-    """Write a file."""
+    """Write arrays to a file, with a description and a checksum."""
     plain = {
         name: np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("<"))
         for name, values in arrays.items()
@@ -51,8 +51,12 @@ def write_arrays(path: Path, described: Mapping[str, Any], arrays: Mapping[str, 
 
 
 def read_arrays(path: Path) -> tuple[dict[str, Any], dict[str, AnyArray]]:
-    """Read a file."""
-    content = path.read_bytes()
+    """Read the description and the arrays of a file."""
+    try:
+        content = path.read_bytes()
+    except OSError as problem:
+        msg = f"{path} cannot be read: {problem}"
+        raise StudyError(msg) from problem
     start = len(_MAGIC) + _DIGEST_LENGTH + 1
     if not content.startswith(_MAGIC):
         msg = (
@@ -146,12 +150,10 @@ class Store:
     @classmethod
     def open_or_create(cls, path: Path, study: Study, chunk: int) -> "Store":
         """Open the folder of a study, or make it."""
-        try:
+        with _writing_to(path):
             if not (path / _STUDY).exists():
                 _create(path, study, chunk)
             _remove_stale_parts(path)
-        except OSError as problem:
-            raise _storage_error(path, problem) from problem
         head = _read_head(path)
         if head["rockframe_version"] != __version__:
             msg = (
@@ -169,10 +171,8 @@ class Store:
             )
             raise StudyError(msg)
         if not (path / _LABELS).exists():  # removed, as damaged files should be
-            try:
+            with _writing_to(path):
                 _create(path, study, head["cases_of_a_chunk"])
-            except OSError as problem:
-                raise _storage_error(path, problem) from problem
         return cls._from_head(path, head)
 
     @classmethod
@@ -232,9 +232,8 @@ class Store:
         """Check that results can be stored, before hours of work."""
         part = self.folder / f".{os.getpid()}.{os.urandom(4).hex()}.part"
         try:
-            part.write_bytes(bytes(_BLOCK))
-        except OSError as problem:
-            raise _storage_error(self.folder, problem) from problem
+            with _writing_to(self.folder):
+                part.write_bytes(bytes(_BLOCK))
         finally:
             with suppress(OSError):
                 part.unlink(missing_ok=True)
@@ -242,7 +241,7 @@ class Store:
     def get(self, chunk: Chunk) -> CaseResults:
         """Read the results of a chunk."""
         file = self._file(chunk)
-        described, arrays = _read(file)
+        described, arrays = read_arrays(file)
         texts = described.pop("texts")
         if described != self._described(chunk):
             msg = (
@@ -281,7 +280,7 @@ class Store:
 
     def labels(self) -> SweepLabels:
         """Read the labels of the study."""
-        described, arrays = _read(self.folder / _LABELS)
+        described, arrays = read_arrays(self.folder / _LABELS)
         axes, columns = (
             tuple(
                 Axis.from_dict(axis, arrays[axis["name"]] if words is None else np.array(words))
@@ -301,7 +300,7 @@ class Store:
 
     def motions(self) -> dict[str, GroundMotion | None]:
         """Read the motions of the study."""
-        described, arrays = _read(self.folder / _LABELS)
+        described, arrays = read_arrays(self.folder / _LABELS)
         for k, (_, one) in enumerate(described["motions"]):
             for component, held in _sampled_components(one).items():
                 for what in held:
@@ -325,8 +324,14 @@ class Store:
         }
 
 
-def _storage_error(path: Path, problem: OSError) -> StudyError:
-    return StudyError(f"the study cannot be kept in {path}: {problem}")
+@contextmanager
+def _writing_to(folder: Path) -> Generator[None]:
+    """Raise an error of rockframe if the folder of a study cannot be written."""
+    try:
+        yield
+    except OSError as problem:
+        msg = f"the study cannot be kept in {folder}: {problem}"
+        raise StudyError(msg) from problem
 
 
 def _create(path: Path, study: Study, chunk: int) -> None:
@@ -380,14 +385,6 @@ def _sampled_components(one: Mapping[str, Any] | None) -> dict[str, dict[str, An
     if one is None or one["constructor"] is not None:
         return {}
     return {component: one[component] for component in _SAMPLED if one[component]}
-
-
-def _read(path: Path) -> tuple[dict[str, Any], dict[str, AnyArray]]:
-    try:
-        return read_arrays(path)
-    except OSError as problem:
-        msg = f"{path} cannot be read: {problem}"
-        raise StudyError(msg) from problem
 
 
 def _read_head(path: Path) -> dict[str, Any]:

@@ -156,7 +156,7 @@ def warn_of_missing_results(dataset: xr.Dataset, histories: Iterable[str]) -> No
 
 
 def _most_frequent(texts: Sequence[str]) -> tuple[str, int]:
-    """Return the text of most cases, those that differ in their numbers alone as one, and count."""
+    """Return the most frequent text and its count; texts that differ only in numbers are one."""
     alike: dict[tuple[str, ...], Counter[str]] = {}
     for text, count in Counter(texts).items():
         alike.setdefault(tuple(_NUMBER.split(text)), Counter())[text] = count

@@ -11,8 +11,7 @@ import rockframe as rf
 from rockframe.errors import ComponentError, StudyError, UnitsError
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.runs import RunStatus
-from rockframe.studies.cloud import Cloud, Regression
-from rockframe.studies.logistic import fit_logistic
+from rockframe.studies.cloud_fit import Cloud, Regression, fit_logistic
 
 SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
 COUNT = 40

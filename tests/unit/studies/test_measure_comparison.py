@@ -11,7 +11,7 @@ from scipy import stats
 import rockframe as rf
 from rockframe.errors import ComponentError, StudyError
 from rockframe.results.variables.runs import RunStatus
-from rockframe.studies.cloud import Cloud
+from rockframe.studies.cloud_fit import Cloud
 from rockframe.studies.measure_comparison import _residual_trend
 
 SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))

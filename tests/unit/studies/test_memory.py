@@ -69,9 +69,9 @@ def test_what_is_told_is_what_is_taken(monkeypatch):
 
 
 def test_the_least_of_all_limits_counts(monkeypatch, tmp_path):
-    machine, most, now = (tmp_path / name for name in ("meminfo", "max", "current"))
+    machine, most, now, parts = (tmp_path / name for name in ("meminfo", "max", "current", "stat"))
     monkeypatch.setattr(memory, "_MEMINFO", machine)
-    monkeypatch.setattr(memory, "_CGROUP_FILES", ((most, now),))
+    monkeypatch.setattr(memory, "_CGROUP_FILES", ((most, now, parts),))
     assert memory.available_memory() > 1e7  # what the machine has, or infinite
     machine.write_text("MemTotal: 9 kB\nMemAvailable:   4000 kB\n")
     assert memory.available_memory() == 4096e3
@@ -82,3 +82,7 @@ def test_the_least_of_all_limits_counts(monkeypatch, tmp_path):
     assert memory.available_memory() == 2e6
     most.write_text("900000\n")
     assert memory.available_memory() == 0.0
+    parts.write_text("file 800000\ninactive_file 600000\n")  # contents of files can be dropped
+    assert memory.available_memory() == 5e5
+    parts.write_text("inactive_file 0\ntotal_inactive_file 700000\n")
+    assert memory.available_memory() == 6e5
