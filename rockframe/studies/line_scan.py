@@ -31,10 +31,10 @@ from rockframe.signals.arrays import AnyArray, Array
 from rockframe.simulation.system import System
 from rockframe.studies.sweeps.arguments import ExecutionArguments, SweepArguments
 from rockframe.studies.sweeps.axes import read_numbers
-from rockframe.studies.sweeps.case import cache_study
 from rockframe.studies.sweeps.execution import ProgressBar, progress_bar
 from rockframe.studies.sweeps.motions import MOTION_AXES, SCALE
 from rockframe.studies.sweeps.planning import plan_study
+from rockframe.studies.sweeps.study import cache_study
 from rockframe.studies.sweeps.sweep import read_folder, run_study
 from rockframe.units import Condition, Measure, to_ratio
 from rockframe.version import __version__

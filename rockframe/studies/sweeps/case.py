@@ -2,7 +2,6 @@
 
 import json
 import math
-from collections import OrderedDict
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -26,7 +25,8 @@ from rockframe.studies.sweeps.chunk import REPEATED_LEVEL
 from rockframe.studies.sweeps.motions import full_name, motion_number, motion_of_case, named_motions
 from rockframe.studies.sweeps.scenes import SweptScene, scene_of
 from rockframe.studies.sweeps.store import Store
-from rockframe.studies.sweeps.study import Study
+from rockframe.studies.sweeps.study import cached_study
+from rockframe.studies.sweeps.sweep import open_study
 from rockframe.suggestions import suggests_names, with_hints
 from rockframe.units import Measure, Unit
 
@@ -35,9 +35,6 @@ NOT_GIVEN: Final = "must be given, as motions="
 _OWNER: Final = "case"
 _MAX_LISTED: Final = 6
 """Values that a message lists."""
-_CACHE_SIZE: Final = 16
-"""Sweeps of this process whose functions and motions are kept at hand."""
-_studies: Final[OrderedDict[str, Study]] = OrderedDict()
 
 
 @suggests_names
@@ -135,8 +132,6 @@ def case(
         dataset = checked_dataset(runs, owner=_OWNER)
         stored = store_of(dataset)
     else:
-        from rockframe.studies.sweeps.sweep import open_study
-
         dataset, stored = open_study(runs), Store.open(Path(runs))
     attributes: Mapping[str, Any] = cast("Mapping[str, Any]", dataset.attrs)
     if not set(SWEEP_ATTRIBUTES) <= set(attributes):
@@ -184,19 +179,6 @@ def system_of_case(dataset: xr.Dataset, *, owner: str) -> System:
             value = labels_in_unit(labels, described["unit"], owner=owner).item()
             values[Axis.from_dict(described, np.array([value]))] = value
     return _scene(None, cast("Mapping[str, Any]", dataset.attrs), owner).system(values)
-
-
-def cached_study(attributes: Mapping[str, Any]) -> Study | None:
-    """Return the study of a dataset, if this process has made it."""
-    return _studies.get(str(attributes.get("study_sha256")))
-
-
-def cache_study(study: Study) -> None:
-    """Keep the function and the motions of a sweep at hand."""
-    _studies[study.digest] = study
-    _studies.move_to_end(study.digest)
-    while len(_studies) > _CACHE_SIZE:
-        _studies.popitem(last=False)
 
 
 def _indices_of_case(

@@ -1,6 +1,8 @@
 """A sweep that has been planned: all that its results depend on."""
 
 import os
+from collections import OrderedDict
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Final
@@ -189,6 +191,24 @@ class Study:
                 2e-8 / float(tolerance)
             ) ** 0.2
         return one * (_SCREENING_RATIO if self.screened else 1.0)
+
+
+_CACHE_SIZE: Final = 16
+"""Studies of this process whose functions and motions are kept at hand."""
+_cache: Final[OrderedDict[str, Study]] = OrderedDict()
+
+
+def cache_study(study: Study) -> None:
+    """Keep the function and the motions of a study at hand."""
+    _cache[study.digest] = study
+    _cache.move_to_end(study.digest)
+    while len(_cache) > _CACHE_SIZE:
+        _cache.popitem(last=False)
+
+
+def cached_study(attributes: Mapping[str, Any]) -> Study | None:
+    """Return the study of a dataset, if this process has made it."""
+    return _cache.get(str(attributes.get("study_sha256")))
 
 
 def worker_count() -> int:

@@ -21,7 +21,6 @@ from rockframe.simulation.system import System
 from rockframe.solve.accuracy import AccuracyLevel
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import OWNER, Chunk, chunks_of
-from rockframe.studies.sweeps.case import cache_study
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
 from rockframe.studies.sweeps.chunk import CaseResults
 from rockframe.studies.sweeps.claims import Claims
@@ -37,7 +36,7 @@ from rockframe.studies.sweeps.lazy_dataset import lazy_dataset
 from rockframe.studies.sweeps.motions import MotionsLike
 from rockframe.studies.sweeps.planning import plan_study
 from rockframe.studies.sweeps.store import Store, staggered
-from rockframe.studies.sweeps.study import Study
+from rockframe.studies.sweeps.study import Study, cache_study
 from rockframe.studies.sweeps.words import cases_verdict, mark_not_screened, warn_of_missing_results
 from rockframe.suggestions import with_hints
 from rockframe.system.options import Overturning, OverturningLike, PointsLike, SweepAccuracyLike
