@@ -25,9 +25,9 @@ from rockframe.proof.problem import (
     CornerNumbers,
     Deviations,
     GroundPiece,
-    Undecided,
     acceleration,
     acceleration_bound,
+    require,
     stiffness,
 )
 from rockframe.proof.states import SetOfStates, identity
@@ -149,9 +149,7 @@ def flow(
     force = _root_power(powers[0])
     speed = abs(h * box[1]) + force
     bounds, sine_bounds, order = majorants(_exponent_of(speed), tuple(powers), bits() - 8)
-    if not (order and force < 0.5):
-        message = "a step too long for its series"
-        raise Undecided(message)
+    require(order > 0 and force < 0.5, "a step too long for its series")
     sine, cosine, angle = _series(start, corner.middle(), along, normal, h, order)
 
     def left_out(of: list[int]) -> Ball:

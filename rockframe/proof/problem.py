@@ -14,6 +14,12 @@ class Undecided(Exception):  # noqa: N818  (a result, no error)
     """Nothing is proved; the message is the reason."""
 
 
+def require(proved: bool, reason: str) -> None:
+    """Raise `Undecided` unless a condition is proved; a comparison of balls may be neither."""
+    if not proved:
+        raise Undecided(reason)
+
+
 class Deviations(NamedTuple):
     """Deviations of inputs, of the block and its motion, from the given ones, as balls."""
 

@@ -18,7 +18,14 @@ from rockframe.proof.balls import (
 from rockframe.proof.bounces import Instant, UpliftState, follow_bounces
 from rockframe.proof.flow import MotionBounds, advance, bound_motion, flow, jerk
 from rockframe.proof.impacts import ImpactEnclosure, enclose_impact
-from rockframe.proof.problem import CornerNumbers, Deviations, GroundPiece, Problem, Undecided
+from rockframe.proof.problem import (
+    CornerNumbers,
+    Deviations,
+    GroundPiece,
+    Problem,
+    Undecided,
+    require,
+)
 from rockframe.proof.sets import prove_for_set, prove_verdict
 from rockframe.proof.states import SetOfStates
 from rockframe.proof.uplift import find_uplift
@@ -154,8 +161,7 @@ class RockingProver:
             third = jerk(
                 bound_motion(still, self.corner, during, UNIT * delay), self.corner, during
             )
-            if not third * self.sign > 0:
-                raise Undecided(_UNKNOWN_SIDE)
+            require(third * self.sign > 0, _UNKNOWN_SIDE)
             risen = [delay**3 / 6, delay**2 / 2]
             still = [UNIT * (magnitude(third) * each) * self.sign for each in risen]
         return SetOfStates.from_box(still, self.uncertain)
@@ -220,9 +226,9 @@ class RockingProver:
         self.largest_radius = max(self.largest_radius, float(radius))
         if self.callback is not None:
             self.callback(self.interval, self.elapsed, self.sign, box)
-        if self.sign and not radius < MAX_RADIUS * self.corner.angle:
-            message = "the enclosure has become as wide as the rotations themselves"
-            raise Undecided(message)
+        if self.sign:
+            wide = "the enclosure has become as wide as the rotations themselves"
+            require(radius < MAX_RADIUS * self.corner.angle, wide)
 
     def _predict_impact(self, ground: GroundPiece, left: Ball) -> Ball | None:
         """Estimate when the middle of the set strikes, None if it does not; proves nothing."""
@@ -271,9 +277,8 @@ class RockingProver:
         falls = bounds.rate * s < 0 or bounds.acceleration * s < 0
         if ends_at_impact and falls:
             return new, bounds
-        if ends_at_impact or not (stays or (falls and new.box()[0] * s > 0)):
-            message = "whether the block meets the ground is not resolved"
-            raise Undecided(message)
+        keeps_sign = not ends_at_impact and (stays or (falls and new.box()[0] * s > 0))
+        require(keeps_sign, "whether the block meets the ground is not resolved")
         return new, bounds
 
     def _may_overturn(self, new: SetOfStates, bounds: MotionBounds) -> bool:
@@ -312,9 +317,7 @@ class RockingProver:
         near = impact.at.contains(0) or abs(impact.at) < 2 * AT_INTERVAL_END * self.problem.length(
             self.interval
         )
-        if not (near if to_end else step + impact.at < left):
-            message = "an impact at a sample of the motion"
-            raise Undecided(message)
+        require(near if to_end else step + impact.at < left, "an impact at a sample of the motion")
         return impact
 
     def _settle_bounces(self, *, lift: bool = False) -> bool:
