@@ -14,7 +14,7 @@ from rockframe.system.assembly import Assembly
 from rockframe.system.rocking_frame import TendonFrameSetting
 from rockframe.system.setting import Setting
 from rockframe.system.stack import StackSetting
-from rockframe.units.display import degrees_text
+from rockframe.units import degrees_text
 
 
 class LowerBody(NamedTuple):

@@ -22,8 +22,8 @@ from rockframe.system.bodies import (
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import RigidGroundSetting
+from rockframe.system.setting import FRICTION_TO_ROCK, Words
 from rockframe.system.statics import Statics
-from rockframe.system.words import FRICTION_TO_ROCK, Words
 
 _INTO_WALL: Final = "is into the RearWall"
 IMPACT_TIME: Final = 1e-3

@@ -11,8 +11,7 @@ from rockframe.dynamics.body_statics import Pose
 from rockframe.dynamics.equilibrium import ChainEquilibrium, EquilibriumPath
 from rockframe.dynamics.link_statics import LinkForce, links_at_rest, links_of_rocking_bodies
 from rockframe.system.statics import Statics, work_against
-from rockframe.system.support import BaseWords, StandingBodies, Support
-from rockframe.system.words import uplift_words
+from rockframe.system.support import BaseWords, StandingBodies, Support, uplift_words
 
 if TYPE_CHECKING:
     from rockframe.system.stack import StackSetting

@@ -19,9 +19,9 @@ from rockframe.system.links import duplicate_name_faults, tie_law, tie_law_words
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts, link_labels
 from rockframe.system.rigid_ground import RigidGroundSetting, refuse_fall
+from rockframe.system.setting import FRICTION_TO_ROCK, Words
 from rockframe.system.stack import refuse_options
 from rockframe.system.statics import Statics
-from rockframe.system.words import FRICTION_TO_ROCK, Words
 
 
 @dataclass(frozen=True)

@@ -11,10 +11,10 @@ from rockframe.dynamics.single_body import single_body
 from rockframe.errors import AssemblyError
 from rockframe.system.compatibility import BaseFriction
 from rockframe.system.options import restraint_words
-from rockframe.system.setting import Setting, SlipRange, chain_slips
+from rockframe.system.setting import Setting, SlipRange, Words, chain_slips, sliding_words
 from rockframe.system.statics import SmallMotion, Statics, static_values
 from rockframe.system.support import Support
-from rockframe.system.words import Words, angle_words, sliding_words
+from rockframe.units import angle_words
 
 
 @dataclass(frozen=True)

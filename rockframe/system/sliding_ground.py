@@ -13,8 +13,7 @@ from rockframe.system.compatibility import SLIDING_AT_SMALL_ROTATION, BaseFricti
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import RigidGroundSetting, refuse_fall
-from rockframe.system.setting import SlipRange
-from rockframe.system.words import HELD_BY_FRICTION, Words
+from rockframe.system.setting import HELD_BY_FRICTION, SlipRange, Words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.slide_rock import SlideRock

@@ -38,10 +38,9 @@ from rockframe.system.rigid_base import (
     statics_beyond_uplift,
     uplift_limits,
 )
-from rockframe.system.setting import Setting
+from rockframe.system.setting import FRICTION_TO_ROCK, Setting, Words
 from rockframe.system.statics import SmallMotion, Statics, least_overturning_energy, static_values
 from rockframe.system.support import StandingBodies, Support
-from rockframe.system.words import FRICTION_TO_ROCK, Words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.chain.model import AtRest

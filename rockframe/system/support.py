@@ -4,6 +4,7 @@ The numbers of a support follow from its component and from the body on it; its 
 and its law is the base in the equations.
 """
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -22,7 +23,7 @@ from rockframe.dynamics.statics import StandingChain
 from rockframe.signals.arrays import Array
 from rockframe.system.bodies import BaseLoad, Restitutions, base_restitution, restitution_cautions
 from rockframe.system.statics import Statics, required_states, static_values
-from rockframe.system.words import uplift_words, vibration_words
+from rockframe.units import angle_words
 
 LINEAR_ROTATION: Final = 2.0**-20
 """Rotation, over the one that the settlement allows, below which moments are taken as linear in it:
@@ -110,6 +111,21 @@ class StandingBodies:
 
         mass, damping, stiffness = linearized_chain(self.chain, poses)
         return self.mass * mass, self.mass * damping, self.mass * stiffness
+
+
+def uplift_words(radians: float) -> str:
+    """Write the angle at which contact is first lost; NaN if it never is."""
+    if math.isnan(radians):
+        return "never: the base stays in contact up to overturning"
+    return angle_words(radians)
+
+
+def _vibration_words(symbol: str, frequency: float, damping_ratio: float) -> str:
+    """Write a frequency, its period and its damping ratio."""
+    return (
+        f"{symbol} = {frequency:.6g} rad/s (period {2.0 * math.pi / frequency:.6g} s), "
+        f"damping ratio {damping_ratio:.6g}"
+    )
 
 
 @dataclass(frozen=True)
@@ -247,12 +263,12 @@ class Support(ABC):
         """Describe vertical vibration and, on a base stiff enough, rocking, by these titles."""
         body, rate = self.load.body, self.vertical_frequency
         ratio = 0.5 * self._slopes("vertical_velocity")[1] / rate
-        rows = [(vertical, vibration_words("omega_v", rate, ratio))]
+        rows = [(vertical, _vibration_words("omega_v", rate, ratio))]
         if self.rocking_stiffness > 0.0:
             rate = sqrt(self.rocking_stiffness / body.base_inertia)
             damping = body.mass * self._slopes("angular_velocity")[0]
             ratio = 0.5 * damping / (body.base_inertia * rate)
-            rows.append((rocking, vibration_words("omega_r", rate, ratio)))
+            rows.append((rocking, _vibration_words("omega_r", rate, ratio)))
         return rows
 
 

@@ -1,5 +1,6 @@
 """How quantities are written: numbers and units in texts, and what a wrong one probably meant."""
 
+import math
 import re
 from typing import Any, Final
 
@@ -34,6 +35,19 @@ _DOT_OF_PRODUCT: Final = re.compile(r"\.(?=\s*(?:[^\W\d]|\())")
 _DOT_OF_ABBREVIATION: Final = re.compile(r"\.(?!\d)")
 _NAME: Final = re.compile(r"[^\W\d]\w*")
 _INVALID_CHARACTER: Final = re.compile(r"[^\s\w*/^()%‰°·.+⁻-]")
+
+
+DEGREE: Final = "°"
+
+
+def degrees_text(radians: float, digits: int = 4) -> str:
+    """Write an angle in degrees."""
+    return f"{math.degrees(radians):.{digits}g}{DEGREE}"
+
+
+def angle_words(radians: float) -> str:
+    """Write an angle in radians and degrees."""
+    return f"{radians:.6g} rad ({degrees_text(radians)})"
 
 
 def number_and_unit(text: str) -> tuple[str, str] | None:
