@@ -251,6 +251,13 @@ def unknown_attribute(owner: str, name: str, known: Iterable[str]) -> AccessErro
     return AccessError(words, name=name)
 
 
+def raise_faults(owner: str, faults: Sequence[str]) -> None:
+    """Raise an error with all faults of the arguments of a class or function, if there are any."""
+    if faults:
+        msg = f"{owner}: {'; '.join(faults)}"
+        raise ComponentError(msg)
+
+
 PLEASE_REPORT: Final = "this is an error in rockframe; please report it"
 """Text of errors that no argument can cause."""
 

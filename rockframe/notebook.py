@@ -30,6 +30,14 @@ class Polygon(NamedTuple):
     points: Sequence[tuple[float, float]]
 
 
+def rectangle(
+    half_width: float, height: float, x: float = 0.0, y: float = 0.0
+) -> list[tuple[float, float]]:
+    """Return the corners of a rectangle that stands on the middle of its lower side, at x and y."""
+    left, right, top = x - half_width, x + half_width, y + height
+    return [(left, y), (right, y), (right, top), (left, top)]
+
+
 def readable_arguments(arguments: Mapping[str, Any]) -> dict[str, str]:
     """Return names and values of arguments as texts to read, without long ones."""
     found = {name.replace("_", " "): _formatted(value) for name, value in arguments.items()

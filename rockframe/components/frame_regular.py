@@ -101,7 +101,7 @@ class StoreyHeights(Declared[Quantity, Missing]):
 
     def write(self, value: tuple[float, ...]) -> str:
         """Write all heights in one text."""
-        return "; ".join(f"{height!r} {LENGTH.unit}" for height in value)
+        return "; ".join(LENGTH.text(height) for height in value)
 
     def public(self, value: tuple[float, ...]) -> Quantity:
         """Return all heights in one Quantity."""
@@ -123,7 +123,7 @@ class InfillThickness(Declared[Quantity | None, str]):
 
     def write(self, value: float) -> str:
         """Write the thickness, or ``"none"``."""
-        return f"{value!r} {self.unit}" if value else _NO_INFILL
+        return self.measure.text(value) if value else _NO_INFILL
 
     def public(self, value: float) -> Quantity | None:
         """Return the thickness, or None."""

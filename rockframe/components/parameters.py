@@ -180,7 +180,7 @@ class Parameter(Declared[Quantity, Default]):
 
     def write(self, value: float) -> str:
         """Write the number with its unit."""
-        return f"{value!r} {self.unit}"
+        return self.measure.text(value)
 
     def public(self, value: float) -> Quantity:
         """Return the number with its unit."""

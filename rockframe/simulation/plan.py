@@ -231,7 +231,7 @@ class _Requested:
             if self.histories
             else None,
             "points": {
-                point.name: [f"{each!r} {LENGTH.unit}" for each in (point.x, point.y)]
+                point.name: [LENGTH.text(each) for each in (point.x, point.y)]
                 for point in self.points
             },
             "overturning": str(
@@ -301,7 +301,7 @@ class Plan(_Requested):
 
 
 def _time_text(value: float | None) -> str | None:
-    return None if value is None else f"{value!r} {TIME.unit}"
+    return None if value is None else TIME.text(value)
 
 
 def plan_run(

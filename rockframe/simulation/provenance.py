@@ -143,7 +143,7 @@ def _from_histories(dataset: xr.Dataset) -> tuple[GroundMotion | None, str]:
         if variable in dataset
     }
     motion = GroundMotion.from_arrays(
-        time_step=f"{step!r} {TIME.unit}", name=str(dataset.attrs["motion"]), **components
+        time_step=TIME.text(step), name=str(dataset.attrs["motion"]), **components
     )
     if motion.sha256 != dataset.attrs["motion_sha256"]:
         return None, "its ground acceleration is not what the run had"

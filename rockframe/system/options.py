@@ -108,13 +108,13 @@ class Options:
 
         A level base and computed sliding, the defaults, are left out.
         """
-        inclined = {"inclination": f"{self.inclination!r} {ANGLE.unit}"}
+        inclined = {"inclination": ANGLE.text(self.inclination)}
         checked = {"sliding": str(self.sliding)}
         return {
             "restraint": str(self.restraint),
             "rotation": str(self.rotation),
             "coupling": str(self.coupling),
-            "gravity": f"{self.gravity!r} {ACCELERATION.unit}",
+            "gravity": ACCELERATION.text(self.gravity),
             **(inclined if self.inclination != 0.0 else {}),
             **(checked if self.sliding is Sliding.CHECKED else {}),
         }

@@ -227,14 +227,14 @@ def shaped_body(
         raise ComponentError(msg)
     width, eccentricity = base.right - base.left, mass.x - base.middle
     arguments = {
-        "width": _quantity_text(width, LENGTH),
-        "height": _quantity_text(top - base.ground, LENGTH),
-        "mass": _quantity_text(mass.mass, MASS),
-        "inertia": _quantity_text(mass.inertia, INERTIA),
-        "centre_height": _quantity_text(mass.y - base.ground, LENGTH),
+        "width": LENGTH.text(width),
+        "height": LENGTH.text(top - base.ground),
+        "mass": MASS.text(mass.mass),
+        "inertia": INERTIA.text(mass.inertia),
+        "centre_height": LENGTH.text(mass.y - base.ground),
     }
     if abs(eccentricity) > MIN_ECCENTRICITY * width:
-        arguments["eccentricity"] = _quantity_text(eccentricity, LENGTH)
+        arguments["eccentricity"] = LENGTH.text(eccentricity)
     with collected_warnings():  # a body wider than its base may exceed the bound of its inertia
         body = kind(**arguments)
     for caution in _contact_warnings(mass, base, corners):
@@ -255,7 +255,3 @@ def _contact_warnings(
                 f"touches the ground at {angle:.4g} rad, before the overturning angle of that "
                 f"side, {limit:.4g} rad; the model ignores this contact"
             )
-
-
-def _quantity_text(value: float, measure: Any) -> str:
-    return f"{float(value)!r} {measure.unit}"
