@@ -228,7 +228,7 @@ are left out: in papers they are half the width and half the height."""
 
 
 def did_you_mean(value: object, known: Iterable[str]) -> str:
-    """Return question whether a similar word was meant, for the end of a message; or nothing."""
+    """Ask whether a similar word was meant, at the end of a message; empty if none is similar."""
     words = {one.casefold(): one for one in known}
     wanted = str(value).casefold()
     near = [one for one in _SYMBOLS.get(wanted, ()) if one in words]

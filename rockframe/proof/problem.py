@@ -69,7 +69,7 @@ class Deviations(NamedTuple):
         return self._replace(**{name: low}), self._replace(**{name: high})
 
     def restitution(self, sign: int) -> Ball:
-        """Return deviation of the restitution of the corner that bears at a sign of rotation."""
+        """Return the deviation of the restitution of the corner that bears at a sign."""
         return self.right_restitution if sign > 0 else self.left_restitution
 
     def angle(self, sign: int) -> Ball:
@@ -179,7 +179,7 @@ class PiecewiseGround:
         return interval >= self.count or (lines and not ends)
 
     def ground(self, interval: int) -> GroundPiece:
-        """Return ground in an interval, by the time since its start, :eq:`eq-incline-ground`."""
+        """Return the ground in an interval, by time since its start, :eq:`eq-incline-ground`."""
         interval = min(interval, self.count)
         if interval not in self._known:
             self._known[interval] = self._ground(interval)

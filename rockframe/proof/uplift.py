@@ -46,7 +46,7 @@ def _uplift_about_sample(
 
 
 def uplift_guard(problem: Problem, ground: GroundPiece, side: int) -> Row:
-    """Return guard of uplift to a side, a polynomial that is positive while it does not lift."""
+    """Return the guard of uplift to a side: a polynomial, positive while it does not lift."""
     tangent = problem.corner(side).angle.tan()
     pairs = zip_longest(ground.normal, ground.along, fillvalue=ZERO)
     return [normal * tangent + side * along for normal, along in pairs]

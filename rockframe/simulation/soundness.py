@@ -366,7 +366,7 @@ def count_slides(would_slide: AnyArray) -> tuple[int, int]:
 
 
 def _frictions(system: Assembly) -> Iterator[tuple[str, float, str]]:
-    """Return name of the friction demand, given coefficient and body, for each base that holds."""
+    """Return friction demand, coefficient and body, by name, for each base that holds a body."""
     parts = system.parts
     if system.setting.slides:
         return

@@ -178,7 +178,7 @@ class TendonFrameSetting(RockingFrameSetting):
         return left + more, right + more
 
     def friction_to_rock(self) -> dict[str, float]:
-        """Return friction below which the columns slide before they rock against the preload."""
+        """Return the friction below which columns slide before they rock against the preload."""
         normal_force = self.body.mass * self.gravity + self.total_tendon_force(0.0)
         return {FRICTION_TO_ROCK: self.body.mass * self.uplift_acceleration / normal_force}
 

@@ -82,7 +82,7 @@ class Words:
 
 
 def sliding_words(held: Words, *frictions: tuple[str, str], restraint: str | None = None) -> Words:
-    """Return description of a scene that slips from that of the held one, with its frictions."""
+    """Return the description of a scene that slips, from that of the held one and its frictions."""
     return Words(
         equations=[*held.equations, SLIP_EQUATION],
         restraint=held.restraint if restraint is None else restraint,

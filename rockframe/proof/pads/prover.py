@@ -282,7 +282,7 @@ class PadProver:
         raise Undecided(msg)
 
     def _ground_at(self, ground: GroundPiece, time: Ball) -> GroundAcceleration:
-        """Return ground at a time from now, or at all times of a ball, in both intervals [s]."""
+        """Return the ground at a time from now, a ball, which may be in both intervals [s]."""
         left = self.ground.length(self.k) - self.offset
         found = ground.at(time)
         if not time < left:

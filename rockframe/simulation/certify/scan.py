@@ -110,7 +110,7 @@ def scan(
 ) -> Scan:
     """Try changes of both signs, from small to large ones.
 
-    `row` are the sizes of the first changes, the last of which is the reach. Intervals are halved
+    `first_changes` are their first sizes, the last of which is the reach. Intervals are halved
     until their length is `resolution` times their far end; an interval in which the verdict changes
     is halved only if `refine_flip`.
     """
