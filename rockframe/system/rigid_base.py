@@ -71,10 +71,6 @@ class RigidBaseLoad(NamedTuple):
     right_limit: float  # couple to the right that lifts the left corner [N m]
     shear: float  # force of links on the bodies above, to the right, that the base must resist [N]
 
-    def in_full_contact(self, couple: float) -> bool:
-        """Whether both corners are in compression under a couple to the right [N m]."""
-        return -self.left_limit <= couple <= self.right_limit
-
 
 def rigid_base_load(setting: "StackSetting", k: int, tied: Sequence[LinkForce]) -> RigidBaseLoad:
     """Return the load on the rigid base under body `k`, :eq:`eq-link-rest`.

@@ -284,7 +284,7 @@ class StackSetting(Setting):
             if not rigid:
                 continue
             load = rigid_base_load(self, k, self._link_states_at_rest)
-            if not load.in_full_contact(0.0):
+            if load.left_limit < 0.0 or load.right_limit < 0.0:
                 side = "right" if load.right_limit < 0.0 else "left"
                 faults.append(
                     f"weights and restrainers tip body {k + 1} to the {side}, off its rigid base"

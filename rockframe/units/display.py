@@ -13,7 +13,7 @@ from rockframe.errors import ComponentError, UnitsError, did_you_mean, short_rep
 from rockframe.units import kinds
 from rockframe.units.kinds import Measure
 from rockframe.units.reading import to_si
-from rockframe.units.spelling import DEGREE
+from rockframe.units.spelling import DEGREE, PLAIN_POWERS, SUPERSCRIPT_POWERS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -188,7 +188,7 @@ def display_units(value: object, *, owner: str) -> DisplayUnits:
     return DisplayUnits(chosen, dict(cast("Mapping[str, str]", value)))
 
 
-_SUPERSCRIPTS: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_SUPERSCRIPTS: Final = str.maketrans(PLAIN_POWERS, SUPERSCRIPT_POWERS)
 
 
 def with_superscripts(text: str) -> str:
