@@ -14,14 +14,13 @@ from rockframe.proof.balls import (
     magnitude,
     matrix_product,
 )
-from rockframe.proof.flow import bound_motion, short_flow
+from rockframe.proof.flow import SetOfStates, bound_motion, short_flow
 from rockframe.proof.problem import (
     CornerNumbers,
     Deviations,
     GroundPiece,
     require,
 )
-from rockframe.proof.states import SetOfStates
 
 
 class ImpactEnclosure(NamedTuple):

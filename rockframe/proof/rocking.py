@@ -16,7 +16,7 @@ from rockframe.proof.balls import (
     polynomial_value,
 )
 from rockframe.proof.bounces import Instant, UpliftState, follow_bounces
-from rockframe.proof.flow import MotionBounds, advance, bound_motion, flow, jerk
+from rockframe.proof.flow import MotionBounds, SetOfStates, advance, bound_motion, flow, jerk
 from rockframe.proof.impacts import ImpactEnclosure, enclose_impact
 from rockframe.proof.problem import (
     CornerNumbers,
@@ -27,7 +27,6 @@ from rockframe.proof.problem import (
     require,
 )
 from rockframe.proof.sets import prove_for_set, prove_verdict
-from rockframe.proof.states import SetOfStates
 from rockframe.proof.uplift import find_uplift
 from rockframe.proof.verdict import EXACT, Proof, Tolerances
 from rockframe.signals import Motion
