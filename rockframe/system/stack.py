@@ -19,7 +19,6 @@ from rockframe.dynamics.vibrations import ChainBody
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import (
     BaseLoad,
-    PlacedMass,
     SupportedBody,
     block_body,
     combine_masses,
@@ -421,17 +420,12 @@ def combined_body(
     bodies: Sequence[SupportedBody], tops: Sequence[float], offsets: Sequence[float]
 ) -> SupportedBody:
     """Return stacked bodies, listed from the top down, as one body on the base of the lowest."""
-    lowest = bodies[-1]
-    places, base, beside = [(lowest, lowest.centre_height, 0.0)], 0.0, 0.0
+    masses, base, beside = [bodies[-1].mass_at()], 0.0, 0.0
     for k in range(len(bodies) - 2, -1, -1):
         base += bodies[k + 1].centre_height + tops[k + 1]
         beside += offsets[k]
-        places.append((bodies[k], base + bodies[k].centre_height, beside))
-    masses = [
-        PlacedMass(body.mass, body.inertia, x + body.eccentricity, level)
-        for body, level, x in places
-    ]
-    return combine_masses(lowest.half_width, masses)
+        masses.append(bodies[k].mass_at(beside, base))
+    return combine_masses(bodies[-1].half_width, masses)
 
 
 def refuse_options(what: str, options: Options, *, small: bool) -> None:
