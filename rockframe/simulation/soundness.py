@@ -317,11 +317,9 @@ def friction_words(scalars: Mapping[str, AnyArray | float], found: Sequence[Slid
 
     Empty for a run without peaks of forces.
     """
-    if len(found) == 1:
-        words = found[0].words
-        return f" {words[0].upper()}{words[1:]}."
     if found:
-        words = "; ".join(f"{each.body} {each.words}" for each in found)
+        several = len(found) > 1
+        words = "; ".join(f"{each.body} {each.words}" if several else each.words for each in found)
         return f" {words[0].upper()}{words[1:]}."
     if "peak_friction_demand" not in scalars:
         return ""

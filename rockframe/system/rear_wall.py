@@ -48,7 +48,7 @@ class RearWallSetting(RigidGroundSetting):
     @property
     def direction(self) -> float:
         """Sign of the rotations that the wall allows."""
-        return 1.0 if self.wall.given.side is WallSide.LEFT else -1.0
+        return -self.wall.direction
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -76,10 +76,7 @@ class SingleBodySetting(Setting):
     def small_motion(self) -> SmallMotion:
         """Return the equations of small motion about rest, in the contact of the body at rest."""
         standing = self.support.standing
-        position = standing.rest or standing.upright
-        # their coordinates are rotation and height
-        matrices = [matrix[::-1, ::-1] for matrix in standing.small_motion(position)]
-        return SmallMotion(("vertical_displacement", "rotation"), *matrices)
+        return standing.motion_of_single_body(standing.rest or standing.upright)
 
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
         """Return the vertical equilibrium at some rotations, :eq:`eq-incline-held`."""

@@ -326,10 +326,7 @@ class StackSetting(Setting):
         if not self.groups:
             return None
         if len(self.bodies) == 1:
-            found = self.standing.small_motion(self._rest)
-            return SmallMotion(
-                ("vertical_displacement", "rotation"), *(one[::-1, ::-1] for one in found)
-            )
+            return self.standing.motion_of_single_body(self._rest)
         names = ("body_rotation", "body_vertical_displacement") * len(self.groups)
         which = tuple(group[-1] + 1 for group in self.groups)
         return SmallMotion(names, *self.standing.small_motion(self._rest), bodies=which)

@@ -22,7 +22,7 @@ from rockframe.dynamics.single_body import eccentricity_of
 from rockframe.dynamics.statics import StandingChain
 from rockframe.signals.arrays import Array
 from rockframe.system.bodies import BaseLoad, Restitutions, base_restitution, restitution_cautions
-from rockframe.system.statics import Statics, required_states, static_values
+from rockframe.system.statics import SmallMotion, Statics, required_states, static_values
 from rockframe.units import angle_words
 
 LINEAR_ROTATION: Final = 2.0**-20
@@ -111,6 +111,12 @@ class StandingBodies:
 
         mass, damping, stiffness = linearized_chain(self.chain, poses)
         return self.mass * mass, self.mass * damping, self.mass * stiffness
+
+    def motion_of_single_body(self, poses: list[Pose]) -> SmallMotion:
+        """Return the equations of small motion about rest of a body alone on its base."""
+        # height before rotation
+        matrices = (one[::-1, ::-1] for one in self.small_motion(poses))
+        return SmallMotion(("vertical_displacement", "rotation"), *matrices)
 
 
 def uplift_words(radians: float) -> str:
@@ -450,19 +456,7 @@ class BedSupport(Support):
 
 
 def bed_under(soil: WinklerSoil, load: BaseLoad) -> BedSupport:
-    """Return a bed under a body; a damping ratio is that of the vertical motion of all its mass.
-
-    Parameters
-    ----------
-    soil : WinklerSoil
-        As given by the user.
-    load : BaseLoad
-        All that stands on it, as one body.
-
-    Returns
-    -------
-    BedSupport
-    """
+    """Return a bed under a body; a damping ratio is that of the vertical motion of all its mass."""
     numbers, body = soil.si, load.body
     damping = numbers.damping
     if damping is None:
