@@ -182,16 +182,39 @@ class PiecewiseGround:
         """Return the ground in an interval, by time since its start, :eq:`eq-incline-ground`."""
         interval = min(interval, self.count)
         if interval not in self._known:
-            self._known[interval] = self._ground(interval)
+            gravity = ball(self.slope.gravity)
+            found = self._scaled_ground(interval, self.scale, gravity)
+            if not self.scale.is_exact():
+                middle = self._scaled_ground(interval, self.scale.mid(), gravity)
+                by_scale = self._scaled_ground(interval, ONE, ZERO)
+                found = found._replace(spread=GroundSpread(middle, by_scale))
+            self._known[interval] = found
         return self._known[interval]
 
-    def _ground(self, interval: int) -> GroundPiece:
-        gravity = ball(self.slope.gravity)
-        ground = _ground(self, interval, self.scale, gravity)
-        if self.scale.is_exact():
-            return ground
-        middle = _ground(self, interval, self.scale.mid(), gravity)
-        return ground._replace(spread=GroundSpread(middle, _ground(self, interval, ONE, ZERO)))
+    def _scaled_ground(self, interval: int, scale: Ball, gravity: Ball) -> GroundPiece:
+        across, up = (self._component(interval, scale, vertical=one) for one in (False, True))
+        if self.slope.level:
+            return GroundPiece(across, [gravity + up[0], *up[1:]])
+        sine, cosine = ball(self.slope.inclination).sin_cos()
+        pairs = list(zip_longest(across, up, fillvalue=ZERO))
+        along = [x * cosine + y * sine for x, y in pairs]
+        normal = [y * cosine - x * sine for x, y in pairs]
+        return GroundPiece(
+            [along[0] + gravity * sine, *along[1:]], [normal[0] + gravity * cosine, *normal[1:]]
+        )
+
+    def _component(self, interval: int, scale: Ball, *, vertical: bool) -> Row:
+        """Return a component of the motion as a polynomial of time."""
+        signal = self.motion.vertical if vertical else self.motion.horizontal
+        if signal is None or interval >= self.count:
+            return [ZERO]
+        if signal.polynomials is None:
+            first, last = (ball(float(signal.samples[interval + each])) for each in (0, 1))
+            row = [first, last - first]
+        else:
+            row = [ball(float(each)) for each in signal.polynomials[interval]]
+        step = self.length(interval)
+        return [scale * each / step**power for power, each in enumerate(row)]
 
     def ground_over(self, interval: int, elapsed: Ball, span: Ball) -> GroundPiece:
         """Enclose the ground at all times of a span that starts in an interval [s]."""
@@ -240,35 +263,6 @@ class Problem(PiecewiseGround):
     def corner(self, sign: int) -> CornerNumbers:
         """Return the corner that bears while the rotation has a sign."""
         return self.right if sign > 0 else self.left
-
-
-def _ground(problem: PiecewiseGround, interval: int, scale: Ball, gravity: Ball) -> GroundPiece:
-    inclination = ball(problem.slope.inclination)
-    across, up = (_component(problem, interval, scale, vertical=one) for one in (False, True))
-    if problem.slope.level:
-        return GroundPiece(across, [gravity + up[0], *up[1:]])
-    sine, cosine = inclination.sin_cos()
-    pairs = list(zip_longest(across, up, fillvalue=ZERO))
-    along = [x * cosine + y * sine for x, y in pairs]
-    normal = [y * cosine - x * sine for x, y in pairs]
-    return GroundPiece(
-        [along[0] + gravity * sine, *along[1:]], [normal[0] + gravity * cosine, *normal[1:]]
-    )
-
-
-def _component(problem: PiecewiseGround, interval: int, scale: Ball, *, vertical: bool) -> Row:
-    """Return a component of the motion as a polynomial of time."""
-    motion = problem.motion
-    signal = motion.vertical if vertical else motion.horizontal
-    if signal is None or interval >= problem.count:
-        return [ZERO]
-    if signal.polynomials is None:
-        first, last = (ball(float(signal.samples[interval + each])) for each in (0, 1))
-        row = [first, last - first]
-    else:
-        row = [ball(float(each)) for each in signal.polynomials[interval]]
-    step = problem.length(interval)
-    return [scale * each / step**power for power, each in enumerate(row)]
 
 
 def acceleration(rotation: Ball, corner: CornerNumbers, ground: GroundPiece) -> Ball:

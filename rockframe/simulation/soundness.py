@@ -277,7 +277,7 @@ class SlidingCheck:
 
 def has_friction_limit(system: Assembly) -> bool:
     """Whether a base has a coefficient of friction that its runs are checked against."""
-    return any(True for _ in _frictions(system))
+    return any(_frictions(system))
 
 
 def sliding_checks(system: Assembly, along: AlongSteps) -> list[SlidingCheck]:
