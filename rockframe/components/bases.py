@@ -36,6 +36,7 @@ from rockframe.units import (
     QuantityLike,
     RatioLike,
     quantity,
+    quantity_text,
     to_si,
 )
 
@@ -413,7 +414,7 @@ class WinklerSoil(Component):
         per_area = to_si(modulus, SUBGRADE_MODULUS, owner=owner, name="modulus", condition=POSITIVE)
         metres = to_si(depth, LENGTH, owner=owner, name="depth", condition=POSITIVE)
         soil = cls(
-            stiffness=BED_STIFFNESS.text(per_area * metres),
+            stiffness=quantity_text(per_area * metres, BED_STIFFNESS),
             damping=damping,
             damping_ratio=damping_ratio,
             separation=separation,

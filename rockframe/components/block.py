@@ -30,6 +30,7 @@ from rockframe.units import (
     QuantityLike,
     RatioLike,
     quantity,
+    quantity_text,
     to_ratio,
     to_si,
 )
@@ -403,7 +404,7 @@ class Block(Component):
         for name, value in (("width", width), ("height", height), ("depth", depth)):
             volume *= to_si(value, LENGTH, owner=owner, name=name, condition=POSITIVE)
         per_volume = to_si(density, DENSITY, owner=owner, name="density", condition=POSITIVE)
-        mass = MASS.text(per_volume * volume)
+        mass = quantity_text(per_volume * volume, MASS)
         return cls(width=width, height=height, mass=mass, shape_factor=shape_factor)
 
     @classmethod
@@ -449,8 +450,8 @@ class Block(Component):
         )
         width = width_from_radius(owner, metres, ratio)
         return cls(
-            width=LENGTH.text(width),
-            height=LENGTH.text(width * ratio),
+            width=quantity_text(width, LENGTH),
+            height=quantity_text(width * ratio, LENGTH),
             mass=mass,
             shape_factor=shape_factor,
         )

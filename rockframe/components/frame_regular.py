@@ -24,6 +24,7 @@ from rockframe.units import (
     QuantityLike,
     RatioLike,
     quantity,
+    quantity_text,
     to_ratio,
     to_si,
 )
@@ -101,7 +102,7 @@ class StoreyHeights(Declared[Quantity, Missing]):
 
     def write(self, value: tuple[float, ...]) -> str:
         """Write all heights in one text."""
-        return "; ".join(LENGTH.text(height) for height in value)
+        return "; ".join(quantity_text(height, LENGTH) for height in value)
 
     def public(self, value: tuple[float, ...]) -> Quantity:
         """Return all heights in one Quantity."""
@@ -123,7 +124,7 @@ class InfillThickness(Declared[Quantity | None, str]):
 
     def write(self, value: float) -> str:
         """Write the thickness, or ``"none"``."""
-        return self.measure.text(value) if value else _NO_INFILL
+        return quantity_text(value, self.measure) if value else _NO_INFILL
 
     def public(self, value: float) -> Quantity | None:
         """Return the thickness, or None."""

@@ -12,7 +12,7 @@ from rockframe.components.block_numbers import BlockSI
 from rockframe.components.parameters import SIValues
 from rockframe.components.registry import component_from_dict
 from rockframe.errors import ComponentError, raise_faults, short_repr, unexpected_argument
-from rockframe.units import LENGTH, Quantity, QuantityLike, quantity, to_si
+from rockframe.units import LENGTH, Quantity, QuantityLike, quantity, quantity_text, to_si
 
 MAX_BODIES: Final = 12
 """Most bodies in a stack: the combined contact states of more exceed the range of integers."""
@@ -216,7 +216,7 @@ class Stack(Component):
         return {
             "bodies": [one.to_dict() for one in self.bodies],
             "interfaces": [one.to_dict() for one in self.interfaces],
-            "offsets": [LENGTH.text(one) for one in self.given.offsets],
+            "offsets": [quantity_text(one, LENGTH) for one in self.given.offsets],
         }
 
     def __hash__(self) -> int:

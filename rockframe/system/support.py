@@ -126,14 +126,6 @@ def uplift_words(radians: float) -> str:
     return angle_words(radians)
 
 
-def _vibration_words(symbol: str, frequency: float, damping_ratio: float) -> str:
-    """Write a frequency, its period and its damping ratio."""
-    return (
-        f"{symbol} = {frequency:.6g} rad/s (period {2.0 * math.pi / frequency:.6g} s), "
-        f"damping ratio {damping_ratio:.6g}"
-    )
-
-
 @dataclass(frozen=True)
 class BaseWords:
     """A base in words.
@@ -268,14 +260,16 @@ class Support(ABC):
     def vibrations(self, vertical: str, rocking: str) -> list[tuple[str, str]]:
         """Describe vertical vibration and, on a base stiff enough, rocking, by these titles."""
         body, rate = self.load.body, self.vertical_frequency
-        ratio = 0.5 * self._slopes("vertical_velocity")[1] / rate
-        rows = [(vertical, _vibration_words("omega_v", rate, ratio))]
+        found = [(vertical, "omega_v", rate, 0.5 * self._slopes("vertical_velocity")[1] / rate)]
         if self.rocking_stiffness > 0.0:
             rate = sqrt(self.rocking_stiffness / body.base_inertia)
             damping = body.mass * self._slopes("angular_velocity")[0]
-            ratio = 0.5 * damping / (body.base_inertia * rate)
-            rows.append((rocking, _vibration_words("omega_r", rate, ratio)))
-        return rows
+            found.append((rocking, "omega_r", rate, 0.5 * damping / (body.base_inertia * rate)))
+        return [
+            (title, f"{symbol} = {rate:.6g} rad/s (period {2.0 * math.pi / rate:.6g} s), damping "
+             f"ratio {ratio:.6g}")
+            for title, symbol, rate, ratio in found
+        ]  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -46,10 +46,6 @@ class Measure:
         """Return the same kind with another example."""
         return replace(self, example=example)
 
-    def text(self, value: float) -> str:
-        """Write a number in SI units with its unit, with all digits."""
-        return f"{value!r} {self.unit}"
-
     @property
     def needed(self) -> str:
         """The kind in words, with the need of a unit."""

@@ -42,6 +42,11 @@ _INVALID_CHARACTER: Final = re.compile(r"[^\s\w*/^()%‰°·.+⁻-]")
 DEGREE: Final = "°"
 
 
+def quantity_text(value: float, measure: Measure) -> str:
+    """Write a number in SI units with its unit, with all digits."""
+    return f"{value!r} {measure.unit}"
+
+
 def degrees_text(radians: float, digits: int = 4) -> str:
     """Write an angle in degrees."""
     return f"{math.degrees(radians):.{digits}g}{DEGREE}"

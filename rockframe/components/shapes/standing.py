@@ -30,6 +30,7 @@ from rockframe.units import (
     Quantity,
     QuantityLike,
     check_attached_unit,
+    quantity_text,
     to_si,
 )
 
@@ -227,14 +228,14 @@ def shaped_body(
         raise ComponentError(msg)
     width, eccentricity = base.right - base.left, mass.x - base.middle
     arguments = {
-        "width": LENGTH.text(width),
-        "height": LENGTH.text(top - base.ground),
-        "mass": MASS.text(mass.mass),
-        "inertia": INERTIA.text(mass.inertia),
-        "centre_height": LENGTH.text(mass.y - base.ground),
+        "width": quantity_text(width, LENGTH),
+        "height": quantity_text(top - base.ground, LENGTH),
+        "mass": quantity_text(mass.mass, MASS),
+        "inertia": quantity_text(mass.inertia, INERTIA),
+        "centre_height": quantity_text(mass.y - base.ground, LENGTH),
     }
     if abs(eccentricity) > MIN_ECCENTRICITY * width:
-        arguments["eccentricity"] = LENGTH.text(eccentricity)
+        arguments["eccentricity"] = quantity_text(eccentricity, LENGTH)
     with collected_warnings():  # a body wider than its base may exceed the bound of its inertia
         body = kind(**arguments)
     for caution in _contact_warnings(mass, base, corners):
