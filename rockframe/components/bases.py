@@ -189,14 +189,10 @@ class TwoSpringSupport(Component):
         kinetic_friction: RatioLike | None = None,
     ) -> None:
         super().__init__(
-            frequency_ratio=frequency_ratio,
-            stiffness=stiffness,
-            damping_ratio=damping_ratio,
-            damping=damping,
-            restitution=restitution,
-            friction=friction,
+            frequency_ratio=frequency_ratio, stiffness=stiffness, damping_ratio=damping_ratio,
+            damping=damping, restitution=restitution, friction=friction,
             kinetic_friction=kinetic_friction,
-        )
+        )  # fmt: skip
 
     def _numbers(self, numbers: SIValues) -> SIValues:
         return check_frictions("TwoSpringSupport", numbers)
@@ -360,13 +356,9 @@ class WinklerSoil(Component):
         kinetic_friction: RatioLike | None = None,
     ) -> None:
         super().__init__(
-            stiffness=stiffness,
-            damping=damping,
-            damping_ratio=damping_ratio,
-            separation=separation,
-            friction=friction,
-            kinetic_friction=kinetic_friction,
-        )
+            stiffness=stiffness, damping=damping, damping_ratio=damping_ratio,
+            separation=separation, friction=friction, kinetic_friction=kinetic_friction,
+        )  # fmt: skip
 
     def _numbers(self, numbers: SIValues) -> SIValues:
         return check_frictions("WinklerSoil", numbers)

@@ -139,14 +139,9 @@ class Block(Component):
                 type(self).__name__, centre_of_mass, centre_height, eccentricity
             )
         super().__init__(
-            width=width,
-            height=height,
-            mass=mass,
-            shape_factor=shape_factor,
-            inertia=inertia,
-            centre_height=centre_height,
-            eccentricity=eccentricity,
-        )
+            width=width, height=height, mass=mass, shape_factor=shape_factor, inertia=inertia,
+            centre_height=centre_height, eccentricity=eccentricity,
+        )  # fmt: skip
 
     @property
     def centre_of_mass(self) -> tuple[Quantity, Quantity]:

@@ -157,21 +157,11 @@ class FrameEquivalent(Block):
         (2.774, 0.127)
         """
         frame = cls._from_arguments(
-            members,
-            width=width,
-            height=height,
-            depth=depth,
-            slab_thickness=slab_thickness,
-            infill_thickness=infill_thickness,
-            storeys=storeys,
-            storey_heights=storey_heights,
-            column_width=column_width,
-            column_depth=column_depth,
-            beam_height=beam_height,
-            beam_width=beam_width,
-            density=density,
-            centre_of_mass=centre_of_mass,
-        )
+            members, width=width, height=height, depth=depth, slab_thickness=slab_thickness,
+            infill_thickness=infill_thickness, storeys=storeys, storey_heights=storey_heights,
+            column_width=column_width, column_depth=column_depth, beam_height=beam_height,
+            beam_width=beam_width, density=density, centre_of_mass=centre_of_mass,
+        )  # fmt: skip
         frame._warn()
         return frame
 

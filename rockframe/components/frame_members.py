@@ -123,17 +123,9 @@ class Member(Component):
         kind: str | None = None,
     ) -> None:
         super().__init__(
-            name=name,
-            kind=kind,
-            mass=mass,
-            density=density,
-            x=x,
-            y=y,
-            width=width,
-            height=height,
-            depth=depth,
-            inertia=inertia,
-        )
+            name=name, kind=kind, mass=mass, density=density, x=x, y=y, width=width, height=height,
+            depth=depth, inertia=inertia,
+        )  # fmt: skip
 
     @classmethod
     def box(

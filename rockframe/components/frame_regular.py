@@ -229,19 +229,11 @@ class RegularFrame(Component):
         infill_thickness: QuantityLike | None = INFILL_THICKNESS,
     ) -> None:
         super().__init__(
-            storeys=storeys,
-            height=height,
-            storey_heights=storey_heights,
-            width=width,
-            depth=depth,
-            column_width=column_width,
-            column_depth=column_depth,
-            beam_height=beam_height,
-            beam_width=beam_width,
-            slab_thickness=slab_thickness,
-            infill_thickness=infill_thickness,
+            storeys=storeys, height=height, storey_heights=storey_heights, width=width, depth=depth,
+            column_width=column_width, column_depth=column_depth, beam_height=beam_height,
+            beam_width=beam_width, slab_thickness=slab_thickness, infill_thickness=infill_thickness,
             density=density,
-        )
+        )  # fmt: skip
 
     def _check(self, values: Mapping[str, object], owner: str) -> None:
         of_all = [values[name] is not None for name in ("storeys", "height")]
