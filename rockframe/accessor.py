@@ -192,7 +192,7 @@ class RockframeAccessor:
 
     def _repr_html_(self) -> str:
         from rockframe.notebook import html_summary, sparkline
-        from rockframe.units.display import degrees_text
+        from rockframe.units import degrees_text
 
         value, lines = self._dataset, self.summary.splitlines()
         kind = str(value.attrs.get("title", ""))

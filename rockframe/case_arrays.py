@@ -137,7 +137,7 @@ class CaseArray:
 
 
 def run_by_branches(
-    function: Callable[[CaseIndices], Result], cases: CaseIndices, min_cases: int = MIN_CASES
+    function: Callable[[CaseIndices], Result], cases: CaseIndices
 ) -> Iterator[tuple[CaseIndices, Result]]:
     """Split cases into groups with the same branches of the code, and compute each group.
 
@@ -147,8 +147,6 @@ def run_by_branches(
         ``function(cases)``, which computes with :class:`CaseArray` in place of numbers.
     cases : ndarray, shape (cases,)
         Numbers of the cases, in ascending order.
-    min_cases : int
-        Smallest group that is computed.
 
     Yields
     ------
@@ -159,7 +157,7 @@ def run_by_branches(
     groups = [cases]
     while groups:
         group = groups.pop()
-        if len(group) < min_cases:
+        if len(group) < MIN_CASES:
             continue
         try:
             # cases with an error, or a possible one, are computed one by one
@@ -167,9 +165,7 @@ def run_by_branches(
                 result = function(group)
         except BranchesDiffer as differ:
             groups += [group[~differ.truths], group[differ.truths]]
-        except SingleCaseOnly:
-            continue
-        except Exception:  # noqa: S112 - computed alone, each such case raises it again
+        except (SingleCaseOnly, Exception):  # noqa: S112 - each such case, alone, raises it again
             continue
         else:
             yield group, result

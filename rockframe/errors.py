@@ -228,7 +228,7 @@ are left out: in papers they are half the width and half the height."""
 
 
 def did_you_mean(value: object, known: Iterable[str]) -> str:
-    """Return question whether a similar word was meant, for the end of a message; or nothing."""
+    """Ask whether a similar word was meant, at the end of a message; empty if none is similar."""
     words = {one.casefold(): one for one in known}
     wanted = str(value).casefold()
     near = [one for one in _SYMBOLS.get(wanted, ()) if one in words]
@@ -249,6 +249,13 @@ def unknown_attribute(owner: str, name: str, known: Iterable[str]) -> AccessErro
     if not name.startswith("_"):  # programs look up those with an underscore
         words += did_you_mean(name, (one for one in known if not one.startswith("_")))
     return AccessError(words, name=name)
+
+
+def raise_faults(owner: str, faults: Sequence[str]) -> None:
+    """Raise an error with all faults of the arguments of a class or function, if there are any."""
+    if faults:
+        msg = f"{owner}: {'; '.join(faults)}"
+        raise ComponentError(msg)
 
 
 PLEASE_REPORT: Final = "this is an error in rockframe; please report it"

@@ -41,6 +41,7 @@ from rockframe.system.bodies import BaseLoad
 from rockframe.system.links import OwnLink
 from rockframe.system.own_base import OwnBase
 from rockframe.system.own_scene import OwnScene
+from rockframe.system.setting import Words
 from rockframe.system.statics import Statics
 from rockframe.system.support import (
     BaseWords,
@@ -50,7 +51,6 @@ from rockframe.system.support import (
     bed_under,
     pads_under,
 )
-from rockframe.system.words import Words
 from rockframe.units import NOT_NEGATIVE, POSITIVE, UNIT_INTERVAL, Measure, Unit
 
 __all__ = [

@@ -19,6 +19,8 @@ _FILLS: Final = {
     "soil": 'fill="#a6794f" fill-opacity="0.35" stroke="#a6794f"',
     "ground": 'fill="#808080" fill-opacity="0.35" stroke="none"',
 }
+_DRAWING_SIZE: Final = 130.0
+"""Greater of width and height of a drawing, without its margins [px]."""
 TABLE_STYLE: Final = "border-collapse:collapse;color:inherit;margin:0;font-size:inherit"
 CELL_STYLE: Final = "text-align:left;padding:1px 12px 1px 0;background:transparent;border:none"
 
@@ -30,8 +32,16 @@ class Polygon(NamedTuple):
     points: Sequence[tuple[float, float]]
 
 
+def rectangle(
+    half_width: float, height: float, x: float = 0.0, y: float = 0.0
+) -> list[tuple[float, float]]:
+    """Return the corners of a rectangle that stands on the middle of its lower side, at x and y."""
+    left, right, top = x - half_width, x + half_width, y + height
+    return [(left, y), (right, y), (right, top), (left, top)]
+
+
 def readable_arguments(arguments: Mapping[str, Any]) -> dict[str, str]:
-    """Return names and values of arguments as texts to read, without long ones."""
+    """Return the names and values of arguments as texts to read, without long ones."""
     found = {name.replace("_", " "): _formatted(value) for name, value in arguments.items()
              if name != "type"}  # fmt: skip
     return {name: words for name, words in found.items() if len(words) <= _MAX_LENGTH}
@@ -55,13 +65,13 @@ def html_summary(title: str, rows: Mapping[str, str], drawing: str = "", extra: 
     )
 
 
-def shapes_svg(shapes: Iterable[Polygon], *, size: float = 130.0) -> str:
+def shapes_svg(shapes: Iterable[Polygon]) -> str:
     """Draw polygons to scale."""
     values = list(shapes)
     places = [point for shape in values for point in shape.points]
     left, right = min(x for x, _ in places), max(x for x, _ in places)
     low, high = min(y for _, y in places), max(y for _, y in places)
-    scale = size / max(right - left, high - low, 1e-12)
+    scale = _DRAWING_SIZE / max(right - left, high - low, 1e-12)
 
     def at(point: tuple[float, float]) -> tuple[float, float]:
         return 4.0 + scale * (point[0] - left), 4.0 + scale * (high - point[1])

@@ -6,7 +6,7 @@ from rockframe.command.answer import Answer
 from rockframe.command.files.scenes import read_scene
 from rockframe.command.files.written import toml_tables
 from rockframe.command.motion import motion_summary
-from rockframe.system.words import describe
+from rockframe.system.setting import describe
 
 
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:

@@ -1,9 +1,8 @@
 """The base class of components: values, immutability, equality, text, documented parameters."""
 
-import re
 from collections.abc import Collection, Iterable, Mapping
 from inspect import Parameter as Argument
-from inspect import Signature, cleandoc
+from inspect import Signature
 from textwrap import fill
 from typing import Any, ClassVar, Final, Self
 
@@ -22,24 +21,16 @@ from rockframe.errors import (
     warn,
 )
 from rockframe.notebook import Polygon, html_summary, readable_arguments, shapes_svg
+from rockframe.shared_arguments import with_section
 from rockframe.suggestions import Immutable, suggests_names
 from rockframe.units import to_ratio
 
-_SECTION: Final = re.compile(r"^\w[\w ]*\n-{3,}$", re.MULTILINE)
+_LATER_SECTIONS: Final = (
+    "Attributes", "Methods", "Raises", "Warns", "See Also", "Notes", "References", "Examples",
+)  # fmt: skip
+"""Sections of a docstring that follow that on parameters."""
 _WIDTH: Final = 79
 _INDENT: Final = "    "
-
-
-def with_parameters_section(text: str, declared: Iterable[Declared[Any, Any]]) -> str:
-    """Insert the section "Parameters" of a numpydoc docstring."""
-    rows = [_parameter_row(parameter) for parameter in declared]
-    clean = cleandoc(text)
-    found = _SECTION.search(clean)
-    if not rows or (found and found[0].startswith("Parameters\n")):
-        return text
-    place = found.start() if found else len(clean)
-    section = "\n".join(["Parameters", "----------", *rows])
-    return f"{clean[:place].rstrip()}\n\n{section}\n\n{clean[place:]}".rstrip() + "\n"
 
 
 def _parameter_row(parameter: Declared[Any, Any]) -> str:
@@ -105,8 +96,9 @@ class Component(Immutable):
         if own and "__init__" not in vars(cls):
             cls.__init__ = _constructor(cls)
         suggests_names(cls)
-        if cls.__doc__ is not None:
-            cls.__doc__ = with_parameters_section(cls.__doc__, cls._declared.values())
+        if cls.__doc__ is not None and cls._declared:
+            rows = "\n".join(map(_parameter_row, cls._declared.values()))
+            cls.__doc__ = with_section(cls.__doc__, "Parameters", rows, _LATER_SECTIONS)
         register_class(cls)
 
     def __init__(self, **values: object) -> None:

@@ -17,7 +17,7 @@ from rockframe.components.parameters import (
     kinetic_friction_parameter,
     static_friction_parameter,
 )
-from rockframe.notebook import Polygon
+from rockframe.notebook import Polygon, rectangle
 from rockframe.suggestions import with_hints
 from rockframe.units import (
     BED_DAMPING,
@@ -36,6 +36,7 @@ from rockframe.units import (
     QuantityLike,
     RatioLike,
     quantity,
+    quantity_text,
     to_si,
 )
 
@@ -188,14 +189,10 @@ class TwoSpringSupport(Component):
         kinetic_friction: RatioLike | None = None,
     ) -> None:
         super().__init__(
-            frequency_ratio=frequency_ratio,
-            stiffness=stiffness,
-            damping_ratio=damping_ratio,
-            damping=damping,
-            restitution=restitution,
-            friction=friction,
+            frequency_ratio=frequency_ratio, stiffness=stiffness, damping_ratio=damping_ratio,
+            damping=damping, restitution=restitution, friction=friction,
             kinetic_friction=kinetic_friction,
-        )
+        )  # fmt: skip
 
     def _numbers(self, numbers: SIValues) -> SIValues:
         return check_frictions("TwoSpringSupport", numbers)
@@ -269,11 +266,8 @@ class CushionCap(Component):
         super().__init__(height=height, mass=mass, width=width, density=density, depth=depth)
 
     def _shapes(self) -> list[Polygon]:
-        si = self.si
-        if si.width is None:
-            return []
-        half = 0.5 * si.width
-        return [Polygon("cap", [(-half, 0.0), (half, 0.0), (half, si.height), (-half, si.height)])]
+        width = self.si.width
+        return [] if width is None else [Polygon("cap", rectangle(0.5 * width, self.si.height))]
 
     def _numbers(self, numbers: SIValues) -> CushionCapSI:
         by_density = numbers.density is not None
@@ -362,13 +356,9 @@ class WinklerSoil(Component):
         kinetic_friction: RatioLike | None = None,
     ) -> None:
         super().__init__(
-            stiffness=stiffness,
-            damping=damping,
-            damping_ratio=damping_ratio,
-            separation=separation,
-            friction=friction,
-            kinetic_friction=kinetic_friction,
-        )
+            stiffness=stiffness, damping=damping, damping_ratio=damping_ratio,
+            separation=separation, friction=friction, kinetic_friction=kinetic_friction,
+        )  # fmt: skip
 
     def _numbers(self, numbers: SIValues) -> SIValues:
         return check_frictions("WinklerSoil", numbers)
@@ -416,7 +406,7 @@ class WinklerSoil(Component):
         per_area = to_si(modulus, SUBGRADE_MODULUS, owner=owner, name="modulus", condition=POSITIVE)
         metres = to_si(depth, LENGTH, owner=owner, name="depth", condition=POSITIVE)
         soil = cls(
-            stiffness=f"{per_area * metres!r} {BED_STIFFNESS.unit}",
+            stiffness=quantity_text(per_area * metres, BED_STIFFNESS),
             damping=damping,
             damping_ratio=damping_ratio,
             separation=separation,

@@ -17,7 +17,7 @@ from rockframe.components.block_numbers import (
 from rockframe.components.parameters import DERIVED, Declared, Parameter, Ratio, SIValues
 from rockframe.components.shapes import outline, parts
 from rockframe.errors import ComponentError, ModelWarning, short_repr, warn
-from rockframe.notebook import Polygon
+from rockframe.notebook import Polygon, rectangle
 from rockframe.units import (
     ANGLE,
     ANGULAR_VELOCITY,
@@ -30,6 +30,7 @@ from rockframe.units import (
     QuantityLike,
     RatioLike,
     quantity,
+    quantity_text,
     to_ratio,
     to_si,
 )
@@ -138,14 +139,9 @@ class Block(Component):
                 type(self).__name__, centre_of_mass, centre_height, eccentricity
             )
         super().__init__(
-            width=width,
-            height=height,
-            mass=mass,
-            shape_factor=shape_factor,
-            inertia=inertia,
-            centre_height=centre_height,
-            eccentricity=eccentricity,
-        )
+            width=width, height=height, mass=mass, shape_factor=shape_factor, inertia=inertia,
+            centre_height=centre_height, eccentricity=eccentricity,
+        )  # fmt: skip
 
     @property
     def centre_of_mass(self) -> tuple[Quantity, Quantity]:
@@ -358,9 +354,9 @@ class Block(Component):
         return inertia_warnings(self.si) if stated else []
 
     def _shapes(self) -> list[Polygon]:
-        half, si = self.si.half_width, self.si
-        outline = [(-half, 0.0), (half, 0.0), (half, si.height), (-half, si.height)]
-        return [Polygon("block", outline), Polygon("block", [(si.eccentricity, si.centre_height)])]
+        si = self.si
+        centre = [(si.eccentricity, si.centre_height)]
+        return [Polygon("block", rectangle(si.half_width, si.height)), Polygon("block", centre)]
 
     @classmethod
     def from_density(
@@ -403,7 +399,7 @@ class Block(Component):
         for name, value in (("width", width), ("height", height), ("depth", depth)):
             volume *= to_si(value, LENGTH, owner=owner, name=name, condition=POSITIVE)
         per_volume = to_si(density, DENSITY, owner=owner, name="density", condition=POSITIVE)
-        mass = f"{per_volume * volume!r} {MASS.unit}"
+        mass = quantity_text(per_volume * volume, MASS)
         return cls(width=width, height=height, mass=mass, shape_factor=shape_factor)
 
     @classmethod
@@ -449,8 +445,8 @@ class Block(Component):
         )
         width = width_from_radius(owner, metres, ratio)
         return cls(
-            width=f"{width!r} {LENGTH.unit}",
-            height=f"{width * ratio!r} {LENGTH.unit}",
+            width=quantity_text(width, LENGTH),
+            height=quantity_text(width * ratio, LENGTH),
             mass=mass,
             shape_factor=shape_factor,
         )

@@ -2,14 +2,14 @@
 
 import json
 from collections.abc import Iterable, Mapping
-from typing import Any, Final, Self
+from typing import Any, Self
 
 import xarray as xr
 
 from rockframe.components.base import changed_arguments
 from rockframe.components.block import Block
 from rockframe.components.frame_building import Building, make_building
-from rockframe.components.frame_members import Member, make_members_table
+from rockframe.components.frame_members import Member, make_members_table, member_outlines
 from rockframe.components.frame_regular import INFILL_THICKNESS, SLAB_THICKNESS, RegularFrame
 from rockframe.components.parameters import DERIVED, Ratio
 from rockframe.errors import ComponentError, SchemaError, short_repr
@@ -17,9 +17,6 @@ from rockframe.notebook import Polygon
 from rockframe.units import LENGTH, POSITIVE, Quantity, QuantityLike, RatioLike, quantity
 
 _MIN_SHAPE_FACTOR = 1.0 - 1e-9  # a shape factor derived from an inertia is rounded
-
-
-_CORNERS: Final = ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))
 
 
 class FrameEquivalent(Block):
@@ -160,21 +157,11 @@ class FrameEquivalent(Block):
         (2.774, 0.127)
         """
         frame = cls._from_arguments(
-            members,
-            width=width,
-            height=height,
-            depth=depth,
-            slab_thickness=slab_thickness,
-            infill_thickness=infill_thickness,
-            storeys=storeys,
-            storey_heights=storey_heights,
-            column_width=column_width,
-            column_depth=column_depth,
-            beam_height=beam_height,
-            beam_width=beam_width,
-            density=density,
-            centre_of_mass=centre_of_mass,
-        )
+            members, width=width, height=height, depth=depth, slab_thickness=slab_thickness,
+            infill_thickness=infill_thickness, storeys=storeys, storey_heights=storey_heights,
+            column_width=column_width, column_depth=column_depth, beam_height=beam_height,
+            beam_width=beam_width, density=density, centre_of_mass=centre_of_mass,
+        )  # fmt: skip
         frame._warn()
         return frame
 
@@ -293,12 +280,8 @@ class FrameEquivalent(Block):
         return () if self._building is None else self._building.members
 
     def _shapes(self) -> list[Polygon]:
-        members = [
-            Polygon("member", [(si.x + a * si.width, si.y + b * si.height) for a, b in _CORNERS])
-            for si in (member.si for member in self.members)
-            if si.width is not None and si.height is not None
-        ]
-        return [*super()._shapes(), *members]
+        members = member_outlines(self.members)
+        return [*super()._shapes(), *(Polygon("member", one) for one in members)]
 
     @property
     def depth(self) -> Quantity | None:

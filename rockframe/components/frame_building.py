@@ -20,7 +20,7 @@ from rockframe.components.shapes.standing import (
     mass_weighted_mean,
 )
 from rockframe.errors import ComponentError, short_repr
-from rockframe.units import INERTIA, LENGTH, MASS, POSITIVE, to_si
+from rockframe.units import INERTIA, LENGTH, MASS, POSITIVE, quantity_text, to_si
 
 _ROUNDING: Final = 1e-9  # relative to the outline
 _MAX_OFFSET: Final = 0.1  # offset of the centre of mass over the outline that causes a warning
@@ -86,9 +86,9 @@ class Building:
         """Return the arguments of the equivalent block."""
         mass = sum(member.si.mass for member in self.members)
         arguments: dict[str, float | str] = {
-            "width": f"{self.width!r} {LENGTH.unit}",
-            "height": f"{self.height!r} {LENGTH.unit}",
-            "mass": f"{mass!r} {MASS.unit}",
+            "width": quantity_text(self.width, LENGTH),
+            "height": quantity_text(self.height, LENGTH),
+            "mass": quantity_text(mass, MASS),
         }
         if self.assumed_centre is CentreOfMass.MIDDLE:  # eq-frame-shape-factor
             # members may exceed the outline by rounding
@@ -96,13 +96,13 @@ class Building:
             return {**arguments, "shape_factor": mu}
         x, y = self.centre_of_mass
         if abs(x) > MIN_ECCENTRICITY * self.width:
-            arguments["eccentricity"] = f"{x!r} {LENGTH.unit}"
+            arguments["eccentricity"] = quantity_text(x, LENGTH)
         # eq-frame-about-centre
         about_centre = self.shape_factor((x, y), math.hypot(0.5 * self.width, y))
         if math.isinf(about_centre) and math.isfinite(mass):
             msg = f"{owner}: all mass is in one point, so that the building has no inertia"
             raise ComponentError(msg)
-        centre_height = f"{y!r} {LENGTH.unit}"
+        centre_height = quantity_text(y, LENGTH)
         return {**arguments, "centre_height": centre_height, "shape_factor": about_centre}
 
     def cautions(self) -> list[str]:
@@ -276,7 +276,7 @@ def _building_of_members(
         for member in built
     ]
     sizes = {"width": width, "height": height, "depth": depth}
-    arguments = {name: f"{value!r} {LENGTH.unit}" for name, value in sizes.items() if value}
+    arguments = {name: quantity_text(value, LENGTH) for name, value in sizes.items() if value}
     return Building(
         members=built, width=width, height=height, depth=depth, assumed_centre=assumed_centre,
         arguments={**arguments, "members": json.dumps(written)},

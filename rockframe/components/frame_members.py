@@ -1,7 +1,7 @@
 """A member of a building, over which Eqs. (22) and (23) sum, and the table of members."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Final, Self
 
@@ -13,6 +13,7 @@ from rockframe.components.parameters import DERIVED, Parameter, SIValues, Text
 from rockframe.components.shapes.standing import PlaneMass
 from rockframe.constants import CONVENTIONS
 from rockframe.errors import ComponentError
+from rockframe.notebook import rectangle
 from rockframe.units import (
     DENSITY,
     INERTIA,
@@ -122,17 +123,9 @@ class Member(Component):
         kind: str | None = None,
     ) -> None:
         super().__init__(
-            name=name,
-            kind=kind,
-            mass=mass,
-            density=density,
-            x=x,
-            y=y,
-            width=width,
-            height=height,
-            depth=depth,
-            inertia=inertia,
-        )
+            name=name, kind=kind, mass=mass, density=density, x=x, y=y, width=width, height=height,
+            depth=depth, inertia=inertia,
+        )  # fmt: skip
 
     @classmethod
     def box(
@@ -218,6 +211,15 @@ class Member(Component):
             )
             raise ComponentError(msg)
         return MemberSI(mass, numbers.x, numbers.y, inertia, *sizes)
+
+
+def member_outlines(members: Iterable[Member]) -> list[list[tuple[float, float]]]:
+    """Return the corners of the members whose sizes are known [m]."""
+    return [
+        rectangle(0.5 * one.width, one.height, one.x, one.y - 0.5 * one.height)
+        for one in (member.si for member in members)
+        if one.width is not None and one.height is not None
+    ]
 
 
 _COLUMNS: Final = {

@@ -24,6 +24,7 @@ from rockframe.units import (
     QuantityLike,
     RatioLike,
     quantity,
+    quantity_text,
     to_ratio,
     to_si,
 )
@@ -101,7 +102,7 @@ class StoreyHeights(Declared[Quantity, Missing]):
 
     def write(self, value: tuple[float, ...]) -> str:
         """Write all heights in one text."""
-        return "; ".join(f"{height!r} {LENGTH.unit}" for height in value)
+        return "; ".join(quantity_text(height, LENGTH) for height in value)
 
     def public(self, value: tuple[float, ...]) -> Quantity:
         """Return all heights in one Quantity."""
@@ -123,7 +124,7 @@ class InfillThickness(Declared[Quantity | None, str]):
 
     def write(self, value: float) -> str:
         """Write the thickness, or ``"none"``."""
-        return f"{value!r} {self.unit}" if value else _NO_INFILL
+        return quantity_text(value, self.measure) if value else _NO_INFILL
 
     def public(self, value: float) -> Quantity | None:
         """Return the thickness, or None."""
@@ -228,19 +229,11 @@ class RegularFrame(Component):
         infill_thickness: QuantityLike | None = INFILL_THICKNESS,
     ) -> None:
         super().__init__(
-            storeys=storeys,
-            height=height,
-            storey_heights=storey_heights,
-            width=width,
-            depth=depth,
-            column_width=column_width,
-            column_depth=column_depth,
-            beam_height=beam_height,
-            beam_width=beam_width,
-            slab_thickness=slab_thickness,
-            infill_thickness=infill_thickness,
+            storeys=storeys, height=height, storey_heights=storey_heights, width=width, depth=depth,
+            column_width=column_width, column_depth=column_depth, beam_height=beam_height,
+            beam_width=beam_width, slab_thickness=slab_thickness, infill_thickness=infill_thickness,
             density=density,
-        )
+        )  # fmt: skip
 
     def _check(self, values: Mapping[str, object], owner: str) -> None:
         of_all = [values[name] is not None for name in ("storeys", "height")]

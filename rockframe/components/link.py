@@ -16,7 +16,7 @@ from rockframe.components.parameters import (
     SIValues,
     Text,
 )
-from rockframe.errors import ComponentError
+from rockframe.errors import ComponentError, raise_faults
 from rockframe.units import (
     DAMPING,
     FORCE,
@@ -190,9 +190,7 @@ class Restrainer(PointLink):
             faults.append("breaking_elongation must exceed the slack, or it breaks before it pulls")
         if numbers.slack and numbers.compression:
             faults.append("a bar that pushes has no slack: give slack or compression")
-        if faults:
-            msg = f"Restrainer: {'; '.join(faults)}"
-            raise ComponentError(msg)
+        raise_faults("Restrainer", faults)
         return _check_preload("Restrainer", numbers)
 
 

@@ -20,6 +20,7 @@ from rockframe.units import (
     RatioLike,
     Unit,
     quantity,
+    quantity_text,
     to_ratio,
     to_si,
 )
@@ -180,7 +181,7 @@ class Parameter(Declared[Quantity, Default]):
 
     def write(self, value: float) -> str:
         """Write the number with its unit."""
-        return f"{value!r} {self.unit}"
+        return quantity_text(value, self.measure)
 
     def public(self, value: float) -> Quantity:
         """Return the number with its unit."""

@@ -10,7 +10,7 @@ from rockframe.components.block_numbers import BlockSI
 from rockframe.components.parameters import Count, Declared, Missing, Parameter, SIValues
 from rockframe.components.registry import component_from_dict
 from rockframe.errors import ComponentError, short_repr
-from rockframe.notebook import Polygon
+from rockframe.notebook import Polygon, rectangle
 from rockframe.units import LENGTH, MASS, NOT_NEGATIVE, POSITIVE, QuantityLike
 
 MIN_COLUMNS: Final = 2
@@ -188,13 +188,9 @@ class RockingFrame(Component):
 
 def frame_outlines(si: RockingFrameSI) -> list[list[tuple[float, float]]]:
     """Return the corners of all columns and of the beam, from the middle of the bases [m]."""
-    half, height = si.column.half_width, si.column.height
-    places = column_positions(si)
-    reach, top = places[-1] + 2.0 * half, height + si.beam_height
-    found = [
-        [(x - half, 0.0), (x + half, 0.0), (x + half, height), (x - half, height)] for x in places
-    ]
-    return [*found, [(-reach, height), (reach, height), (reach, top), (-reach, top)]]
+    half, height, places = si.column.half_width, si.column.height, column_positions(si)
+    beam = rectangle(places[-1] + 2.0 * half, si.beam_height, y=height)
+    return [*(rectangle(half, height, x) for x in places), beam]
 
 
 def column_positions(si: RockingFrameSI) -> list[float]:

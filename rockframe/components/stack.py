@@ -11,8 +11,8 @@ from rockframe.components.block import Block
 from rockframe.components.block_numbers import BlockSI
 from rockframe.components.parameters import SIValues
 from rockframe.components.registry import component_from_dict
-from rockframe.errors import ComponentError, short_repr, unexpected_argument
-from rockframe.units import LENGTH, Quantity, QuantityLike, quantity, to_si
+from rockframe.errors import ComponentError, raise_faults, short_repr, unexpected_argument
+from rockframe.units import LENGTH, Quantity, QuantityLike, quantity, quantity_text, to_si
 
 MAX_BODIES: Final = 12
 """Most bodies in a stack: the combined contact states of more exceed the range of integers."""
@@ -105,9 +105,7 @@ class Stack(Component):
                 f"offsets needs {max(len(bodies) - 1, 0)} values, one for each body but the "
                 f"lowest, got {len(distances)}"
             )
-        if faults:
-            msg = f"Stack: {'; '.join(faults)}"
-            raise ComponentError(msg)
+        raise_faults("Stack", faults)
         distances = [0.0] * (len(bodies) - 1) if distances is None else distances
         _check_overhang([one.si for one in bodies], distances)
         values = SIValues(
@@ -218,7 +216,7 @@ class Stack(Component):
         return {
             "bodies": [one.to_dict() for one in self.bodies],
             "interfaces": [one.to_dict() for one in self.interfaces],
-            "offsets": [f"{one!r} m" for one in self.given.offsets],
+            "offsets": [quantity_text(one, LENGTH) for one in self.given.offsets],
         }
 
     def __hash__(self) -> int:

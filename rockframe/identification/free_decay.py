@@ -25,8 +25,7 @@ from rockframe.simulation.system import System, check_system
 from rockframe.solve.accuracy import AccuracyLevel, accuracy_of
 from rockframe.suggestions import with_hints
 from rockframe.system.options import AccuracyLike
-from rockframe.system.words import angle_words
-from rockframe.units import Condition, QuantityLike, RatioLike, to_ratio
+from rockframe.units import Condition, QuantityLike, RatioLike, angle_words, to_ratio
 
 _CONFIDENCE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value < 1.0)
 

@@ -13,8 +13,7 @@ import xarray as xr
 from rockframe.errors import ComponentError, UnitsError, short_repr
 from rockframe.signals.arrays import Array
 from rockframe.system.bodies import OverturningAngles
-from rockframe.units import ANGLE, TIME, Measure, check_attached_unit, to_si
-from rockframe.units.display import degrees_text
+from rockframe.units import ANGLE, TIME, Measure, angle_words, check_attached_unit, to_si
 
 OWNER: Final = "fit_free_decay"
 _EXAMPLE_UNITS: Final = {"rotation": "deg", "time": "s"}
@@ -117,7 +116,7 @@ def check_below_overturning(measured: History | MeasuredPeaks, angles: Overturni
     beyond = np.flatnonzero(np.abs(measured.rotation) >= theta)
     if beyond.size:
         first = int(beyond[0])
-        angle, limit = (_angle_words(float(one[first])) for one in (measured.rotation, theta))
+        angle, limit = (angle_words(float(one[first])) for one in (measured.rotation, theta))
         msg = (
             f"{OWNER}: {_datum_words(measured, first)} is {angle}, not below the overturning angle "
             f"{limit}; check the unit, and the size of the block"
@@ -215,7 +214,3 @@ def _datum_words(measured: History | MeasuredPeaks, index: int) -> str:
     if isinstance(measured, History):
         return f"the rotation measured at {measured.time[index]:.6g} s"
     return f"peak {index + 1}"
-
-
-def _angle_words(value: float) -> str:
-    return f"{value:.6g} rad ({degrees_text(value)})"

@@ -20,7 +20,7 @@ from rockframe.identification.unknowns import Circumstance
 from rockframe.results.schema import build_dataset
 from rockframe.results.variables.studies import FitStatus
 from rockframe.signals.arrays import Array
-from rockframe.units.display import degrees_text
+from rockframe.units import degrees_text
 
 _HIGH_AUTOCORRELATION: Final = 0.3
 """Autocorrelation of residuals above which they do not count as independent."""

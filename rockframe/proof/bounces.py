@@ -11,9 +11,9 @@ from rockframe.proof.balls import UNIT, ZERO, Ball, Row, ball, hull, magnitude
 from rockframe.proof.problem import (
     GroundPiece,
     Problem,
-    Undecided,
     acceleration,
     acceleration_bound,
+    require,
     stiffness,
 )
 from rockframe.proof.uplift import find_uplift
@@ -35,9 +35,10 @@ class Instant(NamedTuple):
         """Return the instant after a span of time [s]."""
         interval, elapsed = self.interval, self.elapsed + span
         while not elapsed < problem.length(interval):
-            if not elapsed >= problem.length(interval):
-                message = "small bounces that end at a sample of the motion"
-                raise Undecided(message)
+            require(
+                elapsed >= problem.length(interval),
+                "small bounces that end at a sample of the motion",
+            )
             elapsed, interval = elapsed - problem.length(interval), interval + 1
         return Instant(interval, elapsed)
 

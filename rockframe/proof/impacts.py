@@ -14,14 +14,13 @@ from rockframe.proof.balls import (
     magnitude,
     matrix_product,
 )
-from rockframe.proof.flow import bound_motion, short_flow
+from rockframe.proof.flow import SetOfStates, bound_motion, short_flow
 from rockframe.proof.problem import (
     CornerNumbers,
     Deviations,
     GroundPiece,
-    Undecided,
+    require,
 )
-from rockframe.proof.states import SetOfStates
 
 
 class ImpactEnclosure(NamedTuple):
@@ -71,24 +70,21 @@ def _reset(
 ) -> _Reset:
     """Enclose the states after an impact, with their derivatives."""
     rotation, rate = state
-    if not rate * old.sign < 0:
-        message = "an impact that hardly touches the ground"
-        raise Undecided(message)
+    require(rate * old.sign < 0, "an impact that hardly touches the ground")
     reach = 2 * magnitude(rotation) / ball(rate.abs_lower()) + ball(2) ** -400
     window = magnitude(reach) * WITHIN_ONE
     one, other = before.at(window), after.at(window)
     ground = one.union(other)
     before_impact = bound_motion(state, old, ground, window)
     at = -rotation / before_impact.rate
-    if not (before_impact.rate * old.sign < 0 and window.contains(at)):
-        message = "an impact whose instant is not enclosed"
-        raise Undecided(message)
+    require(
+        before_impact.rate * old.sign < 0 and window.contains(at),
+        "an impact whose instant is not enclosed",
+    )
     arriving = rate + before_impact.acceleration * UNIT * at
     leaving = new.restitution * arriving
     after_impact = bound_motion([ZERO, leaving], new, ground, -UNIT * at)
-    if not after_impact.rate * old.sign < 0:
-        message = "a rebound without speed"
-        raise Undecided(message)
+    require(after_impact.rate * old.sign < 0, "a rebound without speed")
     end = [
         -leaving * at + after_impact.acceleration * at * at / 2,
         leaving - after_impact.acceleration * at,

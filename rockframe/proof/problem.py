@@ -14,6 +14,12 @@ class Undecided(Exception):  # noqa: N818  (a result, no error)
     """Nothing is proved; the message is the reason."""
 
 
+def require(proved: bool, reason: str) -> None:
+    """Raise `Undecided` unless a condition is proved; a comparison of balls may be neither."""
+    if not proved:
+        raise Undecided(reason)
+
+
 class Deviations(NamedTuple):
     """Deviations of inputs, of the block and its motion, from the given ones, as balls."""
 
@@ -63,7 +69,7 @@ class Deviations(NamedTuple):
         return self._replace(**{name: low}), self._replace(**{name: high})
 
     def restitution(self, sign: int) -> Ball:
-        """Return deviation of the restitution of the corner that bears at a sign of rotation."""
+        """Return the deviation of the restitution of the corner that bears at a sign."""
         return self.right_restitution if sign > 0 else self.left_restitution
 
     def angle(self, sign: int) -> Ball:
@@ -173,19 +179,42 @@ class PiecewiseGround:
         return interval >= self.count or (lines and not ends)
 
     def ground(self, interval: int) -> GroundPiece:
-        """Return ground in an interval, by the time since its start, :eq:`eq-incline-ground`."""
+        """Return the ground in an interval, by time since its start, :eq:`eq-incline-ground`."""
         interval = min(interval, self.count)
         if interval not in self._known:
-            self._known[interval] = self._ground(interval)
+            gravity = ball(self.slope.gravity)
+            found = self._scaled_ground(interval, self.scale, gravity)
+            if not self.scale.is_exact():
+                middle = self._scaled_ground(interval, self.scale.mid(), gravity)
+                by_scale = self._scaled_ground(interval, ONE, ZERO)
+                found = found._replace(spread=GroundSpread(middle, by_scale))
+            self._known[interval] = found
         return self._known[interval]
 
-    def _ground(self, interval: int) -> GroundPiece:
-        gravity = ball(self.slope.gravity)
-        ground = _ground(self, interval, self.scale, gravity)
-        if self.scale.is_exact():
-            return ground
-        middle = _ground(self, interval, self.scale.mid(), gravity)
-        return ground._replace(spread=GroundSpread(middle, _ground(self, interval, ONE, ZERO)))
+    def _scaled_ground(self, interval: int, scale: Ball, gravity: Ball) -> GroundPiece:
+        across, up = (self._component(interval, scale, vertical=one) for one in (False, True))
+        if self.slope.level:
+            return GroundPiece(across, [gravity + up[0], *up[1:]])
+        sine, cosine = ball(self.slope.inclination).sin_cos()
+        pairs = list(zip_longest(across, up, fillvalue=ZERO))
+        along = [x * cosine + y * sine for x, y in pairs]
+        normal = [y * cosine - x * sine for x, y in pairs]
+        return GroundPiece(
+            [along[0] + gravity * sine, *along[1:]], [normal[0] + gravity * cosine, *normal[1:]]
+        )
+
+    def _component(self, interval: int, scale: Ball, *, vertical: bool) -> Row:
+        """Return a component of the motion as a polynomial of time."""
+        signal = self.motion.vertical if vertical else self.motion.horizontal
+        if signal is None or interval >= self.count:
+            return [ZERO]
+        if signal.polynomials is None:
+            first, last = (ball(float(signal.samples[interval + each])) for each in (0, 1))
+            row = [first, last - first]
+        else:
+            row = [ball(float(each)) for each in signal.polynomials[interval]]
+        step = self.length(interval)
+        return [scale * each / step**power for power, each in enumerate(row)]
 
     def ground_over(self, interval: int, elapsed: Ball, span: Ball) -> GroundPiece:
         """Enclose the ground at all times of a span that starts in an interval [s]."""
@@ -234,35 +263,6 @@ class Problem(PiecewiseGround):
     def corner(self, sign: int) -> CornerNumbers:
         """Return the corner that bears while the rotation has a sign."""
         return self.right if sign > 0 else self.left
-
-
-def _ground(problem: PiecewiseGround, interval: int, scale: Ball, gravity: Ball) -> GroundPiece:
-    inclination = ball(problem.slope.inclination)
-    across, up = (_component(problem, interval, scale, vertical=one) for one in (False, True))
-    if problem.slope.level:
-        return GroundPiece(across, [gravity + up[0], *up[1:]])
-    sine, cosine = inclination.sin_cos()
-    pairs = list(zip_longest(across, up, fillvalue=ZERO))
-    along = [x * cosine + y * sine for x, y in pairs]
-    normal = [y * cosine - x * sine for x, y in pairs]
-    return GroundPiece(
-        [along[0] + gravity * sine, *along[1:]], [normal[0] + gravity * cosine, *normal[1:]]
-    )
-
-
-def _component(problem: PiecewiseGround, interval: int, scale: Ball, *, vertical: bool) -> Row:
-    """Return a component of the motion as a polynomial of time."""
-    motion = problem.motion
-    signal = motion.vertical if vertical else motion.horizontal
-    if signal is None or interval >= problem.count:
-        return [ZERO]
-    if signal.polynomials is None:
-        first, last = (ball(float(signal.samples[interval + each])) for each in (0, 1))
-        row = [first, last - first]
-    else:
-        row = [ball(float(each)) for each in signal.polynomials[interval]]
-    step = problem.length(interval)
-    return [scale * each / step**power for power, each in enumerate(row)]
 
 
 def acceleration(rotation: Ball, corner: CornerNumbers, ground: GroundPiece) -> Ball:

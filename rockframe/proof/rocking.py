@@ -16,11 +16,17 @@ from rockframe.proof.balls import (
     polynomial_value,
 )
 from rockframe.proof.bounces import Instant, UpliftState, follow_bounces
-from rockframe.proof.flow import MotionBounds, advance, bound_motion, flow, jerk
+from rockframe.proof.flow import MotionBounds, SetOfStates, advance, bound_motion, flow, jerk
 from rockframe.proof.impacts import ImpactEnclosure, enclose_impact
-from rockframe.proof.problem import CornerNumbers, Deviations, GroundPiece, Problem, Undecided
+from rockframe.proof.problem import (
+    CornerNumbers,
+    Deviations,
+    GroundPiece,
+    Problem,
+    Undecided,
+    require,
+)
 from rockframe.proof.sets import prove_for_set, prove_verdict
-from rockframe.proof.states import SetOfStates
 from rockframe.proof.uplift import find_uplift
 from rockframe.proof.verdict import EXACT, Proof, Tolerances
 from rockframe.signals import Motion
@@ -154,8 +160,7 @@ class RockingProver:
             third = jerk(
                 bound_motion(still, self.corner, during, UNIT * delay), self.corner, during
             )
-            if not third * self.sign > 0:
-                raise Undecided(_UNKNOWN_SIDE)
+            require(third * self.sign > 0, _UNKNOWN_SIDE)
             risen = [delay**3 / 6, delay**2 / 2]
             still = [UNIT * (magnitude(third) * each) * self.sign for each in risen]
         return SetOfStates.from_box(still, self.uncertain)
@@ -220,9 +225,9 @@ class RockingProver:
         self.largest_radius = max(self.largest_radius, float(radius))
         if self.callback is not None:
             self.callback(self.interval, self.elapsed, self.sign, box)
-        if self.sign and not radius < MAX_RADIUS * self.corner.angle:
-            message = "the enclosure has become as wide as the rotations themselves"
-            raise Undecided(message)
+        if self.sign:
+            wide = "the enclosure has become as wide as the rotations themselves"
+            require(radius < MAX_RADIUS * self.corner.angle, wide)
 
     def _predict_impact(self, ground: GroundPiece, left: Ball) -> Ball | None:
         """Estimate when the middle of the set strikes, None if it does not; proves nothing."""
@@ -271,9 +276,8 @@ class RockingProver:
         falls = bounds.rate * s < 0 or bounds.acceleration * s < 0
         if ends_at_impact and falls:
             return new, bounds
-        if ends_at_impact or not (stays or (falls and new.box()[0] * s > 0)):
-            message = "whether the block meets the ground is not resolved"
-            raise Undecided(message)
+        keeps_sign = not ends_at_impact and (stays or (falls and new.box()[0] * s > 0))
+        require(keeps_sign, "whether the block meets the ground is not resolved")
         return new, bounds
 
     def _may_overturn(self, new: SetOfStates, bounds: MotionBounds) -> bool:
@@ -312,9 +316,7 @@ class RockingProver:
         near = impact.at.contains(0) or abs(impact.at) < 2 * AT_INTERVAL_END * self.problem.length(
             self.interval
         )
-        if not (near if to_end else step + impact.at < left):
-            message = "an impact at a sample of the motion"
-            raise Undecided(message)
+        require(near if to_end else step + impact.at < left, "an impact at a sample of the motion")
         return impact
 
     def _settle_bounces(self, *, lift: bool = False) -> bool:
@@ -386,16 +388,12 @@ def prove_block(
     *,
     scale: float = 1.0,
     within: Tolerances = EXACT,
-    callback: Callback | None = None,
 ) -> Proof:
-    """Prove the verdict of a block on rigid ground, from a start: rotation and angular velocity.
-
-    The proof is for all inputs within the tolerances; `callback` is called with each enclosure.
-    """
+    """Prove the verdict of a block on rigid ground, from a start: rotation and angular velocity."""
 
     def attempt(inputs: Deviations) -> tuple[Proof, list[float]]:
         problem = Problem.of(block, motion, slope, limits, scale, inputs, STILL_STEP)
-        prover = RockingProver(problem, callback, () if inputs.exact else inputs.centred())
+        prover = RockingProver(problem, uncertain=() if inputs.exact else inputs.centred())
         prover.start(*start)
         return prove_verdict(prover, scale, _LAW), prover.states.influences()
 

@@ -3,7 +3,7 @@
 from itertools import zip_longest
 
 from rockframe.proof.balls import ZERO, Ball, Row, derivative_of, polynomial_value
-from rockframe.proof.problem import GroundPiece, Problem, Undecided
+from rockframe.proof.problem import GroundPiece, Problem, Undecided, require
 
 _HALVINGS = 50
 _NEWTON_STEPS = 12
@@ -46,7 +46,7 @@ def _uplift_about_sample(
 
 
 def uplift_guard(problem: Problem, ground: GroundPiece, side: int) -> Row:
-    """Return guard of uplift to a side, a polynomial that is positive while it does not lift."""
+    """Return the guard of uplift to a side: a polynomial, positive while it does not lift."""
     tangent = problem.corner(side).angle.tan()
     pairs = zip_longest(ground.normal, ground.along, fillvalue=ZERO)
     return [normal * tangent + side * along for normal, along in pairs]
@@ -95,9 +95,7 @@ def first_zero(guard: list[Ball], left: Ball) -> Ball | None:
     """Enclose the first time from 0 to `left` at which a polynomial is not positive."""
     if guard[0] < 0:
         return ZERO
-    if not guard[0] > 0:
-        message = "a block at rest on the verge of uplift"
-        raise Undecided(message)
+    require(guard[0] > 0, "a block at rest on the verge of uplift")
     return _first_zero(guard, derivative_of(guard), ZERO, left, _HALVINGS)
 
 

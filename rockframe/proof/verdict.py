@@ -122,7 +122,7 @@ class Proof:
         return []
 
     def values(self, overturned: bool | None, end: float) -> dict[str, float | bool]:
-        """Return scalars for the dataset of a run up to a time, by their names in the schema."""
+        """Return the scalars for the dataset of a run up to a time, by names of the schema."""
         falls = self.verdict == OVERTURNS
         return {
             "verdict_proved": self.agrees(overturned, end),

@@ -8,8 +8,8 @@ from typing import Any, Final
 import xarray as xr
 
 from rockframe.results.variables.variable import flag_words
-from rockframe.units import Unit
-from rockframe.units.display import DisplayUnits, degrees_text, unit_suffix, with_superscripts
+from rockframe.units import Unit, degrees_text
+from rockframe.units.display import DisplayUnits, unit_suffix, with_superscripts
 
 _YES_NO: Final = {"true": "yes", "false": "no"}
 _NAN_NOTE: Final = re.compile(r", NaN if .*$")

@@ -31,8 +31,7 @@ from rockframe.solve.trajectory import Summary, Trajectory
 from rockframe.solve.workspace import Status
 from rockframe.system.bodies import OverturningAngles
 from rockframe.system.setting import Setting, SlipRange
-from rockframe.system.words import angle_words
-from rockframe.units import ANGLE
+from rockframe.units import ANGLE, angle_words
 
 LARGE_RESIDUAL_SHARE: Final = 0.95
 """Share of the peak slip below which a residual slip is reported together with the peak."""

@@ -32,7 +32,16 @@ from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
 from rockframe.solve.integrate import STILL_INTERVAL
 from rockframe.system.assembly import Assembly
 from rockframe.system.options import Overturning, read_option
-from rockframe.units import LENGTH, POSITIVE, TIME, TIME_STEP, Measure, QuantityLike, to_si
+from rockframe.units import (
+    LENGTH,
+    POSITIVE,
+    TIME,
+    TIME_STEP,
+    Measure,
+    QuantityLike,
+    quantity_text,
+    to_si,
+)
 
 POINTS_EXAMPLE: Final = 'points={"roof": ("0 m", "18 m")}'
 
@@ -231,7 +240,7 @@ class _Requested:
             if self.histories
             else None,
             "points": {
-                point.name: [f"{each!r} {LENGTH.unit}" for each in (point.x, point.y)]
+                point.name: [quantity_text(each, LENGTH) for each in (point.x, point.y)]
                 for point in self.points
             },
             "overturning": str(
@@ -301,7 +310,7 @@ class Plan(_Requested):
 
 
 def _time_text(value: float | None) -> str | None:
-    return None if value is None else f"{value!r} {TIME.unit}"
+    return None if value is None else quantity_text(value, TIME)
 
 
 def plan_run(

@@ -15,7 +15,7 @@ from rockframe.errors import RecordWarning, SchemaError, did_you_mean, short_rep
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import display_name
 from rockframe.solve.accuracy import Accuracy
-from rockframe.units import TIME, Unit
+from rockframe.units import TIME, Unit, quantity_text
 
 _AFTER_END: Final = "_after_end"
 """Suffix of the names of samples of the motion that follow the histories."""
@@ -143,7 +143,7 @@ def _from_histories(dataset: xr.Dataset) -> tuple[GroundMotion | None, str]:
         if variable in dataset
     }
     motion = GroundMotion.from_arrays(
-        time_step=f"{step!r} {TIME.unit}", name=str(dataset.attrs["motion"]), **components
+        time_step=quantity_text(step, TIME), name=str(dataset.attrs["motion"]), **components
     )
     if motion.sha256 != dataset.attrs["motion_sha256"]:
         return None, "its ground acceleration is not what the run had"

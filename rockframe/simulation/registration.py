@@ -7,7 +7,7 @@ import pint
 
 from rockframe.arguments import checked_list
 from rockframe.components import Block, Component
-from rockframe.errors import ComponentError, short_repr
+from rockframe.errors import raise_faults, short_repr
 from rockframe.results.diagnostics import DIAGNOSTICS, Diagnostic, add_diagnostic
 from rockframe.results.schema import GROUPS, SCHEMA
 from rockframe.results.variables.variable import EVENT, TIME, Variable
@@ -99,7 +99,7 @@ def register(
             f"{kind.__name__} has no method answers(histories, before, after), which gives "
             f"{' and '.join(map(repr, scalars))}"
         )
-    _refuse(faults)
+    raise_faults(_OWNER, faults)
     if issubclass(kind, OwnBase):
         add_part_class(kind, PartKind(kind.slot, kind.support))
     elif issubclass(kind, OwnLink):
@@ -130,14 +130,8 @@ def _register_diagnostic(
             value, called, cast("str", unit), words if long_name is None else long_name
         )
     faults += _diagnostic_faults(value)
-    _refuse(faults)
+    raise_faults(_OWNER, faults)
     add_diagnostic(value)
-
-
-def _refuse(faults: list[str]) -> None:
-    if faults:
-        msg = f"{_OWNER}: {'; '.join(faults)}"
-        raise ComponentError(msg)
 
 
 def _class_faults(kind: Any) -> list[str]:

@@ -277,7 +277,7 @@ class SlidingCheck:
 
 def has_friction_limit(system: Assembly) -> bool:
     """Whether a base has a coefficient of friction that its runs are checked against."""
-    return any(True for _ in _frictions(system))
+    return any(_frictions(system))
 
 
 def sliding_checks(system: Assembly, along: AlongSteps) -> list[SlidingCheck]:
@@ -317,11 +317,9 @@ def friction_words(scalars: Mapping[str, AnyArray | float], found: Sequence[Slid
 
     Empty for a run without peaks of forces.
     """
-    if len(found) == 1:
-        words = found[0].words
-        return f" {words[0].upper()}{words[1:]}."
     if found:
-        words = "; ".join(f"{each.body} {each.words}" for each in found)
+        several = len(found) > 1
+        words = "; ".join(f"{each.body} {each.words}" if several else each.words for each in found)
         return f" {words[0].upper()}{words[1:]}."
     if "peak_friction_demand" not in scalars:
         return ""
@@ -366,7 +364,7 @@ def count_slides(would_slide: AnyArray) -> tuple[int, int]:
 
 
 def _frictions(system: Assembly) -> Iterator[tuple[str, float, str]]:
-    """Return name of the friction demand, given coefficient and body, for each base that holds."""
+    """Return friction demand, coefficient and body, by name, for each base that holds a body."""
     parts = system.parts
     if system.setting.slides:
         return

@@ -20,14 +20,14 @@ from rockframe.simulation.provenance import (
     parts_and_options,
 )
 from rockframe.simulation.run_arguments import FOREIGN_ARGUMENTS, Certification
-from rockframe.simulation.value import SystemValue
 from rockframe.solve.accuracy import AccuracyLevel
-from rockframe.suggestions import suggests_names, with_hints
-from rockframe.system.assembly import assemble
+from rockframe.suggestions import SuggestingMeta, suggests_names, with_hints
+from rockframe.system.assembly import Assembly, Scene, assemble
 from rockframe.system.options import (
     AccuracyLike,
     Coupling,
     CouplingLike,
+    Options,
     Overturning,
     OverturningLike,
     PointsLike,
@@ -38,14 +38,16 @@ from rockframe.system.options import (
     Sliding,
     SlidingLike,
 )
-from rockframe.units import QuantityLike
+from rockframe.system.parts import Parts
+from rockframe.system.setting import Setting
+from rockframe.units import ACCELERATION, ANGLE, Quantity, QuantityLike, quantity
 
 _DAMAGED: Final = (ValueError, KeyError, TypeError, AttributeError)
 """Exceptions that a damaged description of a system may raise."""
 
 
 @suggests_names
-class System(SystemValue):
+class System(metaclass=SuggestingMeta):
     """An assembled scene: parts in any order, checked together, ready to simulate.
 
     Parameters
@@ -89,7 +91,9 @@ class System(SystemValue):
     False
     """
 
-    __slots__ = ()
+    __slots__ = ("_assembly",)
+
+    _assembly: Assembly
 
     def __init__(
         self,
@@ -101,13 +105,93 @@ class System(SystemValue):
         inclination: QuantityLike | None = None,
         sliding: SlidingLike = Sliding.COMPUTED,
     ) -> None:
-        assembly = assemble(
+        self._assembly = assemble(
             parts, restraint=restraint, rotation=rotation, coupling=coupling, gravity=gravity,
             inclination=inclination, sliding=sliding,
         )  # fmt: skip
-        self._assembly = assembly
-        for caution in assembly.setting_cautions:
+        for caution in self._assembly.setting_cautions:
             warn(caution, ModelWarning)
+
+    @property
+    def assembly(self) -> Assembly:
+        """Parts and options, checked together."""
+        return self._assembly
+
+    @property
+    def parts(self) -> Parts:
+        """The parts, by what they are."""
+        return self._assembly.parts
+
+    @property
+    def motion(self) -> GroundMotion | None:
+        """The ground motion among the parts, if there is one."""
+        return self.parts.motion
+
+    @property
+    def options(self) -> Options:
+        """All options, and gravity."""
+        return self._assembly.options
+
+    @property
+    def restraint(self) -> Restraint:
+        """Which point of the base the ground holds horizontally."""
+        return self.options.restraint
+
+    @property
+    def rotation(self) -> Rotation:
+        """Exact kinematics, or expanded to second order in the rotation."""
+        return self.options.rotation
+
+    @property
+    def coupling(self) -> Coupling:
+        """How block, pads, cap and soil are joined, in a scene that has them."""
+        return self.options.coupling
+
+    @property
+    def gravity(self) -> Quantity:
+        """Acceleration of gravity [m s^-2]."""
+        return quantity(self.options.gravity, ACCELERATION)
+
+    @property
+    def inclination(self) -> Quantity:
+        """Angle by which the base line rises to the right [rad]."""
+        return quantity(self.options.inclination, ANGLE)
+
+    @property
+    def sliding(self) -> Sliding:
+        """What friction does: its forces are computed, or it is compared with what is needed."""
+        return self.options.sliding
+
+    @property
+    def scene(self) -> Scene:
+        """The row of the table of scenes that the parts make."""
+        return self._assembly.scene
+
+    @property
+    def setting(self) -> Setting:
+        """The scene's numbers in SI units."""
+        return self._assembly.setting
+
+    def __eq__(self, other: object) -> bool:
+        return self._assembly == other._assembly if isinstance(other, System) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._assembly)
+
+    def __repr__(self) -> str:
+        hidden = {"gravity"} if self.scene.coupling else {"gravity", "coupling"}
+        options = self.options.to_dict().items()
+        arguments = [f"{name}={value!r}" for name, value in options if name not in hidden]
+        return f"{type(self).__name__}({', '.join([*map(repr, self.parts), *arguments])})"
+
+    def __dir__(self) -> list[str]:
+        inner = {"assembly", "scene", "setting"}  # for the package, and those who extend it
+        return [n for n in super().__dir__() if not n.startswith("_") and n not in inner]
+
+    def _repr_html_(self) -> str:
+        from rockframe.system.geometry import system_html
+
+        return system_html(self._assembly, type(self).__name__)
 
     def describe(self) -> str:
         """Describe the model that the parts make: its equations, its numbers and its limits.
@@ -213,17 +297,10 @@ class System(SystemValue):
         from rockframe.simulation.run import run
 
         plan = plan_run(
-            self._assembly,
-            motion,
-            duration=duration,
-            free_vibration=free_vibration,
-            initial=initial,
-            accuracy=accuracy,
-            output_step=output_step,
-            outputs=outputs,
-            points=points,
-            overturning=overturning,
-        )
+            self._assembly, motion, duration=duration, free_vibration=free_vibration,
+            initial=initial, accuracy=accuracy, output_step=output_step, outputs=outputs,
+            points=points, overturning=overturning,
+        )  # fmt: skip
         again = checked_bool(second_look, owner="simulate", name="second_look")
         return run(self._assembly, plan, read_certification(certify), repeat_run=again)
 

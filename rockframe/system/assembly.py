@@ -39,12 +39,11 @@ from rockframe.system.own_scene import OwnScene
 from rockframe.system.parts import RESTRAINER, Parts, sort_parts, support_of
 from rockframe.system.rear_wall import rear_wall_setting
 from rockframe.system.rocking_frame import rocking_frame_setting
-from rockframe.system.setting import Setting
+from rockframe.system.setting import Setting, describe
 from rockframe.system.single_body import SingleBodySetting, SlidingBodySetting
 from rockframe.system.sliding_ground import rigid_ground_setting
 from rockframe.system.sliding_stack import restrained_setting, sliding_stack_setting
 from rockframe.system.stack import StackSetting, refuse_options, stack_setting
-from rockframe.system.words import describe
 
 
 @dataclass(frozen=True)

@@ -19,12 +19,11 @@ from rockframe.errors import AssemblyError
 from rockframe.system.bodies import Cap
 from rockframe.system.compatibility import NO_SLIP, BaseFriction
 from rockframe.system.options import restraint_words
-from rockframe.system.setting import Setting, SlipRange, chain_slips
+from rockframe.system.setting import Setting, SlipRange, Words, chain_slips, sliding_words
 from rockframe.system.single_body import SingleBodySetting
 from rockframe.system.sliding_stack import overhang_caution
 from rockframe.system.statics import SmallMotion, Statics, static_values
 from rockframe.system.support import BaseWords, StandingBodies, Support
-from rockframe.system.words import Words, sliding_words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.coupled.model import StackRest

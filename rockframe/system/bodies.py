@@ -11,6 +11,7 @@ from rockframe.case_arrays import CaseArray, atan2, tan
 from rockframe.components import Component
 from rockframe.components.bases import CushionCapSI
 from rockframe.components.block_numbers import BlockSI, BodyGeometry, maximum_restitutions
+from rockframe.components.shapes.standing import PlaneMass
 from rockframe.dynamics.body import Body
 from rockframe.dynamics.chain.link_rows import LINK_MOMENT
 from rockframe.dynamics.single_body import rigid_body
@@ -112,6 +113,10 @@ class SupportedBody(BodyGeometry):
         """Return x and y of points from the centre of mass, not from the middle of the base [m]."""
         return x - self.eccentricity, y - self.centre_height
 
+    def mass_at(self, x: float = 0.0, y: float = 0.0) -> PlaneMass:
+        """Return the mass of the body with the middle of its base at x and y [m]."""
+        return PlaneMass(self.mass, x + self.eccentricity, y + self.centre_height, self.inertia)
+
     @property
     def base_inertia(self) -> float:
         """Moment of inertia about the point of the base below the centre of mass [kg m^2]."""
@@ -181,19 +186,9 @@ def block_body(block: BlockSI, kind: type[SupportedBody] = SupportedBody) -> Sup
     )  # fmt: skip
 
 
-class PlacedMass(NamedTuple):
-    """A mass in a body, in SI units."""
-
-    mass: float
-    inertia: float  # about its own centre
-    x: float  # of its centre, from the middle of the base to the right
-    y: float  # and above it
-
-
 def with_point_mass(body: SupportedBody, mass: float, x: float, y: float) -> SupportedBody:
     """Return a body with an added point mass [kg] at x and y from the middle of its base [m]."""
-    own = PlacedMass(body.mass, body.inertia, body.eccentricity, body.centre_height)
-    return combine_masses(body.half_width, (own, PlacedMass(mass, 0.0, x, y)))
+    return combine_masses(body.half_width, (body.mass_at(), PlaneMass(mass, x, y, 0.0)))
 
 
 def block_cap(block: BlockSI, cap: CushionCapSI) -> Cap:
@@ -204,14 +199,13 @@ def block_cap(block: BlockSI, cap: CushionCapSI) -> Cap:
 
 def block_with_cap(block: BlockSI, cap: Cap) -> SupportedBody:
     """Return block and cap as one body, :eq:`eq-one-body`."""
-    block_height = 2.0 * cap.half_height + block.centre_height
-    upper = PlacedMass(block.mass, block.inertia, block.eccentricity, block_height)
-    lower = PlacedMass(cap.mass, cap.inertia, 0.0, cap.half_height)
+    upper = block_body(block).mass_at(0.0, 2.0 * cap.half_height)
+    lower = PlaneMass(cap.mass, 0.0, cap.half_height, cap.inertia)
     return combine_masses(cap.half_width, (upper, lower))
 
 
-def combine_masses(half_width: float, masses: Sequence[PlacedMass]) -> SupportedBody:
-    """Return rigidly connected masses as one body on a base."""
+def combine_masses(half_width: float, masses: Sequence[PlaneMass]) -> SupportedBody:
+    """Return rigidly connected masses, placed from the middle of a base, as one body on it."""
     # sums without math.fsum, since a mass may have a value in each of many cases
     mass = sum((one.mass for one in masses), 0.0)
     beside = sum((one.mass * one.x for one in masses), 0.0) / mass

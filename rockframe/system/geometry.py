@@ -7,14 +7,15 @@ import numpy as np
 
 from rockframe.components import Component, FrameEquivalent, RearWall, RockingFrame, Stack, Tendon
 from rockframe.components.block_numbers import BlockSI
+from rockframe.components.frame_members import member_outlines
 from rockframe.components.rocking_frame import column_positions, frame_outlines
-from rockframe.notebook import Polygon, html_summary, readable_arguments, shapes_svg
+from rockframe.notebook import Polygon, html_summary, readable_arguments, rectangle, shapes_svg
 from rockframe.signals.arrays import Array
 from rockframe.system.assembly import Assembly
 from rockframe.system.rocking_frame import TendonFrameSetting
 from rockframe.system.setting import Setting
 from rockframe.system.stack import StackSetting
-from rockframe.units.display import degrees_text
+from rockframe.units import degrees_text
 
 
 class LowerBody(NamedTuple):
@@ -97,13 +98,11 @@ class Geometry:
     @property
     def cap_outline(self) -> Array | None:
         """Outline of the cap, from the middle of its base [m]."""
-        return None if self.cap is None else rectangle(*self.cap)
+        return None if self.cap is None else _rectangle(*self.cap)
 
 
-def rectangle(half_width: float, height: float, x: float = 0.0, y: float = 0.0) -> Array:
-    """Return the corners of a rectangle that stands on the middle of its lower side [m]."""
-    left, right, top = x - half_width, x + half_width, y + height
-    return np.array([(left, y), (right, y), (right, top), (left, top)])
+def _rectangle(half_width: float, height: float, x: float = 0.0, y: float = 0.0) -> Array:
+    return np.array(rectangle(half_width, height, x, y))
 
 
 def geometry_of(scene: Assembly) -> Geometry:
@@ -113,11 +112,12 @@ def geometry_of(scene: Assembly) -> Geometry:
         return _stack_geometry(parts.stack, scene)
     block, frame = parts.block_si, None if parts.frame is None else parts.frame.si
     cap = None if parts.cap is None else parts.cap_si
+    members = parts.block.members if isinstance(parts.block, FrameEquivalent) else ()
     body, sinks = setting.body, [each.settlement for each in setting.supports]
     level = 2.0 * cap.half_height if setting.stacked and cap is not None else 0.0
     return Geometry(
-        outline=rectangle(block.half_width, block.height),
-        members=member_outlines(parts.block),
+        outline=_rectangle(block.half_width, block.height),
+        members=tuple(map(np.array, member_outlines(members))),
         half_width=block.half_width,
         centre=(block.eccentricity, block.centre_height),
         response_centre=(body.eccentricity, level + body.centre_height),
@@ -144,7 +144,7 @@ def _wall_outline(
     if wall is None:
         return None
     beside = wall.direction * (2.0 * body.half_width + (wall.given.gap or 0.0))
-    return rectangle(body.half_width, body.height, place[0] + beside, place[1])
+    return _rectangle(body.half_width, body.height, place[0] + beside, place[1])
 
 
 def _linked_points(setting: Setting) -> tuple[LinkedPoints, ...]:
@@ -172,7 +172,7 @@ def _stack_geometry(stack: Stack, scene: Assembly) -> Geometry:
     for body, offset in zip(bodies[:0:-1], offsets[:0:-1], strict=True):
         beside += offset
         centre = (beside + body.eccentricity, level + body.centre_height)
-        lower.insert(0, LowerBody(rectangle(body.half_width, body.height, beside, level), centre))
+        lower.insert(0, LowerBody(_rectangle(body.half_width, body.height, beside, level), centre))
         level += body.height
     block = bodies[0]
     beside += offsets[0]
@@ -180,7 +180,7 @@ def _stack_geometry(stack: Stack, scene: Assembly) -> Geometry:
     k = 0 if wall is None else wall.si.on_body - 1
     place = sum(offsets[k:]), sum(one.height for one in bodies[k + 1 :])
     return Geometry(
-        outline=rectangle(block.half_width, block.height),
+        outline=_rectangle(block.half_width, block.height),
         half_width=block.half_width,
         centre=(block.eccentricity, block.centre_height),
         response_centre=(beside + block.eccentricity, level + block.centre_height),
@@ -189,17 +189,6 @@ def _stack_geometry(stack: Stack, scene: Assembly) -> Geometry:
         lower=tuple(lower),
         links=_linked_points(scene.setting),
         wall=_wall_outline(wall, bodies[k], place),
-    )
-
-
-def member_outlines(block: object) -> tuple[Array, ...]:
-    """Return the outlines of a frame's members whose sizes are known [m]."""
-    if not isinstance(block, FrameEquivalent):
-        return ()
-    return tuple(
-        rectangle(0.5 * one.width, one.height, one.x, one.y - 0.5 * one.height)
-        for one in (member.si for member in block.members)
-        if one.width is not None and one.height is not None
     )
 
 
@@ -249,7 +238,7 @@ def scene_polygons(geometry: Geometry) -> list[Polygon]:
     lift = np.array([0.0, pad])
     below = 0.0 if geometry.stacked else pad
     reach, depth = 1.7 * half, 0.5 * half
-    band = rectangle(reach, depth, y=-depth - below)
+    band = _rectangle(reach, depth, y=-depth - below)
     found = [("ground" if geometry.soil_settlement is None else "soil", band)]
     if geometry.wall is not None:
         found.append(("ground", geometry.wall))
@@ -261,7 +250,7 @@ def scene_polygons(geometry: Geometry) -> list[Polygon]:
         level = geometry.base_level if geometry.stacked else -pad
         for side in (-0.83, 0.83):
             place = side * geometry.half_width
-            found.append(("pad", rectangle(0.17 * geometry.half_width, pad, place, level)))
+            found.append(("pad", _rectangle(0.17 * geometry.half_width, pad, place, level)))
     if geometry.beam is not None:
         found += [("member", geometry.block + np.array([x, 0.0])) for x in geometry.columns]
         found.append(("member", geometry.beam))

@@ -11,7 +11,16 @@ from rockframe.dynamics.body import BY_CONTACT, CENTRE, LEADING_CORNER
 from rockframe.errors import RockframeError, did_you_mean, short_repr
 from rockframe.signals.motion import Incline
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel
-from rockframe.units import ACCELERATION, ANGLE, POSITIVE, Condition, Measure, QuantityLike, to_si
+from rockframe.units import (
+    ACCELERATION,
+    ANGLE,
+    POSITIVE,
+    Condition,
+    Measure,
+    QuantityLike,
+    quantity_text,
+    to_si,
+)
 
 
 class Restraint(StrEnum):
@@ -108,13 +117,13 @@ class Options:
 
         A level base and computed sliding, the defaults, are left out.
         """
-        inclined = {"inclination": f"{self.inclination!r} {ANGLE.unit}"}
+        inclined = {"inclination": quantity_text(self.inclination, ANGLE)}
         checked = {"sliding": str(self.sliding)}
         return {
             "restraint": str(self.restraint),
             "rotation": str(self.rotation),
             "coupling": str(self.coupling),
-            "gravity": f"{self.gravity!r} {ACCELERATION.unit}",
+            "gravity": quantity_text(self.gravity, ACCELERATION),
             **(inclined if self.inclination != 0.0 else {}),
             **(checked if self.sliding is Sliding.CHECKED else {}),
         }

@@ -73,11 +73,6 @@ def add_part_class(of: type, kind: PartKind) -> None:
     _KINDS[of] = kind
 
 
-def numbered_slot(slot: str, number: int) -> str:
-    """Return the slot of the part with a number, from 1, among several parts of one slot."""
-    return slot if number == 1 else f"{slot}_{number}"
-
-
 def unnumbered_slot(slot: str) -> str:
     """Return a slot without its number: `restrainer` for `restrainer_2`."""
     head, _, number = slot.rpartition("_")
@@ -275,7 +270,7 @@ def sort_parts(values: Sequence[object], faults: list[str]) -> Parts:
         slot = _KINDS[kind].slot
         if slot == RESTRAINER:
             count = sum(unnumbered_slot(one) == RESTRAINER for one in found)
-            slot = numbered_slot(slot, count + 1)
+            slot = f"{slot}_{count + 1}" if count else slot
         elif slot in found:
             name = type(part).__name__
             faults.append(

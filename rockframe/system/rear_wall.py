@@ -22,8 +22,8 @@ from rockframe.system.bodies import (
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import RigidGroundSetting
+from rockframe.system.setting import FRICTION_TO_ROCK, Words
 from rockframe.system.statics import Statics
-from rockframe.system.words import FRICTION_TO_ROCK, Words
 
 _INTO_WALL: Final = "is into the RearWall"
 IMPACT_TIME: Final = 1e-3
@@ -48,7 +48,7 @@ class RearWallSetting(RigidGroundSetting):
     @property
     def direction(self) -> float:
         """Sign of the rotations that the wall allows."""
-        return 1.0 if self.wall.given.side is WallSide.LEFT else -1.0
+        return -self.wall.direction
 
     def __post_init__(self) -> None:
         super().__post_init__()

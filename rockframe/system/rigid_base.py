@@ -11,8 +11,7 @@ from rockframe.dynamics.body_statics import Pose
 from rockframe.dynamics.equilibrium import ChainEquilibrium, EquilibriumPath
 from rockframe.dynamics.link_statics import LinkForce, links_at_rest, links_of_rocking_bodies
 from rockframe.system.statics import Statics, work_against
-from rockframe.system.support import BaseWords, StandingBodies, Support
-from rockframe.system.words import uplift_words
+from rockframe.system.support import BaseWords, StandingBodies, Support, uplift_words
 
 if TYPE_CHECKING:
     from rockframe.system.stack import StackSetting
@@ -71,10 +70,6 @@ class RigidBaseLoad(NamedTuple):
     left_limit: float  # couple to the left, on the bodies above, that lifts the right corner [N m]
     right_limit: float  # couple to the right that lifts the left corner [N m]
     shear: float  # force of links on the bodies above, to the right, that the base must resist [N]
-
-    def in_full_contact(self, couple: float) -> bool:
-        """Whether both corners are in compression under a couple to the right [N m]."""
-        return -self.left_limit <= couple <= self.right_limit
 
 
 def rigid_base_load(setting: "StackSetting", k: int, tied: Sequence[LinkForce]) -> RigidBaseLoad:

@@ -11,9 +11,9 @@ from rockframe.dynamics.rigid_ground import rigid_ground, rocking_corner
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import ROUNDING, Restitutions, restitution_cautions
 from rockframe.system.rigid_base import REACTIONS
-from rockframe.system.setting import Setting
+from rockframe.system.setting import Setting, Words
 from rockframe.system.statics import Statics, static_values
-from rockframe.system.words import Words, angle_words
+from rockframe.units import angle_words
 
 
 @dataclass(frozen=True)

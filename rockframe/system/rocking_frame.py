@@ -19,9 +19,9 @@ from rockframe.system.links import duplicate_name_faults, tie_law, tie_law_words
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts, link_labels
 from rockframe.system.rigid_ground import RigidGroundSetting, refuse_fall
+from rockframe.system.setting import FRICTION_TO_ROCK, Words
 from rockframe.system.stack import refuse_options
 from rockframe.system.statics import Statics
-from rockframe.system.words import FRICTION_TO_ROCK, Words
 
 
 @dataclass(frozen=True)
@@ -178,7 +178,7 @@ class TendonFrameSetting(RockingFrameSetting):
         return left + more, right + more
 
     def friction_to_rock(self) -> dict[str, float]:
-        """Return friction below which the columns slide before they rock against the preload."""
+        """Return the friction below which columns slide before they rock against the preload."""
         normal_force = self.body.mass * self.gravity + self.total_tendon_force(0.0)
         return {FRICTION_TO_ROCK: self.body.mass * self.uplift_acceleration / normal_force}
 

@@ -11,10 +11,10 @@ from rockframe.dynamics.single_body import single_body
 from rockframe.errors import AssemblyError
 from rockframe.system.compatibility import BaseFriction
 from rockframe.system.options import restraint_words
-from rockframe.system.setting import Setting, SlipRange, chain_slips
+from rockframe.system.setting import Setting, SlipRange, Words, chain_slips, sliding_words
 from rockframe.system.statics import SmallMotion, Statics, static_values
 from rockframe.system.support import Support
-from rockframe.system.words import Words, angle_words, sliding_words
+from rockframe.units import angle_words
 
 
 @dataclass(frozen=True)
@@ -76,10 +76,7 @@ class SingleBodySetting(Setting):
     def small_motion(self) -> SmallMotion:
         """Return the equations of small motion about rest, in the contact of the body at rest."""
         standing = self.support.standing
-        position = standing.rest or standing.upright
-        # their coordinates are rotation and height
-        matrices = [matrix[::-1, ::-1] for matrix in standing.small_motion(position)]
-        return SmallMotion(("vertical_displacement", "rotation"), *matrices)
+        return standing.motion_of_single_body(standing.rest or standing.upright)
 
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
         """Return the vertical equilibrium at some rotations, :eq:`eq-incline-held`."""

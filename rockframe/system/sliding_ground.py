@@ -13,8 +13,7 @@ from rockframe.system.compatibility import SLIDING_AT_SMALL_ROTATION, BaseFricti
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import RigidGroundSetting, refuse_fall
-from rockframe.system.setting import SlipRange
-from rockframe.system.words import HELD_BY_FRICTION, Words
+from rockframe.system.setting import HELD_BY_FRICTION, SlipRange, Words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.slide_rock import SlideRock
@@ -121,7 +120,7 @@ def rigid_ground_setting(parts: Parts, options: Options) -> RigidGroundSetting:
 def slide_rock_of(
     body: SupportedBody, friction: BaseFriction, restitutions: Sequence[float], gravity: float
 ) -> "SlideRock":
-    """Return equations of a block that slides and rocks, with the restitutions of its corners."""
+    """Return the equations of a block that slides and rocks, by the restitutions of its corners."""
     from rockframe.dynamics.slide_rock import SlideRock, impulse_lever
 
     left, right = (
@@ -166,7 +165,7 @@ def slips_on_ground(ending: Ending) -> SlipRange:
 
 
 def friction_to_roll_over(body: SupportedBody) -> float:
-    """Return least friction at which no corner slips in an impact [1], :eq:`eq-slide-housner`."""
+    """Return the least friction at which no corner slips in an impact, :eq:`eq-slide-housner`."""
     square = body.base_inertia / body.mass
     return max(body.centre_height * own / square for own in (body.left, body.right))
 

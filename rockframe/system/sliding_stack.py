@@ -15,7 +15,14 @@ from rockframe.system.compatibility import (
     base_friction,
 )
 from rockframe.system.options import Sliding
-from rockframe.system.setting import SlipRange, chain_slips
+from rockframe.system.setting import (
+    HELD_BY_FRICTION,
+    SLIP_EQUATION,
+    SlipRange,
+    Words,
+    chain_slips,
+    sliding_words,
+)
 from rockframe.system.sliding_ground import (
     friction_to_roll_over,
     impact_words,
@@ -24,7 +31,6 @@ from rockframe.system.sliding_ground import (
     slips_on_ground,
 )
 from rockframe.system.stack import StackSetting
-from rockframe.system.words import HELD_BY_FRICTION, SLIP_EQUATION, Words, sliding_words
 
 MIN_OVERHANG: Final = 0.1
 """Least overhang of a body beyond an edge that gives a warning, over half its base width.

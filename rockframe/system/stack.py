@@ -19,7 +19,6 @@ from rockframe.dynamics.vibrations import ChainBody
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import (
     BaseLoad,
-    PlacedMass,
     SupportedBody,
     block_body,
     combine_masses,
@@ -38,10 +37,9 @@ from rockframe.system.rigid_base import (
     statics_beyond_uplift,
     uplift_limits,
 )
-from rockframe.system.setting import Setting
+from rockframe.system.setting import FRICTION_TO_ROCK, Setting, Words
 from rockframe.system.statics import SmallMotion, Statics, least_overturning_energy, static_values
 from rockframe.system.support import StandingBodies, Support
-from rockframe.system.words import FRICTION_TO_ROCK, Words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.chain.model import AtRest
@@ -285,7 +283,7 @@ class StackSetting(Setting):
             if not rigid:
                 continue
             load = rigid_base_load(self, k, self._link_states_at_rest)
-            if not load.in_full_contact(0.0):
+            if load.left_limit < 0.0 or load.right_limit < 0.0:
                 side = "right" if load.right_limit < 0.0 else "left"
                 faults.append(
                     f"weights and restrainers tip body {k + 1} to the {side}, off its rigid base"
@@ -328,10 +326,7 @@ class StackSetting(Setting):
         if not self.groups:
             return None
         if len(self.bodies) == 1:
-            found = self.standing.small_motion(self._rest)
-            return SmallMotion(
-                ("vertical_displacement", "rotation"), *(one[::-1, ::-1] for one in found)
-            )
+            return self.standing.motion_of_single_body(self._rest)
         names = ("body_rotation", "body_vertical_displacement") * len(self.groups)
         which = tuple(group[-1] + 1 for group in self.groups)
         return SmallMotion(names, *self.standing.small_motion(self._rest), bodies=which)
@@ -422,17 +417,12 @@ def combined_body(
     bodies: Sequence[SupportedBody], tops: Sequence[float], offsets: Sequence[float]
 ) -> SupportedBody:
     """Return stacked bodies, listed from the top down, as one body on the base of the lowest."""
-    lowest = bodies[-1]
-    places, base, beside = [(lowest, lowest.centre_height, 0.0)], 0.0, 0.0
+    masses, base, beside = [bodies[-1].mass_at()], 0.0, 0.0
     for k in range(len(bodies) - 2, -1, -1):
         base += bodies[k + 1].centre_height + tops[k + 1]
         beside += offsets[k]
-        places.append((bodies[k], base + bodies[k].centre_height, beside))
-    masses = [
-        PlacedMass(body.mass, body.inertia, x + body.eccentricity, level)
-        for body, level, x in places
-    ]
-    return combine_masses(lowest.half_width, masses)
+        masses.append(bodies[k].mass_at(beside, base))
+    return combine_masses(bodies[-1].half_width, masses)
 
 
 def refuse_options(what: str, options: Options, *, small: bool) -> None:

@@ -4,6 +4,7 @@ The numbers of a support follow from its component and from the body on it; its 
 and its law is the base in the equations.
 """
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -21,8 +22,8 @@ from rockframe.dynamics.single_body import eccentricity_of
 from rockframe.dynamics.statics import StandingChain
 from rockframe.signals.arrays import Array
 from rockframe.system.bodies import BaseLoad, Restitutions, base_restitution, restitution_cautions
-from rockframe.system.statics import Statics, required_states, static_values
-from rockframe.system.words import uplift_words, vibration_words
+from rockframe.system.statics import SmallMotion, Statics, required_states, static_values
+from rockframe.units import angle_words
 
 LINEAR_ROTATION: Final = 2.0**-20
 """Rotation, over the one that the settlement allows, below which moments are taken as linear in it:
@@ -110,6 +111,19 @@ class StandingBodies:
 
         mass, damping, stiffness = linearized_chain(self.chain, poses)
         return self.mass * mass, self.mass * damping, self.mass * stiffness
+
+    def motion_of_single_body(self, poses: list[Pose]) -> SmallMotion:
+        """Return the equations of small motion about rest of a body alone on its base."""
+        # height before rotation
+        matrices = (one[::-1, ::-1] for one in self.small_motion(poses))
+        return SmallMotion(("vertical_displacement", "rotation"), *matrices)
+
+
+def uplift_words(radians: float) -> str:
+    """Write the angle at which contact is first lost; NaN if it never is."""
+    if math.isnan(radians):
+        return "never: the base stays in contact up to overturning"
+    return angle_words(radians)
 
 
 @dataclass(frozen=True)
@@ -246,14 +260,16 @@ class Support(ABC):
     def vibrations(self, vertical: str, rocking: str) -> list[tuple[str, str]]:
         """Describe vertical vibration and, on a base stiff enough, rocking, by these titles."""
         body, rate = self.load.body, self.vertical_frequency
-        ratio = 0.5 * self._slopes("vertical_velocity")[1] / rate
-        rows = [(vertical, vibration_words("omega_v", rate, ratio))]
+        found = [(vertical, "omega_v", rate, 0.5 * self._slopes("vertical_velocity")[1] / rate)]
         if self.rocking_stiffness > 0.0:
             rate = sqrt(self.rocking_stiffness / body.base_inertia)
             damping = body.mass * self._slopes("angular_velocity")[0]
-            ratio = 0.5 * damping / (body.base_inertia * rate)
-            rows.append((rocking, vibration_words("omega_r", rate, ratio)))
-        return rows
+            found.append((rocking, "omega_r", rate, 0.5 * damping / (body.base_inertia * rate)))
+        return [
+            (title, f"{symbol} = {rate:.6g} rad/s (period {2.0 * math.pi / rate:.6g} s), damping "
+             f"ratio {ratio:.6g}")
+            for title, symbol, rate, ratio in found
+        ]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -434,19 +450,7 @@ class BedSupport(Support):
 
 
 def bed_under(soil: WinklerSoil, load: BaseLoad) -> BedSupport:
-    """Return a bed under a body; a damping ratio is that of the vertical motion of all its mass.
-
-    Parameters
-    ----------
-    soil : WinklerSoil
-        As given by the user.
-    load : BaseLoad
-        All that stands on it, as one body.
-
-    Returns
-    -------
-    BedSupport
-    """
+    """Return a bed under a body; a damping ratio is that of the vertical motion of all its mass."""
     numbers, body = soil.si, load.body
     damping = numbers.damping
     if damping is None:

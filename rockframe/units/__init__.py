@@ -39,7 +39,12 @@ from rockframe.units.reading import (
     to_si,
     to_si_values,
 )
-from rockframe.units.spelling import foreign_quantity_hint
+from rockframe.units.spelling import (
+    angle_words,
+    degrees_text,
+    foreign_quantity_hint,
+    quantity_text,
+)
 
 __all__ = [
     "ACCELERATION",
@@ -70,11 +75,14 @@ __all__ = [
     "QuantityLike",
     "RatioLike",
     "Unit",
+    "angle_words",
     "attached_unit",
     "check_attached_unit",
     "decimal_products",
+    "degrees_text",
     "foreign_quantity_hint",
     "quantity",
+    "quantity_text",
     "to_ratio",
     "to_si",
     "to_si_values",

@@ -13,11 +13,11 @@ from rockframe.errors import ComponentError, UnitsError, did_you_mean, short_rep
 from rockframe.units import kinds
 from rockframe.units.kinds import Measure
 from rockframe.units.reading import to_si
+from rockframe.units.spelling import DEGREE, PLAIN_POWERS, SUPERSCRIPT_POWERS
 
 if TYPE_CHECKING:
     import xarray as xr
 
-DEGREE: Final = "°"
 _DISPLAY_SYMBOLS: Final = {"g_0": "g", **dict.fromkeys(("deg", "degree", "degrees"), DEGREE)}
 _PINT_SYMBOLS: Final = {("g", kinds.ACCELERATION): "g_0"}
 """Meaning of a unit symbol that has another meaning elsewhere: ``g`` is also the gram."""
@@ -77,11 +77,6 @@ def unit_suffix(unit: str) -> str:
     if unit in ("", kinds.Unit.ONE):
         return ""
     return unit if unit.startswith(DEGREE) else f" {unit}"  # ISO 80000-1: 4.7°, but 5 °C
-
-
-def degrees_text(radians: float, digits: int = _DIGITS) -> str:
-    """Write an angle in degrees."""
-    return f"{math.degrees(radians):.{digits}g}{DEGREE}"
 
 
 def display_unit(value: object, measure: Measure, *, owner: str, name: str) -> DisplayUnit:
@@ -193,7 +188,7 @@ def display_units(value: object, *, owner: str) -> DisplayUnits:
     return DisplayUnits(chosen, dict(cast("Mapping[str, str]", value)))
 
 
-_SUPERSCRIPTS: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_SUPERSCRIPTS: Final = str.maketrans(PLAIN_POWERS, SUPERSCRIPT_POWERS)
 
 
 def with_superscripts(text: str) -> str:

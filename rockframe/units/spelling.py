@@ -1,5 +1,6 @@
 """How quantities are written: numbers and units in texts, and what a wrong one probably meant."""
 
+import math
 import re
 from typing import Any, Final
 
@@ -23,7 +24,9 @@ _NUMBER_AND_UNIT: Final = re.compile(rf"\s*(?P<number>{_NUMBER})\s*(?P<unit>.*)"
 _SPELLINGS: Final = str.maketrans("⋅\N{MULTIPLICATION SIGN}[]", "**()")
 _DOUBLE_STAR: Final = re.compile(r"\s*(?:\*\*|\^)\s*")
 _SUPERSCRIPTS: Final = re.compile(r"(?<=[^\W\d_)])⁻?[⁰¹²³⁴-⁹]+")
-_FROM_SUPERSCRIPTS: Final = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
+PLAIN_POWERS: Final = "-0123456789"
+SUPERSCRIPT_POWERS: Final = "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"
+_FROM_SUPERSCRIPTS: Final = str.maketrans(SUPERSCRIPT_POWERS, PLAIN_POWERS)
 _POWER: Final = r"(?:\d{1,2}(?:\.\d*)?|\.\d+)(?![\d^])"
 _UNIT: Final = re.compile(
     # excluded are a second number and a power of a number or of a power: no unit has them, and
@@ -34,6 +37,24 @@ _DOT_OF_PRODUCT: Final = re.compile(r"\.(?=\s*(?:[^\W\d]|\())")
 _DOT_OF_ABBREVIATION: Final = re.compile(r"\.(?!\d)")
 _NAME: Final = re.compile(r"[^\W\d]\w*")
 _INVALID_CHARACTER: Final = re.compile(r"[^\s\w*/^()%‰°·.+⁻-]")
+
+
+DEGREE: Final = "°"
+
+
+def quantity_text(value: float, measure: Measure) -> str:
+    """Write a number in SI units with its unit, with all digits."""
+    return f"{value!r} {measure.unit}"
+
+
+def degrees_text(radians: float, digits: int = 4) -> str:
+    """Write an angle in degrees."""
+    return f"{math.degrees(radians):.{digits}g}{DEGREE}"
+
+
+def angle_words(radians: float) -> str:
+    """Write an angle in radians and degrees."""
+    return f"{radians:.6g} rad ({degrees_text(radians)})"
 
 
 def number_and_unit(text: str) -> tuple[str, str] | None:
@@ -58,7 +79,8 @@ def invalid_character(text: str) -> str | None:
     if found is not None:
         return found[0]
     # for example a fraction or a subscript: numeric characters that occur in no number
-    return next((one for one in text if one.isnumeric() and not _is_digit(one)), None)
+    others = (one for one in text if not one.isdecimal() and one not in SUPERSCRIPT_POWERS)
+    return next(filter(str.isnumeric, others), None)
 
 
 def _is_unit(text: str) -> bool:
@@ -67,10 +89,6 @@ def _is_unit(text: str) -> bool:
     plain = _SUPERSCRIPTS.sub(lambda power: f"^{power[0].translate(_FROM_SUPERSCRIPTS)}", plain)
     names: list[str] = _NAME.findall(plain)
     return _UNIT.fullmatch(plain) is not None and all(name.isidentifier() for name in names)
-
-
-def _is_digit(one: str) -> bool:
-    return one.isdecimal() or one in "⁰¹²³⁴⁵⁶⁷⁸⁹"
 
 
 _MASS_UNITS: Final = (Unit.KILOGRAM, Unit.KILOGRAM_PER_CUBIC_METRE, Unit.KILOGRAM_METRE_SQUARED)

@@ -14,9 +14,9 @@ from reference_models.fifty_digits import DIGITS, ExactRun
 
 from rockframe.proof import flow
 from rockframe.proof.balls import ball, magnitude, working_precision
+from rockframe.proof.flow import SetOfStates
 from rockframe.proof.problem import Deviations, Problem, Undecided
 from rockframe.proof.rocking import RockingProver
-from rockframe.proof.states import SetOfStates
 from rockframe.signals.motion import Incline
 from rockframe.system.bodies import OverturningAngles
 

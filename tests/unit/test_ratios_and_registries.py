@@ -16,8 +16,8 @@ from unit.dimensional_arguments import FOREIGN, make_block, make_pads, make_puls
 import rockframe as rf
 from rockframe.errors import ComponentError, UnitsError
 from rockframe.reports.values import format_value
-from rockframe.units import LENGTH, to_si, to_si_values
-from rockframe.units.display import degrees_text, display_units, unit_suffix
+from rockframe.units import LENGTH, degrees_text, to_si, to_si_values
+from rockframe.units.display import display_units, unit_suffix
 
 pytestmark = pytest.mark.unit
 

@@ -22,8 +22,17 @@ from rockframe.components.shapes.standing import (
 from rockframe.errors import ComponentError
 from rockframe.signals.arrays import Array
 from rockframe.suggestions import with_hints
-from rockframe.units import DENSITY, LENGTH, MASS, POSITIVE, THICKNESS, Measure, QuantityLike, to_si
-from rockframe.units.display import degrees_text
+from rockframe.units import (
+    DENSITY,
+    LENGTH,
+    MASS,
+    POSITIVE,
+    THICKNESS,
+    Measure,
+    QuantityLike,
+    degrees_text,
+    to_si,
+)
 
 _THIN: Final = 1e-12  # thickness over size below which an outline has no area
 

@@ -19,6 +19,7 @@ from rockframe.components.shapes.standing import (
     shaped_body,
 )
 from rockframe.errors import ComponentError, short_repr
+from rockframe.notebook import rectangle
 from rockframe.suggestions import with_hints
 from rockframe.units import (
     INERTIA,
@@ -106,12 +107,10 @@ def _rectangle(
 ) -> PlacedPart:
     width, height = (_positive(values, word, LENGTH, owner=owner) for word in ("width", "height"))
     mass = read_mass(values, width * height, owner=owner)
-    (x, y), half, top = at, 0.5 * width, at[1] + height
-    inertia = mass * (width * width + height * height) / 12.0
-    ends = ((x - half, y), (x + half, y), (x + half, top), (x - half, top))
+    (x, y), inertia = at, mass * (width * width + height * height) / 12.0
     words = f"a corner of part {name!r}"
-    corners = tuple(OutlineCorner(words, *end) for end in ends)
-    return PlacedPart(name, PlaneMass(mass, x, y + 0.5 * height, inertia), corners, top)
+    corners = tuple(OutlineCorner(words, *one) for one in rectangle(0.5 * width, height, x, y))
+    return PlacedPart(name, PlaneMass(mass, x, y + 0.5 * height, inertia), corners, y + height)
 
 
 def _outline(

@@ -30,6 +30,7 @@ from rockframe.units import (
     Quantity,
     QuantityLike,
     check_attached_unit,
+    quantity_text,
     to_si,
 )
 
@@ -227,14 +228,14 @@ def shaped_body(
         raise ComponentError(msg)
     width, eccentricity = base.right - base.left, mass.x - base.middle
     arguments = {
-        "width": _quantity_text(width, LENGTH),
-        "height": _quantity_text(top - base.ground, LENGTH),
-        "mass": _quantity_text(mass.mass, MASS),
-        "inertia": _quantity_text(mass.inertia, INERTIA),
-        "centre_height": _quantity_text(mass.y - base.ground, LENGTH),
+        "width": quantity_text(width, LENGTH),
+        "height": quantity_text(top - base.ground, LENGTH),
+        "mass": quantity_text(mass.mass, MASS),
+        "inertia": quantity_text(mass.inertia, INERTIA),
+        "centre_height": quantity_text(mass.y - base.ground, LENGTH),
     }
     if abs(eccentricity) > MIN_ECCENTRICITY * width:
-        arguments["eccentricity"] = _quantity_text(eccentricity, LENGTH)
+        arguments["eccentricity"] = quantity_text(eccentricity, LENGTH)
     with collected_warnings():  # a body wider than its base may exceed the bound of its inertia
         body = kind(**arguments)
     for caution in _contact_warnings(mass, base, corners):
@@ -255,7 +256,3 @@ def _contact_warnings(
                 f"touches the ground at {angle:.4g} rad, before the overturning angle of that "
                 f"side, {limit:.4g} rad; the model ignores this contact"
             )
-
-
-def _quantity_text(value: float, measure: Any) -> str:
-    return f"{float(value)!r} {measure.unit}"

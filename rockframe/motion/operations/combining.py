@@ -24,8 +24,7 @@ from rockframe.records import VERTICAL as EITHER
 from rockframe.signals import Motion, Signal
 from rockframe.signals.motion import COEFFICIENTS, VERTICAL
 from rockframe.suggestions import with_hints
-from rockframe.units import ANGLE, QuantityLike, to_si
-from rockframe.units.display import degrees_text
+from rockframe.units import ANGLE, QuantityLike, degrees_text, to_si
 
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array

@@ -10,7 +10,7 @@ from typing import Any, Final, NamedTuple
 from rockframe.dynamics.body import PIVOT_CENTRE, pivot_of
 from rockframe.dynamics.pads import CLEAR, ENGAGING, LEAVING, RELAXING, TOUCHING
 from rockframe.proof.balls import ZERO, Ball, Row, ball
-from rockframe.proof.problem import Undecided
+from rockframe.proof.problem import require
 
 SIZE: Final = 5
 """Numbers of a state."""
@@ -298,43 +298,37 @@ def _lift_off(
     own = CLEAR
     if contacts.of(left) == TOUCHING and pads.damping > 0:
         depth = (pads.settlements[not left] - at.level).value
-        if not depth > pads.rest * _SEPARATION:
-            msg = "a corner that leaves its pad at the pad's own level"
-            raise Undecided(msg)
+        require(
+            depth > pads.rest * _SEPARATION, "a corner that leaves its pad at the pad's own level"
+        )
         own, own_guard = RELAXING, Guard("slack", left)
     other = contacts.of(not left)
     if other == TOUCHING:
-        if not reaction(pads, not left, corner_motion(pads, not left, state)).value > 0:
-            msg = "both corners let go at once"
-            raise Undecided(msg)
+        require(
+            reaction(pads, not left, corner_motion(pads, not left, state)).value > 0,
+            "both corners let go at once",
+        )
     elif other in (ENGAGING, LEAVING):
         other = RELAXING
     after = Contacts(own, other) if left else Contacts(other, own)
     if after.in_flight:
         sway = arm(pads, contacts, state[0]) * state[1]
         state = [*state[:4], sway]
-        if (
-            own == RELAXING
-            and not _guard_rate(pads, after, Guard("press", left), state, ground) < 0
-        ):
-            msg = "a corner that slides on its pad as it leaves"
-            raise Undecided(msg)
+        if own == RELAXING:
+            rate = _guard_rate(pads, after, Guard("press", left), state, ground)
+            require(rate < 0, "a corner that slides on its pad as it leaves")
         return ContactChange(state, after, (own_guard,), 0)
     if pivot(pads, after) == pivot(pads, contacts):
         return ContactChange(state, after, (own_guard,), 0)
     state = _project_momentum(pads, contacts, after, state)
     at = corner_motion(pads, left, state)
-    if not at.speed.value > 0:
-        msg = "a corner that its restraint keeps from leaving"
-        raise Undecided(msg)
+    require(at.speed.value > 0, "a corner that its restraint keeps from leaving")
     if own == CLEAR:
         return ContactChange(state, after, (own_guard,), 0)
     force = reaction(pads, left, at).value
     if force > 0:
         return ContactChange(state, after.with_corner(left, LEAVING), (), 0)
-    if not force < 0:
-        msg = "whether a pad still presses a corner that has left is not resolved"
-        raise Undecided(msg)
+    require(force < 0, "whether a pad still presses a corner that has left is not resolved")
     return ContactChange(state, after, (), 0)
 
 
@@ -343,9 +337,7 @@ def _land(pads: PadBalls, contacts: Contacts, left: bool, state: list[Dual]) -> 
     lands, other = contacts.of(left) == CLEAR, contacts.of(not left)
     if lands and other == CLEAR:
         level = guard_value(pads, Guard("gap", not left), state).value
-        if not abs(level) > pads.rest * (2 * _SAME_LANDING):
-            msg = "both corners land at once"
-            raise Undecided(msg)
+        require(abs(level) > pads.rest * (2 * _SAME_LANDING), "both corners land at once")
     if other == LEAVING:
         other = RELAXING
     after = Contacts(TOUCHING, other) if left else Contacts(other, TOUCHING)
@@ -356,9 +348,7 @@ def _land(pads: PadBalls, contacts: Contacts, left: bool, state: list[Dual]) -> 
         state = _project_momentum(pads, contacts, after, state)
     at = corner_motion(pads, left, state)
     slower = at.speed.value < 0 if lands else at.speed.value < before
-    if was_in_flight and not slower:
-        msg = "a corner that slides on its pad as it lands"
-        raise Undecided(msg)
+    require(slower or not was_in_flight, "a corner that slides on its pad as it lands")
     if lands:
         zero_guards = () if pads.damping > 0 else (Guard("press", left),)
         return ContactChange(_apply_impact(pads, after, left, state), after, zero_guards, 1)
@@ -367,9 +357,7 @@ def _land(pads: PadBalls, contacts: Contacts, left: bool, state: list[Dual]) -> 
         return ContactChange(state, after, (Guard("press", left),), 0)
     if force < 0:
         return ContactChange(state, after.with_corner(left, ENGAGING), (), 0)
-    if not force > 0:
-        msg = "whether a pad presses a corner that has come back is not resolved"
-        raise Undecided(msg)
+    require(force > 0, "whether a pad presses a corner that has come back is not resolved")
     return ContactChange(state, after, (), 0)
 
 
@@ -389,9 +377,7 @@ def _apply_impact(pads: PadBalls, after: Contacts, left: bool, state: list[Dual]
     at, reach = corner_motion(pads, left, state), arm(pads, after, state[0])
     if at.speed.value > 0:
         return state
-    if not at.speed.value < 0:
-        msg = "a landing that hardly touches its pad"
-        raise Undecided(msg)
+    require(at.speed.value < 0, "a landing that hardly touches its pad")
     one = state[0] * ZERO + 1
     answer = one * at.lever / (one * (reach * reach) + pads.inertia)
     impulse = at.speed * (pads.restitutions[not left] - 1) / (at.lever * answer + 1)

@@ -27,7 +27,7 @@ from rockframe.proof.pads.law import (
     state_rates,
 )
 from rockframe.proof.pads.series import ROUND_UP, Series, StepTooLong, enclose_motion
-from rockframe.proof.problem import GroundPiece, PiecewiseGround, Undecided
+from rockframe.proof.problem import GroundPiece, PiecewiseGround, Undecided, require
 
 _MAX_STEP_HALVINGS: Final = 30
 _PIECES: Final = 16
@@ -76,9 +76,9 @@ class PadProver:
         """
         state = self.states.box(self.weights)
         for one in guards_of(self.contacts):
-            if not guard_value(self.pads, one, state) > 0:
-                msg = "the contacts at the start are not resolved"
-                raise Undecided(msg)
+            require(
+                guard_value(self.pads, one, state) > 0, "the contacts at the start are not resolved"
+            )
         ground = self.ground
         last = ground.count + self.settling_time / ground.still_step
         while self.overturning_time is None:
@@ -123,9 +123,10 @@ class PadProver:
         self.largest_radius = max(self.largest_radius, float(radius))
         if self.callback is not None:
             self.callback(self.k, self.contacts, self.states.box(self.weights))
-        if not self.states.radius() < _MAX_RADIUS:
-            msg = "the enclosure has become as wide as the motion itself"
-            raise Undecided(msg)
+        require(
+            self.states.radius() < _MAX_RADIUS,
+            "the enclosure has become as wide as the motion itself",
+        )
 
     def _advance(self, ground: GroundPiece, h: Ball) -> bool:
         """Make a step, or a part of it up to a change of contact; give whether it was whole."""
@@ -221,9 +222,7 @@ class PadProver:
         falling = rate_of_change(
             value, state_rates(pads, contacts, independent_duals(box), self._ground_at(shaking, h))
         )
-        if not falling < 0:
-            msg = "a contact that changes as it hardly moves"
-            raise Undecided(msg)
+        require(falling < 0, "a contact that changes as it hardly moves")
         reach = 2.0 * float(value.value.abs_upper()) / float(falling.abs_lower()) + 1e-60
         window = ball(0, reach)
         ground = self._ground_at(shaking, h + window)
@@ -234,13 +233,9 @@ class PadProver:
         before = state_rates(pads, contacts, at, ground)
         guarded = guard_value(pads, guard, at)
         falling = rate_of_change(guarded, before)
-        if not falling < 0:
-            msg = "a contact that changes as it hardly moves"
-            raise Undecided(msg)
+        require(falling < 0, "a contact that changes as it hardly moves")
         delay = -value.value / falling
-        if not window.contains(delay):
-            msg = "the time of a change of contact is not enclosed"
-            raise Undecided(msg)
+        require(window.contains(delay), "the time of a change of contact is not enclosed")
         others = [one for one in guards_of(contacts) if one != guard]
         self._confirm_guards(others, self.zero_guards, at, before)
         met = [a + delay * b.value for a, b in zip(box, before, strict=True)]
@@ -287,7 +282,7 @@ class PadProver:
         raise Undecided(msg)
 
     def _ground_at(self, ground: GroundPiece, time: Ball) -> GroundAcceleration:
-        """Return ground at a time from now, or at all times of a ball, in both intervals [s]."""
+        """Return the ground at a time from now, a ball, which may be in both intervals [s]."""
         left = self.ground.length(self.k) - self.offset
         found = ground.at(time)
         if not time < left:
@@ -300,9 +295,10 @@ class PadProver:
         """Prove that guards are positive, or rise from zero, while members change one by one."""
         for one in guards:
             value = guard_value(self.pads, one, at)
-            if not (value.value > 0 or (one in zero_guards and rate_of_change(value, rates) > 0)):
-                msg = "the contacts about a change are not resolved"
-                raise Undecided(msg)
+            require(
+                value.value > 0 or (one in zero_guards and rate_of_change(value, rates) > 0),
+                "the contacts about a change are not resolved",
+            )
 
     def _widened(self, slope: Matrix, near: Ball) -> Matrix:
         """Widen a derivative by the motion of members between their change and the centre's."""

@@ -52,7 +52,7 @@ def pad_prover(
     inputs: Deviations | None = None,
     callback: Callback | None = None,
 ) -> PadProver:
-    """Return the way of a block from its start, ready to be followed."""
+    """Return the prover of a block on pads, with the block at its start."""
     part, body = law.part, law.state_of(0, state)
     pads = pad_numbers(part, limits, inputs or Deviations())
     contact = part.mode_of(mode).contact

@@ -241,7 +241,7 @@ def _number_of_runs(nudged: Sequence[tuple[str, Scan]]) -> int:
 NEAR: Final = 0.01
 """Margin up to which a verdict is called near the boundary [1]."""
 NEAR_WORDS: Final = "Near the boundary"
-"""InitialCondition of the sentence about such a verdict."""
+"""Beginning of the sentence about such a verdict."""
 
 
 class _OutcomeWords:

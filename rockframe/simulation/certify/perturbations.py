@@ -25,7 +25,7 @@ SceneAt = Callable[[float], Assembly | None]
 
 
 def parameters(system: Assembly) -> Iterator[tuple[str, SceneAt]]:
-    """Return name of each parameter of each part, and a function that gives the changed scene."""
+    """Return the name of each parameter, and a function that gives the scene with it changed."""
     parts = system.parts
 
     def changed(slot: str, name: str) -> SceneAt:

@@ -88,7 +88,7 @@ class Side:
 
     def intervals(self) -> Iterator[tuple[float, float]]:
         """Return the ends of all intervals, from near to far."""
-        yield from pairwise(self.places)
+        return pairwise(self.places)
 
     def flip(self) -> tuple[float, float] | None:
         """Return the first interval at whose far end the verdict differs from that at 0."""
@@ -110,7 +110,7 @@ def scan(
 ) -> Scan:
     """Try changes of both signs, from small to large ones.
 
-    `row` are the sizes of the first changes, the last of which is the reach. Intervals are halved
+    `first_changes` are their first sizes, the last of which is the reach. Intervals are halved
     until their length is `resolution` times their far end; an interval in which the verdict changes
     is halved only if `refine_flip`.
     """

@@ -59,7 +59,7 @@ def look_at(setting: Setting, summary: Summary, duration: float) -> Look:
 
 
 def second_look(system: Assembly, plan: Plan) -> Plan:
-    """Return plan of the second run: more steps in each interval of the motion, at least one."""
+    """Return the plan of the second run: with more steps in each interval of the motion."""
     value = max(substeps_of(plan.accuracy, system.model, plan.interval), 1)
     return replace(
         plan.without_outputs(), accuracy=Accuracy(substeps=value + math.ceil(ADDED_STEPS * value))
