@@ -10,7 +10,6 @@ from rockframe.arguments import checked_list, checked_mapping
 from rockframe.case_arrays import CaseArray, isfinite
 from rockframe.components.alternatives import OneOf
 from rockframe.components.parameters import DERIVED, REQUIRED, Declared, SIValues
-from rockframe.components.registry import register_class
 from rockframe.errors import (
     ArgumentError,
     ComponentError,
@@ -99,7 +98,7 @@ class Component(Immutable):
         if cls.__doc__ is not None and cls._declared:
             rows = "\n".join(map(_parameter_row, cls._declared.values()))
             cls.__doc__ = with_section(cls.__doc__, "Parameters", rows, _LATER_SECTIONS)
-        register_class(cls)
+        _register(cls)
 
     def __init__(self, **values: object) -> None:
         self._set_arguments(values)
@@ -399,6 +398,23 @@ class Component(Immutable):
         called, has = f"{short_repr(name)}{did_you_mean(name, listed)}", ", ".join(listed) or "none"
         msg = f"{type(self).__name__}: no parameter is called {called} (it has {has})"
         raise ComponentError(msg)
+
+
+COMPONENT_CLASSES: Final[dict[str, type[Component]]] = {}
+"""The classes of components by their names."""
+
+
+def _register(kind: type[Component]) -> None:
+    """Make a class known by its name."""
+    known = COMPONENT_CLASSES.setdefault(kind.__name__, kind)
+    full, other = (f"{one.__module__}.{one.__qualname__}" for one in (kind, known))
+    if full != other:
+        msg = (
+            f"{full}: another component has this name, {other}; descriptions refer to components "
+            "by name, so rename one of them"
+        )
+        raise ComponentError(msg)
+    COMPONENT_CLASSES[kind.__name__] = kind
 
 
 def changed_arguments(

@@ -4,15 +4,11 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from heapq import heappop, heappush
-from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
+from typing import Final, NamedTuple, Protocol, TypeAlias
 
-from rockframe.proof.balls import bits, working_precision
+from rockframe.proof.balls import Ball, bits, working_precision
 from rockframe.proof.problem import Deviations, Undecided
 from rockframe.proof.verdict import OVERTURNS, SAFE, UNDECIDED, Proof, Tolerances, outwards
-
-if TYPE_CHECKING:
-    from rockframe.proof.pads.prover import PadProver
-    from rockframe.proof.rocking import RockingProver
 
 PRECISIONS: Final = (106, 212, 424)
 """Bits of the balls: the next number is tried where nothing is decided and more bits may help."""
@@ -57,7 +53,24 @@ def prove_for_set(attempt: Attempt, within: Tolerances) -> Proof:
     )
 
 
-def prove_verdict(prover: "RockingProver | PadProver", scale: float, law: str) -> Proof:
+class Prover(Protocol):
+    """What follows a set of states through a record."""
+
+    overturning_time: tuple[Ball, Ball] | None  # bounds of the time of overturning [s]
+    impacts: int  # number of impacts enclosed one by one
+    largest_radius: float  # largest radius of a rotation so far [rad]
+
+    @property
+    def time(self) -> Ball:
+        """Time up to which the set has been followed [s]."""
+        ...
+
+    def overturns(self) -> bool:
+        """Whether all states overturn; raise Undecided if that cannot be said."""
+        ...
+
+
+def prove_verdict(prover: Prover, scale: float, law: str) -> Proof:
     """Follow a set of states until it is decided whether it overturns, and give what is proved."""
     verdict, reason, earliest, latest = UNDECIDED, "", math.nan, math.nan
     try:

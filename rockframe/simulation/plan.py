@@ -26,8 +26,8 @@ from rockframe.results.points import BodyPoint
 from rockframe.results.schema import ENERGIES, GROUPS, ON_REQUEST, SCHEMA, SCHEMA_VERSION
 from rockframe.results.variables.requests import POINT_TIME
 from rockframe.results.variables.variable import TIME as OVER_TIME
+from rockframe.simulation.friction_checks import has_friction_limit
 from rockframe.simulation.run_arguments import PROVED, Certification, RunArguments
-from rockframe.simulation.soundness import has_friction_limit
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
 from rockframe.solve.integrate import STILL_INTERVAL
 from rockframe.system.assembly import Assembly

@@ -30,19 +30,18 @@ from rockframe.signals.arrays import AnyArray
 from rockframe.simulation.certify.certificate import certify
 from rockframe.simulation.certify.run_summary import RunSummary, run_summary
 from rockframe.simulation.certify.second_look import doubts, peak_error, second_look
+from rockframe.simulation.friction_checks import friction_words, sliding_cautions
 from rockframe.simulation.plan import END_STATE, Plan, ending_as_json, start_of
 from rockframe.simulation.provenance import motion_after_end, motion_attributes
-from rockframe.simulation.proving import prove_run
 from rockframe.simulation.run_arguments import PROVED, Certification
 from rockframe.simulation.run_outputs import RunOutputs, compute_or_note, compute_outputs, ground_at
+from rockframe.simulation.run_proof import prove_run
 from rockframe.simulation.soundness import (
     STILL_MOVING,
     doubtful_residual,
     energy_caution,
-    friction_words,
     may_overturn_later,
     nonunique_motions,
-    sliding_cautions,
 )
 from rockframe.solve.accuracy import LEVELS, AccuracyLevel
 from rockframe.solve.integrate import STILL_INTERVAL, integrate

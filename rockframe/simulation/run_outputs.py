@@ -37,8 +37,8 @@ from rockframe.results.schema import ENERGIES, ON_REQUEST, SCHEMA, checked_resul
 from rockframe.results.variables.variable import EVENT, TIME
 from rockframe.signals.arrays import AnyArray, Array
 from rockframe.signals.motion import Incline
+from rockframe.simulation.friction_checks import SlidingCheck, sliding_checks, sliding_scalars
 from rockframe.simulation.plan import Plan
-from rockframe.simulation.soundness import SlidingCheck, sliding_checks, sliding_scalars
 from rockframe.solve.observe import memory_at_outputs, observe_run, observe_states
 from rockframe.solve.trajectory import Trajectory
 from rockframe.system.assembly import Assembly

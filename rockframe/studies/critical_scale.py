@@ -18,11 +18,12 @@ from rockframe.results.variables.studies import Outcome
 from rockframe.shared_arguments import with_shared_arguments
 from rockframe.signals.motion import extrema_of
 from rockframe.simulation.certify.run_summary import RunSummary
+from rockframe.simulation.friction_checks import has_friction_limit
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.provenance import motion_attributes
 from rockframe.simulation.run import compute_summary, run
 from rockframe.simulation.run_arguments import ScaleArguments
-from rockframe.simulation.soundness import STILL_MOVING, has_friction_limit
+from rockframe.simulation.soundness import STILL_MOVING
 from rockframe.simulation.system import System, check_system
 from rockframe.studies.flips import (
     ScaleScan,

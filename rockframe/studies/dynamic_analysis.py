@@ -14,7 +14,7 @@ from rockframe.results.schema import with_variables
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import with_shared_arguments
 from rockframe.signals.arrays import Array
-from rockframe.simulation.soundness import share_words, slip_words
+from rockframe.simulation.friction_checks import share_words, slip_words
 from rockframe.simulation.system import System
 from rockframe.studies.intensities import Intensity, intensity_of_runs, measure_attributes
 from rockframe.studies.limit_states import (

@@ -12,7 +12,7 @@ from rockframe.errors import AssemblyError
 from rockframe.system.own_base import OwnAnswers
 from rockframe.system.parts import Parts
 from rockframe.system.setting import Setting
-from rockframe.system.statics import Statics, least_overturning_energy
+from rockframe.system.statics import Statics
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class OwnScene(OwnAnswers, Setting):
         """
         if type(self).curve is OwnScene.curve:
             return 0.0
-        return least_overturning_energy(self)
+        return self.least_overturning_energy()
 
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
         """Return the quasi-static states at rotations [rad]; refused unless overridden."""

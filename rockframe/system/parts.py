@@ -27,8 +27,7 @@ from rockframe.errors import LabelError, did_you_mean, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.system.bodies import BaseLoad, Cap, block_cap
 from rockframe.system.own_base import OwnBase
-from rockframe.system.rigid_base import RigidBase
-from rockframe.system.support import Support, bed_under, pads_under
+from rockframe.system.support import RigidBase, Support, bed_under, pads_under
 
 
 @dataclass(frozen=True)

@@ -1,66 +1,15 @@
-"""Rigid bases under bodies of a stack: their words, law and statics, with uplift of joints."""
+"""Rigid bases in a stack: their loads, their uplift, and statics with corners that have lifted."""
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple, cast
+from typing import NamedTuple, cast
 
-from rockframe.dynamics.base_numbers import BaseNumbers, rigid_numbers
-from rockframe.dynamics.body import Body
 from rockframe.dynamics.body_statics import Pose
 from rockframe.dynamics.equilibrium import ChainEquilibrium, EquilibriumPath
 from rockframe.dynamics.link_statics import LinkForce, links_at_rest, links_of_rocking_bodies
+from rockframe.system.stacked_bodies import StackedBodies
 from rockframe.system.statics import Statics, work_against
-from rockframe.system.support import BaseWords, StandingBodies, Support, uplift_words
-
-if TYPE_CHECKING:
-    from rockframe.system.stack import StackSetting
-
-NO_VERTICAL_START = (
-    "InitialState: vertical_displacement and vertical_velocity need a base that gives way; on "
-    "rigid ground they follow from the rotation"
-)
-
-
-@dataclass(frozen=True)
-class RigidBase(Support):
-    """A rigid base."""
-
-    @property
-    def model(self) -> str:
-        """Name of the model."""
-        return "rigid"
-
-    @property
-    def settlement(self) -> float:
-        """Settlement: zero [m]."""
-        return 0.0
-
-    @property
-    def uplift_angle(self) -> float:  # type: ignore[override]
-        """Rotation of uplift: zero, as any rotation lifts a corner [rad]."""
-        return 0.0
-
-    def law(self, body: Body, mass: float, load_mass: float) -> BaseNumbers:
-        """Return the base as the equations take it."""
-        return rigid_numbers(body)
-
-    def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
-        """Refuse a vertical start: the base allows no vertical motion."""
-        return [NO_VERTICAL_START] if has_vertical_start else []
-
-    def words(self) -> BaseWords:
-        """Describe the base."""
-        return BaseWords(
-            law="corners held by forces on rigid bases",
-            equations=[],
-            uplift=("uplift angle", uplift_words(self.uplift_angle)),
-            numbers=[],
-            left_out=["elasticity of the contacts"],
-        )
-
-
-REACTIONS: tuple[str, ...] = ("left_reaction", "right_reaction")
+from rockframe.system.support import REACTIONS, StandingBodies
 
 
 class RigidBaseLoad(NamedTuple):
@@ -72,7 +21,7 @@ class RigidBaseLoad(NamedTuple):
     shear: float  # force of links on the bodies above, to the right, that the base must resist [N]
 
 
-def rigid_base_load(setting: "StackSetting", k: int, tied: Sequence[LinkForce]) -> RigidBaseLoad:
+def rigid_base_load(setting: StackedBodies, k: int, tied: Sequence[LinkForce]) -> RigidBaseLoad:
     """Return the load on the rigid base under body `k`, :eq:`eq-link-rest`.
 
     It carries all bodies above it, and the forces of links on them in the upright position.
@@ -106,7 +55,7 @@ class UpliftLimits(NamedTuple):
         return f"{left} to the right, which tips it to the left, or {right} to the left"
 
 
-def uplift_limits(setting: "StackSetting", k: int, tied: Sequence[LinkForce]) -> UpliftLimits:
+def uplift_limits(setting: StackedBodies, k: int, tied: Sequence[LinkForce]) -> UpliftLimits:
     """Return the uplift limits of the rigid base under body `k`, with link forces at rest.
 
     Without links it is :eq:`eq-rigid-together`, and the friction b/h.
@@ -118,7 +67,7 @@ def uplift_limits(setting: "StackSetting", k: int, tied: Sequence[LinkForce]) ->
 
 
 def rocking_moment(
-    setting: "StackSetting", k: int, rotation: float
+    setting: StackedBodies, k: int, rotation: float
 ) -> tuple[float, list[LinkForce]]:
     """Return the restoring moment [N m] of all above base `k`, rotated as one, and the links."""
     load, (middle, level) = setting.bases[k].load, setting.base_of(k)
@@ -132,7 +81,7 @@ def rocking_moment(
     return side * load.weight * arm - setting.body.mass * pull, tied
 
 
-def rocking_energy(setting: "StackSetting", k: int) -> float:
+def rocking_energy(setting: StackedBodies, k: int) -> float:
     """Return the energy that overturns all above the base of body `k` as one [J]."""
     left, right = setting.bases[k].load.body.overturning_angles
     return min(
@@ -141,7 +90,7 @@ def rocking_energy(setting: "StackSetting", k: int) -> float:
     )
 
 
-def rocking_statics(setting: "StackSetting", rotation: float) -> Statics:
+def rocking_statics(setting: StackedBodies, rotation: float) -> Statics:
     """Return the equilibrium on rigid bases only: all bodies above the weakest base rock."""
     right, mass = rotation > 0.0, setting.body.mass
     side = 1.0 if right else -1.0
@@ -185,7 +134,7 @@ def rocking_statics(setting: "StackSetting", rotation: float) -> Statics:
 
 
 def statics_beyond_uplift(
-    setting: "StackSetting", rotations: Sequence[float], closed: Sequence[Statics | None]
+    setting: StackedBodies, rotations: Sequence[float], closed: Sequence[Statics | None]
 ) -> list[Statics | None]:
     """Return the equilibria with the highest body held at rotations, with uplift of joints.
 
@@ -238,7 +187,7 @@ def _first_uplift(joints: "Sequence[_Joint]", before: float, rotation: float) ->
 class _Joint:
     """A rigid base in full contact, in a stack with deformable bases."""
 
-    def __init__(self, setting: "StackSetting", k: int, side: int) -> None:
+    def __init__(self, setting: StackedBodies, k: int, side: int) -> None:
         self.closed = setting.standing.chain
         groups = [*setting.groups]
         self.index = next((i for i, group in enumerate(groups) if k in group), len(groups))

@@ -10,9 +10,9 @@ from rockframe.dynamics.protocol import ContactModel
 from rockframe.dynamics.rigid_ground import rigid_ground, rocking_corner
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import ROUNDING, Restitutions, restitution_cautions
-from rockframe.system.rigid_base import REACTIONS
 from rockframe.system.setting import Setting, Words
 from rockframe.system.statics import Statics, static_values
+from rockframe.system.support import REACTIONS
 from rockframe.units import angle_words
 
 

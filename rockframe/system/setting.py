@@ -3,7 +3,7 @@
 import math
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from textwrap import wrap
@@ -14,14 +14,12 @@ from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.signals.motion import Incline
 from rockframe.system.bodies import BaseLoad, OverturningAngles, SupportedBody
 from rockframe.system.options import Options
-from rockframe.system.rigid_base import NO_VERTICAL_START
-from rockframe.system.statics import SmallMotion, Statics, least_overturning_energy, required_states
-from rockframe.system.support import Support
+from rockframe.system.statics import SmallMotion, Statics, required_states, work_against, work_to
+from rockframe.system.support import NO_VERTICAL_START, Support
 from rockframe.units import angle_words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.chain.slips import SlippingBodies
-    from rockframe.system.parts import Parts
 
 LARGE_LEAN = 0.1
 """Share of the overturning angle above which a rotation at rest gives a warning."""
@@ -163,7 +161,7 @@ class Setting(ABC):
     @cached_property
     def overturning_energy(self) -> float:
         """Least energy that overturns the body slowly, to the weaker side [J]."""
-        return least_overturning_energy(self)
+        return self.least_overturning_energy()
 
     @cached_property
     def joined_bodies(self) -> tuple[SupportedBody, ...]:
@@ -204,6 +202,19 @@ class Setting(ABC):
     @abstractmethod
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
         """Return the quasi-static states at rotations [rad]; None where nothing holds the body."""
+
+    def restoring_moments(self, rotations: list[float]) -> list[float]:
+        """Return restoring moments at rotations [N m]; zero where there is no equilibrium."""
+        states = self.curve(rotations)
+        return [0.0 if state is None else state.restoring_moment for state in states]
+
+    def stored_energy(self, rotation: float) -> float:
+        """Return the work that slowly brings the body from upright to a rotation [rad] [J]."""
+        return work_to(self.restoring_moments, rotation)
+
+    def least_overturning_energy(self) -> float:
+        """Return the least work against restoring moments up to overturning, to either side [J]."""
+        return min(work_against(self.restoring_moments, end) for end in self.overturning_rotations)
 
     def held_at(self, rotations: Sequence[float]) -> list[Statics]:
         """Return the quasi-static states at rotations [rad]; see :func:`required_states`."""
@@ -290,7 +301,7 @@ _OVERTURNING_ANGLE: Final = "overturning angle theta, Eq. (1)"
 
 
 def describe(
-    setting: Setting, parts: "Parts", written: Sequence[tuple[str, str]] | None = None
+    setting: Setting, parts: Iterable[object], written: Sequence[tuple[str, str]] | None = None
 ) -> str:
     """Describe the model, its equations, its numbers and its limits.
 

@@ -8,38 +8,29 @@ from typing import TYPE_CHECKING, Any, Final
 
 from rockframe.components import Component, Link, Load, Tendon
 from rockframe.components.block_numbers import BlockSI
-from rockframe.dynamics.base_numbers import BaseNumbers
-from rockframe.dynamics.body_statics import Pose, StandingBody, standing_body
-from rockframe.dynamics.chain.link_rows import ChainLink
+from rockframe.dynamics.body_statics import Pose
 from rockframe.dynamics.link_statics import LinkForce, links_at_rest
-from rockframe.dynamics.on_base import BodyOnBase
 from rockframe.dynamics.protocol import ContactModel
-from rockframe.dynamics.statics import StandingChain
-from rockframe.dynamics.vibrations import ChainBody
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import (
     BaseLoad,
-    SupportedBody,
     block_body,
-    combine_masses,
     with_point_mass,
 )
-from rockframe.system.compatibility import BaseFriction
-from rockframe.system.links import PlacedLink, base_of, place_links
+from rockframe.system.links import place_links
 from rockframe.system.options import Options, restraint_words
 from rockframe.system.parts import support_of
 from rockframe.system.rigid_base import (
-    REACTIONS,
-    RigidBase,
     rigid_base_load,
     rocking_energy,
     rocking_statics,
     statics_beyond_uplift,
     uplift_limits,
 )
-from rockframe.system.setting import FRICTION_TO_ROCK, Setting, Words
-from rockframe.system.statics import SmallMotion, Statics, least_overturning_energy, static_values
-from rockframe.system.support import StandingBodies, Support
+from rockframe.system.setting import FRICTION_TO_ROCK, Words
+from rockframe.system.stacked_bodies import StackedBodies, combined_body
+from rockframe.system.statics import SmallMotion, Statics, static_values
+from rockframe.system.support import REACTIONS, RigidBase
 
 if TYPE_CHECKING:
     from rockframe.dynamics.chain.model import AtRest
@@ -51,23 +42,8 @@ PULLED_OVER: Final = ", or their restrainers or loads pull them over"
 
 
 @dataclass(frozen=True)
-class StackSetting(Setting):
-    """Stacked bodies."""
-
-    bodies: tuple[SupportedBody, ...]  # all bodies, from the top down
-    tops: tuple[float, ...]  # height of the top of each above its centre of mass [m]
-    # how far the middle of each base is to the right of that of the body below [m]
-    offsets: tuple[float, ...]
-    bases: tuple[Support, ...]  # base under each body, with all bodies above it as its load
-    links: tuple[PlacedLink, ...] = ()  # links between points
-    frictions: tuple[BaseFriction, ...] = ()  # friction of each base; empty where all bases hold
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        # bodies, offsets, links or a slope make left and right differ
-        eccentric = any(body.eccentricity != 0.0 for body in self.bodies)
-        upright = self.slope.level and not (eccentric or any(self.offsets) or self.links)
-        vars(self).update(leans=not upright)
+class StackSetting(StackedBodies):
+    """Stacked bodies, with links."""
 
     @property
     def model(self) -> str:
@@ -75,39 +51,6 @@ class StackSetting(Setting):
         if len(self.bodies) == 1:
             return f"{self.bases[0].model}-restrained"
         return "stack-restrained" if self.links else "stack"
-
-    @cached_property
-    def joined_bodies(self) -> tuple[SupportedBody, ...]:
-        """Bodies under the highest, each joined with all above it to one upright body."""
-        return tuple(
-            combined_body(self.bodies[: k + 1], self.tops, self.offsets)
-            for k in range(1, len(self.bodies))
-        )
-
-    @property
-    def supports(self) -> tuple[Support, ...]:
-        """All bases."""
-        return self.bases
-
-    @cached_property
-    def settlement(self) -> float | None:
-        """Settlement of the base of the highest body; None for a rigid base [m]."""
-        return None if self.rigid[0] else self.bases[0].settlement
-
-    @property
-    def rigid(self) -> tuple[bool, ...]:
-        """Whether each base is rigid, from the top down."""
-        return tuple(isinstance(base, RigidBase) for base in self.bases)
-
-    @cached_property
-    def groups(self) -> tuple[range, ...]:
-        """Ranges of bodies that rigid bases join at rest, one above each deformable base."""
-        found, first = list[range](), 0
-        for k, rigid in enumerate(self.rigid):
-            if not rigid:
-                found.append(range(first, k + 1))
-                first = k + 1
-        return tuple(found)
 
     def rest_slip_cautions(self, *names: str) -> list[str]:
         """Warn of bodies on rigid bases, with these names, that slide at rest under their links."""
@@ -191,89 +134,6 @@ class StackSetting(Setting):
         )  # fmt: skip
 
     @cached_property
-    def chain_bodies(self) -> tuple[ChainBody, ...]:
-        """The bodies as the equations take them, per unit mass of the highest one."""
-        found, carried, mass = list[ChainBody](), 0.0, self.body.mass
-        below = (*(body.eccentricity for body in self.bodies[1:]), 0.0)
-        for body, top, offset, base, lower in zip(
-            self.bodies, self.tops, self.offsets, self.bases, below, strict=True
-        ):
-            carried += body.mass
-            beside = offset + body.eccentricity - lower
-            law = BaseLoad(body, self.options).law(mass)
-            numbers = base.law(law, mass, carried)
-            found.append(ChainBody(law, numbers, body.mass / mass, top, beside))
-        return tuple(found)
-
-    @cached_property
-    def chain_links(self) -> tuple[ChainLink, ...]:
-        """The links as the equations take them."""
-        return tuple(one.chain_link(self.body.mass) for one in self.links)
-
-    @cached_property
-    def standing(self) -> StandingBodies:
-        """Statics of the bodies: those that rigid bases join are one body on a deformable base."""
-        return self.statics_of_groups(self.groups)
-
-    def statics_of_groups(
-        self, groups: Sequence[range], lifted: int = -1, side: int = 0
-    ) -> StandingBodies:
-        """Return the statics of groups of joined bodies; one may have lifted from a rigid base.
-
-        `lifted` is the lowest body of that group, -1 for none; `side` is the side of its corner.
-        """
-        found, numbers = list[StandingBody](), list[BaseNumbers]()
-        mass = self.body.mass
-        for group in groups:
-            body, lowest = self._combined_group(group), group[-1]
-            # how far its centre of mass is beside that of what it stands on
-            beside = self.offsets[lowest] + body.eccentricity
-            for below in groups:
-                if below[0] == lowest + 1:
-                    shift = math.fsum(self.offsets[below[0] : below[-1]])
-                    beside += shift - self._combined_group(below).eccentricity
-            height = math.fsum(self.bodies[k].centre_height + self.tops[k] for k in group)
-            law = BaseLoad(body, self.options).law(mass)
-            carried = math.fsum(one.mass for one in self.bodies[: lowest + 1])
-            numbers.append(self.bases[lowest].law(law, mass, carried))
-            part = BodyOnBase(law, numbers[-1].law)
-            link = standing_body(part, body.mass / mass, height - body.centre_height, beside)
-            if lowest == lifted:
-                small = min(one.settlement for one in self.standing.chain.bodies)
-                link = link._replace(corner=side, settlement=small)
-            found.append(link)
-        links = tuple(self._link_between_groups(one, groups) for one in self.links)
-        chain = StandingChain(tuple(found), self.slope.along_gravity, links)
-        return StandingBodies(chain, mass, tuple(numbers))
-
-    def _link_between_groups(self, link: PlacedLink, groups: Sequence[range]) -> ChainLink:
-        """Return a link between groups of joined bodies; a point on the ground stays there."""
-        found = link.chain_link(self.body.mass)
-        if not any(self.rigid):
-            return found
-        which, points = [-1, -1], [(0.0, 0.0), (0.0, 0.0)]
-        for i, (body, (x, y)) in enumerate(zip((link.on, link.to), link.ends, strict=True)):
-            for number, group in enumerate(groups):
-                if body in group:
-                    one, (place, level) = self._combined_group(group), self.base_of(group[-1])
-                    which[i] = number
-                    points[i] = (x - place - one.eccentricity, y - level - one.centre_height)
-        return found._replace(on=which[0], on_point=points[0], to=which[1], to_point=points[1])
-
-    def base_of(self, k: int) -> tuple[float, float]:
-        """Return the middle of the base of upright body `k`, from that of the lowest one [m]."""
-        return base_of(k, self.bodies, self.tops, self.offsets)
-
-    def _combined_group(self, group: range) -> SupportedBody:
-        """Return a range of joined bodies as one body."""
-        first, last = group[0], group[-1] + 1
-        if len(group) == 1:
-            return self.bodies[first]
-        return combined_body(
-            self.bodies[first:last], self.tops[first:last], self.offsets[first:last]
-        )
-
-    @cached_property
     def _rest(self) -> list[Pose]:
         found = self.standing.rest if self.groups else []
         if found is None:
@@ -345,7 +205,7 @@ class StackSetting(Setting):
         With rigid and deformable bases, that of the weakest rigid base, as if all were rigid.
         """
         if not any(self.rigid) or not self.groups:
-            return least_overturning_energy(self)
+            return self.least_overturning_energy()
         return min(rocking_energy(self, k) for k, rigid in enumerate(self.rigid) if rigid)
 
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
@@ -411,18 +271,6 @@ class StackSetting(Setting):
         if poses is None:
             raise AssemblyError([NO_EQUILIBRIUM + PULLED_OVER])
         return poses[0].state.vertical
-
-
-def combined_body(
-    bodies: Sequence[SupportedBody], tops: Sequence[float], offsets: Sequence[float]
-) -> SupportedBody:
-    """Return stacked bodies, listed from the top down, as one body on the base of the lowest."""
-    masses, base, beside = [bodies[-1].mass_at()], 0.0, 0.0
-    for k in range(len(bodies) - 2, -1, -1):
-        base += bodies[k + 1].centre_height + tops[k + 1]
-        beside += offsets[k]
-        masses.append(bodies[k].mass_at(beside, base))
-    return combine_masses(bodies[-1].half_width, masses)
 
 
 def refuse_options(what: str, options: Options, *, small: bool) -> None:

@@ -4,16 +4,13 @@ import itertools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final
+from typing import Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockframe.errors import SolverError
 from rockframe.signals.arrays import Array
-
-if TYPE_CHECKING:
-    from rockframe.system.setting import Setting
 
 
 @dataclass(frozen=True)
@@ -70,32 +67,24 @@ _GAUSS_RULE: Final[list[tuple[float, float]]] = [
 """Points and weights of the Gauss-Legendre rule on (0, 1)."""
 
 
-def stored_energy(setting: "Setting", rotation: float) -> float:
+RestoringMoments: TypeAlias = Callable[[list[float]], list[float]]
+"""A function that gives restoring moments [N m] at rotations [rad]."""
+
+
+def work_to(moments: RestoringMoments, end: float) -> float:
     """Return the work that slowly brings a body from upright to a rotation [rad] [J]."""
-    moments = _restoring_moments(setting, [point * rotation for point, _ in _GAUSS_RULE])
-    terms = (weight * moment for (_, weight), moment in zip(_GAUSS_RULE, moments, strict=True))
-    return rotation * sum(terms)
+    values = moments([point * end for point, _ in _GAUSS_RULE])
+    terms = (weight * moment for (_, weight), moment in zip(_GAUSS_RULE, values, strict=True))
+    return end * sum(terms)
 
 
-def least_overturning_energy(setting: "Setting") -> float:
-    """Return the work against the restoring moment up to overturning, to the weaker side [J]."""
-    ends = setting.overturning_rotations
-    return min(work_against(lambda some: _restoring_moments(setting, some), end) for end in ends)
-
-
-def work_against(moments: Callable[[list[float]], list[float]], end: float) -> float:
-    """Return the work against restoring moments, a function of rotations, up to a rotation [J]."""
+def work_against(moments: RestoringMoments, end: float) -> float:
+    """Return the work up to a rotation against those moments that restore [J]."""
     values = moments([point * end for point, _ in _GAUSS_RULE])
     return sum(
         weight * max(end * moment, 0.0)
         for (_, weight), moment in zip(_GAUSS_RULE, values, strict=True)
     )
-
-
-def _restoring_moments(setting: "Setting", rotations: list[float]) -> list[float]:
-    """Return restoring moments at rotations [N m]; zero where there is no equilibrium."""
-    states = setting.curve(rotations)
-    return [0.0 if state is None else state.restoring_moment for state in states]
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from typing import ClassVar, Final
 from rockframe.case_arrays import sqrt
 from rockframe.components import TwoSpringSupport, WinklerSoil
 from rockframe.components.bases import Separation
-from rockframe.dynamics.base_numbers import BaseNumbers, bed_numbers, pads_numbers
+from rockframe.dynamics.base_numbers import BaseNumbers, bed_numbers, pads_numbers, rigid_numbers
 from rockframe.dynamics.body import Body
 from rockframe.dynamics.body_statics import Pose, base_derivatives, standing_body, uplift_rotation
 from rockframe.dynamics.on_base import BodyOnBase
@@ -30,6 +30,12 @@ LINEAR_ROTATION: Final = 2.0**-20
 the difference of the forces at both ends loses too many digits there."""
 SLOPE_ROTATION: Final = 2.0**-6
 """Rotation, over the same, at which the slope of the moments is found."""
+
+NO_VERTICAL_START: Final = (
+    "InitialState: vertical_displacement and vertical_velocity need a base that gives way; on "
+    "rigid ground they follow from the rotation"
+)
+REACTIONS: Final[tuple[str, ...]] = ("left_reaction", "right_reaction")
 
 
 @dataclass(frozen=True)
@@ -457,3 +463,41 @@ def bed_under(soil: WinklerSoil, load: BaseLoad) -> BedSupport:
         critical = sqrt(2.0 * body.half_width * numbers.stiffness * body.mass)
         damping = numbers.damping_ratio * critical / body.half_width
     return BedSupport(load, numbers.stiffness, damping, numbers.separation)
+
+
+@dataclass(frozen=True)
+class RigidBase(Support):
+    """A rigid base."""
+
+    @property
+    def model(self) -> str:
+        """Name of the model."""
+        return "rigid"
+
+    @property
+    def settlement(self) -> float:
+        """Settlement: zero [m]."""
+        return 0.0
+
+    @property
+    def uplift_angle(self) -> float:  # type: ignore[override]
+        """Rotation of uplift: zero, as any rotation lifts a corner [rad]."""
+        return 0.0
+
+    def law(self, body: Body, mass: float, load_mass: float) -> BaseNumbers:
+        """Return the base as the equations take it."""
+        return rigid_numbers(body)
+
+    def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
+        """Refuse a vertical start: the base allows no vertical motion."""
+        return [NO_VERTICAL_START] if has_vertical_start else []
+
+    def words(self) -> BaseWords:
+        """Describe the base."""
+        return BaseWords(
+            law="corners held by forces on rigid bases",
+            equations=[],
+            uplift=("uplift angle", uplift_words(self.uplift_angle)),
+            numbers=[],
+            left_out=["elasticity of the contacts"],
+        )

@@ -26,7 +26,6 @@ from rockframe.dynamics.pads import ElasticPads
 from rockframe.dynamics.protocol import Ground, Start
 from rockframe.dynamics.single_body import eccentricity_of, rigid_body, starting_state
 from rockframe.dynamics.statics import StandingChain
-from rockframe.system.statics import stored_energy
 
 pytestmark = pytest.mark.analytical
 
@@ -193,7 +192,7 @@ def test_work_on_a_held_body_is_its_energy(block, base):
         ends = (setting.support.standing.chain.poses_at([each])[0] for each in (0.0, angle))
         low, high = (law.energy(e.line, ())[0] + body.gravity * e.state.vertical for e in ends)
         work = setting.body.mass * (high - low)
-        assert stored_energy(setting, angle) == pytest.approx(work, rel=5e-3)
+        assert setting.stored_energy(angle) == pytest.approx(work, rel=5e-3)
 
 
 # three bodies -----------------------------------------------------------------------------------

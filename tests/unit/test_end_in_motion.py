@@ -11,7 +11,6 @@ from rockframe.compiled import COMPILED
 from rockframe.errors import ModelWarning, SolverWarning
 from rockframe.simulation.soundness import max_stored_energy
 from rockframe.studies.sweeps import study
-from rockframe.system.statics import stored_energy
 
 BLOCK = rf.Block(width="0.5 m", height="2 m", mass="400 kg")
 PULSE = rf.GroundMotion.sine_pulse("4 m/s^2", "1.5 Hz")
@@ -30,7 +29,7 @@ def rise():
 def test_on_rigid_ground_it_takes_the_rise_of_the_centre_of_mass():
     setting = rf.System(BLOCK).assembly.setting
     assert setting.overturning_energy == pytest.approx(rise(), rel=1e-12)
-    assert stored_energy(setting, -setting.overturning_angle) == pytest.approx(rise())
+    assert setting.stored_energy(-setting.overturning_angle) == pytest.approx(rise())
 
 
 @pytest.mark.parametrize("parts", [[PADS], [SOIL], [PADS, CAP, SOIL]], ids=len)
@@ -216,7 +215,7 @@ TALL = rf.Block(width="0.5 m", height="2 m", mass="400 kg", eccentricity="0.05 m
 )  # fmt: skip
 def test_no_more_is_stored_than_its_bound(system, share):
     rotation = share * system.assembly.setting.overturning_angle
-    stored = stored_energy(system.assembly.setting, rotation)
+    stored = system.assembly.setting.stored_energy(rotation)
     assert stored <= max_stored_energy(system.assembly, rotation) * (1.0 + 1e-9)
 
 

@@ -2,8 +2,10 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, TypedDict, cast
+from typing import Any, Final, TypedDict, cast
 
+from rockframe.components.base import Component
+from rockframe.components.block_numbers import BlockSI
 from rockframe.components.shapes.outline import outline_mass
 from rockframe.components.shapes.standing import (
     ROUNDING,
@@ -32,9 +34,6 @@ from rockframe.units import (
     to_si,
 )
 
-if TYPE_CHECKING:
-    from rockframe.components.block import Block
-
 
 class Part(TypedDict, total=False):
     """Description of a part of a body, see :meth:`rockframe.Block.from_parts`."""
@@ -46,7 +45,7 @@ class Part(TypedDict, total=False):
     width: QuantityLike
     height: QuantityLike
     outline: PointsLike
-    body: "Block"
+    body: Component
     inertia: QuantityLike
 
 
@@ -128,11 +127,10 @@ def _outline(
 
 def _body(name: str, values: Mapping[str, Any], at: tuple[float, float], owner: str) -> PlacedPart:
     si = getattr(values["body"], "si", None)
-    if not hasattr(si, "centre_height"):
+    if not isinstance(si, BlockSI):
         msg = f"{owner} needs a Block as its body, got {short_repr(values['body'])}"
         raise ComponentError(msg)
-    block: Block = values["body"]
-    (x, y), si = at, block.si
+    x, y = at
     there = PlaneMass(si.mass, x + si.eccentricity, y + si.centre_height, si.inertia)
     words = f"an end of the base of part {name!r}"
     corners = (

@@ -16,8 +16,8 @@ from rockframe.results.schema import with_variables
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.studies import MESSAGE, REPEATED, VERDICT_CHANGED
 from rockframe.signals.arrays import AnyArray
+from rockframe.simulation.friction_checks import count_slides
 from rockframe.simulation.run import NONE
-from rockframe.simulation.soundness import count_slides
 from rockframe.studies.sweeps.axes import OWNER
 
 SCREENING_VARIABLES: Final = (REPEATED, VERDICT_CHANGED)
