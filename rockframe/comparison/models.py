@@ -92,8 +92,8 @@ def model_ladder(system: System) -> dict[str, System]:
     present = system.parts.signature
     rows = _MODELS[:1] if system.parts.own else _MODELS
     slides = system.setting.slides and not system.parts.own
-    if slides and "stack" not in present and squat_body_warnings(system.parts.block_si, ""):
-        rows = ()  # held against sliding, it would not rock
+    # held against sliding, a squat body would not rock
+    rocks = not slides or "stack" in present or not squat_body_warnings(system.parts.block_si, "")
     # a wall prevents the sliding of the model without it
     prevents_sliding = slides or "wall" in present
     whole, sliding = components, Sliding.CHECKED if prevents_sliding else system.sliding
@@ -106,6 +106,7 @@ def model_ladder(system: System) -> dict[str, System]:
         "sliding": sliding,
     }  # fmt: skip
     models: dict[str, System] = {}
+    last = ""
     links = () if system.parts.own else system.parts.links
     link_words = " and ".join(
         dict.fromkeys(_LINK_WORDS.get(type(one), type(one).__name__) for one in links)
@@ -124,17 +125,17 @@ def model_ladder(system: System) -> dict[str, System]:
                 for rotation in Rotation.SMALL, Rotation.FINITE:
                     if rotation is Rotation.FINITE and system.rotation is Rotation.SMALL:
                         continue
-                    label = f"{words}, small rotations" if rotation is Rotation.SMALL else words
-                    models[label] = System(
-                        *parts.values(), rotation=rotation, coupling=coupling, **options
-                    )
+                    last = f"{words}, small rotations" if rotation is Rotation.SMALL else words
+                    if rocks:
+                        models[last] = System(
+                            *parts.values(), rotation=rotation, coupling=coupling, **options
+                        )
                 if links:
-                    models[f"{words} with {link_words}"] = System(
-                        *parts.values(), *links, **options
-                    )
+                    last = f"{words} with {link_words}"
+                    if rocks:
+                        models[last] = System(*parts.values(), *links, **options)
     if slides:
         sliding_options: dict[str, Any] = {**options, "sliding": Sliding.COMPUTED}
-        last = list(models)[-1] if models else "rigid ground"
         models[f"{last}, sliding"] = System(*whole.values(), **sliding_options)
     if system.parts.own:
         models[system.setting.model] = System(

@@ -105,10 +105,13 @@ def recommend(
     # a part of a comparison may have lost a dimension, or have them in another order
     lost = [dim for dim in _DIMENSIONS if dim not in dataset.dims]
     dataset = dataset.expand_dims(lost).transpose(*_DIMENSIONS, ...)
-    errors = np.where(dataset["verdict_agrees"], dataset[error], np.inf)
+    agrees = dataset["verdict_agrees"].to_numpy()
+    errors = np.where(agrees, dataset[error], np.inf)
     times = dataset["run_time"].to_numpy()
     admissible = errors <= limit
-    ranking = np.where(admissible, times, np.inf) if admissible.any() else errors
+    # an error relative to no rotation at all is infinite, though the verdict is right
+    nearness = np.where(agrees, np.minimum(errors, np.finfo(float).max), np.inf)
+    ranking = np.where(admissible, times, np.inf) if admissible.any() else nearness
     row, column = np.unravel_index(int(np.argmin(ranking)), ranking.shape)
     model = str(dataset["model"].to_numpy()[row])
     accuracy = str(dataset["accuracy"].to_numpy()[column])
@@ -128,9 +131,12 @@ def recommend(
                 " It overturns, and its peak is where that ends the run, in any model: "
                 "error='history_error' compares them along time."
             )
-    elif np.isfinite(errors[row, column]):
-        within = _error_words(limit, 3)
-        sentence = f"No rung tried comes within {within}; the nearest is {choice}: {found}."
+    elif agrees[row, column]:
+        sentence = f"No rung tried comes within {_error_words(limit, 3)}"
+        if np.isfinite(errors[row, column]):
+            sentence += f"; the nearest is {choice}: {found}."
+        else:
+            sentence += ": the scene itself does not rotate, but all rungs with its verdict do."
     else:
         sentence = "No rung tried has the verdict of the scene itself."
     return Recommendation(model, accuracy, met, sentence)

@@ -7,7 +7,7 @@ from plainly import plainly
 import rockframe as rf
 from rockframe.dynamics.chain.impact import write_trial_data
 from rockframe.dynamics.chain.motion import set_inertia_loads
-from rockframe.dynamics.events import EventKind
+from rockframe.dynamics.events import FLIGHT, EventKind
 from rockframe.errors import AssemblyError, ModelWarning
 from rockframe.system.assembly import assemble
 
@@ -170,6 +170,28 @@ def test_restrained_bodies_slide():
     assert abs(held.energy_residual.item()) < 1e-8
     assert held.peak_body_slip.values[1] < 0.1 * free.peak_body_slip.values[1]
     assert held.peak_body_slip.values[0] > 1e-3
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
+def test_leaving_the_ground_as_friction_gives_way_is_an_event():
+    # two bodies rock; the ground falls beneath them, and friction gives way before they are free
+    falls = np.where(np.arange(31) < 15, 0.0, -12.0)
+    motion = rf.GroundMotion.from_arrays(
+        (np.full(31, 3.5), "m/s^2"), "0.01 s", vertical=(falls, "m/s^2")
+    )
+    bodies = [
+        rf.Block(width="0.85 m", height="3.2 m", mass="3.2 t"),
+        rf.Block(width="1.1 m", height="3.6 m", mass="3 t"),
+    ]
+    with plainly():
+        found = run_of(
+            [ground(0.5, 0.4)], ground(1.06, 0.7), motion, bodies=bodies, free_vibration=None,
+            output_step="1 ms",
+        )  # fmt: skip
+    kinds = [EventKind(kind) for kind in found.event_kind.values]
+    assert kinds == [EventKind.UPLIFT, EventKind.UPLIFT, EventKind.SEPARATION]
+    flies = found.time.values[(found.body_contact_state.values == FLIGHT).all(axis=0)]
+    assert 0.0 < flies[0] - found.event_time.values[-1] < 1e-3
 
 
 def test_a_pull_beyond_friction_is_told():

@@ -134,13 +134,19 @@ class SlippingBodies(Chain):
 
     @inlined
     def slip_event(self, k: int, old: int, new: int) -> int:
-        """Return the kind of event by which a body starts, stops or reverses its slip."""
-        slipped, slips = self.body_mode(old, k).slides, self.body_mode(new, k).slides
-        if not slips:
-            return events.STICK if slipped else SILENT
-        if not slipped:
-            return events.SLIP
-        return SILENT if self.sense(old, k) == self.sense(new, k) else events.REVERSAL
+        """Return the kind of event by which a body starts, stops or reverses its slip.
+
+        Or leaves its base, or a part of it, as friction changes.
+        """
+        part, was, now = self.on_base(k), self.body_mode(old, k), self.body_mode(new, k)
+        if part.flies(now.contact):
+            return events.SEPARATION
+        if was.slides != now.slides:
+            return events.SLIP if now.slides else events.STICK
+        if now.slides and self.sense(old, k) != self.sense(new, k):
+            return events.REVERSAL
+        stands = part.contact_state(was) == part.contact_state(now)
+        return SILENT if stands else events.UPLIFT
 
     @inlined
     def is_slippery(self, k: int) -> bool:

@@ -52,7 +52,8 @@ RESTRAINERS: Final = (
     *rows_over(RESTRAINER, restrainer=("name of the restrainer", str)),
     *rows_over(
         RESTRAINER_TIME,
-        restrainer_force="force with which each restrainer pulls its points together [N]",
+        restrainer_force="force with which each restrainer pulls its points together, or a wall "
+        "presses [N]",
         restrainer_elongation="elongation of each restrainer from its initial length [m]",
         restrainer_state=("state of each restrainer", LinkState),
     ),

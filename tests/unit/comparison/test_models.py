@@ -85,6 +85,20 @@ def test_a_tied_block_is_held_before_it_slides():
     ]  # fmt: skip
 
 
+def test_a_squat_body_has_only_the_rung_that_slides_named_by_its_base():
+    low, tie = rf.Block(width="4 m", height="2 m", mass="20 t"), TIE.replace(on=("-1 m", "1 m"))
+    pads = PADS.replace(friction=0.3)
+    for parts, name in (
+        ((rf.RigidGround(friction=0.3),), "rigid ground, sliding"),
+        ((pads, tie), "two pads with restrainers, sliding"),
+        ((pads, CAP, SOIL), "pads, cap and soil coupled, sliding"),
+    ):
+        system = rf.System(low, *parts)
+        assert {name: system.to_dict()} == {
+            name: rung.to_dict() for name, rung in rf.model_ladder(system).items()
+        }
+
+
 @pytest.mark.parametrize("options", [{}, {"rotation": "small"}])
 def test_a_block_that_a_wall_holds_is_held_without_it(options):
     """Without the wall its ground has friction, and it would slide."""

@@ -488,3 +488,17 @@ def test_a_model_that_holds_a_block_is_off_by_its_slip():
     best = rf.recommend(found)
     assert best.model == "rigid ground, sliding"
     assert "in the peak rotation or slip" in best.sentence
+
+
+def test_a_rung_that_rocks_where_the_scene_only_slides_has_its_verdict_but_no_finite_error():
+    system = rf.System(
+        rf.Block(width="0.8 m", height="2.4 m", mass="2 t"), rf.RigidGround(friction=0.3)
+    )
+    pulse = rf.GroundMotion.sine_pulse("5 m/s^2", "1 Hz")
+    held = ["rigid ground, small rotations", "rigid ground"]
+    found = rf.tradeoff(system, pulse, models=held, accuracies="standard", repeats=1)
+    found["verdict_agrees"][0] = False
+    assert np.isinf(found.peak_error).all()
+    best = rf.recommend(found)
+    assert (best.model, best.met) == ("rigid ground", False)
+    assert "the scene itself does not rotate, but all rungs with its verdict do" in str(best)
