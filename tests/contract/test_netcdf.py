@@ -106,9 +106,9 @@ ANSWERS = {
 
 @pytest.mark.parametrize("kind", ANSWERS)
 def test_what_needs_no_run_survives_the_file_and_rebuilds_its_system(scene, kind, tmp_path):
-    system = SCENES[scene]()
     if kind == "modes" and scene.startswith("rigid"):
-        return
+        pytest.skip("on rigid ground a block at rest has no modes")
+    system = SCENES[scene]()
     answer = ANSWERS[kind](system)
     again = through_file(answer, tmp_path)
     xr.testing.assert_identical(again, answer)
