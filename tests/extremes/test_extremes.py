@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rockframe as rf
+from rockframe.errors import SolverWarning
 
 MORE = int(os.environ.get("ROCKFRAME_EXTREMES", "1"))
 COUNT = 6 * MORE
@@ -58,9 +59,10 @@ def test_what_breaks_a_bound_is_named(monkeypatch):
     verdict = judge(Scene(peak=0.5), "standard")
     assert verdict.failures == []
     assert verdict.steps > 100
-    run, few = Scene.run, rf.Accuracy(max_steps=100)
+    run, few = Scene.run, rf.Accuracy(rtol=1e-6, max_steps=100)
     monkeypatch.setattr(Scene, "run", lambda scene, accuracy: run(scene, few))
-    assert judge(Scene(peak=0.5), "standard").failures == ["ends as step_limit"]
+    with pytest.warns(SolverWarning, match="the limit of steps was reached"):
+        assert judge(Scene(peak=0.5), "standard").failures == ["ends as step_limit"]
     spoilt = type(verdict)("chatter", 2.0, 7, 5, finite=False)
     assert spoilt.failures == [
         "ends as chatter", "not finite", "imbalance 2 of its bound", "7 steps, 5 allowed"
