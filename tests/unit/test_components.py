@@ -19,7 +19,7 @@ from unit import frames
 import rockframe as rf
 from rockframe.components import Link, PointLink, component_from_dict
 from rockframe.components.registry import registered_classes
-from rockframe.errors import AssemblyError, ComponentError, ModelWarning, RockframeError, UnitsError
+from rockframe.errors import AssemblyError, ComponentError, ModelWarning, SchemaError, UnitsError
 
 pytestmark = pytest.mark.unit
 
@@ -246,17 +246,17 @@ def test_an_initial_state_is_kept_bit_for_bit(rotation, rate, height):
 
 
 @pytest.mark.parametrize(
-    "description",
+    ("description", "words"),
     [
-        {},
-        {"type": None},
-        {"type": "Brick", "width": "2 m"},
-        {"type": 3},
-        {"type": ["Block"]},
+        ({}, "None; expected"),
+        ({"type": None}, "None; expected"),
+        ({"type": "Brick", "width": "2 m"}, "'Brick'; was 'Block' meant"),
+        ({"type": 3}, "3; expected"),
+        ({"type": ["Block"]}, r"\['Block'\]; was 'Block' meant"),
     ],
 )
-def test_a_description_of_nothing_known_is_refused(description):
-    with pytest.raises(RockframeError):
+def test_a_description_of_nothing_known_is_refused(description, words):
+    with pytest.raises(SchemaError, match=f"^found a component of type {words}"):
         component_from_dict(description)
 
 
