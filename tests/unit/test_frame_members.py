@@ -275,7 +275,7 @@ def test_a_regular_frame_itself_says_what_it_needs():
         RegularFrame(**UNEQUAL, storey_heights=3)
     with pytest.raises(UnitsError, match="storeys needs a pure ratio"):
         RegularFrame(**{**REGULAR, "storeys": True})
-    with pytest.raises(TypeError):
+    with pytest.raises(TypeError, match=r"missing 5 required .* 'width', 'column_width'"):
         RegularFrame(storeys=3)
 
 
@@ -321,7 +321,7 @@ def test_members_and_the_measures_of_a_regular_frame_exclude_one_another():
         FrameEquivalent.from_members([core()], width="4 m")
     with pytest.raises(UnitsError, match="width needs a length"):
         FrameEquivalent.from_members([core()], width=4, height="10 m")
-    with pytest.raises(TypeError):
+    with pytest.raises(TypeError, match=r"missing 1 required .* 'width'"):
         FrameEquivalent.from_members([core()], height="10 m")
 
 

@@ -157,7 +157,8 @@ def test_bare_numbers_are_refused_by_name():
     with pytest.raises(UnitsError, match="damping_ratio"):
         rf.WinklerSoil(stiffness="9 MPa", damping_ratio="0.2 m")
     for bad in (True, None, [0.2], "much"):
-        with pytest.raises(RockframeError):
+        words = "damping_ratio needs a pure ratio" if bad is not None else "neither was given"
+        with pytest.raises(RockframeError, match=words):
             rf.WinklerSoil(stiffness="9 MPa", damping_ratio=bad)
 
 

@@ -81,7 +81,7 @@ def test_coarsening_keeps_slow_and_removes_fast_motion_without_delay(step):
     exact = swell * np.sin(2.0 * np.pi * 0.1 / step * time)
     assert coarse.si.horizontal.samples == pytest.approx(exact, abs=0.02)
     assert motion(fast).resampled(f"{step} s").si.peak < 1e-3
-    assert "anti-alias" in coarse.history[-1] or "anti-alias" in coarse.history[-2]
+    assert "anti-alias" in " ".join(coarse.history[-2:])
 
 
 @pytest.mark.parametrize("step", [0.02, 0.025, 0.0333])

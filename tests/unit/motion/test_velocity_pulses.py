@@ -182,7 +182,7 @@ def test_arguments_are_checked():
         motion.velocity_pulse(shortest_period="2 s", longest_period="1 s")
     with pytest.raises(ComponentError, match="4 time steps"):
         motion.velocity_pulse(shortest_period="0.03 s")
-    with pytest.raises(UnitsError):
+    with pytest.raises(UnitsError, match="longest_period needs a time with a unit, got 15"):
         motion.velocity_pulse(longest_period=15)
     with pytest.raises(ComponentError, match="longest_period = 1e\\+09 s has more than"):
         motion.velocity_pulse(longest_period="1e9 s")
