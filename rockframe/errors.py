@@ -230,7 +230,7 @@ are left out: in papers they are half the width and half the height."""
 def did_you_mean(value: object, known: Iterable[str]) -> str:
     """Ask whether a similar word was meant, at the end of a message; empty if none is similar."""
     words = {one.casefold(): one for one in known}
-    wanted = str(value).casefold()
+    wanted = "" if value is None else str(value).casefold()
     near = [one for one in _SYMBOLS.get(wanted, ()) if one in words]
     near = near or get_close_matches(wanted, words, n=3)
     return f"; was {' or '.join(repr(words[one]) for one in near)} meant?" if near else ""

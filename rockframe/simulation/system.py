@@ -508,7 +508,8 @@ class System(metaclass=SuggestingMeta):
         try:
             return cls._described(json.loads(text), motion_from_dataset(dataset))
         except _DAMAGED as problem:
-            msg = f"the dataset's attributes do not describe a system: {problem}"
+            reason = f"there is no {problem}" if isinstance(problem, KeyError) else problem
+            msg = f"the dataset's attributes do not describe a system: {reason}"
             raise SchemaError(msg) from problem
 
     @classmethod

@@ -121,7 +121,8 @@ def stored_motions(dataset: xr.Dataset) -> tuple[dict[str, GroundMotion], dict[s
     except (KeyError, TypeError, ValueError, ComponentError, AttributeError) as problem:
         if isinstance(problem, SchemaError):
             raise
-        msg = f"found a suite that cannot be read ({problem}); expected {_EXPECTED}"
+        reason = f"there is no {problem}" if isinstance(problem, KeyError) else problem
+        msg = f"found a suite that cannot be read ({reason}); expected {_EXPECTED}"
         raise SchemaError(msg) from problem
     return motions, attributes
 

@@ -356,4 +356,11 @@ def size_faults(parts: Parts, options: Options) -> list[str]:
                 f"the CushionCap is {width:.12g} m wide, narrower than the {block.si.width:.12g} m "
                 "of the building on it"
             )
+    if block is not None and {"pads", "soil"} & {*parts.components}:
+        width = block.si.width if cap is None else 2.0 * parts.cap_si.half_width
+        if not isfinite(width * width * width):  # of which rotational stiffnesses are made
+            faults.append(
+                f"a base {width:.12g} m wide has a rotational stiffness that a computer's numbers "
+                "cannot hold"
+            )
     return faults

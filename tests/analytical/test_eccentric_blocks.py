@@ -135,22 +135,21 @@ def test_overturning_by_a_rectangular_pulse_to_either_side():
 
 
 def test_critical_scales_to_either_side():
+    """By energy: s (s - 1) = share/(2 cosh p t - 2), of the energy that overturns to that side."""
     system = scene("rigid ground", rotation="small")
-    for side in (LEFT, RIGHT):
+    left, right = Corner(LEFT), Corner(RIGHT)
+    # falling back from the left it overturns to the right before it does so to the left
+    back = (right.p * right.theta / (right.restitution * left.p * left.theta)) ** 2
+    for side, share in ((LEFT, back), (RIGHT, 1.0)):
         corner = Corner(side)
         pulse = rectangle(-side * G * corner.theta, 1.5 / corner.p)
         found = rf.critical_scale(
             system, pulse, bracket_width=1e-8, free_vibration="30 s", accuracy="reference"
         )
         assert found.uplift_scale.item() == pytest.approx(1.0, rel=1e-12)
-        threshold = 1.0 / (1.0 - math.exp(-1.5))
-        flips = 0.5 * (found.scale_below.values + found.scale_above.values)
-        assert np.abs(flips / threshold - 1.0).min() < 1e-7 or side == LEFT
-        if side == RIGHT:
-            assert found.critical_scale.item() == pytest.approx(threshold, rel=1e-7)
-        else:
-            # falling back from the far side it overturns to the near one before that
-            assert found.critical_scale.item() < threshold
+        threshold = 0.5 + math.sqrt(0.25 + 0.5 * share / (math.cosh(1.5) - 1.0))
+        assert found.critical_scale.item() == pytest.approx(threshold, rel=1e-7)
+        assert found.sizes["flip"] == 1
 
 
 def test_falling_back_from_the_far_side_overturns_to_the_near_one():

@@ -11,7 +11,7 @@ import xarray as xr
 from contract.scenes import MOTIONS, RULES, SCENES, block, cap, pads, pulse, record, soil
 
 import rockframe as rf
-from rockframe.errors import RecordWarning, RockframeError, SchemaError
+from rockframe.errors import RecordWarning, SchemaError
 
 pytestmark = pytest.mark.contract
 
@@ -106,9 +106,9 @@ ANSWERS = {
 
 @pytest.mark.parametrize("kind", ANSWERS)
 def test_what_needs_no_run_survives_the_file_and_rebuilds_its_system(scene, kind, tmp_path):
-    system = SCENES[scene]()
     if kind == "modes" and scene.startswith("rigid"):
-        return
+        pytest.skip("on rigid ground a block at rest has no modes")
+    system = SCENES[scene]()
     answer = ANSWERS[kind](system)
     again = through_file(answer, tmp_path)
     xr.testing.assert_identical(again, answer)
@@ -280,6 +280,9 @@ def damaged(**changed):
     return response
 
 
+NO_SYSTEM = r"^the dataset's attributes do not describe a system: "
+
+
 @pytest.mark.parametrize(
     "text",
     [
@@ -302,7 +305,7 @@ def damaged(**changed):
     ],
 )
 def test_a_damaged_description_of_the_system_is_refused(text):
-    with pytest.raises(RockframeError):
+    with pytest.raises(SchemaError, match=NO_SYSTEM):
         rf.System.from_dataset(damaged(system_json=text))
 
 
@@ -319,7 +322,7 @@ def test_a_damaged_description_of_the_system_is_refused(text):
     ],
 )
 def test_a_damaged_description_of_the_motion_is_refused(changed):
-    with pytest.raises(RockframeError):
+    with pytest.raises(SchemaError, match=NO_SYSTEM):
         rf.System.from_dataset(damaged(**changed))
 
 
@@ -327,11 +330,8 @@ def test_a_damaged_description_of_the_motion_is_refused(changed):
 def test_a_missing_part_of_the_description_is_no_crash(name):
     response = damaged()
     del response.attrs[name]
-    try:
-        system = rf.System.from_dataset(response)
-    except SchemaError:
-        return
-    assert system.to_dict() == SCENES["rigid ground, finite"]().to_dict()
+    with pytest.raises(SchemaError, match=f"{NO_SYSTEM}there is no '{name}'"):
+        rf.System.from_dataset(response)
 
 
 def test_changed_samples_are_not_taken_for_the_record():

@@ -524,7 +524,8 @@ class TestRegistration:
         rf.register(Copied, columns=[column()])  # once more, as when a notebook's cell is run again
 
     def test_one_that_is_not_registered_is_no_part(self):
-        with pytest.raises(AssemblyError, match=r"Copied\(frequency_ratio=20\.0\) is not a par"):
+        words = r"(?s)Copied\(frequency_ratio=20\.0\) is not a par.*call .*register\(Copied\) first"
+        with pytest.raises(AssemblyError, match=words):
             rf.System(BLOCK, Copied(frequency_ratio=20))
 
     @pytest.mark.parametrize("kind", [rf.TwoSpringSupport, rf.Block, int, 3, "pads", None])
@@ -563,6 +564,10 @@ class TestRegistration:
         with pytest.raises(ComponentError, match=words):
             rf.register(Copied, columns=[wrong])
 
+    def test_columns_of_one_name_are_refused(self):
+        with pytest.raises(ComponentError, match="two columns are called 'wear'"):
+            rf.register(Copied, columns=[column(), column(long_name="other wear")])
+
     def test_all_faults_are_told_and_nothing_is_registered(self):
         class Nowhere(ext.OwnBase):
             """Neither a slot nor a support."""
@@ -581,7 +586,8 @@ class TestRegistration:
         assert kinds == parts_of._KINDS
 
     def test_a_support_that_is_not_registered_is_refused(self):
-        with pytest.raises(AssemblyError, match="Doubled carries a body in its own way, but is"):
+        words = r"(?s)Doubled carries a body in its own way, but is.*derive it from .*OwnBase, and"
+        with pytest.raises(AssemblyError, match=words):
             rf.System(BLOCK, Doubled(frequency_ratio=20, damping_ratio=0.1))
 
     def test_a_subclass_with_another_support_needs_its_own_registration(self, yielding):
@@ -668,11 +674,3 @@ class TestRegistration:
                 [system.setting.overturning_energy for system in systems],
             ):
                 assert answer == sorted(set(answer))
-
-    def test_who_is_not_registered_is_told(self):
-        with pytest.raises(AssemblyError, match=r"call rockframe.register\(Copied\) first"):
-            rf.System(BLOCK, Copied(frequency_ratio=20))
-        with pytest.raises(AssemblyError, match=r"derive it from .*OwnBase, and"):
-            rf.System(BLOCK, Doubled(frequency_ratio=20, damping_ratio=0.1))
-        with pytest.raises(ComponentError, match="two columns are called 'wear'"):
-            rf.register(Copied, columns=[column(), column(long_name="other wear")])

@@ -11,7 +11,6 @@ from plainly import plainly
 
 import rockframe as rf
 from rockframe import extension as ext
-from rockframe.errors import ComponentError
 from rockframe.solve.driver import advance
 
 FILE = Path(__file__).parents[2] / "examples" / "own_link.py"
@@ -54,11 +53,6 @@ def test_one_that_hardly_hardens_is_a_tie(example):
         for one in (rope, rf.Restrainer(**POINTS))
     ]
     np.testing.assert_allclose(held[0], held[1], rtol=1e-9)
-
-
-def test_what_is_no_link_is_refused():
-    with pytest.raises(ComponentError, match="OwnBase or OwnScene"):
-        rf.register(int)
 
 
 def test_the_page_names_files_that_are_there():

@@ -60,7 +60,8 @@ def test_files_give_it_back(runs, tmp_path):
         again.load()
     xr.testing.assert_identical(again, runs)
     for name, variable in runs.variables.items():
-        assert again[name].dtype.kind == variable.dtype.kind or variable.dtype.kind in "OU", name
+        kinds = [one.dtype.kind.replace("U", "O") for one in (again[name], variable)]
+        assert kinds[0] == kinds[1], name
     assert rf.System.from_dataset(again).to_dict() == rf.System.from_dataset(runs).to_dict()
 
 
@@ -74,7 +75,9 @@ def test_labels_are_those_of_the_schema_and_cf(runs, tmp_path):
             assert attributes["long_name"] == expected["long_name"]
             assert attributes.get("units") == expected.get("units")
             assert variable.dims == (*runs.status.dims, *row.dims)
-            assert variable.dtype == row.dtype or np.isnan(variable.values).any()
+            # cases without a result leave gaps
+            gaps = variable.dtype.kind == "f" and np.isnan(variable.values).any()
+            assert variable.dtype == (np.float64 if gaps else row.dtype), name
             if "flag_values" in expected:
                 assert attributes["flag_values"].dtype == (
                     np.int8 if variable.dtype == bool else variable.dtype

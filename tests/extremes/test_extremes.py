@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rockframe as rf
+from rockframe.errors import SolverWarning
 
 MORE = int(os.environ.get("ROCKFRAME_EXTREMES", "1"))
 COUNT = 6 * MORE
@@ -53,13 +54,19 @@ def test_the_scenes_cover_what_they_name():
     assert max(scene.slenderness for scene in drawn) > 20.0
 
 
-def test_what_breaks_a_bound_is_named():
-    """A soft block on pads that cannot be finished in its steps is no success."""
+def test_what_breaks_a_bound_is_named(monkeypatch):
+    """A run that cannot be finished in its steps is no success."""
     verdict = judge(Scene(peak=0.5), "standard")
     assert verdict.failures == []
     assert verdict.steps > 100
+    run, few = Scene.run, rf.Accuracy(rtol=1e-6, max_steps=100)
+    monkeypatch.setattr(Scene, "run", lambda scene, accuracy: run(scene, few))
+    with pytest.warns(SolverWarning, match="the limit of steps was reached"):
+        assert judge(Scene(peak=0.5), "standard").failures == ["ends as step_limit"]
     spoilt = type(verdict)("chatter", 2.0, 7, 5, finite=False)
-    assert len(spoilt.failures) == 4
+    assert spoilt.failures == [
+        "ends as chatter", "not finite", "imbalance 2 of its bound", "7 steps, 5 allowed"
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize("stiffness", ["2 TPa", "20 TPa", "2e15 Pa", "2e20 Pa"])

@@ -110,14 +110,14 @@ def test_rotations_that_grow_as_a_slow_ground_lifts_the_block_are_bounded():
         )  # fmt: skip
         window, speed = ball(1.6), ball(0.01)
         bounds = bounces._Bounds(problem, ball(0), speed)
-        for halvings in range(4):
+        for halvings in range(4, 8):  # no bounds hold over longer windows
             span = window / 2**halvings
             found = bounds.after_window(problem.ground(0).at(UNIT * span), span)
             run = system.simulate(
                 motion, duration=f"{float(span)} s", accuracy="reference",
                 initial=rf.InitialState(rotation="0 rad", angular_velocity="0.01 rad/s"),
             )  # fmt: skip
-            assert found is None or float(run.peak_rotation) <= found.height
+            assert 0.4 * found.height < float(run.peak_rotation) <= found.height
 
 
 def test_members_that_may_not_have_struck_yet_keep_the_speed_before_their_impact(monkeypatch):

@@ -199,7 +199,7 @@ def test_the_nearest_scale_is_found(edge):
 def test_a_margin_has_no_floor(edge):
     found = certificate_of(lambda _, plan: plan.motion.si.peak / PULSE.si.peak > 1.0 + edge)
     assert edge * (1.0 - 2.0 * RESOLUTION) <= found.margin <= edge
-    assert not found.robust or edge == 1e-3
+    assert found.robust == (edge == 1e-3)
 
 
 def test_a_peak_that_comes_near_to_overturning_is_looked_into():

@@ -270,21 +270,20 @@ def test_sub_steps_that_just_do_for_the_run_are_certified():
     assert "larger or smaller" in run.attrs["certificate"]
 
 
+CAP = rf.CushionCap(height="0.5 m", mass="10 t")
+SOIL = rf.WinklerSoil(stiffness="30 MPa", damping_ratio=0.1)
+
+
 @pytest.mark.wide
 @pytest.mark.parametrize(
-    "parts",
+    ("parts", "coupling"),
     [
-        (BLOCK,),
-        (BLOCK, rf.WinklerSoil(stiffness="30 MPa", damping_ratio=0.1)),
-        (
-            BLOCK,
-            PADS,
-            rf.CushionCap(height="0.5 m", mass="10 t"),
-            rf.WinklerSoil(stiffness="30 MPa", damping_ratio=0.1),
-        ),
+        ((BLOCK,), "coupled"),
+        ((BLOCK, SOIL), "coupled"),
+        ((BLOCK, PADS, CAP, SOIL), "coupled"),
+        ((BLOCK, PADS, CAP, SOIL), "cascade"),
     ],
 )
-@pytest.mark.parametrize("coupling", ["coupled", "cascade"])
 def test_every_scene_can_be_certified(parts, coupling, tmp_path):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)
@@ -318,7 +317,7 @@ def test_certifications_that_are_refused(arguments, error, words):
 def test_a_part_with_a_scaled_parameter():
     pads = PADS.with_scaled("damping_ratio", 2.0)
     assert pads == rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.20)
-    wide = rf.CushionCap(height="0.5 m", mass="10 t").with_scaled("mass", 0.5)
+    wide = CAP.with_scaled("mass", 0.5)
     assert wide == rf.CushionCap(height="0.5 m", mass="5 t")
     soil = rf.WinklerSoil(stiffness="30 MPa", damping_ratio=0.1, separation="pressure")
     assert soil.parameters() == ("stiffness", "damping_ratio")

@@ -562,27 +562,27 @@ LINES = {
 SCENE = TEMPLATES["block"].split("[run]", maxsplit=1)[0] + '[run]\naccuracy = "fast"\n'
 STUDY = 'scene = "scene.toml"\nmotions = ["record.AT2"]\n'
 FILES = {
-    # what a file of a scene, or of a study, is wrong by; and what is said, with the line
-    SCENE.replace("[block]", "[blok]"): "line 4: unknown key 'blok'; was 'block'",
-    SCENE.replace("width", "widht"): "line 5: unknown key 'widht'; was 'width'",
-    SCENE.replace('"0.8 m"', "0.8"): "line 5: [block]: width needs a length with a unit",
-    SCENE.replace('"0.8 m"', "0.8 m"): "line 5: this is no TOML",
-    SCENE.replace("sine_pulse", "sine_puls"): "was 'sine_pulse'",
-    SCENE.replace("amplitude", "amplitde"): "was 'amplitude'",
-    f'{SCENE}acuracy = "fast"\n': "was 'accuracy'",
-    f"{SCENE}free_vibration = 20\n": "line 16: simulate: free_vibration needs a time",
-    f'{SCENE}outputs = ["energi"]\n': "was 'energy'",
-    f'{SCENE}initial = {{ rotaton = "0.1 rad" }}\n': "was 'rotation'",
-    f'{SCENE}[system]\nrestraint = "center"\n': "was 'centre'",
-    f"{SCENE}[system]\ngravity = 9.81\n": "gravity needs an acceleration with a unit",
-    f"{SCENE}[pads]\nfrequency_ratio = 40\n": "give damping_ratio or damping",
-    f'{SCENE}[[restrainers]]\nname = "a"\n': "was 'restrainer'",
-    f'{SCENE}[project]\nobjekt = "x"\n': "was 'object'",
-    f"{STUDY}[axes]\nwidht = [1]\n": "was 'width'",
-    f"{STUDY}[axes]\nwidth = [1]\n": "line 4: width needs a length with a unit",
-    f"{STUDY}[axis]\nscale = [1]\n": "was 'axes'",
-    f'{STUDY}[axes]\nscale = [1]\n[sweep]\nacuracy = "fast"\n': "was 'accuracy'",
-    f'{STUDY}cases = "none.csv"\n': "none.csv",
+    # what a file of a scene, or of a study, is wrong by; the line, and what is said
+    SCENE.replace("[block]", "[blok]"): (4, "unknown key 'blok'; was 'block'"),
+    SCENE.replace("width", "widht"): (5, "unknown key 'widht'; was 'width'"),
+    SCENE.replace('"0.8 m"', "0.8"): (5, "[block]: width needs a length with a unit"),
+    SCENE.replace('"0.8 m"', "0.8 m"): (5, "this is no TOML"),
+    SCENE.replace("sine_pulse", "sine_puls"): (10, "was 'sine_pulse'"),
+    SCENE.replace("amplitude", "amplitde"): (11, "was 'amplitude'"),
+    f'{SCENE}acuracy = "fast"\n': (16, "was 'accuracy'"),
+    f"{SCENE}free_vibration = 20\n": (16, "simulate: free_vibration needs a time"),
+    f'{SCENE}outputs = ["energi"]\n': (16, "was 'energy'"),
+    f'{SCENE}initial = {{ rotaton = "0.1 rad" }}\n': (16, "was 'rotation'"),
+    f'{SCENE}[system]\nrestraint = "center"\n': (17, "was 'centre'"),
+    f"{SCENE}[system]\ngravity = 9.81\n": (17, "gravity needs an acceleration with a unit"),
+    f"{SCENE}[pads]\nfrequency_ratio = 40\n": (16, "give damping_ratio or damping"),
+    f'{SCENE}[[restrainers]]\nname = "a"\n': (16, "was 'restrainer'"),
+    f'{SCENE}[project]\nobjekt = "x"\n': (17, "was 'object'"),
+    f"{STUDY}[axes]\nwidht = [1]\n": (4, "was 'width'"),
+    f"{STUDY}[axes]\nwidth = [1]\n": (4, "width needs a length with a unit"),
+    f"{STUDY}[axis]\nscale = [1]\n": (3, "was 'axes'"),
+    f'{STUDY}[axes]\nscale = [1]\n[sweep]\nacuracy = "fast"\n': (6, "was 'accuracy'"),
+    f'{STUDY}cases = "none.csv"\n': (3, "none.csv"),
 }
 
 
@@ -671,11 +671,11 @@ def test_each_file_that_is_wrong_is_refused_with_its_line(inside, capsys, tmp_pa
         shutil.copy(name, tmp_path)
     monkeypatch.chdir(tmp_path)
     faults = []
-    for text, words in FILES.items():
+    for text, (line, words) in FILES.items():
         Path("wrong.toml").write_text(text)
         command = "study" if text.startswith(STUDY) else "describe"
         code, said = typed([command, "wrong.toml"], capsys)
-        if code != 2 or "wrong.toml" not in said or words not in said:
+        if code != 2 or f"wrong.toml, line {line}: " not in said or words not in said:
             faults.append(f"{text.splitlines()[-3:]}: {code} {said}")
     assert not faults
 

@@ -107,7 +107,9 @@ def test_one_step_of_plain_xarray_tells_no_mixed_verdict_and_no_caution_of_one(r
     for chosen in (row(runs, STANDS, FALLS), [runs[STANDS], warned], [warned, runs[FALLS]]):
         bare = [one.drop_dims(["time", "event"]) for one in chosen]
         joined = xr.concat(bare, "run", data_vars="all", combine_attrs="drop_conflicts")
-        for name in RUN_ATTRIBUTES & set(joined.attrs):
+        kept = RUN_ATTRIBUTES & set(joined.attrs)
+        assert "solver_substeps" in kept
+        for name in kept:
             values = {str(one.attrs[name]) for one in chosen}
             assert len(values) == 1, name
         assert ("cautions" in joined.attrs) == all(

@@ -435,7 +435,7 @@ def test_every_analysis_has_a_report(tmp_path):
         words = words_of(rf.report(result, tmp_path / f"{name}.html"))
         assert said in words, name
         assert "Provenance" in words
-        assert "not described" not in words or name == "joined"
+        assert "not described" not in words
         assert "s^-" not in words.split("Scene")[0]  # powers stand above the line
 
 

@@ -10,6 +10,7 @@ import rockframe as rf
 from rockframe.command.files.scenes import read_scene
 from rockframe.compiled.bound import structure_of
 from rockframe.errors import AssemblyError, ComponentError, StudyError
+from rockframe.simulation.certify.perturbations import parameters
 
 WEIGHT, GRAVITY = 1e6, 9.80665
 BLOCK = rf.Block(width="2 m", height="8 m", mass=f"{WEIGHT / GRAVITY!r} kg")
@@ -175,7 +176,15 @@ def test_sweeps_and_certificates_name_several_links():
         scene, motions={"pulse": PULSE}, free_vibration="1 s",
         axes={"upper.stiffness": ([0.01, 1.0], "MN/m"), "Tendon.preload": (["0.1 MN", "0.2 MN"])},
     )  # fmt: skip
-    assert runs.peak_rotation.shape == (2, 2, 1) or runs.peak_rotation.size == 4
+    assert dict(runs.sizes) == {"upper.stiffness": 2, "Tendon.preload": 2, "motion": 1}
+    changed = tie.replace(stiffness="0.01 MN/m"), TENDON.replace(preload="0.2 MN"), LOAD
+    alone = rf.System(BLOCK, *changed).simulate(PULSE, free_vibration="1 s")
+    assert runs.peak_rotation[0, 1, 0].item() == alone.peak_rotation.item()
+    varied = [name for name, _ in parameters(scene.assembly)]
+    assert varied[3:] == [
+        "stiffness of upper", "slack of upper", "stiffness of restrainer 2",
+        "preload of restrainer 2", "vertical of load 3", "horizontal of load 3",
+    ]  # fmt: skip
     both = rf.System(BLOCK, tie, tie.replace(name="lower", to=("-4 m", "6 m")))
     with pytest.raises(StudyError, match=r"'upper\.stiffness' or 'lower\.stiffness'"):
         rf.sweep(both, motions={"pulse": PULSE}, axes={"stiffness": ([1.0], "MN/m")})

@@ -510,7 +510,6 @@ def test_a_report_of_a_case_names_each_axis_once(typed, folder):
 
 
 @pytest.mark.usefixtures("no_pictures")
-@pytest.mark.usefixtures("no_pictures")
 def test_a_report_on_a_store_has_the_whole_of_its_name(typed, folder, monkeypatch):
     (folder / "study.toml").write_text('scene = "scene.toml"\n[axes]\nscale = [1, 2]\n')
     assert typed("study", "study.toml", "--store", "kept.1")[0] == 0

@@ -207,7 +207,10 @@ def test_what_is_no_test_is_refused():
     ],
 )
 def test_arrays_need_units(given):
-    with pytest.raises(UnitsError):
+    words = (
+        r"(time|rotation|measured|peaks) (needs |has the unit '\w+', but '\w+' is given with it)"
+    )
+    with pytest.raises(UnitsError, match=words):
         rf.fit_free_decay(START, **given)
 
 

@@ -1,6 +1,8 @@
-"""Made-up record files."""
+"""Made-up record files, and what is read from them."""
 
 import numpy as np
+
+from rockframe.motion import GroundMotion
 
 G = 9.80665
 TITLE = "PEER NGA STRONG MOTION DATABASE RECORD"
@@ -25,3 +27,20 @@ def at2(points_line: str, values, *, title=TITLE, event=EVENT, unit=UNIT, **layo
     """A complete AT2 file."""
     end = layout.get("end", "\n")
     return end.join([title, event, unit, points_line]) + end + rows(values, **layout)
+
+
+def check_same(found: GroundMotion, motion: GroundMotion) -> None:
+    """Check that a motion is another one, bit for bit."""
+    assert found == motion
+    assert found.si.time_step == motion.si.time_step
+    assert (found.si.vertical is None) == (motion.si.vertical is None)
+    for name in ("horizontal", "vertical"):
+        ours, theirs = getattr(motion.si, name), getattr(found.si, name)
+        if ours is not None:
+            assert ours.analytic == theirs.analytic
+            assert ours.samples.tobytes() == theirs.samples.tobytes()
+            assert ours.pieces.tobytes() == theirs.pieces.tobytes()
+    assert found.history == motion.history
+    assert dict(found.metadata) == dict(motion.metadata)
+    assert found.name == motion.name
+    assert found.to_dict() == motion.to_dict()

@@ -6,7 +6,7 @@ import cf_units
 import numpy as np
 import pytest
 import xarray as xr
-from unit.motion.motion_files import at2, numbers
+from unit.motion.motion_files import at2, check_same, numbers
 
 from rockframe.errors import SchemaError
 from rockframe.motion import GroundMotion
@@ -36,24 +36,8 @@ def motion(request):
     return request.param()
 
 
-def same(found: GroundMotion, motion: GroundMotion) -> None:
-    assert found == motion
-    assert found.si.time_step == motion.si.time_step
-    assert (found.si.vertical is None) == (motion.si.vertical is None)
-    for name in ("horizontal", "vertical"):
-        ours, theirs = getattr(motion.si, name), getattr(found.si, name)
-        if ours is not None:
-            assert ours.analytic == theirs.analytic
-            assert ours.samples.tobytes() == theirs.samples.tobytes()
-            assert ours.pieces.tobytes() == theirs.pieces.tobytes()
-    assert found.history == motion.history
-    assert dict(found.metadata) == dict(motion.metadata)
-    assert found.name == motion.name
-    assert found.to_dict() == motion.to_dict()
-
-
 def test_in_memory(motion):
-    same(GroundMotion.from_dataset(motion.to_dataset()), motion)
+    check_same(GroundMotion.from_dataset(motion.to_dataset()), motion)
 
 
 @pytest.mark.parametrize("format_name", ["NETCDF4", "NETCDF3_64BIT"])
@@ -61,7 +45,7 @@ def test_through_a_file(motion, tmp_path, format_name):
     path = tmp_path / "motion.nc"
     motion.to_dataset().to_netcdf(path, engine="netcdf4", format=format_name)
     with xr.open_dataset(path, engine="netcdf4") as stored:
-        same(GroundMotion.from_dataset(stored), motion)
+        check_same(GroundMotion.from_dataset(stored), motion)
         assert "_FillValue" not in stored["time"].encoding
         assert stored["time"].dtype == np.float64
 
@@ -72,7 +56,7 @@ def test_a_record_through_a_file(write, tmp_path):
     read.to_dataset().to_netcdf(path)
     with xr.open_dataset(path) as stored:
         found = GroundMotion.from_dataset(stored)
-    same(found, read)
+    check_same(found, read)
     assert found.metadata["component"] == "67"
 
 

@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from unit.motion.motion_files import at2, numbers
 
-from rockframe.errors import ComponentError, RecordError, RecordWarning, UnitsError
+from rockframe.errors import RecordError, RecordWarning, UnitsError
 from rockframe.motion import GroundMotion, formats
 
 HTML = "<!DOCTYPE html>\n<html><head><title>404 Not Found</title></head></html>\n"
@@ -79,11 +79,6 @@ def test_formats_are_listed_and_can_be_named(write):
     motion = GroundMotion.read(write(AT2, "record.unknown"), format="peer-at2")
     assert motion == GroundMotion.read(write(AT2, "record.unknown"))
     assert motion.metadata["format"] == "peer-at2"
-
-
-def test_unknown_format(write):
-    with pytest.raises(ComponentError, match=r"one of 'peer-at2', .*'text', got 'xls'"):
-        GroundMotion.read(write(AT2), format="xls")
 
 
 def test_accented_header_in_latin_1(write):

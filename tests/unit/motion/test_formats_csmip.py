@@ -100,7 +100,7 @@ def test_a_unit_in_tenths_of_g_can_be_named(write):
 
 
 def test_a_smc_file_is_not_taken_for_one(write):
-    with pytest.raises(RecordError):
+    with pytest.raises(RecordError, match=r"number of comment lines \(integer 16\)"):
         read(write, "2 CORRECTED ACCELEROGRAM   CHAN\n" + csmip(2))
 
 

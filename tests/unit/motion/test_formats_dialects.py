@@ -30,7 +30,7 @@ class TestCsmip:
     @pytest.mark.parametrize("number", ["0", "-5", "1.2.3"])
     def test_a_rate_that_is_none(self, write, number):
         text = made.cgs(points=f"{{count}} Accelerogram points at {number} pts/sec in units of g .")
-        with pytest.raises(RecordError):
+        with pytest.raises(RecordError, match=r"expected a (rate|time step)|expected 10 numbers"):
             read(write, text, component="E")
 
     def test_the_unit_of_the_stated_peak_where_the_data_have_none(self, write):
@@ -106,7 +106,9 @@ class TestUnam:
         motion = read(write, made.unam(orientations="/-V;1/+N90E;2/-N00E;3"), component=("E", "U"))
         expect(motion, 0.01 * VALUES["E"])
         np.testing.assert_allclose(motion.si.vertical.samples, -0.01 * VALUES["U"], rtol=1e-12)
-        assert read(write, made.unam(orientations="/-V/N90E/-N00E"), component="S").si is not None
+        south = read(write, made.unam(orientations="/-V/N90E/-N00E"), component="S")
+        expect(south, 0.01 * VALUES["N"])  # of the third channel, which is positive to the south
+        assert south.metadata["azimuth"] == 180.0
 
     def test_a_channel_without_a_step(self, write):
         text = made.unam().replace("/0.01/0.01/0.01", "/0.01/0.01")

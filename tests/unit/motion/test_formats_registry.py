@@ -94,7 +94,7 @@ def test_the_place_where_readers_stood_before_tells_the_new_one():
 
 
 def test_a_format_can_be_named_in_capitals(write):
-    with pytest.raises(RecordError):
+    with pytest.raises(RecordError, match=r"expected a header line 'Sampling Freq\(Hz\)'"):
         GroundMotion.read(write("x", "r"), format="K_NET")
 
 

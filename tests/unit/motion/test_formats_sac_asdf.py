@@ -3,6 +3,7 @@
 import importlib.util
 import re
 
+import netCDF4
 import numpy as np
 import pytest
 from unit.motion.binary_samples import asdf, station_xml
@@ -122,14 +123,22 @@ class TestAsdf:
         with pytest.raises(RecordError, match=r"3 components: 'HNE' .* 'HNN' .* 'HNZ'"):
             GroundMotion.read(write(asdf(tmp_path), "w.h5"))
 
-    def test_an_hdf5_file_of_something_else(self, write, tmp_path):
-        data = asdf(tmp_path).replace(b"Waveforms", b"Wavefronts"[:9])
-        with pytest.raises(RecordError):
-            GroundMotion.read(write(data, "w.h5"))
+    def test_an_hdf5_file_of_something_else(self, tmp_path):
+        for group, words in (
+            ("Wavefronts", "found no variable 'acceleration'"),
+            ("Waveforms", "found no waveforms"),
+        ):
+            path = tmp_path / "w.h5"
+            with netCDF4.Dataset(path, "w") as file:
+                file.setncatts({"file_format": "ASDF"})
+                file.createGroup(group).createGroup("XX.MADE")
+            with pytest.raises(RecordError, match=words):
+                GroundMotion.read(path)
 
     @pytest.mark.parametrize("rate", [0.0, -1.0, float("nan"), 1e-9])
     def test_a_rate_that_is_none(self, write, tmp_path, rate):
-        with pytest.raises(RecordError):
+        words = f"a sampling rate of {rate} Hz" if rate != 1e-9 else "a time step of 1000000000.0 s"
+        with pytest.raises(RecordError, match=words):
             GroundMotion.read(write(asdf(tmp_path, rate=rate), "w.h5"), component="HNE")
 
     def test_the_title_says_what_it_is(self, tmp_path, write):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from unit.motion import dialect_samples as made
 from unit.motion import format_samples as formats
-from unit.motion.dialect_samples import COUNT, VALUES, peak
+from unit.motion.dialect_samples import VALUES, peak
 
 from rockframe.errors import RecordError, RecordWarning
 from rockframe.motion import GroundMotion
@@ -206,7 +206,3 @@ def test_files_in_metres_that_pass_for_g_are_doubted_from_0_15_g_on(write):
         with pytest.warns(RecordWarning, match="is the unit g_0 right"):
             GroundMotion.read(path)
     GroundMotion.read(write(column(1.4 * shaking, "g"), "r.txt"))
-
-
-def test_the_counts_of_the_samples_are_as_announced():
-    assert COUNT == 61

@@ -31,13 +31,6 @@ def test_pieces_are_as_exact_as_promised(frequency, cycles):
     assert pulse.si.duration == pytest.approx(cycles / frequency, rel=1e-14)
 
 
-def test_straight_lines_through_the_same_samples_would_be_much_worse():
-    pulse = GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
-    time = np.linspace(0.0, 1.0, 20011)
-    straight = np.interp(time, np.arange(129) / 128.0, pulse.si.horizontal.samples)
-    assert np.max(np.abs(straight - np.sin(2.0 * np.pi * time))) > 1e-4
-
-
 def test_pieces_meet_with_value_slope_and_curvature():
     si = GroundMotion.harmonic("3 m/s^2", "2 Hz", "1.3 s", "0.4 rad").si
     pieces = si.horizontal.pieces

@@ -40,11 +40,6 @@ def test_a_ratio_that_is_whole_but_for_rounding_is_whole():
     assert fine.si.horizontal.samples[::3].tolist() == NOISE.tolist()
 
 
-def test_coarsening_takes_nothing_from_the_slowest_motion():
-    still = GroundMotion.from_arrays((np.ones(2000), "m/s^2"), "0.005 s").resampled("0.02 s")
-    np.testing.assert_allclose(still.si.horizontal.samples[100:-100], 1.0, rtol=1e-9)
-
-
 @pytest.mark.parametrize("step", [0.003, 0.003332])
 def test_refining_by_another_number_reads_off_the_straight_lines(step):
     fine = motion().resampled(f"{step} s", interpolation="linear")
@@ -86,7 +81,7 @@ def test_coarsening_keeps_slow_and_removes_fast_motion_without_delay(step):
     exact = swell * np.sin(2.0 * np.pi * 0.1 / step * time)
     assert coarse.si.horizontal.samples == pytest.approx(exact, abs=0.02)
     assert motion(fast).resampled(f"{step} s").si.peak < 1e-3
-    assert "anti-alias" in coarse.history[-1] or "anti-alias" in coarse.history[-2]
+    assert "anti-alias" in " ".join(coarse.history[-2:])
 
 
 @pytest.mark.parametrize("step", [0.02, 0.025, 0.0333])
@@ -104,14 +99,12 @@ def test_coarsening_keeps_the_ends_of_a_straight_line():
     assert coarse == pytest.approx(np.arange(0.0, 401.0, 4.0), rel=0.02, abs=0.01)
 
 
-def test_coarsening_by_picking_samples_would_alias():
-    assert np.max(np.abs(tone(0.7 / 0.05)[::5])) > 0.5
-
-
-def test_coarsening_keeps_a_constant():
-    assert motion(np.full(400, 2.0)).resampled("0.03 s").si.horizontal.samples == pytest.approx(
-        2.0, rel=0.02
-    )
+@pytest.mark.parametrize("step", ["0.02 s", "0.03 s"])
+def test_coarsening_keeps_a_constant(step):
+    """All of it away from the ends, beyond which nothing is known."""
+    coarse = motion(np.full(2000, 2.0)).resampled(step).si.horizontal.samples
+    np.testing.assert_allclose(coarse, 2.0, rtol=0.02)
+    np.testing.assert_allclose(coarse[100:-100], 2.0, rtol=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -149,6 +149,8 @@ def test_components_of_different_factors_have_none_together():
     once, twice = motion(NORTH).scaled(2.0), motion(EAST).scaled(4.0)
     assert "scale_factor" not in once.rotated(twice, "30 deg").metadata
     assert "scale_factor" not in once.rotated(motion(EAST), "30 deg").metadata
+    # a sign is that of the component
+    assert once.rotated(motion(EAST).scaled(-2), "30 deg").metadata["scale_factor"] == 2.0
     axes = rf.HorizontalPair(once, motion(EAST).scaled(2.0)).in_axes("30 deg")
     assert [one.metadata["scale_factor"] for one in (axes.first, axes.second)] == [2.0, 2.0]
     plain = rf.HorizontalPair(motion(NORTH), motion(EAST)).in_axes("30 deg")
@@ -177,12 +179,6 @@ def test_every_scaling_of_each_component_counts(joined, across, upwards):
     if made.si.vertical is not None:
         assert made.si.vertical.samples == pytest.approx((upwards or 1.0) * EAST)
     assert not any(name.startswith("vertical_vertical") for name in made.metadata)
-
-
-def test_components_of_different_scales_have_no_common_one():
-    one, other = motion(NORTH).scaled(2), motion(EAST).scaled(3)
-    assert "scale_factor" not in one.rotated(other, "30 deg").metadata
-    assert one.rotated(motion(EAST).scaled(-2), "30 deg").metadata["scale_factor"] == 2.0
 
 
 def test_the_misfit_of_a_scaled_vertical_component_is_dropped():

@@ -43,7 +43,7 @@ def test_new_figures_are_those_of_pyplot_and_given_axes_make_none(runs):
     panels = rf.plot.response(runs["whole"])
     assert panels.figure.number in plt.get_fignums()
     assert all(isinstance(axes, Axes) for axes in panels)
-    assert repr(panels).startswith("<4 panels: 'ground [m/s$^{2}$]'") or "ground" in repr(panels)
+    assert repr(panels).startswith("<4 panels: 'ground [m s$^{-2}$]', 'rotation ")
     figure, (left, right) = plt.subplots(1, 2)
     open_now = plt.get_fignums()
     given = rf.plot.response(runs["whole"], panels="rotation", ax=left)

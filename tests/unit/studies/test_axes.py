@@ -107,18 +107,6 @@ def test_the_nearest_of_many_values_is_named() -> None:
         rf.case(runs, scale=2.0)
 
 
-def test_peaks_of_the_motion_have_their_abbreviations() -> None:
-    runs = rf.sweep(rf.System(BLOCK), PULSE, PGA=["2 m/s^2", "4 m/s^2"], duration="2 s")
-    assert runs.overturned.dims == ("peak_ground_acceleration", "motion")
-    assert rf.case(runs, PGA="4 m/s^2").motion.peak_acceleration.m_as("m/s^2") == 4.0
-    spectral = rf.sweep(rf.System(BLOCK), PULSE, SA=["3 m/s^2"], period="1 s", duration="2 s")
-    assert "pseudo_spectral_acceleration" in spectral.dims
-    with pytest.raises(StudyError, match="all scale the motion"):
-        rf.sweep(rf.System(BLOCK), PULSE, PGA=["2 m/s^2"], scale=[1.0], duration="2 s")
-    own = rf.sweep(lambda PGA: rf.System(BLOCK), PULSE, PGA=[1, 2], duration="2 s")  # noqa: N803
-    assert "PGA" in own.dims
-
-
 def test_a_case_without_its_unit_is_answered_by_one_with_it():
     column = rf.System(rf.Block(width="1 m", height="4 m", mass="1 t"))
     pulse = rf.GroundMotion.sine_pulse("2 m/s^2", "2 Hz")

@@ -377,6 +377,7 @@ def test_abbreviations_of_measures_are_the_axes_of_their_full_names():
             for name in (short, full)
         )
         xr.testing.assert_identical(one.drop_attrs(), other.drop_attrs())
+        assert one.peak_rotation.dims == (full, "motion")
         assert one.sizes[full] == 2
         alone = rf.case(one, **{short: 4.0}).simulate(outputs=None)
         assert alone.peak_rotation.item() == one.peak_rotation.sel({full: 4.0}).item()
@@ -389,6 +390,8 @@ def test_abbreviations_of_measures_are_the_axes_of_their_full_names():
     assert "peak_ground_acceleration" in drawn.parameter
     with pytest.raises(StudyError, match="'peak_ground_acceleration' is given twice"):
         rf.sweep(system, PULSE, PGA=["1 m/s^2"], peak_ground_acceleration=["2 m/s^2"])
+    with pytest.raises(StudyError, match="all scale the motion"):
+        rf.sweep(system, PULSE, PGA=["1 m/s^2"], scale=[1.0])
 
 
 def test_a_function_keeps_an_argument_of_that_name():

@@ -204,11 +204,11 @@ def test_what_is_no_suite(given, words, tmp_path, monkeypatch):
 
 
 def test_arguments_are_checked(folder):
-    with pytest.raises(UnitsError):
+    with pytest.raises(UnitsError, match="unit needs the unit of an acceleration, got 'm'"):
         rf.read_suite(folder, unit="m")
-    with pytest.raises(ComponentError):
+    with pytest.raises(ComponentError, match=r"format must be one of .* got 'xls'"):
         rf.read_suite(folder, format="xls")
-    with pytest.raises(ComponentError):
+    with pytest.raises(ComponentError, match="time_step must be greater than zero, got '0 s'"):
         rf.read_suite(folder, time_step="0 s")
 
 

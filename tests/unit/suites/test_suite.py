@@ -209,15 +209,15 @@ def test_motions_without_names_of_their_own_are_called_by_their_labels():
 
 def test_a_dataset_that_was_changed_is_refused(tmp_path):
     dataset = SUITE.to_dataset()
-    for change in (
-        lambda one: one.assign(acceleration=2.0 * one.acceleration),
-        lambda one: one.assign(sample_count=one.sample_count + 1),
-        lambda one: one.drop_vars("metadata"),
-        lambda one: one.assign_attrs(unread="["),
-        lambda one: one.assign_attrs(kind="other"),
-        lambda one: SUITE["RSN6_MADE_S6000"].to_dataset(),
+    for change, words in (
+        (lambda one: one.assign(acceleration=2.0 * one.acceleration), "that were changed since"),
+        (lambda one: one.assign(sample_count=one.sample_count + 1), "its counts add up to 3208"),
+        (lambda one: one.drop_vars("metadata"), "there is no 'metadata'"),
+        (lambda one: one.assign_attrs(unread="["), r"cannot be read \(Expecting value"),
+        (lambda one: one.assign_attrs(kind="other"), "found 'Suite of ground motions'"),
+        (lambda one: SUITE["RSN6_MADE_S6000"].to_dataset(), "found 'Ground motion RSN6_MADE_S60"),
     ):
-        with pytest.raises(SchemaError):
+        with pytest.raises(SchemaError, match=words):
             rf.MotionSuite.from_dataset(change(dataset.copy()))
     dataset.assign(acceleration=2.0 * dataset.acceleration).to_netcdf(tmp_path / "x.nc")
     with pytest.raises(RecordError, match="changed since"):
