@@ -56,7 +56,7 @@ def test_a_run_from_the_template_to_the_report(typed, folder):
 
 
 @pytest.mark.usefixtures("no_pictures")
-def test_a_study_of_records_of_unlike_time_steps_down_to_its_report(typed, folder):
+def test_study_of_records_with_unlike_time_steps_is_reported(typed, folder):
     (folder / "records").mkdir()
     for step in ("0.01 s", "0.02 s"):
         motion = rf.GroundMotion.sine_pulse("4 m/s^2", "1 Hz").resampled(step)
@@ -75,7 +75,7 @@ def test_a_study_of_records_of_unlike_time_steps_down_to_its_report(typed, folde
     assert "The worst case in full" in page
 
 
-def test_a_table_without_a_unit_is_asked_for_the_option(typed, folder):
+def test_record_table_without_unit_requires_unit_option(typed, folder):
     rows = "\n".join(f"{0.01 * k:.2f},{0.1 * (k % 3)}" for k in range(50))
     (folder / "x.csv").write_text(f"{rows}\n")
     code, _, problem = typed("motion", "x.csv")
@@ -86,7 +86,7 @@ def test_a_table_without_a_unit_is_asked_for_the_option(typed, folder):
 
 
 @pytest.mark.usefixtures("no_pictures")
-def test_a_scaled_motion_is_told_with_its_factor(typed, folder):
+def test_scaled_motion_is_printed_with_its_factor(typed, folder):
     typed("template")
     code, told, _ = typed("run", "scene.toml", "-o", "out.nc", "--scale", "3")
     assert code == 0
@@ -97,7 +97,7 @@ def test_a_scaled_motion_is_told_with_its_factor(typed, folder):
     assert "3 times sine pulse, -5 m/s^2, 2 Hz" in (folder / "out.html").read_text()
 
 
-def test_a_result_where_a_scene_is_needed_is_named_as_one(typed):
+def test_result_file_as_scene_is_refused(typed):
     typed("template")
     typed("run", "scene.toml", "-o", "out.nc")
     code, _, problem = typed("certify", "out.nc")
@@ -106,7 +106,7 @@ def test_a_result_where_a_scene_is_needed_is_named_as_one(typed):
     assert "rockframe report" in problem
 
 
-def test_options_take_the_place_of_what_the_scene_says(typed):
+def test_options_override_the_scene(typed):
     given = ["run", "scene.toml", "-o", "out.nc", "--free-vibration", "1 s", "--accuracy", "1e-6"]
     code, *_ = typed(*given, "--motion", "record.AT2", "--scale", "0.5")
     assert code == 0
@@ -127,7 +127,7 @@ def test_options_take_the_place_of_what_the_scene_says(typed):
             assert float(kept.time[-1]) == pytest.approx(end, abs=0.02)
 
 
-def test_a_certificate_is_told_and_kept(typed):
+def test_certificate_is_printed_and_stored(typed):
     code, told, _ = typed("certify", "scene.toml", "--runs", "60", "-o", "sure.nc")
     assert code == 0
     assert "Certificate: The body stands" in told
@@ -149,7 +149,7 @@ def test_motions_are_listed_with_their_measures(typed, folder):
     assert (folder / "m.svg").exists()
 
 
-def test_many_motions_are_a_table_that_is_not_too_wide(typed, folder):
+def test_table_of_many_motions_is_wrapped(typed, folder):
     for number in range(1, 12):
         pulse = rf.GroundMotion.sine_pulse(f"{number} m/s^2", "1 Hz")
         pulse.to_at2(f"a_record_with_a_name_{number}.AT2")
@@ -164,7 +164,7 @@ def test_many_motions_are_a_table_that_is_not_too_wide(typed, folder):
     assert all("\\" not in line and line == line.rstrip() for line in lines)
 
 
-def test_a_file_without_a_unit_is_told_the_option_once(typed, folder):
+def test_error_for_missing_unit_mentions_the_option_once(typed, folder):
     (folder / "index.txt").write_text("\n".join(f"{0.01 * k:.2f}" for k in range(200)))
     code, _, error = typed("run", "scene.toml", "--motion", "index.txt", "--time-step", "0.01 s")
     assert code == 2
@@ -172,7 +172,7 @@ def test_a_file_without_a_unit_is_told_the_option_once(typed, folder):
     assert "unit='g'" not in error
 
 
-def test_a_study_goes_on_with_its_store(typed, folder):
+def test_finished_study_is_not_run_again(typed, folder):
     (folder / "study.toml").write_text(TEMPLATES["study"].replace('accuracy = "fast"', "chunk = 5"))
     code, told, _ = typed("study", "study.toml", "--csv", "runs.csv")
     assert code == 0
@@ -189,7 +189,7 @@ def test_a_study_goes_on_with_its_store(typed, folder):
 
 
 @pytest.mark.parametrize("store", ["my kept", None])
-def test_an_interrupted_study_tells_the_command_that_goes_on(typed, folder, monkeypatch, store):
+def test_interrupted_study_prints_the_command_to_resume(typed, folder, monkeypatch, store):
     template = TEMPLATES["study"].replace('accuracy = "fast"', "chunk = 2")
     lines = [line for line in template.splitlines() if not line.startswith("store")]
     (folder / "study.toml").write_text("\n".join(lines))
@@ -242,7 +242,7 @@ def test_a_table_of_cases_is_read(typed, folder):
 
 
 @pytest.mark.usefixtures("no_pictures")
-def test_the_report_of_a_study_is_that_of_all_or_of_a_case(typed, folder):
+def test_study_can_be_reported_whole_or_by_case(typed, folder):
     (folder / "study.toml").write_text(
         'scene = "scene.toml"\n[axes]\nscale = [1.0, 2.0]\nwidth = ["0.7 m", "0.8 m"]\n'
     )
@@ -266,7 +266,7 @@ def test_the_report_of_a_study_is_that_of_all_or_of_a_case(typed, folder):
 
 
 @pytest.mark.usefixtures("no_pictures")
-def test_the_report_of_a_study_takes_its_records_a_target_and_checks(typed, folder, monkeypatch):
+def test_study_report_accepts_records_target_and_checks(typed, folder, monkeypatch):
     (folder / "records").mkdir()
     for seed in (1, 2):
         motion = rf.GroundMotion.stochastic(6.5, "20 km", seed=seed).window("2 s", "8 s")
@@ -310,7 +310,7 @@ def test_the_report_of_a_study_takes_its_records_a_target_and_checks(typed, fold
 
 
 @pytest.mark.usefixtures("no_pictures")
-def test_the_file_of_a_scene_says_what_its_reports_say_of_the_project(typed, folder):
+def test_project_table_of_a_scene_appears_in_reports(typed, folder):
     scene = (folder / "scene.toml").read_text()
     project = '[project]\nobject = "Tower"\ndate = 2026-11-24\n'
     (folder / "scene.toml").write_text(f"{scene}\n{project}")
@@ -372,7 +372,7 @@ WRONG = {
 
 
 @pytest.mark.parametrize("name", WRONG)
-def test_what_is_wrong_is_told_without_a_traceback(name, typed, folder):
+def test_errors_are_printed_without_a_traceback(name, typed, folder):
     (folder / "broken.toml").write_text("[block]\nwidth = 3\n")
     words, expected = WRONG[name]
     code, out, err = typed(*words)
@@ -381,7 +381,7 @@ def test_what_is_wrong_is_told_without_a_traceback(name, typed, folder):
     assert "Traceback" not in err
 
 
-def test_other_wrong_results_are_told(typed, folder):
+def test_unsuitable_results_are_refused(typed, folder):
     rf.intensity_measures(rf.GroundMotion.sine_pulse()).to_netcdf("measures.nc")
     code, _, err = typed("plot", "measures.nc", "-o", "x.png")
     assert (code, "no function of rf.plot draws" in err) == (2, True)
@@ -392,7 +392,7 @@ def test_other_wrong_results_are_told(typed, folder):
     assert (code, "xyz" in err) == (2, True)
 
 
-def test_a_run_that_is_not_finished_has_its_exit_code(typed, folder):
+def test_unfinished_run_exits_with_code_1(typed, folder):
     text = TEMPLATES["block"].replace(
         'accuracy = "standard"', "accuracy = { rtol = 1e-9, max_steps = 20 }"
     )
@@ -410,7 +410,7 @@ def test_a_traceback_is_shown_on_request(typed):
     assert "FileError" in err
 
 
-def test_help_teaches_by_examples(typed):
+def test_help_examples_are_valid_commands(typed):
     code, told, _ = typed("--help")
     assert code == 0
     for command in COMMANDS:
@@ -428,7 +428,7 @@ def test_help_teaches_by_examples(typed):
                 assert built.parse_args(words).command == command.name
 
 
-def test_an_error_of_the_command_line_has_its_own_message(capsys):
+def test_usage_errors_carry_their_own_message(capsys):
     lines = (["run"], "required: scene.toml"), (["map", "a.toml"], "required: --amplitude")
     parsers = [parser.build_parser() for _ in lines]
     found = []
@@ -486,7 +486,7 @@ def test_it_runs_as_a_module():
     assert done.stdout.strip() == f"rockframe {rf.__version__}"
 
 
-def test_a_certificate_is_what_the_file_asks_for(typed, folder):
+def test_certificate_settings_are_read_from_the_scene(typed, folder):
     wanted = "\n[run.certify]\nnudge = 0.02\nruns = 60\n"
     (folder / "far.toml").write_text(TEMPLATES["block"] + wanted)
     code, told, _ = typed("certify", "far.toml")
@@ -497,7 +497,7 @@ def test_a_certificate_is_what_the_file_asks_for(typed, folder):
     assert answer["certificate_runs"] <= 60
 
 
-def test_a_report_of_a_case_names_each_axis_once(typed, folder):
+def test_case_option_refuses_repeated_or_unknown_axes(typed, folder):
     (folder / "study.toml").write_text('scene = "scene.toml"\n[axes]\nscale = [1, 2]\n')
     assert typed("study", "study.toml", "-o", "runs.nc")[0] == 0
     given = ("report", "runs.nc", "--no-certificate", "--case")
@@ -511,7 +511,7 @@ def test_a_report_of_a_case_names_each_axis_once(typed, folder):
 
 @pytest.mark.usefixtures("no_pictures")
 @pytest.mark.usefixtures("no_pictures")
-def test_a_report_on_a_store_has_the_whole_of_its_name(typed, folder, monkeypatch):
+def test_report_on_a_store_uses_its_full_name(typed, folder, monkeypatch):
     (folder / "study.toml").write_text('scene = "scene.toml"\n[axes]\nscale = [1, 2]\n')
     assert typed("study", "study.toml", "--store", "kept.1")[0] == 0
     given = ("report", "--no-certificate")
@@ -527,7 +527,7 @@ def test_answers_in_json_have_no_negative_zero(typed):
 
 
 @pytest.mark.usefixtures("folder")
-def test_a_vertical_component_that_a_file_has_no_place_for_is_told(typed):
+def test_conversion_warns_of_a_dropped_vertical_component(typed):
     pulse = rf.GroundMotion.sine_pulse("3 m/s^2", "2 Hz")
     pulse.with_vertical(pulse.scaled(0.5)).to_dataset().to_netcdf("both.nc")
     code, _, said = typed("convert", "both.nc", "-o", "both.AT2")
@@ -549,7 +549,7 @@ def test_a_vertical_component_that_a_file_has_no_place_for_is_told(typed):
         ("animate short.toml -o x.html", "Not finished"),
     ],
 )
-def test_runs_that_cannot_be_finished_have_an_exit_code(words, told, typed):
+def test_commands_with_unfinished_runs_exit_with_code_1(words, told, typed):
     text = TEMPLATES["block"].replace('"standard"', "{ rtol = 1e-8, max_steps = 20 }")
     Path("short.toml").write_text(text)
     code, said, _ = typed(*shlex.split(words))
@@ -557,7 +557,7 @@ def test_runs_that_cannot_be_finished_have_an_exit_code(words, told, typed):
     assert "stands throughout" not in said
 
 
-def test_what_no_figure_shows_is_told_with_what_does(typed, folder):
+def test_plot_of_three_axes_is_refused_with_an_alternative(typed, folder):
     axes = '[axes]\nscale = [1, 2]\nwidth = ["0.8 m", "0.9 m"]\nheight = ["3 m", "3.2 m"]\n'
     (folder / "study.toml").write_text(f'scene = "scene.toml"\n{axes}')
     typed("template")
@@ -575,7 +575,7 @@ def test_a_study_of_two_axes_and_one_motion_is_drawn(typed, folder):
     assert typed("plot", "study.nc", "-o", "study.png")[0] == 0
 
 
-def test_an_axis_in_a_stack_is_answered_for_a_file(typed, folder):
+def test_axis_of_a_stack_part_is_refused_for_a_file(typed, folder):
     axes = '[axes]\nwidth = ["0.8 m", "0.9 m"]\n'
     (folder / "study.toml").write_text(f'scene = "statue.toml"\n{axes}')
     (folder / "statue.toml").write_text(TEMPLATES["statue"])

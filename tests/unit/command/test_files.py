@@ -47,7 +47,7 @@ def faults(read, path):
     return dict(caught.value.faults)
 
 
-def test_lines_are_those_of_keys_and_tables():
+def test_line_numbers_of_keys_and_tables_are_found():
     text = """# a comment with [a.table] = "in it"
 top = 1
 "quoted key" = '''
@@ -92,7 +92,7 @@ z = 0
     }
 
 
-def test_a_scene_is_what_its_classes_make_of_it(file):
+def test_scene_file_builds_the_same_system_as_python(file):
     (file(OWN, "soft.py"))
     path = file(
         """
@@ -156,7 +156,7 @@ rtol = 1e-6
     assert found.run["outputs"] == ["energy"]
 
 
-def test_files_are_found_beside_the_scene(file, tmp_path, monkeypatch):
+def test_relative_paths_are_resolved_from_the_scene_file(file, tmp_path, monkeypatch):
     (tmp_path / "records").mkdir()
     for name, peak in (("a", "-3 m/s^2"), ("b", "-2 m/s^2")):
         rf.GroundMotion.sine_pulse(peak).to_at2(tmp_path / "records" / f"{name}.AT2")
@@ -284,7 +284,7 @@ SCENES = {
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_faults_of_scenes_have_their_line(name, file):
+def test_scene_errors_have_line_numbers(name, file):
     text, expected = SCENES[name]
     found = faults(read_scene, file(text))
     for line, words in expected.items():
@@ -294,7 +294,7 @@ def test_faults_of_scenes_have_their_line(name, file):
             assert line in found, found
 
 
-def test_a_constructor_in_a_message_is_that_of_a_table():
+def test_constructor_calls_in_messages_are_translated_to_toml():
     words = "WinklerSoil.from_subgrade_modulus('20 MN/m^3', depth='4 m', ...) takes it"
     table = '[soil] with constructor = "from_subgrade_modulus", depth = "4 m"'
     assert in_toml(words) == f"{table} takes it"
@@ -302,13 +302,13 @@ def test_a_constructor_in_a_message_is_that_of_a_table():
     assert own == 'give [restrainer] with type = "Load", vertical = "1 kN", or a file \'x=(1).AT2\''
 
 
-def test_a_module_that_has_the_name_of_another_is_not_passed_over(file):
+def test_module_named_like_another_is_refused(file):
     file("raise RuntimeError\n", "json.py")
     found = faults(read_scene, file(f'modules = ["json.py"]\n{BLOCK}'))
     assert "json is another module already" in found[1]
 
 
-def test_all_faults_are_told_at_once(file):
+def test_all_scene_errors_are_reported_at_once(file):
     text = BLOCK.replace('"1 m"', "1").replace('"5 t"', '"5 m"') + "[pads]\nstifness = 3\n"
     assert set(faults(read_scene, file(text))) == {2, 4, 6}
 
@@ -324,7 +324,7 @@ STUDIES = {
 
 
 @pytest.mark.parametrize("name", STUDIES)
-def test_faults_of_studies_are_named(name, file):
+def test_study_errors_are_described(name, file):
     text, words = STUDIES[name]
     assert words in " ".join(faults(read_study, file(text)).values())
 
@@ -351,7 +351,7 @@ def test_motions_of_a_table_are_found_by_their_names(file, tmp_path):
         rf.sweep(found.system, found.motions, **found.arguments)
 
 
-def test_other_files_are_named_relative_to_the_folder_of_theirs(file, tmp_path, monkeypatch):
+def test_store_and_record_paths_are_relative_to_the_file(file, tmp_path, monkeypatch):
     text = f'{BLOCK}[axes]\nscale = [1]\n[sweep]\nknown = "kept"\n'
     assert read_study(file(text)).arguments["known"] == [tmp_path / "kept"]
     asked = []
@@ -365,7 +365,7 @@ def test_other_files_are_named_relative_to_the_folder_of_theirs(file, tmp_path, 
     assert asked == [(tmp_path / "x.mseed", tmp_path / "x.xml")]
 
 
-def test_faults_of_a_sweep_have_the_line_of_its_table(file):
+def test_sweep_errors_have_the_line_of_their_table(file):
     text = f'{BLOCK}[axes]\naccuracy = ["fast"]\n[sweep]\noverturning = "halt"\n'
     found = read_study(file(text))
     with pytest.raises(StudyError) as caught:
@@ -375,7 +375,7 @@ def test_faults_of_a_sweep_have_the_line_of_its_table(file):
     assert "overturning must be one of" in said[8]
 
 
-def test_templates_are_sound(file):
+def test_templates_can_be_read(file):
     for name, text in TEMPLATES.items():
         if name == "study":
             file(TEMPLATES["block"])
@@ -385,7 +385,7 @@ def test_templates_are_sound(file):
             assert np.isfinite(found.motion.si.duration), name
 
 
-def test_every_key_that_can_be_written_is_told():
+def test_full_template_lists_every_key():
     text = all_keys_template()
     for slot in part_slots():
         assert f"\n[{slot}]" in text
@@ -455,7 +455,7 @@ WRITTEN = {
 
 
 @pytest.mark.parametrize("name", WRITTEN)
-def test_written_parts_are_a_file_of_the_same_parts(name, file):
+def test_written_parts_survive_toml_round_trip(name, file):
     system = rf.System(*WRITTEN[name])
     lines = [
         line for head, keys in toml_tables(system.parts.structural()) for line in (head, *keys)

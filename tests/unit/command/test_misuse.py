@@ -131,7 +131,7 @@ def files(folder, made):
 
 
 @pytest.mark.parametrize("words", [*WORDS, *VALUES, *FILES])
-def test_misuse_is_told_and_leads_on(words, typed, files, folder):
+def test_misuse_prints_an_error_and_leaves_files_unchanged(words, typed, files, folder):
     if words.endswith("shut/x.nc") and os.access("shut", os.W_OK):
         pytest.skip("this user writes everywhere")
     code, out, err = typed(*split(words))
@@ -143,14 +143,14 @@ def test_misuse_is_told_and_leads_on(words, typed, files, folder):
 
 
 @pytest.mark.parametrize("words", STREAMS)
-def test_misuse_of_streams_is_told(words, piped, folder):
+def test_misuse_of_streams_prints_an_error(words, piped, folder):
     code, out, err = piped(Path("scene.toml").read_bytes(), *split(words))
     assert code == 2
     assert STREAMS[words] in err
     assert b"Traceback" not in out
 
 
-def test_an_error_is_told_to_programs_too(typed):
+def test_json_output_contains_the_error(typed):
     code, out, err = typed("run", "none.toml", "--json")
     answer = json.loads(out)
     assert answer["error"] == "none.toml: there is no such file"
@@ -159,7 +159,7 @@ def test_an_error_is_told_to_programs_too(typed):
 
 
 @pytest.mark.parametrize("words", WORDS)
-def test_a_wrong_command_line_is_told_to_programs_too(words, typed):
+def test_json_output_contains_usage_errors(words, typed):
     code, out, err = typed(*split(words), "--json")
     answer = json.loads(out)
     assert answer["exit_code"] == code == 2
@@ -197,7 +197,7 @@ PLAIN = '[block]\nwidth = "0.8 m"\nheight = "3.2 m"\nmass = "5.5 t"\n'
 
 
 @pytest.mark.parametrize("text", SCENES)
-def test_faults_of_a_scene_have_their_line(text, typed):
+def test_scene_errors_have_line_numbers(text, typed):
     line, words = SCENES[text]
     Path("wrong.toml").write_text(text.format(block=PLAIN) if "{block}" in text else text)
     code, _, err = typed("run", "wrong.toml", "--duration", "1 s")
@@ -215,7 +215,7 @@ def test_faults_of_a_scene_have_their_line(text, typed):
         ("Block.width = ['1 m']\n", 4, 'in quotation marks: "Block.width" = [...]'),
     ],
 )
-def test_faults_of_a_study_have_their_line(axes, line, words, typed):
+def test_study_errors_have_line_numbers(axes, line, words, typed):
     Path("study.toml").write_text(f'scene = "scene.toml"\n\n[axes]\n{axes}')
     for command in ("study", "fragility"):
         code, _, err = typed(command, "study.toml")
@@ -224,7 +224,7 @@ def test_faults_of_a_study_have_their_line(axes, line, words, typed):
         assert words in err
 
 
-def test_files_of_other_editors_are_read(typed):
+def test_other_encodings_and_line_endings_are_read(typed):
     text = f'# Caf\u00e9\n{PLAIN}[run]\nduration = "1 s"\n'
     for encoding, newline in (("utf-8-sig", "\n"), ("utf-16", "\r\n"), ("utf-8", "\r\n")):
         Path("other.toml").write_text(text, encoding=encoding, newline=newline)
@@ -251,7 +251,7 @@ def test_files_of_other_editors_are_read(typed):
         pytest.param("run scene.toml 2>&-", 0, marks=pytest.mark.long),
     ],
 )
-def test_closed_streams_are_no_tracebacks(words, code, folder, uncompiled):
+def test_closed_streams_cause_no_traceback(words, code, folder, uncompiled):
     done = subprocess.run(
         [shutil.which("sh"), "-c", f"{sys.executable} -m rockframe {words}"],
         capture_output=True, text=True, check=False, cwd=folder, env=uncompiled,

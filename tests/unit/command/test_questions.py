@@ -25,7 +25,7 @@ def records(folder):
     return rf.read_suite("records")
 
 
-def test_the_critical_scale_is_that_of_the_function(typed):
+def test_critical_command_equals_critical_scale(typed):
     given = ("critical", "scene.toml", "-m", "record.AT2", "--runs", "60", "--largest", "3")
     code, told, _ = typed(*given, "-o", "c.nc", "--picture", "c.svg")
     assert code == 0
@@ -57,7 +57,7 @@ def test_a_scene_that_does_not_fall_has_no_critical_scale(typed):
     assert "shaking" not in answer
 
 
-def test_a_fragility_tells_median_and_dispersion_first(typed, records):
+def test_fragility_command_prints_the_verdict_first(typed, records):
     given = ("--scales", "0.5:2:0.25", "--accuracy", "fast")
     code, told, _ = typed(
         "fragility", "scene.toml", "records", *given, "-o", "f.nc", "--picture", "f.png"
@@ -73,7 +73,7 @@ def test_a_fragility_tells_median_and_dispersion_first(typed, records):
     assert Path("f.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_a_fragility_is_fitted_to_what_was_run_before(typed, records):
+def test_fragility_command_uses_existing_runs(typed, records):
     Path("study.toml").write_text(
         'scene = "scene.toml"\nmotions = ["records"]\nstore = "kept"\n'
         "[axes]\nscale = [0.5, 1.0, 1.5, 2.0]\n"
@@ -92,7 +92,7 @@ def test_a_fragility_is_fitted_to_what_was_run_before(typed, records):
     assert (code, "its runs are finished" in problem) == (2, True)
 
 
-def test_a_dynamic_analysis_tells_the_capacity_under_each_record(typed, records):
+def test_ida_command_lists_capacity_of_each_record(typed, records):
     code, told, _ = typed(
         "ida", "scene.toml", "records", "--scales", "0.5,1,1.5,2", "-o", "i.nc", "--csv", "i.csv",
         "--picture", "i.svg",
@@ -124,7 +124,7 @@ def test_a_dynamic_analysis_tells_the_capacity_under_each_record(typed, records)
     assert (code, "no table of cases" in problem) == (2, True)
 
 
-def test_a_map_tells_the_boundaries_at_each_frequency(typed):
+def test_map_command_prints_boundaries_at_each_frequency(typed):
     given = ("--amplitude", "2:8:2 m/s^2", "--frequency", "0.5,2 Hz", "--accuracy", "fast")
     code, told, _ = typed("map", "scene.toml", *given, "-o", "m.nc", "--picture", "m.png")
     assert code == 0
@@ -144,7 +144,7 @@ def test_a_map_tells_the_boundaries_at_each_frequency(typed):
     assert (code, "Pulse:   cosine pulse" in told) == (0, True)
 
 
-def test_a_run_moves_in_a_page_and_in_a_film(typed):
+def test_animate_command_writes_page_and_film(typed):
     assert typed("run", "scene.toml", "-o", "out.nc")[0] == 0
     code, told, _ = typed("animate", "out.nc", "-o", "run.html", "--title", "A <tower>")
     assert (code, "Page: run.html" in told) == (0, True)
@@ -160,7 +160,7 @@ def test_a_run_moves_in_a_page_and_in_a_film(typed):
 
 
 @pytest.mark.parametrize("form", ["csv", "nc", "at2"])
-def test_converted_records_are_the_same_motions(typed, folder, form):
+def test_converted_records_preserve_the_motion(typed, folder, form):
     ending = {"at2": "AT2"}.get(form, form)
     code, *_ = typed("convert", "record.AT2", "-o", f"other.{ending}", "--unit", "g")
     assert code == 0
@@ -182,7 +182,7 @@ def test_many_records_go_into_a_folder_or_one_file(typed, records):
     assert not Path("one.AT2").exists()
 
 
-def test_a_statue_on_a_plinth_is_that_of_python(typed):
+def test_statue_template_equals_the_python_system(typed):
     _, told, _ = typed("template", "statue")
     Path("statue.toml").write_text(told)
     assert typed("run", "statue.toml", "-o", "statue.nc")[0] == 0
@@ -197,7 +197,7 @@ def test_a_statue_on_a_plinth_is_that_of_python(typed):
         assert float(kept.peak_rotation) == float(expected.peak_rotation)
 
 
-def test_serve_tells_its_address_and_ends(typed, monkeypatch):
+def test_serve_command_prints_its_address_and_exits_on_interrupt(typed, monkeypatch):
     served, opened = [], []
 
     def ends(server):
@@ -225,7 +225,7 @@ def test_serve_tells_its_address_and_ends(typed, monkeypatch):
 
 
 @pytest.mark.usefixtures("records")
-def test_a_fragility_of_runs_without_their_records_names_the_store(typed, folder, monkeypatch):
+def test_fragility_of_runs_without_records_suggests_the_store(typed, folder, monkeypatch):
     words = 'scene = "scene.toml"\nmotions = ["records"]\nstore = "kept"\n[axes]\nscale = [1, 2]\n'
     (folder / "study.toml").write_text(words)
     assert typed("study", "study.toml", "-o", "runs.nc")[0] == 0

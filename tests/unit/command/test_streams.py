@@ -29,7 +29,7 @@ class Terminal(io.StringIO):
 
 
 @pytest.mark.usefixtures("no_pictures")
-def test_a_scene_and_a_result_go_through_pipes(piped, folder):
+def test_scene_and_result_can_be_piped(piped, folder):
     scene = Path("scene.toml").read_bytes()
     code, result, told = piped(scene, "run", "-", "-o", "-")
     assert code == 0
@@ -49,7 +49,7 @@ def test_a_scene_and_a_result_go_through_pipes(piped, folder):
     assert (code, page[:15].lower()) == (0, b"<!doctype html>")
 
 
-def test_a_record_goes_through_a_pipe(piped, folder):
+def test_record_can_be_piped(piped, folder):
     record = Path("record.AT2").read_bytes()
     code, table, _ = piped(record, "convert", "-", "--to", "csv", "-o", "-")
     assert code == 0
@@ -64,7 +64,7 @@ def test_a_record_goes_through_a_pipe(piped, folder):
     assert table.startswith(b"motion,")
 
 
-def test_programs_get_all_numbers_with_their_units(typed):
+def test_json_output_contains_all_numbers_with_units(typed):
     code, told, err = typed("run", "scene.toml", "--json", "-o", "out.nc")
     answer = json.loads(told)
     assert (code, err) == (0, "")
@@ -81,7 +81,7 @@ def test_programs_get_all_numbers_with_their_units(typed):
     assert numbers["overturning_time"] == {"value": None, "unit": "s"}  # there is none
 
 
-def test_warnings_reach_programs_and_not_who_wants_quiet(typed, folder):
+def test_warnings_appear_in_json_but_not_with_quiet(typed, folder):
     text = TEMPLATES["block"].replace(
         'accuracy = "standard"', "accuracy = { rtol = 1e-9, max_steps = 20 }"
     )
@@ -96,7 +96,7 @@ def test_warnings_reach_programs_and_not_who_wants_quiet(typed, folder):
     assert [line.split(":")[0] for line in told.splitlines()] == ["Verdict"]
 
 
-def test_who_wants_more_gets_all_numbers(typed):
+def test_verbose_option_prints_all_numbers(typed):
     plain = typed("run", "scene.toml")[1]
     told = typed("-v", "run", "scene.toml")[1]
     assert told.startswith(plain)
@@ -107,7 +107,7 @@ def test_who_wants_more_gets_all_numbers(typed):
     ("environment", "coloured"),
     [({}, True), ({"NO_COLOR": "1"}, False), ({"NO_COLOR": ""}, True), ({"TERM": "dumb"}, False)],
 )
-def test_messages_are_coloured_on_terminals_that_want_it(environment, coloured, monkeypatch):
+def test_messages_are_coloured_only_on_capable_terminals(environment, coloured, monkeypatch):
     for name in ("NO_COLOR", "TERM"):
         monkeypatch.delenv(name, raising=False)
     for name, value in environment.items():
@@ -139,7 +139,7 @@ ANALYSES = {
         pytest.param("map", marks=pytest.mark.long),
     ],
 )
-def test_progress_is_shown_on_a_terminal_alone(name, typed, monkeypatch):
+def test_progress_is_shown_only_on_a_terminal(name, typed, monkeypatch):
     Path("study.toml").write_text('scene = "scene.toml"\n[axes]\nscale = [1.0, 2.0]\n')
     monkeypatch.setattr(streams, "_DELAY", 0.0)
     monkeypatch.setattr(streams, "_UPDATE_INTERVAL", 0.0)
@@ -154,7 +154,7 @@ def test_progress_is_shown_on_a_terminal_alone(name, typed, monkeypatch):
 
 
 @pytest.mark.parametrize("name", ["study", "fragility", "ida", "map"])
-def test_an_interrupted_analysis_tells_what_it_has(name, typed, monkeypatch):
+def test_interrupted_analysis_exits_with_code_130(name, typed, monkeypatch):
     Path("study.toml").write_text('scene = "scene.toml"\n[axes]\nscale = [1.0, 2.0]\n')
     run_chunk, calls = execution.run_chunk, []
     before = signal.getsignal(signal.SIGINT)
@@ -171,14 +171,14 @@ def test_an_interrupted_analysis_tells_what_it_has(name, typed, monkeypatch):
     assert signal.getsignal(signal.SIGINT) is before
 
 
-def test_a_terminal_is_spared_what_it_cannot_show(typed, monkeypatch):
+def test_binary_output_to_a_terminal_is_refused(typed, monkeypatch):
     monkeypatch.setattr(sys, "stdout", Terminal())
     code, _, err = typed("run", "scene.toml", "-o", "-")
     assert (code, "the standard output is a terminal" in err) == (2, True)
 
 
 @pytest.mark.parametrize("form", [[], pytest.param(["--json"], marks=pytest.mark.long)])
-def test_nothing_is_lost_where_nobody_reads_on(form, folder, uncompiled):
+def test_output_file_survives_closed_pipe(form, folder, uncompiled):
     with subprocess.Popen(
         [sys.executable, "-m", "rockframe", "run", "scene.toml", "-o", "out.nc", *form],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=uncompiled,

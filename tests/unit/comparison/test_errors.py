@@ -34,30 +34,30 @@ REFERENCE = made([0.0, 1.0, -4.0, 2.0], TIME)
 
 
 @pytest.mark.parametrize("peak", [3.0, 5.0])
-def test_a_peak_is_off_by_a_share_of_the_reference(peak):
+def test_peak_error_is_relative_to_the_reference(peak):
     assert relative_peak_error(made([0.0, peak], TIME[:2]), REFERENCE) == 0.25
 
 
-def test_a_history_is_off_by_a_share_of_the_reference():
+def test_history_error_is_relative_to_the_reference_peak():
     """The peak of the reference may be to the left, and the run's own does not count."""
     assert history_error(made([0.0, 1.0, -6.0, 2.0], TIME), REFERENCE) == 0.5
     assert history_error(made([0.0, 1.0, -2.0, 2.0], TIME), REFERENCE) == 0.5
 
 
-def test_the_instant_at_which_a_run_ended_is_not_compared():
+def test_final_sample_of_an_ended_run_is_not_compared():
     ended = made([0.0, 1.0, -3.0, 9.0], [0.0, 0.1, 0.2, 0.27])
     assert history_error(ended, REFERENCE) == 0.25
     assert history_error(REFERENCE, ended) == pytest.approx(1.0 / 3.0)
 
 
-def test_a_reference_at_rest():
+def test_errors_against_a_reference_at_rest_are_zero_or_infinite():
     still, moving = made([0.0] * 4, TIME), made([0.0, 0.0, 1e-9, 0.0], TIME)
     for error in (relative_peak_error, history_error):
         assert error(still, still) == 0.0
         assert error(moving, still) == math.inf
 
 
-def test_events_may_come_early_or_late():
+def test_event_time_error_is_the_largest_time_difference():
     reference = made(kinds=[1, 2, 3], instants=[1.0, 2.0, 3.0])
     early = made(kinds=[1, 2, 3], instants=[1.0, 1.5, 3.25])
     assert event_time_error(early, reference) == 0.5
@@ -65,14 +65,14 @@ def test_events_may_come_early_or_late():
 
 
 @pytest.mark.parametrize("kinds", [[1, 2], [1, 3, 3], [1, 2, 3, 4]])
-def test_other_events_have_no_times_to_compare(kinds):
+def test_different_events_have_no_time_error(kinds):
     reference = made(kinds=[1, 2, 3], instants=[1.0, 2.0, 3.0])
     other = made(kinds=kinds, instants=range(1, len(kinds) + 1))
     assert math.isnan(event_time_error(other, reference))
 
 
 @pytest.mark.parametrize("status", [Status.STEP_LIMIT, Status.STEP_TOO_SMALL, Status.CHATTER])
-def test_a_run_that_was_cut_off_has_no_errors(status):
+def test_unfinished_run_has_no_errors(status):
     cut = made([0.0, 1.0, -4.0], TIME[:3], status=status)
     for error in (relative_peak_error, history_error, event_time_error):
         assert math.isnan(error(cut, REFERENCE))
@@ -85,7 +85,7 @@ def test_a_run_that_was_cut_off_has_no_errors(status):
     assert not verdicts_agree(fallen, REFERENCE)
 
 
-def test_verdicts_are_those_of_the_sense_in_which_runs_were_asked():
+def test_verdicts_agree_by_the_overturning_criterion_of_the_run():
     passed = made(status=Status.COMPLETED, fell=True)
     assert verdicts_agree(passed, REFERENCE)
     assert not verdicts_agree(passed, made(status=Status.TOPPLED, fell=True))

@@ -24,7 +24,7 @@ def measured():
     return rf.tradeoff(SYSTEM, PULSE, accuracies=ACCURACIES, repeats=2, free_vibration="3 s")
 
 
-def test_axes(measured):
+def test_tradeoff_has_model_and_accuracy_axes(measured):
     assert measured.sizes == {"model": 4, "accuracy": 4}
     assert measured.model.values.tolist() == list(rf.model_ladder(SYSTEM))
     assert measured.accuracy.values.tolist() == [
@@ -44,7 +44,7 @@ def test_times_are_ordered_and_positive(measured):
     assert (median <= greatest).all()
 
 
-def test_outcomes_are_those_of_the_runs(measured):
+def test_outcomes_equal_single_runs(measured):
     run = SYSTEM.simulate(PULSE, free_vibration="3 s", accuracy="standard")
     cell = measured.sel(model="two pads", accuracy="standard")
     assert float(cell.peak_rotation) == float(run.peak_rotation)
@@ -57,7 +57,7 @@ def test_errors_fall_with_the_tolerance(measured):
     assert errors[3] < 1e-9
 
 
-def test_errors_are_what_they_are_called(measured):
+def test_errors_match_their_definitions(measured):
     reference = rf.Accuracy(rtol=1e-12)
     scene = SYSTEM.simulate(PULSE, free_vibration="3 s", accuracy=reference)
     rigid = rf.System(BLOCK).simulate(PULSE, free_vibration="3 s", accuracy="standard")
@@ -71,7 +71,7 @@ def test_errors_are_what_they_are_called(measured):
     assert bool(cell.verdict_agrees)
 
 
-def test_numerical_errors_are_those_against_the_same_model(measured):
+def test_numerical_errors_compare_with_the_same_model(measured):
     rigid = rf.System(BLOCK)
     reference, run = (
         rigid.simulate(PULSE, free_vibration="3 s", accuracy=rf.Accuracy(rtol=rtol))
@@ -88,7 +88,7 @@ def test_numerical_errors_are_those_against_the_same_model(measured):
     assert float(cell.event_time_error) == pytest.approx(off, rel=1e-9)
 
 
-def test_it_tells_what_was_compared(measured):
+def test_attributes_describe_the_comparison(measured):
     assert measured.scene == "two pads"
     assert measured.benchmark_rtol == 1e-12
     assert measured.repeats == 2
@@ -115,7 +115,7 @@ def test_the_time_is_the_median_of_runs_without_histories(monkeypatch):
 SINGLE = {"models": ["two pads"], "accuracies": [1e-4], "repeats": 1}
 
 
-def test_the_motion_among_the_parts_is_taken_unless_another_is_given():
+def test_explicit_motion_overrides_motion_of_the_system():
     other = PULSE.scaled(0.5)
     system = rf.System(BLOCK, PADS, other)
     own, given = rf.tradeoff(system, **SINGLE), rf.tradeoff(system, PULSE, **SINGLE)
@@ -125,7 +125,7 @@ def test_the_motion_among_the_parts_is_taken_unless_another_is_given():
         assert found.motion_sha256 == motion.sha256
 
 
-def test_start_length_and_output_times_are_those_asked_for():
+def test_start_duration_and_output_step_are_used():
     start = rf.InitialState(rotation="0.1 rad")
     arguments = {"duration": "2 s", "initial": start, "output_step": "0.3 s"}
     found = rf.tradeoff(SYSTEM, **SINGLE, **arguments)
@@ -144,13 +144,13 @@ def test_runs_that_overturn_end_there():
     assert found.peak_rotation.item() == pytest.approx(BLOCK.si.overturning_angle, rel=1e-6)
 
 
-def test_models_stand_in_the_order_asked_for():
+def test_models_retain_requested_order():
     names = ["two pads", "rigid ground"]
     found = rf.tradeoff(SYSTEM, PULSE, models=names, accuracies=["fast"], repeats=1)
     assert found.model.values.tolist() == names
 
 
-def test_a_rung_does_not_warn_of_what_it_cannot_show():
+def test_rungs_do_not_emit_model_warnings():
     """Of the ground that would have to pull at a block without pads."""
     motion = PULSE.with_vertical(PULSE.scaled(peak="1.2 g_0"))
     with pytest.warns(ModelWarning):
@@ -164,13 +164,13 @@ def test_the_scene_has_no_error_of_the_model(measured):
     assert (measured.peak_error.sel(model="rigid ground") > 1e-3).all()
 
 
-def test_it_can_be_stored(measured, tmp_path):
+def test_tradeoff_survives_netcdf_round_trip(measured, tmp_path):
     measured.to_netcdf(tmp_path / "ladder.nc")
     with xr.open_dataset(tmp_path / "ladder.nc") as stored:
         xr.testing.assert_identical(stored, measured)
 
 
-def test_overturning_disagrees_where_it_does():
+def test_overturning_mismatch_is_reported():
     """On rigid ground the block stands what overturns it on pads, or the other way round."""
     for amplitude in np.arange(4.0, 12.0, 0.25):
         motion = rf.GroundMotion.sine_pulse(f"{-amplitude} m/s^2", "1 Hz")
@@ -218,7 +218,7 @@ TIMES, ERRORS = [[1e-3, 2e-3], [3e-3, 8e-3]], [[0.2, 0.1], [0.03, 1e-6]]
         (1e-9, ("pads", "standard"), False),
     ],
 )
-def test_the_cheapest_rung_that_meets_the_tolerance(tolerance, rung, met):
+def test_cheapest_rung_within_tolerance_is_recommended(tolerance, rung, met):
     advice = rf.recommend(made(TIMES, ERRORS), tolerance)
     assert (advice.model, advice.accuracy) == rung
     assert advice.met == met
@@ -226,7 +226,7 @@ def test_the_cheapest_rung_that_meets_the_tolerance(tolerance, rung, met):
     assert ("No rung tried" in str(advice)) == (not met)
 
 
-def test_a_part_of_a_comparison_in_any_order_of_dimensions(measured):
+def test_recommendation_accepts_subsets_and_transposed_dimensions(measured):
     best = rf.recommend(measured, 0.01)
     assert rf.recommend(measured.transpose("accuracy", "model"), 0.01) == best
     chosen = measured.sel(accuracy=best.accuracy)
@@ -238,26 +238,26 @@ def test_an_error_as_large_as_the_tolerance_meets_it():
     assert rf.recommend(made(TIMES, ERRORS), 0.1).accuracy == "standard"
 
 
-def test_a_hundredth_is_the_usual_tolerance():
+def test_default_tolerance_is_one_percent():
     advice = rf.recommend(made(TIMES, ERRORS))
     assert (advice.model, advice.accuracy) == ("pads", "standard")
 
 
-def test_the_error_that_was_asked_for_counts():
+def test_recommendation_uses_the_requested_error():
     found = made(TIMES, ERRORS).assign(history_error=(("model", "accuracy"), ERRORS[::-1]))
     advice = rf.recommend(found, 0.05, error="history_error")
     assert (advice.model, advice.accuracy) == ("rigid", "fast")
     assert "off by 3 % in the rotation along time" in str(advice)
 
 
-def test_a_recommendation_in_words():
+def test_recommendation_sentence():
     assert str(rf.recommend(made(TIMES, ERRORS), 0.05)) == (
         "For an error of at most 5 %, take 'pads' at accuracy 'fast': off by 3 % in the "
         "peak rotation, 3 ms a run, 2.67 times faster than the slowest rung."
     )
 
 
-def test_peaks_of_runs_that_overturn_recommend_nothing_on_their_own():
+def test_recommendation_for_overturned_runs_suggests_history_error():
     fallen = made(TIMES, ERRORS)
     fallen = fallen.assign(overturned=xr.ones_like(fallen.peak_error, bool))
     told = "error='history_error' compares them along time."
@@ -294,7 +294,7 @@ def test_no_percentage_has_an_exponent(tolerance, error, words):
         ("500 %", "got '500 %'; for 5 % write 0.05"),
     ],
 )
-def test_a_percentage_is_not_taken_for_a_ratio(tolerance, hint):
+def test_tolerance_above_one_is_refused_with_a_hint(tolerance, hint):
     with pytest.raises(ComponentError, match=f"tolerance must be at most 1, .*{re.escape(hint)}"):
         rf.recommend(made(TIMES, ERRORS), tolerance)
     assert rf.recommend(made(TIMES, ERRORS), 1.0).met
@@ -303,7 +303,7 @@ def test_a_percentage_is_not_taken_for_a_ratio(tolerance, hint):
     )
 
 
-def test_a_wrong_verdict_is_no_rung():
+def test_rungs_with_a_wrong_verdict_are_not_recommended():
     agrees = np.array([[False, True], [True, True]])
     assert rf.recommend(made(TIMES, ERRORS, agrees), 0.5).accuracy == "standard"
     none = rf.recommend(made(TIMES, ERRORS, agrees=False), 0.5)
@@ -320,7 +320,7 @@ def test_a_wrong_verdict_is_no_rung():
         ({"error": "history_error"}, SchemaError, "expected one of tradeoff"),
     ],
 )
-def test_recommendations_that_are_refused(arguments, error, words):
+def test_invalid_recommendation_arguments_are_refused(arguments, error, words):
     with pytest.raises(error, match=words):
         rf.recommend(made(TIMES, ERRORS), **arguments)
 
@@ -336,30 +336,30 @@ def test_recommendations_that_are_refused(arguments, error, words):
         ({"accuracies": [2.0]}, SolverError, "rtol must lie from"),
     ],
 )
-def test_comparisons_that_are_refused(arguments, error, words):
+def test_invalid_tradeoff_arguments_are_refused(arguments, error, words):
     with pytest.raises(error, match=words):
         rf.tradeoff(SYSTEM, PULSE, **arguments)
 
 
 @pytest.mark.parametrize("function", [rf.tradeoff, rf.model_ladder])
-def test_only_systems_are_compared(function):
+def test_only_systems_are_accepted(function):
     with pytest.raises(ComponentError, match=f"{function.__name__}: system needs a System, got Bl"):
         function(BLOCK)
 
 
-def test_one_model_and_one_accuracy():
+def test_single_model_and_accuracy_are_accepted_as_scalars():
     measured = rf.tradeoff(SYSTEM, PULSE, models="two pads", accuracies=1e-6, repeats=1)
     assert measured.model.values.tolist() == ["two pads"]
     assert measured.accuracy.values.tolist() == ["rtol 1e-06"]
 
 
-def test_tolerances_that_differ_little_are_two():
+def test_nearly_equal_tolerances_are_distinct():
     near = (1e-6, np.float64(1.0000001e-6))
     measured = rf.tradeoff(SYSTEM, PULSE, models="two pads", accuracies=near, repeats=1)
     assert measured.accuracy.values.tolist() == ["rtol 1e-06", "rtol 1.0000001e-06"]
 
 
-def test_rungs_that_are_cut_off_are_no_rungs():
+def test_unfinished_rungs_are_not_recommended():
     short = rf.Accuracy(rtol=1e-3, max_steps=60)
     measured = rf.tradeoff(
         SYSTEM,
@@ -379,7 +379,7 @@ def test_rungs_that_are_cut_off_are_no_rungs():
         assert rf.recommend(measured, 0.5, error=error).accuracy == "standard"
 
 
-def test_the_figure(measured):
+def test_tradeoff_figure_labels_models_and_axes(measured):
     figure = rf.plot.tradeoff(measured).figure
     FigureCanvasAgg(figure).draw()
     left, right = figure.axes
@@ -395,7 +395,7 @@ def legend(figure):
     return [text.get_text() for text in figure.legends[0].get_texts()]
 
 
-def test_the_legend_says_what_hollow_markers_are(measured):
+def test_legend_explains_hollow_markers(measured):
     figure = rf.plot.tradeoff(measured).figure
     assert legend(figure)[-2:] == ["hollow: small rotations", "other verdict"]
     key = figure.legends[0].get_lines()[-2]
@@ -453,7 +453,7 @@ def test_nothing_is_drawn_beyond_the_figure(measured, rungs):
         assert box.y1 <= figure.bbox.height
 
 
-def test_a_rung_is_timed_once_its_machine_code_is_there(monkeypatch):
+def test_rung_is_timed_only_after_compilation(monkeypatch):
     module = importlib.import_module("rockframe.comparison.tradeoff")
     there = iter((False, False, True))
     done = []
@@ -475,7 +475,7 @@ def test_a_rung_is_timed_once_its_machine_code_is_there(monkeypatch):
     assert done == ["untimed", "untimed", "timed"]
 
 
-def test_a_model_that_holds_a_block_is_off_by_its_slip():
+def test_model_without_sliding_has_the_slip_as_error():
     floor = rf.RigidGround(friction=0.2, kinetic_friction=0.15)
     system = rf.System(rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t"), floor)
     pulse = rf.GroundMotion.sine_pulse("2.3 m/s^2", "1 Hz")  # which slides before it rocks

@@ -77,14 +77,14 @@ def spend(one, seconds):
     one._seconds += seconds
 
 
-def test_what_is_stored_is_loaded(jobs, started):
+def test_stored_code_is_loaded(jobs, started):
     for job in jobs:
         job.is_stored = True
     assert BackgroundCompilation(jobs).is_due()
     assert not started
 
 
-def test_a_short_run_starts_no_compiler_and_a_longer_one_one(jobs, started):
+def test_only_longer_run_starts_compiler(jobs, started):
     one = BackgroundCompilation(jobs)
     assert not one.is_due()
     spend(one, 0.9 * START_AFTER)
@@ -100,7 +100,7 @@ def test_a_short_run_starts_no_compiler_and_a_longer_one_one(jobs, started):
     assert one.is_due()
 
 
-def test_a_run_that_will_take_longer_than_both_need_compiles_too(jobs, started):
+def test_run_with_long_remaining_time_compiles_too(jobs, started):
     one = BackgroundCompilation(jobs)
     with expecting_remaining(0.9 * START_AT_ONCE):
         assert not one.is_due()
@@ -121,7 +121,7 @@ def test_a_run_that_is_nearly_over_waits_for_nothing(jobs, started):
         assert not one.is_due()
 
 
-def test_what_adds_little_is_compiled_behind_what_is_waited_for(started, monkeypatch):
+def test_cheap_extra_jobs_are_compiled_after_needed_ones(started, monkeypatch):
     monkeypatch.setattr(parallel, "_compilers", [])
     monkeypatch.setattr(
         parallel, "estimate_seconds", lambda jobs: len(set().union(*(one.calls for one in jobs)))
@@ -131,7 +131,7 @@ def test_what_adds_little_is_compiled_behind_what_is_waited_for(started, monkeyp
     assert started[0].jobs == [inside, known]  # of which the last is the first
 
 
-def test_a_run_compiles_too_once_it_has_taken_as_long_as_both_need(jobs, started):
+def test_run_compiles_too_after_exceeding_compilation_time(jobs, started):
     one = BackgroundCompilation(jobs)
     spend(one, 7.9)
     assert not one.is_due()
@@ -162,12 +162,12 @@ def test_two_processes_compile_from_both_ends(jobs, started, monkeypatch):
     assert made[3:] == some[::-1]
 
 
-def test_lanes_are_compiled_though_nothing_has_run(jobs, started):
+def test_lanes_start_compiler_before_any_run(jobs, started):
     assert not BackgroundCompilation(jobs).is_due(at_once=True)
     assert len(started) == 1
 
 
-def test_where_no_process_can_compile_this_one_waits_as_long_as_it_has_run(jobs, monkeypatch):
+def test_run_compiles_itself_if_no_compiler_can_start(jobs, monkeypatch):
     monkeypatch.setattr(parallel, "start_compiler", lambda jobs: None)
     one = BackgroundCompilation(jobs)
     spend(one, 7.9)
@@ -177,7 +177,7 @@ def test_where_no_process_can_compile_this_one_waits_as_long_as_it_has_run(jobs,
     assert BackgroundCompilation(jobs).is_due(at_once=True)
 
 
-def test_one_that_has_died_is_not_started_again(jobs, started):
+def test_dead_compiler_is_not_restarted(jobs, started):
     one = BackgroundCompilation(jobs)
     spend(one, 1.0)
     assert not one.is_due()
@@ -199,7 +199,7 @@ def test_no_more_compilers_at_once_than_half_the_processors(jobs, started):
     assert len(started) == 2
 
 
-def test_what_cannot_be_described_is_compiled_at_once_so_that_it_is_said():
+def test_undescribable_job_is_compiled_immediately():
     class Broken:
         @property
         def is_stored(self):
@@ -227,7 +227,7 @@ def call_on(function: BoundFunction, values: Vector, numbers: Vector) -> int:
     return 0
 
 
-def test_what_takes_a_moment_is_compiled_at_once(tmp_path, monkeypatch):
+def test_non_waiting_entry_compiles_only_quick_code(tmp_path, monkeypatch):
     monkeypatch.setenv("ROCKFRAME_CACHE_DIR", str(tmp_path))
     force, stored = bind((force_of, stored_in), Slope(2.0))
     values, numbers = np.array([1.5]), numbers_in(Slope(2.0))
@@ -265,7 +265,7 @@ if __name__ == "__main__":
 
 
 @pytest.mark.wide
-def test_a_call_becomes_machine_code_when_another_process_has_made_it(tmp_path):
+def test_call_switches_to_machine_code_of_other_process(tmp_path):
     (tmp_path / "slow.py").write_text(RUN)
     environment = {"PYTHONPATH": ":".join(sys.path), "ROCKFRAME_CACHE_DIR": str(tmp_path / "code")}
     found = subprocess.run(
@@ -288,7 +288,7 @@ def test_a_call_becomes_machine_code_when_another_process_has_made_it(tmp_path):
         pytest.param((PADS,), "standard", marks=pytest.mark.long),
     ],
 )
-def test_a_run_that_comes_back_now_and_then_is_the_same_run(monkeypatch, accuracy, stands_on):
+def test_pausing_run_gives_identical_results(monkeypatch, accuracy, stands_on):
     rng = np.random.default_rng(1)
     motion = rf.GroundMotion.from_arrays((5.0 * rng.normal(size=300), "m/s^2"), "0.02 s")
     system = rf.System(BLOCK, *stands_on)
@@ -308,7 +308,7 @@ def test_a_run_that_comes_back_now_and_then_is_the_same_run(monkeypatch, accurac
     assert whole.attrs["verdict"] == pieces.attrs["verdict"]
 
 
-def test_the_limit_of_steps_ends_a_run_that_comes_back_too(monkeypatch):
+def test_step_limit_ends_pausing_run(monkeypatch):
     motion = rf.GroundMotion.harmonic("1 m/s^2", "2 Hz", duration="5 s")
     system = rf.System(BLOCK, PADS)
     accuracy = rf.Accuracy(rtol=1e-9, max_steps=100)

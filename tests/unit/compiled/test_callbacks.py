@@ -83,7 +83,7 @@ def result_of(given):
 EXPECTED = (1 + 5 + 28, [3.0 * (0.5 - 2.5) * 4.0 + 7.0, 5.75, 0.0], [33, 6])
 
 
-def test_python_machine_code_and_what_calls_back_give_the_same():
+def test_python_machine_code_and_callbacks_agree():
     given = arguments(2)
     source = given[0].function.source
     source.address, source.fallback_seconds = 0, 0.0
@@ -111,7 +111,7 @@ def interrupted(scale: Scale, out: Vector) -> int:
     raise KeyboardInterrupt("by hand")  # noqa: EM101
 
 
-def test_what_it_raises_arrives():
+def test_exceptions_of_callbacks_propagate():
     given = arguments(-1)
     source = given[0].function.source
     source.address, source.fallback_seconds = 0, 0.0
@@ -136,7 +136,7 @@ def call(handed: Handed, out: Vector) -> int:
     return handed.function.call(out, handed.numbers)
 
 
-def test_what_cannot_be_compiled_goes_on_as_python(fallbacks):
+def test_uncompilable_callback_runs_as_python(fallbacks):
     scale = Scale(1.0, np.zeros(1))
     (function,) = bind((hopeless,), scale, rarely_called=True)
     function.source.fallback_seconds = 1e9
@@ -160,7 +160,7 @@ def plain(scale: Scale, out: Vector) -> int:
     return 5
 
 
-def test_what_does_not_return_for_long_calls_nothing_back():
+def test_long_running_call_compiles_instead_of_calling_back():
     scale = Scale(2.0, np.zeros(1))
     (function,) = bind((plain,), scale, rarely_called=True)
     out = np.zeros(1)
@@ -170,7 +170,7 @@ def test_what_does_not_return_for_long_calls_nothing_back():
     assert function.source.fallback_seconds == 0.0
 
 
-def test_another_function_stands_in_until_it_has_taken_as_long_as_compiling(monkeypatch):
+def test_function_is_compiled_once_fallback_exceeds_compilation_time(monkeypatch):
     scale = Scale(2.0, np.zeros(1))
     (own,) = bind((plain,), scale)
     source = own.source
@@ -190,7 +190,7 @@ def test_another_function_stands_in_until_it_has_taken_as_long_as_compiling(monk
     assert again.source.address != 0
 
 
-def test_what_cannot_be_compiled_is_not_tried_again(fallbacks):
+def test_uncompilable_function_is_not_retried(fallbacks):
     (own,) = bind((hopeless,), Scale(1.0, np.zeros(1)))
     own.source.fallback_seconds = 1e9
     for _ in range(3):

@@ -113,7 +113,7 @@ def tabulate(
     return found
 
 
-def test_time_is_estimated_from_all_that_a_function_calls():
+def test_callees_include_all_called_functions():
     from rockframe.compiled.jobs import callees_of
 
     found = callees_of(Pair.total_at, {Pair, Linear, Hardening})
@@ -133,7 +133,7 @@ def contents(given):
     return [part.tolist() for part in (*arrays, codes, out)]
 
 
-def test_kernels_and_methods_compute_what_python_computes():
+def test_kernels_and_methods_agree_with_python():
     """The methods are told apart by the class of the tuple, whatever stands in it."""
     for pair in PAIRS:
         compiled, plain = arguments(pair), arguments(pair)
@@ -180,7 +180,7 @@ def import_bound(pair: Pair, x: float, out: Vector) -> float:
     return floor(x) + pair.total_at(x)
 
 
-def test_a_bound_function_that_cannot_be_compiled_spoils_no_other(fallbacks):
+def test_uncompilable_bound_function_does_not_affect_others(fallbacks):
     pair = PAIRS[0]
     numbers = numbers_in(pair)
     forces, broken, counting = bind((force_of, import_bound, count_in), pair)
@@ -199,7 +199,7 @@ def test_a_bound_function_that_cannot_be_compiled_spoils_no_other(fallbacks):
     assert None not in call_all._routines.values()
 
 
-def test_arrays_in_another_order_and_other_things_are_refused():
+def test_unsupported_arguments_are_refused():
     _, _, row, arrays, codes, out = arguments(PAIRS[0])
     for given, held, words in (
         (np.zeros((3, 4), order="F"), arrays, "arrays in C order"),
@@ -221,7 +221,7 @@ def import_inside(values: Vector) -> int:
     return floor(2.5)
 
 
-def test_what_cannot_be_compiled_runs_as_python_and_is_told_once(caplog, fallbacks):
+def test_uncompilable_function_runs_as_python_with_one_message(caplog, fallbacks):
     for first in (3.0, 4.0):
         values = np.array([first, 0.0])
         assert import_inside(values) == 2
@@ -246,7 +246,7 @@ class Shaded(NamedTuple):
         return self.slope * x + int(Shade.DARK)
 
 
-def test_what_cannot_be_compiled_is_told_with_its_innermost_reason_and_place(fallbacks):
+def test_compilation_failure_reports_innermost_reason_and_line(fallbacks):
     pair = Pair(Shaded(2.0), Linear(0.5))
     values, out = np.array([0.5]), np.zeros(3)
     functions, numbers = bind((force_of, count_in), pair), numbers_in(pair)
@@ -289,7 +289,7 @@ def test_methods_belong_to_their_classes(fallbacks):
     assert of_all(One(1.0), Other(100.0), Derived(1000.0)) == 10 + 1 + 200 + 100 + 3000
 
 
-def test_arrays_that_are_read_only_stay_so(fallbacks):
+def test_writing_to_read_only_array_raises(fallbacks):
     @entry
     def write(out: Vector) -> None:
         out[0] = 5.0

@@ -66,7 +66,7 @@ def filled():
     return room
 
 
-def test_a_tuple_is_made_of_its_numbers():
+def test_tuple_is_rebuilt_from_its_numbers():
     one = systems()[3]
     again = tuple_from(structure_of(one))(numbers_in(one))
     assert again == one

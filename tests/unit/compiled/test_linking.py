@@ -112,13 +112,13 @@ def test_an_entry_is_optimised_once(made, monkeypatch):
     assert asked == [{}] * len(made) != []
 
 
-def test_errors_of_what_waits_arrive():
+def test_errors_of_deferred_functions_propagate():
     with pytest.raises(ValueError, match="below zero") as found:
         one(np.array([-4.0]))
     assert found.value.args == ("below zero", -4.0)
 
 
-def test_functions_of_a_users_own_call_what_waits(made):
+def test_user_njit_function_can_call_deferred_function(made):
     import numba
 
     one(np.array([4.0]))
@@ -131,7 +131,7 @@ def test_functions_of_a_users_own_call_what_waits(made):
     assert sum("left" in name for name in made) == 1
 
 
-def test_another_numba_goes_its_ordinary_way(made, monkeypatch):
+def test_unsupported_numba_compiles_normally(made, monkeypatch):
     from rockframe.compiled import linking
 
     monkeypatch.setattr(linking, "IS_SUPPORTED", False)
@@ -157,7 +157,7 @@ def summed(values: Vector) -> None:
         values[i] = right(listed(values[i]))
 
 
-def test_what_makes_lists_and_arrays_counts_their_references():
+def test_allocating_functions_count_references():
     """They are let go, and those that use them have nothing to count."""
     from numba.core.runtime import _nrt_python, rtsys
 
@@ -185,7 +185,7 @@ def of_all_kinds(pair, x):
     return bool(total > 1.0) & (x == x), (total, int(x))
 
 
-def test_plain_functions_become_the_same_code_by_fewer_passes():
+def test_omitted_passes_do_not_change_generated_code():
     import numba
 
     from rockframe.compiled.passes import _OMITTED_PASSES, PlainPasses, makes_only_numbers
@@ -204,7 +204,7 @@ def test_plain_functions_become_the_same_code_by_fewer_passes():
     assert written[0] == written[1] != []
 
 
-def test_an_operator_is_looked_up_once_and_only_while_something_is_compiled():
+def test_operator_lookup_is_cached_only_during_compilation():
     import numba
 
     from rockframe.compiled.jobs import cached_operators

@@ -114,7 +114,7 @@ def written(folder):
     return sorted(path for path in folder.rglob("*") if path.is_file())
 
 
-def test_the_next_process_compiles_nothing_unless_a_source_has_changed(own, folder):
+def test_stored_code_is_reused_until_source_changes(own, folder):
     first = run()
     assert first[0].startswith(ANNOUNCEMENT)
     assert first[1:] == ["[4.0, -9.0]"]
@@ -136,7 +136,7 @@ def test_processes_that_start_at_once_do_not_harm_each_other(own, folder):
     assert {path.suffix for path in written(folder)} == {".py", ".nbc", ".nbi"}
 
 
-def test_a_helper_compiles_what_it_can_import(own, folder, monkeypatch):
+def test_helper_compiles_importable_functions(own, folder, monkeypatch):
     from rockframe.compiled import parallel
     from rockframe.compiled.jobs import Job
 
@@ -150,7 +150,7 @@ def test_a_helper_compiles_what_it_can_import(own, folder, monkeypatch):
     assert values.tolist() == [2.0]
 
 
-def test_what_a_helper_cannot_import_is_compiled_all_the_same(monkeypatch):
+def test_functions_helper_cannot_import_are_still_compiled(monkeypatch):
     from rockframe.compiled import parallel
     from rockframe.compiled.jobs import Job
 
@@ -164,7 +164,7 @@ def test_what_a_helper_cannot_import_is_compiled_all_the_same(monkeypatch):
     assert values.tolist() == [5.0]
 
 
-def test_functions_that_jobs_share_are_compiled_again_for_each(monkeypatch):
+def test_estimated_wall_time_counts_shared_functions_per_job(monkeypatch):
     from rockframe.compiled import parallel
 
     monkeypatch.setattr(parallel, "estimate_seconds", lambda jobs: 4.0)  # the jobs share 1 s
@@ -175,7 +175,7 @@ def test_functions_that_jobs_share_are_compiled_again_for_each(monkeypatch):
     assert parallel.estimate_wall_time(jobs) == 3.0  # the longest
 
 
-def test_what_others_compile_is_left_for_last(monkeypatch):
+def test_jobs_compiled_elsewhere_are_done_last(monkeypatch):
     from rockframe.compiled import parallel
 
     order = []
@@ -192,7 +192,7 @@ def test_what_others_compile_is_left_for_last(monkeypatch):
 
 
 @pytest.mark.parametrize(("ends", "waits"), [("0", True), ("1", False)])
-def test_others_are_waited_for_unless_a_helper_has_died(monkeypatch, ends, waits):
+def test_dead_helper_ends_waiting(monkeypatch, ends, waits):
     from rockframe.compiled import parallel
 
     helper = subprocess.Popen([sys.executable, "-c", f"raise SystemExit({ends})"])
@@ -251,14 +251,14 @@ def test_every_state_of_the_sources_has_a_folder_of_its_own(own, tmp_path, monke
     assert file() is None
 
 
-def test_the_module_of_an_entry_counts_whatever_it_is_called_with(own, monkeypatch):
+def test_editing_entry_module_changes_folder(own, monkeypatch):
     module = load(own, monkeypatch)
     before = store.module_file(module.add_one.__wrapped__, "pass", ())
     edit(own / "own.py", "+= 1.0", "+= 5.0")
     assert store.module_file(module.add_one.__wrapped__, "pass", ()).parent != before.parent
 
 
-def test_a_module_counts_if_its_functions_are_named_by_it(own, monkeypatch):
+def test_editing_module_used_as_attribute_changes_folder(own, monkeypatch):
     edit(own / "own.py", "from own_help import twice", "import own_help")
     edit(own / "own.py", "twice(", "own_help.twice(")
     module = load(own, monkeypatch)
@@ -267,7 +267,7 @@ def test_a_module_counts_if_its_functions_are_named_by_it(own, monkeypatch):
     assert store.module_file(some_function, "pass", (module.Law,)).parent != before.parent
 
 
-def test_a_library_that_a_module_imports_counts_by_its_bytes(own, monkeypatch):
+def test_changed_bytes_of_imported_library_change_folder(own, monkeypatch):
     (own / "own_library.so").write_bytes(b"\x7fELF\0one")
     library = SimpleNamespace(__file__=str(own / "own_library.so"))
     monkeypatch.setitem(sys.modules, "own_library", library)
@@ -282,7 +282,7 @@ def test_a_library_that_a_module_imports_counts_by_its_bytes(own, monkeypatch):
     assert store.module_file(some_function, "pass", (module.Law,)).parent != before.parent
 
 
-def test_every_source_of_the_package_that_is_compiled_counts():
+def test_digest_covers_all_compiled_package_sources():
     marks = re.compile(r"^\s*@(kernel|inlined|entry)\b", re.MULTILINE)
     counted = set(
         itertools.chain.from_iterable(store.PACKAGE.glob(each) for each in store._SOURCES)
@@ -333,7 +333,7 @@ def add_seven(values: Vector) -> None:
     values[0] += 7.0
 
 
-def test_where_nothing_can_be_written_a_warning_is_all(tmp_path, monkeypatch, caplog):
+def test_unwritable_cache_only_warns(tmp_path, monkeypatch, caplog):
     from rockframe.compiled import parallel
 
     monkeypatch.setattr(parallel, "_announced", set())
@@ -348,7 +348,7 @@ def test_where_nothing_can_be_written_a_warning_is_all(tmp_path, monkeypatch, ca
     assert None not in (*add_two._routines.values(), *add_three._routines.values())
 
 
-def test_each_long_compilation_is_told_with_what_it_is_for(monkeypatch, caplog):
+def test_long_compilation_is_announced_with_purpose(monkeypatch, caplog):
     from rockframe.compiled import parallel
     from rockframe.compiled.jobs import Job
 
@@ -371,7 +371,7 @@ def test_each_long_compilation_is_told_with_what_it_is_for(monkeypatch, caplog):
     )
 
 
-def test_what_takes_longer_than_it_is_worth_is_not_compiled(folder, monkeypatch):
+def test_compilation_beyond_time_budget_is_skipped(folder, monkeypatch):
     from rockframe.compiled.jobs import Job
 
     monkeypatch.setattr(Job, "seconds", 10.0)
@@ -388,7 +388,7 @@ def test_what_takes_longer_than_it_is_worth_is_not_compiled(folder, monkeypatch)
     assert values.tolist() == [7.0]
 
 
-def test_the_next_folder_serves_where_the_first_cannot(tmp_path, monkeypatch):
+def test_next_cache_folder_replaces_unusable_first(tmp_path, monkeypatch):
     monkeypatch.delenv("ROCKFRAME_CACHE_DIR")
     for variable in ("XDG_CACHE_HOME", "LOCALAPPDATA", "HOME"):
         monkeypatch.setenv(variable, str(tmp_path / "own"))
@@ -403,7 +403,7 @@ def test_the_next_folder_serves_where_the_first_cannot(tmp_path, monkeypatch):
     assert second.read_text() == "pass"
 
 
-def test_a_user_without_a_home_keeps_machine_code_beside_the_package(monkeypatch):
+def test_missing_home_folder_is_skipped_for_cache(monkeypatch):
     def homeless(path):
         msg = "Could not determine home directory."
         raise RuntimeError(msg)

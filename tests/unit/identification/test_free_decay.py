@@ -36,7 +36,7 @@ def found(run):
     return rf.fit_free_decay(START, run.rotation)
 
 
-def test_a_result_of_rockframe_is_read_with_its_units(found, run):
+def test_fit_recovers_parameters_of_simulated_run(found, run):
     assert float(found.fitted_value.sel(parameter="restitution")) == pytest.approx(0.9, rel=1e-6)
     assert float(found.initial_rotation) == pytest.approx(-0.1, rel=1e-6)
     assert float(found.release_time) == pytest.approx(0.0, abs=1e-6)
@@ -44,7 +44,7 @@ def test_a_result_of_rockframe_is_read_with_its_units(found, run):
     np.testing.assert_array_equal(found.time, run.time)
 
 
-def test_units_and_arrays_of_all_kinds_mean_the_same(found, run):
+def test_measured_data_accept_equivalent_forms(found, run):
     time, rotation = run.time.to_numpy(), run.rotation.to_numpy()
     labelled = xr.DataArray(
         np.degrees(rotation),
@@ -60,7 +60,7 @@ def test_units_and_arrays_of_all_kinds_mean_the_same(found, run):
         np.testing.assert_allclose(again.measured_rotation, rotation, rtol=1e-12)
 
 
-def test_the_dataset_follows_the_schema_and_comes_back_from_a_file(found, tmp_path):
+def test_dataset_follows_schema_and_survives_netcdf_round_trip(found, tmp_path):
     for name, variable in found.variables.items():
         if name not in ("parameter", "unknown", "other_unknown"):
             assert variable.dims == SCHEMA[name].dims, name
@@ -76,7 +76,7 @@ def test_the_dataset_follows_the_schema_and_comes_back_from_a_file(found, tmp_pa
         xr.testing.assert_identical(again.load(), found)
 
 
-def test_the_fitted_system_is_the_given_one_but_for_the_parameters(found):
+def test_fitted_system_differs_only_in_parameters(found):
     system = rf.System.from_dataset(found)
     restitution = system.parts.ground.restitution
     assert restitution == float(found.fitted_value[0])
@@ -85,14 +85,14 @@ def test_the_fitted_system_is_the_given_one_but_for_the_parameters(found):
     )
 
 
-def test_parameters_of_two_parts_are_told_apart():
+def test_ambiguous_parameter_name_raises():
     soil = rf.WinklerSoil(stiffness="2 MPa", damping_ratio=0.2)
     system = rf.System(BLOCK, PADS, rf.CushionCap(height="0.1 m", mass="100 kg"), soil)
     with pytest.raises(ComponentError, match=r"'TwoSpringSupport\.damping_ratio', 'Winkler"):
         rf.fit_free_decay(system, peaks=PEAKS, parameters="damping_ratio")
 
 
-def test_what_is_known_of_the_test_is_not_fitted(run):
+def test_known_circumstances_are_not_fitted(run):
     found = rf.fit_free_decay(START, run.rotation, circumstances=())
     assert list(found.unknown.values) == ["restitution"]
     assert float(found.initial_rotation) == float(run.rotation[0])
@@ -100,7 +100,7 @@ def test_what_is_known_of_the_test_is_not_fitted(run):
     assert float(found.gauge_offset) == 0.0
 
 
-def test_what_leaves_no_trace_is_told():
+def test_unidentifiable_parameter_warns():
     system = rf.System(BLOCK, PADS)
     held = rf.InitialState(rotation=f"{0.5 * system.setting.uplift_angle!r} rad")
     run = system.simulate(duration="3 s", initial=held, output_step="0.02 s")
@@ -110,13 +110,13 @@ def test_what_leaves_no_trace_is_told():
     assert math.isnan(float(found.standard_error[1]))
 
 
-def test_times_in_another_unit_leave_nothing_to_fit(run):
+def test_wrong_time_unit_warns(run):
     with pytest.warns(ModelWarning):
         found = rf.fit_free_decay(START, ((run.time.values, "ms"), (run.rotation.values, "rad")))
     assert np.isnan(found.correlation).any()
 
 
-def test_the_motion_between_samples_is_that_of_a_run():
+def test_release_response_agrees_with_simulation():
     system = rf.System(BLOCK, PADS)
     run = system.simulate(
         duration="3 s", initial=rf.InitialState(rotation="0.1 rad"), output_step="1.7 ms"
@@ -179,7 +179,7 @@ REFUSED = [
 ]
 
 
-def test_what_is_no_test_is_refused():
+def test_invalid_test_data_are_refused():
     for given, words in REFUSED:
         with pytest.raises(ComponentError, match=words):
             rf.fit_free_decay(START, **given)
@@ -213,7 +213,7 @@ def test_arrays_need_units(given):
 
 @pytest.mark.parametrize("rotation", ["finite", "small"])
 @pytest.mark.parametrize("first", ["6 deg", "-6 deg", "-12 deg"])
-def test_peaks_of_an_eccentric_block_tell_of_both_sides(first, rotation):
+def test_signed_peaks_of_eccentric_block_give_restitution(first, rotation):
     """To the left it may lean beyond the angle at which it overturns to the right."""
     block = BLOCK.replace(centre_of_mass=("0.6 m", "0.03 m"))
     ground = rf.RigidGround(restitution=0.7 if first.startswith("-12") else 0.85)
@@ -240,7 +240,7 @@ def test_a_block_before_a_rigid_wall_is_refused(data, run):
         rf.fit_free_decay(rf.System(BLOCK, wall), parameters="wall_restitution", **given)
 
 
-def test_interfaces_of_stacks_are_refused_with_what_can_be_fitted():
+def test_stack_interface_parameter_raises_and_lists_alternatives():
     joint = rf.TwoSpringSupport(frequency_ratio=40, damping_ratio=0.1)
     bodies = [
         rf.Block(width=f"{w} m", height=f"{h} m", mass="900 kg") for w, h in ((0.5, 1.8), (0.9, 1))

@@ -47,9 +47,7 @@ class LinearDecay:
         pytest.param(0.001, 0.01, marks=pytest.mark.long),
     ],
 )
-def test_intervals_from_few_peaks_with_times_hold_the_true_value_as_often_as_they_say(
-    of_rotation, of_time
-):
+def test_confidence_intervals_from_few_peaks_have_nominal_coverage(of_rotation, of_time):
     """Both kinds of noise are estimated from six data each."""
     rng, number = np.random.default_rng(7), np.arange(6.0)
     unknowns = [Unknown(name, 1.0, 1.0) for name in ("first", "change", "release")]

@@ -28,7 +28,7 @@ def test_only_a_motion_is_measured(function, given):
 
 
 @pytest.mark.parametrize("function", ALL)
-def test_a_component_must_be_there(function):
+def test_missing_or_unknown_component_raises(function):
     with pytest.raises(ComponentError, match="has no vertical acceleration"):
         function(PULSE, component="vertical")
     with pytest.raises(ComponentError, match="'horizontal' or 'vertical', got 'up'"):
@@ -63,7 +63,7 @@ def test_the_vertical_component_is_measured_like_the_horizontal_one(function):
         ("damping_ratios", None),
     ],
 )
-def test_spectra_refuse_numbers_of_another_kind(argument, given):
+def test_spectra_refuse_wrong_units(argument, given):
     with pytest.raises(UnitsError, match=f"response_spectrum: {argument}"):
         response_spectrum(PULSE, **{argument: given})
 
@@ -96,7 +96,7 @@ def test_spectra_that_would_take_minutes_are_refused():
     assert response_spectrum(slow, "0 s").sizes == {"damping_ratio": 1, "period": 1}
 
 
-def test_periods_and_damping_come_in_many_forms():
+def test_periods_and_damping_accept_equivalent_forms():
     expected = response_spectrum(PULSE, (["0.1", "0.5"], "s"), (0.05, 0.1))
     registry = pint.get_application_registry()
     for periods, ratios in (
@@ -133,12 +133,12 @@ def test_default_periods():
         ("block", rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1), ComponentError),
     ],
 )
-def test_intensity_measures_refuse(argument, given, error):
+def test_intensity_measures_refuse_invalid_arguments(argument, given, error):
     with pytest.raises(error, match=f"intensity_measures: {argument}"):
         intensity_measures(PULSE, **{argument: given})
 
 
-def test_a_block_is_not_rocked_by_the_vertical_component():
+def test_block_measures_of_vertical_component_are_refused():
     motion = PULSE.with_vertical(PULSE)
     with pytest.raises(ComponentError, match="leave out block or component"):
         intensity_measures(motion, block=BLOCK, component="vertical")
@@ -155,7 +155,7 @@ def test_fourier_resolution():
         fourier_spectrum(PULSE, resolution="1e-300 Hz")
 
 
-def test_records_too_coarse_for_the_periods_asked_for_are_told_of():
+def test_record_too_coarse_for_periods_warns():
     samples = np.sin(0.3 * np.arange(200))
     record, fine = (
         rf.GroundMotion.from_arrays((samples, "m/s^2"), step) for step in ("0.02 s", "0.005 s")

@@ -37,7 +37,7 @@ def test_all_files_have_a_source_and_are_small():
 
 
 @pytest.mark.parametrize("name", RECORDS)
-def test_the_motion_is_that_of_the_file(name):
+def test_example_has_published_samples_and_attribution(name):
     samples, step, peak, ends, _ = RECORDS[name]
     motion = GroundMotion.example(name)
     assert (len(motion), motion.si.time_step) == (samples, step)
@@ -50,7 +50,7 @@ def test_the_motion_is_that_of_the_file(name):
 
 
 @pytest.mark.parametrize("name", RECORDS)
-def test_the_file_is_as_published(name):
+def test_embedded_file_equals_published_file(name):
     published = record_path(RECORDS[name][-1]).read_bytes()
     held = (FOLDER / record_sources(FOLDER)[name]["file"]).read_bytes()
     assert gzip.decompress(held) == published
@@ -58,7 +58,7 @@ def test_the_file_is_as_published(name):
     assert digest == hashlib.sha256(published).hexdigest()
 
 
-def test_components_of_a_file_of_three():
+def test_example_component_can_be_chosen():
     both = GroundMotion.example("waipukurau", component=("S74E", "Up"))
     assert both.si.vertical is not None
     alone = GroundMotion.example("waipukurau")
@@ -70,6 +70,6 @@ def test_components_of_a_file_of_three():
 
 
 @pytest.mark.parametrize("name", ["", "el-centro", 3, None])
-def test_an_unknown_name_lists_those_there_are(name):
+def test_unknown_example_name_lists_available_ones(name):
     with pytest.raises(ComponentError, match="'loma-prieta', 'waipukurau', got "):
         GroundMotion.example(name)

@@ -53,7 +53,7 @@ def test_directory(tmp_path):
 
 
 @pytest.mark.parametrize("path", ["bad\x00name", 3.5, None])
-def test_what_names_no_file(path):
+def test_invalid_path_is_refused(path):
     with pytest.raises(RecordError, match="names no file"):
         GroundMotion.read(path)
 
@@ -74,7 +74,7 @@ def test_pipe_is_refused_without_waiting(tmp_path):
         GroundMotion.read(path)
 
 
-def test_formats_are_listed_and_can_be_named(write):
+def test_format_can_be_specified_by_name(write):
     assert {"peer-at2", "text"} <= {entry.name for entry in formats()}
     motion = GroundMotion.read(write(AT2, "record.unknown"), format="peer-at2")
     assert motion == GroundMotion.read(write(AT2, "record.unknown"))

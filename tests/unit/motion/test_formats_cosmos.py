@@ -22,7 +22,7 @@ def expect(motion, values=NORTH, factor=0.01, step=0.01):
     )
 
 
-def test_what_is_recorded(write):
+def test_metadata_are_read_from_header(write):
     metadata = read(write, cosmos(), component="N").metadata
     assert metadata["event"] == "Made Up Earthquake of Fri Nov 30, 2018 17:29 UTC"
     assert metadata["event_time"] == "2018/11/30 17:29:29 UTC"
@@ -45,7 +45,7 @@ def test_the_length_may_be_one_step_less(write):
 
 
 @pytest.mark.parametrize("milliseconds", [0.01, 1000.0])
-def test_a_time_step_that_the_length_contradicts_is_refused(write, milliseconds):
+def test_time_step_that_contradicts_length_is_refused(write, milliseconds):
     # 0.01 is what a file would say that takes the header for seconds
     text = cosmos_block("acceleration", NORTH, milliseconds=milliseconds, length=0.61)
     with pytest.raises(RecordError, match=r"real headers 62, 63.*in milliseconds") as caught:
@@ -60,7 +60,7 @@ def test_an_unknown_or_impossible_time_step_is_refused(write, milliseconds):
     assert caught.value.line == 38
 
 
-def test_another_mark_for_what_is_unknown(write):
+def test_missing_value_marker_is_taken_from_header(write):
     text = cosmos_block("acceleration", NORTH, milliseconds=-777.0)
     text = text.replace("-999, -999.00", "-777, -777.00").replace("    -999", "    -777")
     with pytest.raises(RecordError, match="no sample interval"):
@@ -84,7 +84,7 @@ def test_units(write, unit, code, factor):
     expect(read(write, cosmos_block("acceleration", values, unit=unit, code=code)), values, factor)
 
 
-def test_a_unit_that_its_code_contradicts_is_refused(write):
+def test_unit_that_contradicts_unit_code_is_refused(write):
     text = cosmos_block("acceleration", NORTH, unit="cm/sec2(02)")
     with pytest.raises(RecordError, match=r"'cm/sec2' with the code 2, which is g"):
         read(write, text)
@@ -124,7 +124,7 @@ def test_layouts(write, layout, form):
 
 
 @pytest.mark.filterwarnings("ignore:.*lie around an offset")
-def test_numbers_that_touch_are_told_apart_by_their_width(write):
+def test_adjoining_numbers_are_split_by_width(write):
     values = np.round(-100.0 - abs(NORTH), 3)
     text = cosmos_block("acceleration", values, layout="8F8.3", form="{:8.3f}")
     assert "-1" in text.split("Format=(8F8.3)\n")[1].split("\n")[0][8:10]

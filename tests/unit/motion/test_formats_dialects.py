@@ -19,7 +19,7 @@ def expect(motion, values):
 
 
 class TestCsmip:
-    def test_words_about_the_processing_are_no_event(self, write):
+    def test_processing_remarks_are_not_read_as_event(self, write):
         metadata = read(write, made.cgs(), component="E").metadata
         assert metadata["event"] == "Made Up Earthquake"
         assert metadata["event_time"] == "Mon Feb 13, 2012 13:06:45.0 PST"
@@ -28,12 +28,12 @@ class TestCsmip:
         assert "event" not in read(write, text, component="E").metadata
 
     @pytest.mark.parametrize("number", ["0", "-5", "1.2.3"])
-    def test_a_rate_that_is_none(self, write, number):
+    def test_invalid_sampling_rate_is_refused(self, write, number):
         text = made.cgs(points=f"{{count}} Accelerogram points at {number} pts/sec in units of g .")
         with pytest.raises(RecordError):
             read(write, text, component="E")
 
-    def test_the_unit_of_the_stated_peak_where_the_data_have_none(self, write):
+    def test_missing_unit_is_taken_from_stated_peak(self, write):
         motion = read(write, made.usc(unit=""))
         expect(motion, 0.01 * VALUES["E"])
         assert motion.metadata["unit_as_read"] == "cm/sec/sec"
@@ -61,17 +61,17 @@ class TestCsmip:
         lines = made.pairs(times=times).split("\n")
         assert "0.204" in lines[caught.value.line - 1]
 
-    def test_an_event_that_is_a_number_is_none(self, write):
+    def test_numeric_event_name_is_ignored(self, write):
         assert "event" not in read(write, made.pairs(event="0911131"), component="EW").metadata
 
 
 class TestBhrc:
-    def test_another_volume(self, write):
+    def test_other_volumes_are_refused(self, write):
         with pytest.raises(RecordError, match=r"expected uncorrected accelerations \(volume 1\)"):
             read(write, made.bhrc(volume=2), component="L1")
 
     @pytest.mark.parametrize("rate", [0.0, -1.0])
-    def test_no_rate(self, write, rate):
+    def test_sampling_rate_must_be_positive(self, write, rate):
         with pytest.raises(RecordError, match="expected one above zero"):
             read(write, made.bhrc(rate=rate), component="L1")
 
@@ -93,7 +93,7 @@ class TestCsmnc:
             read(write, made.csmnc(kind=kind, unit="CM/SEC"), unit="gal")
         assert caught.value.line == 9
 
-    def test_what_is_recorded(self, write):
+    def test_metadata_are_read_from_header(self, write):
         metadata = read(write, made.csmnc()).metadata
         assert metadata["event"] == "MADE UP EARTHQUAKE, SOMEWHERE,CHN"
         assert metadata["event_time"] == "2012-01-03 15:39:57 BTM"
@@ -116,16 +116,16 @@ class TestUnam:
 
 
 class TestResorce:
-    def test_numbers_that_run_together_are_told_apart_by_their_width(self, write):
+    def test_adjoining_numbers_are_split_by_width(self, write):
         text = made.resorce()
         assert "E-01-" in text
         expect(read(write, text), 0.01 * VALUES["N"])
 
-    def test_more_announced_than_there(self, write):
+    def test_fewer_samples_than_announced_are_refused(self, write):
         with pytest.raises(RecordError, match="expected 71 samples"):
             read(write, made.resorce(count=71))
 
-    def test_another_quantity(self, write):
+    def test_velocity_unit_is_refused(self, write):
         with pytest.raises(RecordError, match="a velocity in m/s"):
             read(write, made.resorce(unit="m/s"))
 
@@ -146,13 +146,13 @@ class TestAfad:
 
 
 class TestAt2:
-    def test_marks_around_header_and_data(self, write):
+    def test_header_and_data_markers_are_accepted(self, write):
         values = np.round(1e-3 * VALUES["N"], 5)
         expect(read(write, made.marked_at2(values), "m.AT2"), values * G)
         without = made.marked_at2(values, end="")
         expect(read(write, without, "m.AT2"), values * G)
 
-    def test_more_behind_the_end(self, write):
+    def test_data_after_end_marker_is_refused(self, write):
         values = np.round(1e-3 * VALUES["N"], 5)
         with pytest.raises(RecordError, match="line 13: found"):
             read(write, made.marked_at2(values, end="*** End Data ***\n1.0\n"), "m.AT2")

@@ -24,7 +24,7 @@ class TestEsm:
     def read(self, write, text, **given):
         return GroundMotion.read(write(text, "r.ASC"), **given)
 
-    def test_what_is_recorded(self, write):
+    def test_metadata_are_read_from_header(self, write):
         metadata = self.read(write, esm()).metadata
         assert metadata["event"] == "MADE UP"
         assert metadata["event_time"] == "20190728_160908"
@@ -35,7 +35,7 @@ class TestEsm:
         assert (metadata["component"], metadata["azimuth"]) == ("HNE", 90.0)
 
     @pytest.mark.parametrize("asked", ["HNE", "E", "90"])
-    def test_its_one_component_by_code_and_direction(self, write, asked):
+    def test_component_is_chosen_by_code_or_direction(self, write, asked):
         assert len(self.read(write, esm(), component=asked)) == COUNT
 
     @pytest.mark.parametrize("kind", ["VELOCITY", "DISPLACEMENT", "ACCELERATION RESPONSE SPECTRUM"])
@@ -76,7 +76,7 @@ class TestKnet:
     def read(self, write, text, name="r.EW", **given):
         return GroundMotion.read(write(text, name), **given)
 
-    def test_counts_become_accelerations_without_their_offset(self, write):
+    def test_counts_are_converted_and_offset_removed(self, write):
         motion = self.read(write, knet())
         expected = (COUNTS - COUNTS.mean()) * GAL_PER_COUNT * 0.01
         np.testing.assert_allclose(motion.si.horizontal.samples, expected, rtol=1e-12, atol=1e-15)
@@ -89,7 +89,7 @@ class TestKnet:
         assert f"less their mean of {COUNTS.mean():.9g} counts" in sentence
         assert "gal)" in sentence
 
-    def test_times_are_japanese_and_the_delay_is_taken_off(self, write):
+    def test_times_are_in_japan_time_without_trigger_delay(self, write):
         metadata = self.read(write, knet()).metadata
         assert (
             metadata["event_time"]
@@ -167,7 +167,7 @@ class TestGeonet:
     def read(self, write, text, name="r.V2A", **given):
         return GroundMotion.read(write(text, name), **given)
 
-    def test_what_is_recorded(self, write):
+    def test_metadata_are_read_from_header(self, write):
         metadata = self.read(write, geonet(), component="S74E").metadata
         assert metadata["event"] == "6 km south of Nowhere"
         assert metadata["event_time"] == "2018 February 12 21:15:54 UT"
@@ -205,7 +205,7 @@ class TestGeonet:
             self.read(write, text.replace(old, new, 1), format="geonet", component="S16W")
 
     @pytest.mark.parametrize("place", [4, 5])
-    def test_absurd_numbers_of_what_is_skipped(self, write, place):
+    def test_impossible_counts_of_skipped_values_are_refused(self, write, place):
         lines = geonet().split("\n")
         for number, words in ((99999999, "end of the file in component 1"), (-1, "none or more")):
             changed = list(lines)
@@ -222,13 +222,13 @@ class TestGeonet:
         with pytest.raises(RecordError, match=r"found the end of the file in component 3"):
             self.read(write, "\n".join(lines) + "\n", component="Up")
 
-    def test_a_vertical_axis_of_another_name(self, write):
+    def test_vertical_axis_of_unknown_sense_warns(self, write):
         text = geonet().replace("Component Up    Some", "Component Vert. Vertical")
         with pytest.warns(RecordWarning, match="upwards or downwards; upwards is assumed"):
             motion = self.read(write, text, component=("S16W", "V"))
         assert motion.metadata["vertical_component"] == "Vert."
 
-    def test_what_follows_must_be_another_component(self, write):
+    def test_unknown_text_after_component_is_refused(self, write):
         text = geonet_component(VALUES["N"], name="S16W", azimuth=196) + "something else\n"
         with pytest.raises(RecordError, match="'something else'; expected 'Corrected"):
             self.read(write, text)
@@ -240,7 +240,7 @@ class TestCwa:
             write(text, "r.dat"), component=given.pop("component", "N"), **given
         )
 
-    def test_what_is_recorded(self, write):
+    def test_metadata_are_read_from_header(self, write):
         metadata = self.read(write, cwa()).metadata
         assert metadata["event_time"] == "2018/02/06-23:50:42 (GMT+08)"
         assert metadata["record_time"] == "2018/02/06-23:50:29.000 (GMT+08)"

@@ -79,13 +79,13 @@ def test_the_example_runs():
     assert not doctest.testmod(known_formats).failed
 
 
-def test_the_list_and_the_readers_are_found_by_both_names():
+def test_registry_functions_are_shared_by_both_modules():
     assert rockframe.motion.formats is rockframe.records.formats
     assert rockframe.motion.register is rockframe.records.register
     assert rockframe.motion.unregister is rockframe.records.unregister
 
 
-def test_the_place_where_readers_stood_before_tells_the_new_one():
+def test_former_module_of_readers_warns_and_redirects():
     with pytest.warns(FutureWarning, match=r"rockframe\.records: import Record from there"):
         from rockframe.motion.readers import Record as Before
     assert Before is Record
@@ -93,7 +93,7 @@ def test_the_place_where_readers_stood_before_tells_the_new_one():
         rockframe.motion.readers.nothing  # noqa: B018
 
 
-def test_a_format_can_be_named_in_capitals(write):
+def test_format_name_is_case_insensitive(write):
     with pytest.raises(RecordError):
         GroundMotion.read(write("x", "r"), format="K_NET")
 
@@ -126,7 +126,7 @@ def test_an_added_format_may_read_bytes(write, registered):
     assert motion.si.horizontal.samples.tolist() == [0.01, 0.025]
 
 
-def test_it_can_be_taken_away_again(write, registered):
+def test_unregister_removes_only_registered_formats(write, registered):
     register(reader())
     unregister("made-up")
     assert "made-up" not in {entry.name for entry in formats()}
@@ -150,7 +150,7 @@ def test_it_can_be_taken_away_again(write, registered):
         ({"NAME": "text"}, "the format 'text' exists already"),
     ],
 )
-def test_what_is_no_reader_is_refused(changed, words):
+def test_register_refuses_invalid_readers(changed, words):
     before = formats()
     with pytest.raises(ComponentError, match=words):
         register(reader(**changed))
@@ -199,13 +199,13 @@ def failing(source, request):
         ),
     ],
 )
-def test_what_an_added_reader_gets_wrong_becomes_a_record_error(write, registered, changed, words):
+def test_faults_of_registered_reader_raise_record_error(write, registered, changed, words):
     registered(**changed)
     with pytest.raises(RecordError, match=words):
         GroundMotion.read(write(FILE, "r.mup"))
 
 
-def test_what_an_added_reader_refuses_stays_as_it_is(write, registered):
+def test_refusal_by_registered_reader_is_passed_on(write, registered):
     def refusing(source, request):
         raise source.refuse(found="this", expected="that", line=2)
 
@@ -214,6 +214,6 @@ def test_what_an_added_reader_refuses_stays_as_it_is(write, registered):
         GroundMotion.read(write(FILE, "r.mup"))
 
 
-def test_a_response_goes_with_counts_only(write):
+def test_response_argument_needs_counts(write):
     with pytest.raises(RecordError, match="to which the argument response applies"):
         GroundMotion.read(write("0,1\n1,2\n", "r.csv"), unit="g", response="response.xml")

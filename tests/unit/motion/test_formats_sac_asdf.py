@@ -37,7 +37,7 @@ class TestSac:
         assert (motion.metadata["component"], motion.metadata["azimuth"]) == ("HNE", 90.0)
         assert "event" not in motion.metadata
 
-    def test_the_unit_must_be_given(self, write):
+    def test_missing_unit_is_refused(self, write):
         for kind in (8, 5, -12345):
             with pytest.raises(RecordError, match=r"samples without a unit.*unit='m/s\^2'"):
                 read_sac(write, unit=None, kind=kind)
@@ -66,7 +66,7 @@ class TestSac:
         with pytest.raises(RecordError, match="announced"):
             read_sac(write, count=2**31 - 1)
 
-    def test_more_than_announced(self, write):
+    def test_bytes_after_last_sample_warn(self, write):
         own = read_sac(write)
         with pytest.warns(RecordWarning, match="8 bytes after the last sample are not read"):
             more = GroundMotion.read(write(sac() + bytes(8), "r.sac"), unit="gal")
@@ -74,7 +74,7 @@ class TestSac:
         GroundMotion.read(write(sac() + bytes(176), "r.sac"), unit="gal")
 
     @pytest.mark.parametrize(("incidence", "sign"), [(0.0, 1.0), (180.0, -1.0)])
-    def test_up_and_down(self, write, incidence, sign):
+    def test_incidence_sets_sign_of_vertical_component(self, write, incidence, sign):
         motion = read_sac(write, incidence=incidence, channel="HNZ", component="U")
         expected = sign * 0.01 * SINGLE
         np.testing.assert_allclose(motion.si.horizontal.samples, expected, rtol=1e-14)
@@ -91,7 +91,7 @@ class TestSac:
 
 
 class TestAsdf:
-    def test_the_unit_that_gmprocess_states(self, write, tmp_path):
+    def test_unit_of_gmprocess_is_read(self, write, tmp_path):
         path = write(asdf(tmp_path), "w.h5")
         motion = GroundMotion.read(path, component=("N", "U"))
         np.testing.assert_allclose(motion.si.horizontal.samples, 0.01 * VALUES["N"], rtol=1e-14)
@@ -122,17 +122,17 @@ class TestAsdf:
         with pytest.raises(RecordError, match=r"3 components: 'HNE' .* 'HNN' .* 'HNZ'"):
             GroundMotion.read(write(asdf(tmp_path), "w.h5"))
 
-    def test_an_hdf5_file_of_something_else(self, write, tmp_path):
+    def test_other_hdf5_file_is_refused(self, write, tmp_path):
         data = asdf(tmp_path).replace(b"Waveforms", b"Wavefronts"[:9])
         with pytest.raises(RecordError):
             GroundMotion.read(write(data, "w.h5"))
 
     @pytest.mark.parametrize("rate", [0.0, -1.0, float("nan"), 1e-9])
-    def test_a_rate_that_is_none(self, write, tmp_path, rate):
+    def test_invalid_sampling_rate_is_refused(self, write, tmp_path, rate):
         with pytest.raises(RecordError):
             GroundMotion.read(write(asdf(tmp_path, rate=rate), "w.h5"), component="HNE")
 
-    def test_the_title_says_what_it_is(self, tmp_path, write):
+    def test_history_names_format_and_unit(self, tmp_path, write):
         history = GroundMotion.read(write(asdf(tmp_path), "w.h5"), component="HNE").history
         assert re.match(
             r"read w\.h5 \(ASDF file \(HDF5\), as of gmprocess, unit cm/s\^2\)", history[0]

@@ -14,7 +14,7 @@ def read(write, text, **given):
     return GroundMotion.read(write(text, "r.smc"), **given)
 
 
-def test_what_is_recorded(write):
+def test_metadata_are_read_from_header(write):
     metadata = read(write, smc()).metadata
     assert metadata["event"] == "Made Up, CA"
     assert metadata["event_time"] == "1989-10-18T00:04"
@@ -43,7 +43,7 @@ def test_other_quantities_are_refused(write, kind, given):
     assert caught.value.line == 1
 
 
-def test_a_kind_that_the_file_does_not_tell_is_taken_for_an_accelerogram_with_a_warning(write):
+def test_unknown_quantity_is_read_as_accelerogram_with_warning(write):
     with pytest.warns(RecordWarning, match="line 1: the file does not state its quantity"):
         motion = read(write, smc(kind="0 UNKNOWN"))
     np.testing.assert_allclose(motion.si.horizontal.samples, NORTH * 0.01, rtol=1e-13)

@@ -71,7 +71,7 @@ STATED = {
 
 
 @pytest.mark.parametrize("key", STATED)
-def test_a_stated_peak_must_be_that_of_the_samples(key, write):
+def test_contradicting_stated_peak_warns(key, write):
     text, given = STATED[key]
     truth = peak(VALUES["E"])
     for share in (1.0, 1.005, 0.995):
@@ -88,7 +88,7 @@ def test_a_stated_peak_must_be_that_of_the_samples(key, write):
         assert motion.si.peak == pytest.approx(0.01 * truth, rel=1e-3)
 
 
-def test_a_peak_that_is_zero_or_no_number_is_not_known(write):
+def test_zero_or_non_numeric_stated_peak_is_ignored(write):
     for printed in ("0.0", "", "unknown", "1e999"):
         GroundMotion.read(write(formats.esm(**{"PGA_CM/S^2": printed}), "r.ASC"))
 
@@ -104,7 +104,7 @@ def test_a_peak_that_is_zero_or_no_number_is_not_known(write):
     ],
     ids=["esm", "csmip", "csmnc", "unam", "geonet"],
 )
-def test_a_stated_length_must_be_that_of_the_samples(text, given, write):
+def test_contradicting_stated_length_warns(text, given, write):
     asked = {"component": "EW"} if "RENADIC" in text or "G/10" in text else given
     with pytest.warns(RecordWarning, match=r"line \d+: the header states a length of"):
         GroundMotion.read(write(text, "record"), **asked)
@@ -122,7 +122,7 @@ def test_a_stated_length_must_be_that_of_the_samples(text, given, write):
     ],
     ids=["csmip", "cosmos", "smc", "pairs", "bhrc", "resorce"],
 )
-def test_rows_behind_the_announced_samples_are_said_to_be_left_out(text, mark, given, write):
+def test_rows_after_announced_samples_are_ignored_with_warning(text, mark, given, write):
     own = GroundMotion.read(write(text, "record"), **given)
     lines = text.rstrip("\n").split("\n")
     end = next((k for k, line in enumerate(lines) if mark and line.startswith(mark)), len(lines))
@@ -134,7 +134,7 @@ def test_rows_behind_the_announced_samples_are_said_to_be_left_out(text, mark, g
 
 
 @pytest.mark.parametrize("text", [formats.smc() * 2, made.resorce() * 2], ids=["smc", "resorce"])
-def test_a_second_record_behind_the_first_is_said_to_be_left_out(text, write):
+def test_second_record_in_file_is_ignored_with_warning(text, write):
     with pytest.warns(RecordWarning, match="rows of numbers after the last sample"):
         GroundMotion.read(write(text, "record"))
 
@@ -147,7 +147,7 @@ def test_a_second_record_behind_the_first_is_said_to_be_left_out(text, write):
     ],
     ids=["cosmos", "bhrc"],
 )
-def test_a_component_whose_first_line_is_damaged_is_not_passed_over(text, mark, words, write):
+def test_component_with_damaged_first_line_is_not_skipped(text, mark, words, write):
     before, _, behind = text.rpartition(mark)
     with pytest.raises(RecordError, match=words):
         GroundMotion.read(write(before + behind, "record"))
@@ -157,7 +157,7 @@ def test_a_component_whose_first_line_is_damaged_is_not_passed_over(text, mark, 
     ("text", "rows"),
     [(formats.cosmos(), -1), (formats.cosmos(), 5), (formats.csmip(2), 0), (formats.csmip(2), 5)],
 )
-def test_a_file_that_ends_inside_a_velocity_is_told(text, rows, write):
+def test_file_truncated_inside_velocities_warns(text, rows, write):
     lines = text.split("\n")
     announced = [k for k, line in enumerate(lines) if "velocity pts" in line or "of vel" in line]
     path = write("\n".join([*lines[: announced[0] + 1 + rows], ""]), "record")
@@ -182,7 +182,7 @@ def test_marks_of_missing_samples_are_refused(write, mark, places):
         GroundMotion.read(write(column(values), "r.txt"))
 
 
-def test_a_sample_like_a_mark_among_samples_as_large_is_a_sample(write):
+def test_missing_sample_marker_among_similar_values_is_accepted(write):
     values = 900.0 * np.sin(0.3 * np.arange(500))
     values[100:103] = (990.0, 999.0, 980.0)
     GroundMotion.read(write(column(values), "r.txt"))
@@ -199,7 +199,7 @@ def test_a_constant_offset_is_mentioned(write, offset):
     GroundMotion.read(write(column(SHAKING / 980.665, "g"), "r.txt"))
 
 
-def test_files_in_metres_that_pass_for_g_are_doubted_from_0_15_g_on(write):
+def test_metres_mistaken_for_g_warn_above_0_15_g(write):
     shaking = SHAKING / np.abs(SHAKING).max()
     for peak_in_g in (0.16, 0.3, 0.5, 1.0):
         path = write(column(9.80665 * peak_in_g * shaking, "g"), "r.txt")
@@ -208,5 +208,5 @@ def test_files_in_metres_that_pass_for_g_are_doubted_from_0_15_g_on(write):
     GroundMotion.read(write(column(1.4 * shaking, "g"), "r.txt"))
 
 
-def test_the_counts_of_the_samples_are_as_announced():
+def test_sample_files_have_expected_count():
     assert COUNT == 61

@@ -206,7 +206,7 @@ def test_equality_and_hash_go_by_content():
     assert len({motion(), motion(), *others}) == 6
 
 
-def test_digest_is_that_of_what_is_simulated():
+def test_digest_depends_only_on_simulated_motion():
     assert motion().sha256 == motion(name="other").sha256
     assert len(motion().sha256) == 64
     pulse = GroundMotion.sine_pulse()
@@ -297,12 +297,12 @@ def test_a_subclass_may_have_its_own_constructor():
         (lambda: GroundMotion.sine_pulse().resampled(), "resampled() missing"),
     ],
 )
-def test_calls_that_do_not_fit_are_refused(call, words):
+def test_invalid_calls_raise_type_error(call, words):
     with pytest.raises(TypeError, match=re.escape(words)):
         call()
 
 
-def test_a_path_is_neither_motion_nor_dataset():
+def test_path_in_place_of_motion_or_dataset_raises():
     with pytest.raises(ComponentError, match=r"found 'x\.AT2'; write GroundMotion\.read\(path\)"):
         GroundMotion("x.AT2")
     words = r"GroundMotion\.from_dataset: found 'run\.nc'; .*xr\.open_dataset first"
@@ -315,7 +315,7 @@ def test_methods_survive_pickling():
         assert _pickled(method) == method
 
 
-def test_repr_says_what_it_is():
+def test_repr_summarises_motion():
     assert repr(motion(name="test")) == (
         "<GroundMotion 'test': 5 samples at 0.01 s, 0.04 s long, peak 2.25 m/s^2>"
     )
@@ -330,7 +330,7 @@ def test_names_and_history_stay_on_one_line():
     assert GroundMotion(motion().si, name="\n").name == "unnamed motion"
 
 
-def test_what_is_done_to_a_motion_takes_no_longer_for_its_long_history():
+def test_processing_time_does_not_grow_with_history():
     def least(history):
         made = GroundMotion(motion().si, history=history)
         times = []
@@ -365,7 +365,7 @@ def test_metadata_are_strings_and_numbers(value):
         ({"polynomials": np.zeros((5, 6)), "name": "vertical"}, "vertical_pieces needs the shape"),
     ],
 )
-def test_samples_that_do_not_fit_together(arguments, words):
+def test_inconsistent_signal_arguments_raise(arguments, words):
     with pytest.raises(ComponentError, match=words):
         Signal(**{"time_step": 0.01, "samples": np.array(VALUES), **arguments})
 
@@ -377,12 +377,12 @@ def test_samples_that_do_not_fit_together(arguments, words):
         (Signal(0.02, np.zeros(5)), "vertical needs the time step 0.01 s, got 0.02 s"),
     ],
 )
-def test_components_that_do_not_fit_together(vertical, words):
+def test_inconsistent_components_raise(vertical, words):
     with pytest.raises(ComponentError, match=words):
         Motion(Signal(0.01, np.array(VALUES)), vertical)
 
 
-def test_the_ground_is_linear_between_samples_and_still_outside():
+def test_acceleration_is_linear_between_samples_and_zero_outside():
     si = motion(vertical=VALUES[::-1]).si
     assert si.at([0.0, 0.005, 0.01, 0.0125, 0.04]) == pytest.approx(
         [0.0, 0.75, 1.5, 0.5625, 0.125], abs=1e-14
@@ -393,7 +393,7 @@ def test_the_ground_is_linear_between_samples_and_still_outside():
     assert si.vertical.peak == 2.25
 
 
-def test_description_of_a_record_asks_for_the_record():
+def test_description_without_samples_requires_record():
     made = motion(name="test")
     description = json.loads(json.dumps(made.to_dict()))
     assert description == {
@@ -481,14 +481,14 @@ def test_description_of_a_pulse_builds_it_again(made):
         lambda m: m.with_vertical(m.scaled(0.3)).with_vertical(None).scaled(2),
     ],
 )
-def test_a_changed_pulse_is_described_with_what_was_done_to_it(changed):
+def test_description_rebuilds_processed_pulse(changed):
     motion = changed(GroundMotion.sine_pulse())
     description = json.loads(json.dumps(motion.to_dict()))
     assert GroundMotion.from_dict(description) == motion
     assert GroundMotion.from_dataset(motion.to_dataset()).to_dict() == motion.to_dict()
 
 
-def test_a_pulse_with_a_record_as_vertical_is_described_by_its_digest():
+def test_pulse_with_recorded_vertical_has_no_constructor():
     record = GroundMotion.from_arrays(([0.0, 1.0, 0.0], "m/s^2"), "0.0078125 s")
     motion = GroundMotion.sine_pulse().with_vertical(record)
     assert motion.to_dict()["constructor"] is None
@@ -505,6 +505,6 @@ def test_a_pulse_with_a_record_as_vertical_is_described_by_its_digest():
         {"constructor": "sine_pulse", "operations": [{"scaled": {"colour": "red"}}]},
     ],
 )
-def test_descriptions_that_fit_nothing(description):
+def test_invalid_descriptions_are_refused(description):
     with pytest.raises(SchemaError):
         GroundMotion.from_dict(description)

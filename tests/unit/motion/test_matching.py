@@ -89,7 +89,7 @@ def reaches_and_stays(motion, matched, target, periods):
     return True
 
 
-def test_a_record_reaches_the_spectrum_of_a_code_and_stays_itself(quickly_matched):
+def test_matched_record_reaches_code_spectrum_and_keeps_character(quickly_matched):
     assert reaches_and_stays(example(), quickly_matched, EUROCODE, RANGE)
 
 
@@ -101,14 +101,14 @@ def test_a_record_reaches_the_spectrum_of_a_code_and_stays_itself(quickly_matche
     ],
     ids=lambda one: str(one)[:20],
 )
-def test_records_reach_the_spectra_of_codes_and_stay_themselves(name, target, periods):
+def test_matched_records_reach_code_spectra_and_keep_character(name, target, periods):
     motion = (
         rf.GroundMotion.read(record_path(name)) if "." in name else rf.GroundMotion.example(name)
     )
     assert reaches_and_stays(motion, motion.matched(target, periods=periods), target, periods)
 
 
-def test_another_library_sees_the_same_spectrum(quickly_matched):
+def test_matched_spectrum_agrees_with_eqsig(quickly_matched):
     pytest.importorskip("eqsig")
     from eqsig import sdof
 
@@ -119,7 +119,7 @@ def test_another_library_sees_the_same_spectrum(quickly_matched):
     assert np.abs(found / EUROCODE.at((periods, "s")) - 1.0).max() < 0.0505
 
 
-def test_it_is_told_what_was_done(quickly_matched):
+def test_matching_is_documented_in_metadata_and_history(quickly_matched):
     about, said = quickly_matched.metadata, quickly_matched.history[-1]
     assert about["target_spectrum"] == EUROCODE.name
     assert about["matching_steps"] > 0
@@ -132,7 +132,7 @@ def test_it_is_told_what_was_done(quickly_matched):
     assert again.metadata["scale_factor"] == pytest.approx(about["scale_factor"], rel=1e-9)
 
 
-def test_it_is_told_what_else_has_changed(quickly_matched):
+def test_matching_reports_changes_of_other_measures(quickly_matched):
     weak = example().resampled("0.02 s").filtered(low="1.5 Hz")
     target = rf.TargetSpectrum.eurocode_8("0.3 g_0", "D")
     with pytest.warns(RecordWarning, match=r"spectrum 4\.\d+ times at 2\.\d+ s, beyond the range"):
@@ -157,7 +157,7 @@ def test_it_is_told_what_else_has_changed(quickly_matched):
         assert about["spectral_growth_beyond_range"] == pytest.approx(after / before, rel=1e-3)
 
 
-def test_growth_beyond_half_as_much_again_is_unusual():
+def test_unusual_changes_reports_growth_above_50_percent():
     usual = {f"{name}_{when}_matching": 1.0 for name in PEAKS for when in ("before", "after")}
     usual |= {
         "pulse_indicator_before_matching": 0.2,
@@ -177,7 +177,7 @@ def test_growth_beyond_half_as_much_again_is_unusual():
         assert words in found
 
 
-def test_it_comes_back_from_where_it_is_kept(quickly_matched):
+def test_matched_motion_survives_serialization_round_trips(quickly_matched):
     assert rf.GroundMotion.from_dataset(quickly_matched.to_dataset()) == quickly_matched
     assert rf.GroundMotion.from_dict(quickly_matched.to_dict(samples=True)) == quickly_matched
     suite = rf.MotionSuite({"one": quickly_matched})
@@ -205,7 +205,7 @@ def test_a_motion_that_has_the_spectrum_is_not_changed(quickly_matched):
     assert rf.GroundMotion.from_dict(kept.to_dict()).sha256 == pulse.sha256
 
 
-def test_the_vertical_component_is_left_as_it_is():
+def test_matching_does_not_change_vertical_component():
     up = rf.GroundMotion.stochastic(6, "20 km", seed=2).resampled("0.005 s")
     both = example().with_vertical(up)
     matched = both.matched(EUROCODE, periods=("0.3 s", "0.5 s"))
@@ -213,7 +213,7 @@ def test_the_vertical_component_is_left_as_it_is():
     assert not np.array_equal(matched.si.horizontal.samples, both.si.horizontal.samples)
 
 
-def test_between_the_samples_of_a_pulse_lines_take_the_place_of_its_polynomials():
+def test_matching_replaces_polynomials_of_pulse_by_lines():
     pulse = rf.GroundMotion.ricker_wavelet("3 m/s^2", "0.5 s")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RecordWarning)
@@ -223,7 +223,7 @@ def test_between_the_samples_of_a_pulse_lines_take_the_place_of_its_polynomials(
 
 
 @pytest.mark.long
-def test_what_cannot_be_reached_is_told():
+def test_unreachable_target_spectrum_warns():
     """A spectrum with a jump: no oscillator of 5 % damping follows it."""
     jump = rf.TargetSpectrum.from_table(
         (["0.1 s", "0.4 s", "0.401 s", "1 s"]), ([9, 9, 1, 1], "m/s^2")
@@ -242,7 +242,7 @@ def test_what_cannot_be_reached_is_told():
     assert misfit == pytest.approx(matched.metadata["largest_spectral_misfit"], rel=0.02)
 
 
-def test_a_coarse_record_is_warned_of():
+def test_coarse_time_step_warns():
     coarse = example().resampled("0.02 s")
     with pytest.warns(
         RecordWarning, match=r"coarse for periods from 0.15 s.*resampled\('0.01 s'\)"
@@ -282,7 +282,7 @@ def test_a_coarse_record_is_warned_of():
         ),
     ],
 )  # fmt: skip
-def test_nonsense_is_refused(arguments, error, words):
+def test_invalid_arguments_raise(arguments, error, words):
     with pytest.raises(error, match=words):
         example().matched(**{"target": EUROCODE, "periods": RANGE, **arguments})
 

@@ -54,7 +54,7 @@ class TestNumbersThatTouch:
         assert found.tolist() == (np.array(printed(form)) * 9.80665).tolist()
 
 
-def test_numbers_of_a_fixed_width_need_no_sign_between_them():
+def test_fixed_width_numbers_need_no_separator():
     values = np.array([12.3456, 98.7654, 0.0001, 55.5555, 10.0])
     given = source(
         "head\n" + "".join(f"--{row}" for row in rows(values, 2, "{:7.4f}").splitlines(True))
@@ -65,7 +65,7 @@ def test_numbers_of_a_fixed_width_need_no_sign_between_them():
 
 
 @pytest.mark.parametrize("last", ["5", ".5"])
-def test_a_line_ends_a_number(last):
+def test_line_end_separates_numbers(last):
     """Also where what stands on both sides of its end would be a number: 23, and 4E-15."""
     found = free_format(source(f"1.5 2\n3 4E-1\n\n{last}\n"), 0).tolist()
     assert found == [1.5, 2.0, 3.0, 0.4, float(last)]

@@ -85,7 +85,7 @@ def test_window_cuts_samples_and_restarts_time():
     assert part.history[-1] == "window from 1 s to 2.5 s"
 
 
-def test_window_snaps_to_samples_and_says_so():
+def test_window_snaps_to_samples_and_records_it_in_history():
     part = motion().window("1.004 s", "1506 ms")
     assert part.si.horizontal.samples.tolist() == NOISE[100:152].tolist()
     assert part.history[-1] == (
@@ -162,7 +162,7 @@ def test_tapers_that_are_refused(taper, error, words):
         motion().window(taper=taper)
 
 
-def test_tapers_fit_the_window_and_not_only_the_motion():
+def test_tapers_longer_than_window_raise():
     with pytest.raises(ComponentError, match="longer than the window, 1 s"):
         motion().window("1 s", "2 s", taper="0.6 s")
 
@@ -230,7 +230,7 @@ def test_a_higher_order_is_steeper():
     assert peaks[0] > 10.0 * peaks[-1]
 
 
-def test_a_causal_filter_moves_nothing_before_its_time():
+def test_causal_filter_does_not_precede_input():
     values = np.zeros(400)
     values[150] = 1.0
     causal = motion(values).filtered(high="10 Hz", causal=True).si.horizontal.samples
@@ -246,21 +246,21 @@ def test_a_causal_filter_has_the_amplitude_of_one_pass():
     assert "forwards only" in through.history[-1]
 
 
-def test_a_filter_has_four_poles_unless_told_otherwise():
+def test_default_filter_order_is_four():
     assert motion().filtered(high="5 Hz") == motion().filtered(high="5 Hz", order=4)
 
 
-def test_a_straight_line_is_the_usual_baseline():
+def test_default_baseline_order_is_one():
     assert motion().baseline_corrected() == motion().baseline_corrected(1)
 
 
-def test_filter_says_how_it_padded():
+def test_filter_records_padding_in_history():
     filtered = motion().filtered(low="0.1 Hz", order=4)
     assert len(filtered) == len(motion())
     assert "low corner 0.1 Hz, padded with 6000 zeros" in filtered.history[-1]
 
 
-def test_a_band_is_padded_for_its_lower_corner():
+def test_band_pass_padding_depends_on_lower_corner():
     band = motion().filtered(low="0.1 Hz", high="20 Hz")
     assert "padded with 6000 zeros" in band.history[-1]
     sos, rest = signal.butter(4, [0.1, 20.0], "bandpass", fs=100.0, output="sos"), np.zeros(6000)
@@ -280,7 +280,7 @@ def test_a_band_is_padded_for_its_lower_corner():
         ("highpass", {"low": 47.0}),
     ],
 )
-def test_a_narrow_band_is_padded_for_its_width(kind, corners, order):
+def test_narrow_filter_padding_avoids_end_effects(kind, corners, order):
     """Such a filter decays slowly, as does one with a corner close to the Nyquist frequency."""
     given = {name: f"{value} Hz" for name, value in corners.items()}
     found = motion().filtered(**given, order=order).si.horizontal.samples
@@ -293,7 +293,7 @@ def test_a_narrow_band_is_padded_for_its_width(kind, corners, order):
 
 @pytest.mark.parametrize("causal", [False, True])
 @pytest.mark.parametrize("arguments", [{"low": "0.1 Hz"}, {"low": "0.2 Hz", "high": "25 Hz"}])
-def test_with_its_padding_a_filtered_motion_ends_at_rest(causal, arguments):
+def test_filtered_motion_with_padding_ends_at_rest(causal, arguments):
     """The motion is pushed off and ends in full swing, so that it drifts."""
     record = GroundMotion.example("loma-prieta").window("5 s", "15 s")
     cut = record.filtered(**arguments, causal=causal)
@@ -366,7 +366,7 @@ def test_a_drift_of_the_velocity_is_removed(order):
     assert again.history[-1].startswith("baseline corrected: slope of the polynomial of degree")
 
 
-def test_a_drift_is_taken_from_what_is_there_besides():
+def test_velocity_fit_is_independent_of_added_drift():
     time = np.arange(401) * STEP
     clean = motion(np.sin(2.0 * np.pi * time))
     drifting = motion(np.sin(2.0 * np.pi * time) + 0.2 + 0.1 * time)
@@ -429,7 +429,7 @@ def test_time_steps_are_the_same_up_to_rounding(off, same):
             motion().with_vertical(other)
 
 
-def test_what_is_known_of_the_vertical_component_is_kept():
+def test_with_vertical_preserves_metadata_of_vertical_component():
     made = motion()
     told = GroundMotion(made.si, name="up", metadata={"station": "A"}, history=made.history)
     assert motion().with_vertical(told).metadata["vertical_station"] == "A"
@@ -441,7 +441,7 @@ def test_with_vertical_of_something_else(other):
         motion().with_vertical(other)
 
 
-def test_a_replaced_vertical_component_is_told():
+def test_replaced_vertical_component_is_recorded_in_history():
     both = motion(vertical=NOISE).with_vertical(motion(-NOISE))
     assert "replaced" in both.history[-1]
     assert both.si.vertical.samples.tolist() == (-NOISE).tolist()
@@ -461,7 +461,7 @@ def test_pieces_of_the_vertical_component_survive_scaling_and_windows():
     assert part.si.vertical.at(time) == pytest.approx(6.0 * np.cos(2.0 * np.pi * time), abs=6e-12)
 
 
-def test_a_record_above_an_analytic_pulse_is_refined_by_itself():
+def test_recorded_vertical_of_analytic_pulse_is_refined_linearly():
     pulse = GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
     count = len(pulse)
     both = pulse.with_vertical(motion(NOISE[:count], step=pulse.si.time_step))
@@ -492,13 +492,13 @@ def test_a_pulse_that_ends_abruptly_still_does_when_padded():
 @pytest.mark.parametrize(
     "step", ["refined", "coarsened", "tapered", "filtered", "causal", "baseline", "drift"]
 )
-def test_other_steps_replace_pieces_and_say_so(step):
+def test_other_steps_replace_pieces_and_record_it_in_history(step):
     changed = ALL_STEPS[step](GroundMotion.sine_pulse("1 m/s^2", "1 Hz", 3))
     assert not changed.si.horizontal.analytic
     assert "straight lines" in changed.history[-1]
 
 
-def test_the_pieces_of_the_vertical_component_are_spoken_of_too():
+def test_replaced_vertical_pieces_are_recorded_in_history():
     both = motion().with_vertical(GroundMotion.sine_pulse().resampled(f"{STEP} s"))
     assert "straight lines" not in both.baseline_corrected().history[-1]
     pulse = GroundMotion.sine_pulse()

@@ -35,14 +35,14 @@ MOTIONS = {name: made(name, whole=True) for name in PULSES}
 DEFAULTS = [made(name, whole=False) for name in PULSES]
 
 
-def test_every_constructor_may_stand_in_a_recipe():
+def test_every_constructor_is_allowed_in_descriptions():
     members = classify_class_attrs(GroundMotion)
     built = {one.name for one in members if one.kind == "class method" and one.name[0] != "_"}
     read = {"read", "example", *(name for name in built if name.startswith("from_"))}
     assert built - read == set(CONSTRUCTORS)
 
 
-def test_the_manual_has_a_row_of_each():
+def test_manual_lists_every_pulse():
     page, head = "theory/pulses.md", "| constructor of `GroundMotion` | $\\ddot x_g$ | length |"
     rows = table(page, f"{head} final velocity | final displacement |")
     shown = [row[0].strip("`") for row in rows]
@@ -58,7 +58,7 @@ def test_a_description_builds_the_motion_again(motion):
 
 
 @pytest.mark.parametrize("motion", [*MOTIONS.values(), *DEFAULTS])
-def test_through_a_file_bit_for_bit(motion, tmp_path):
+def test_motion_survives_netcdf_round_trip(motion, tmp_path):
     import xarray as xr
 
     motion.to_dataset().to_netcdf(tmp_path / "motion.nc")
@@ -69,7 +69,7 @@ def test_through_a_file_bit_for_bit(motion, tmp_path):
 
 
 @pytest.mark.parametrize("constructor", PULSES)
-def test_what_was_done_to_a_motion_is_described_too(constructor):
+def test_description_rebuilds_processed_motion(constructor):
     motion = MOTIONS[constructor].scaled(peak="0.2 g_0").window("0.1 s", "0.3 s")
     again = GroundMotion.from_dict(json.loads(json.dumps(motion.to_dict())))
     assert again.sha256 == motion.sha256
@@ -90,13 +90,13 @@ NAMES = {
 
 
 @pytest.mark.parametrize(("name", "motion"), NAMES.items())
-def test_names(name, motion):
+def test_name_and_history_describe_pulse(name, motion):
     assert motion.name == name
     (sentence,) = motion.history
     assert sentence.startswith(name.split(",")[0] + ": ")
 
 
-def test_history_and_recipe_have_every_digit():
+def test_history_and_description_have_full_precision():
     motion = GroundMotion.type_a_pulse("0.1234567890123 m/s", "1.1 s")
     assert motion.history == ("type A pulse: 0.1234567890123 m/s, 1.1 s",)
     assert motion.to_dict() == {
@@ -110,7 +110,7 @@ def test_history_and_recipe_have_every_digit():
     assert plain.to_dict()["antisymmetric"] is False
 
 
-def test_a_subclass_builds_itself_and_signs_its_errors():
+def test_subclass_is_built_and_named_in_errors():
     class Recorded(GroundMotion):
         __slots__ = ()
 
@@ -236,12 +236,12 @@ def test_numbers_out_of_range(constructor, name, number):
         ("double_impulse", {"velocity": "1e308 m/s"}, "must be finite"),
     ],
 )
-def test_values_that_mean_nothing(constructor, arguments, words):
+def test_invalid_values_raise(constructor, arguments, words):
     with pytest.raises(ComponentError, match=words):
         getattr(GroundMotion, constructor)(**{**LEAST[constructor], **arguments})
 
 
-def test_an_impulse_has_a_time_for_its_length():
+def test_duration_and_phase_without_units_raise():
     with pytest.raises(UnitsError, match="pulse_duration needs a time"):
         GroundMotion.double_impulse("1 m/s", "1 s", 0.01)
     with pytest.raises(UnitsError, match="phase needs an angle"):
@@ -254,7 +254,7 @@ def test_a_recipe_of_another_constructor_is_refused():
 
 
 @pytest.mark.parametrize("parts", [*range(1, 60), 333, 1000])
-def test_the_length_of_an_impulse_survives_its_own_rounding(parts):
+def test_double_impulse_length_is_robust_to_rounding(parts):
     made = GroundMotion.double_impulse("1 m/s", "0.37 s", f"{0.37 / parts!r} s")
     assert len(made) == 16 * (parts + 1) + 1
     assert GroundMotion.from_dict(made.to_dict()) == made

@@ -9,7 +9,7 @@ from rockframe.errors import ComponentError, UnitsError
 from rockframe.motion import GroundMotion
 
 
-def test_defaults_are_equation_17():
+def test_default_sine_pulse_is_equation_17():
     pulse = GroundMotion.sine_pulse()
     assert pulse.si.duration == 1.0
     time = np.linspace(0.0, 1.0, 4001)
@@ -22,7 +22,7 @@ def test_defaults_are_equation_17():
 
 @pytest.mark.parametrize("frequency", [0.013, 1.0, 7.3])
 @pytest.mark.parametrize("cycles", [0.5, 1, 0.8, 3.7])
-def test_pieces_are_as_exact_as_promised(frequency, cycles):
+def test_pieces_have_documented_accuracy(frequency, cycles):
     pulse = GroundMotion.sine_pulse("2 m/s^2", f"{frequency} Hz", cycles)
     time = np.linspace(0.0, pulse.si.duration, 20011)
     exact = 2.0 * np.sin(2.0 * np.pi * frequency * time)

@@ -35,7 +35,7 @@ def tarred(*files: tuple[str, bytes], mode: str = "w") -> bytes:
     return held.getvalue()
 
 
-def test_the_same_record_however_it_comes(tmp_path, monkeypatch):
+def test_paths_archives_bytes_and_open_files_give_same_record(tmp_path, monkeypatch):
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setenv("USERPROFILE", str(tmp_path))
     path = tmp_path / "some.AT2"
@@ -73,7 +73,7 @@ def test_arguments_go_with_bytes_too():
         GroundMotion.read(b"0.0\n0.1\n-0.1\n", time_step="0.01 s")
 
 
-def test_a_stored_motion_comes_back_from_bytes(tmp_path):
+def test_stored_motion_is_read_from_bytes(tmp_path):
     pulse = GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
     path = tmp_path / "pulse.nc"
     pulse.to_dataset().to_netcdf(path)
@@ -130,7 +130,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("name", REFUSED)
-def test_what_is_refused(name, tmp_path):
+def test_invalid_archives_are_refused(name, tmp_path):
     data, words = REFUSED[name]
     path = tmp_path / "given"
     path.write_bytes(data)

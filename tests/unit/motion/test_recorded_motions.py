@@ -148,13 +148,13 @@ def test_component_number_may_have_leading_zeros():
 
 
 @pytest.mark.parametrize("name", [GEONET, CWA])
-def test_files_of_three_components_want_a_name(name):
+def test_files_of_three_components_need_component_argument(name):
     with pytest.raises(RecordError, match=r"3 components: .*the argument component"):
         GroundMotion.read(record_path(name))
 
 
 @pytest.mark.parametrize("name", [CSMIP, COSMOS])
-def test_files_of_a_vertical_component_say_so(name):
+def test_files_of_vertical_component_warn(name):
     with pytest.warns(RecordWarning, match="is vertical"):
         GroundMotion.read(record_path(name))
 
@@ -190,7 +190,7 @@ def test_the_other_file_of_tcu128_holds_the_other_component():
     assert 0.5 < np.sum(east**2) / np.sum(north**2) < 1.0
 
 
-def test_miniseed_wants_obspy_or_gives_the_motion():
+def test_miniseed_is_read_or_requires_obspy():
     path = record_path(MINISEED)
     record_path(STATION_XML)
     if importlib.util.find_spec("obspy") is None:
@@ -226,7 +226,7 @@ def test_a_forced_wrong_format_is_refused(name, given_format):
         GroundMotion.read(record_path(name), format=given_format, **TEXT)
 
 
-def test_half_a_record_is_refused_and_says_how_much_is_there(tmp_path):
+def test_truncated_record_raises_with_expected_count(tmp_path):
     data = record_path(TCU128).read_bytes()
     path = tmp_path / "half.AT2"
     path.write_bytes(data[: len(data) // 2])
@@ -246,7 +246,7 @@ def test_a_record_cut_inside_its_last_number_is_refused(tmp_path, cut):
 
 
 @pytest.mark.parametrize(("name", "given"), [entry[:2] for entry in RECORDS])
-def test_a_record_that_is_stored_comes_back(name, given, tmp_path):
+def test_record_survives_netcdf_round_trip(name, given, tmp_path):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RecordWarning)
         motion = GroundMotion.read(record_path(name), **given)

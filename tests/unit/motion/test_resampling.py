@@ -33,14 +33,14 @@ def test_refining_by_a_whole_number_keeps_the_function(times):
     assert fine.si.at(time) == pytest.approx(motion().si.at(time), abs=1e-12)
 
 
-def test_a_ratio_that_is_whole_but_for_rounding_is_whole():
+def test_step_ratio_is_rounded_to_integer():
     assert 0.15 / 0.05 < 3.0
     fine = motion(step=0.15).resampled("0.05 s")
     assert len(fine) == 399 * 3 + 1
     assert fine.si.horizontal.samples[::3].tolist() == NOISE.tolist()
 
 
-def test_coarsening_takes_nothing_from_the_slowest_motion():
+def test_coarsening_preserves_constant_away_from_ends():
     still = GroundMotion.from_arrays((np.ones(2000), "m/s^2"), "0.005 s").resampled("0.02 s")
     np.testing.assert_allclose(still.si.horizontal.samples[100:-100], 1.0, rtol=1e-9)
 
@@ -54,7 +54,7 @@ def test_refining_by_another_number_reads_off_the_straight_lines(step):
     assert fine.si.horizontal.samples == pytest.approx(expected, abs=1e-12)
 
 
-def test_refining_says_what_it_took_the_motion_for():
+def test_refining_records_interpolation_in_history():
     pulse = GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
     for made, how in (
         (motion().resampled("0.005 s"), "without anything beyond the old Nyquist frequency"),
@@ -64,7 +64,7 @@ def test_refining_says_what_it_took_the_motion_for():
         assert any(sentence.endswith(f"to 0.005 s, {how}") for sentence in made.history)
 
 
-def test_refining_says_what_is_left_out():
+def test_refining_records_omitted_end_in_history():
     fine = motion().resampled("0.007 s")
     assert fine.si.duration == pytest.approx(570 * 0.007)
     assert motion().resampled("0.0071 s").history[-1] == (
@@ -146,7 +146,7 @@ def test_band_limited_samples_keep_the_old_ones(times):
     "step", [0.005, 0.0071, *(pytest.param(s, marks=pytest.mark.long) for s in (0.001, 0.003))]
 )
 @pytest.mark.parametrize("frequency", [1.0, 20.0, 40.0])
-def test_band_limited_samples_are_those_of_the_tone(step, frequency):
+def test_band_limited_refining_follows_tone(step, frequency):
     """Up to 0.8 of the Nyquist frequency, where straight lines are far off."""
     fine = motion(tone(frequency)).resampled(f"{step} s")
     time = np.arange(len(fine)) * step
@@ -196,7 +196,7 @@ def test_refining_never_changes_the_function(values, times):
     assert fine.si.peak == pytest.approx(coarse.si.peak, rel=1e-14, abs=1e-300)
 
 
-def test_a_step_for_which_the_filter_alone_would_fill_the_memory_is_refused():
+def test_time_step_that_needs_oversized_filter_is_refused():
     record = GroundMotion.from_arrays(([0.0, 1.0, -1.0], "m/s^2"), time_step="0.01 s")
     with pytest.raises(
         ComponentError, match=r"too short compared with that of the record, 0\.01 s"

@@ -61,7 +61,7 @@ def test_the_components_are_named():
 
 
 @pytest.mark.parametrize(("theirs", "known"), [(91, True), (89, True), (92, False), (88, False)])
-def test_azimuths_are_at_a_right_angle_up_to_a_degree(theirs, known):
+def test_azimuths_may_deviate_one_degree_from_right_angle(theirs, known):
     """Agencies round them to whole degrees."""
     one, other = motion(ONE, "H1", 0), motion(OTHER, "H2", theirs)
     if known:
@@ -72,7 +72,7 @@ def test_azimuths_are_at_a_right_angle_up_to_a_degree(theirs, known):
 
 
 @pytest.mark.parametrize(("own", "theirs", "sign"), [(0, 90, 1), (90, 0, -1), (306, 36, 1)])
-def test_an_azimuth_needs_no_angle(own, theirs, sign):
+def test_rotation_to_azimuth(own, theirs, sign):
     """A component that points to `azimuth` is found from two that tell theirs."""
     one, other = motion(ONE, "H1", own), motion(OTHER, "H2", theirs)
     turned = one.rotated(other, azimuth="60 deg")
@@ -98,7 +98,7 @@ def test_pulses_stay_analytic():
     assert GroundMotion.from_dict(turned.to_dict()) == turned
 
 
-def test_a_pulse_and_a_record_share_their_pieces():
+def test_rotation_combines_pulse_with_record():
     pulse = GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
     lines = motion(RNG.normal(size=len(pulse)), "lines", step=pulse.si.time_step)
     time = np.linspace(0.0, 1.0, 333)
@@ -122,7 +122,7 @@ def test_rotations_that_are_refused(arguments, error, words):
         motion(ONE, "one").rotated(motion(OTHER, "other", 90.0), **arguments)
 
 
-def test_partners_that_are_refused():
+def test_invalid_second_component_raises():
     with pytest.raises(ComponentError, match="needs a GroundMotion"):
         motion(ONE, "one").rotated(OTHER, "30 deg")
     with pytest.raises(ComponentError, match=r"time steps differ"):

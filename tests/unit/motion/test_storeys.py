@@ -19,7 +19,7 @@ def motion(vertical=None):
     return rf.GroundMotion.from_arrays((NOISE, "m/s^2"), f"{STEP} s", up, name="noise")
 
 
-def test_what_is_done_is_told_and_can_be_repeated():
+def test_floor_motion_is_described_and_survives_round_trips():
     pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "2 Hz")
     buildings = (
         {"periods": ["0.5 s"], "damping_ratio": 0.05},
@@ -56,7 +56,7 @@ def test_what_is_done_is_told_and_can_be_repeated():
     assert "; 2 further modes; participation " in told[1]
 
 
-def test_a_motion_from_rest_goes_on_after_the_ground_has_stopped():
+def test_floor_motion_includes_free_vibration():
     floor = motion().through_storeys(["0.5 s"], free_vibration="1.234 s")
     assert len(floor) == 300 + 124
     assert floor.history[2] == "with 1.24 s of free vibration after the ground motion"
@@ -75,7 +75,7 @@ def test_a_motion_from_rest_goes_on_after_the_ground_has_stopped():
     assert len(cut) == 300
 
 
-def test_the_vertical_component_is_that_of_the_ground():
+def test_vertical_component_of_floor_equals_ground():
     floor = motion(-NOISE).through_storeys(["0.5 s"], free_vibration="1 s")
     assert floor.si.vertical.samples.tolist() == [*(-NOISE), *np.zeros(100)]
     assert floor.history[-1] == "vertical component unchanged"
@@ -90,7 +90,7 @@ def test_the_vertical_component_is_that_of_the_ground():
     assert not both.si.horizontal.analytic
 
 
-def test_short_periods_bring_a_warning_with_a_time_step_that_suffices():
+def test_short_periods_warn_and_suggest_time_step():
     stiff = ["0.06 s"]
     tone = np.sin(2.0 * np.pi * np.arange(300) * STEP / 0.06)
     shaken = rf.GroundMotion.from_arrays((tone, "m/s^2"), f"{STEP} s")
@@ -110,7 +110,7 @@ def test_short_periods_bring_a_warning_with_a_time_step_that_suffices():
     )
 
 
-def test_values_are_taken_in_the_usual_forms():
+def test_arguments_accept_equivalent_forms():
     expected = motion().through_storeys(["500 ms"], 0.05)
     for periods in ("0.5 s", ([0.5], "s"), pint.Quantity([0.5], "s"), pint.Quantity(0.5, "s")):
         for damping in (0.05, "5 %", np.float64(0.05), [0.05], np.array([0.05]), ("5 %",)):
@@ -121,7 +121,7 @@ def test_values_are_taken_in_the_usual_forms():
     ) == motion().through_storeys(["0.5 s", "0.2 s"], floor_participations=[1.2, -0.2])
 
 
-def test_what_is_no_building_is_refused():
+def test_invalid_buildings_are_refused():
     uniform = {"storeys": 6, "floor": 4, "period": "0.6 s"}
     masses = {"masses": ([1, 2], "t"), "stiffnesses": ([3, 4], "MN/m"), "floor": 1}
     cases = (
@@ -174,7 +174,7 @@ def test_what_is_no_building_is_refused():
             motion().through_storeys(**given)
 
 
-def test_a_floor_that_feels_no_mode_has_the_motion_of_the_ground():
+def test_floor_without_modal_response_moves_with_ground():
     for given in (
         {"periods": ["0 s"]},
         {"periods": ["0.5 s"], "floor_participations": 0},

@@ -21,7 +21,7 @@ DATES = pd.date_range("2020-01-01", periods=COUNT, freq="10ms")
 
 class TestTimesOfAnArray:
     @pytest.mark.parametrize("index", [TIMES, DATES, DATES - DATES[0], DATES.tz_localize("UTC")])
-    def test_an_index_of_times_must_be_that_of_the_time_step(self, index):
+    def test_time_index_must_match_time_step(self, index):
         series = pd.Series(VALUES, index=index)
         motion = GroundMotion.from_arrays((series, "m/s^2"), "0.01 s")
         assert motion.si.horizontal.samples.tolist() == VALUES.tolist()
@@ -30,7 +30,7 @@ class TestTimesOfAnArray:
         with pytest.raises(ComponentError, match="time axis of vertical"):
             GroundMotion.from_arrays((VALUES, "m/s^2"), "0.02 s", (series, "m/s^2"))
 
-    def test_an_index_that_counts_is_no_time(self):
+    def test_integer_index_is_not_read_as_times(self):
         for index in (None, np.arange(5, COUNT + 5)):
             series = pd.Series(VALUES, index=index)
             assert len(GroundMotion.from_arrays((series, "m/s^2"), "0.02 s")) == COUNT
@@ -72,7 +72,7 @@ class TestFromTimes:
         np.testing.assert_allclose(motion.si.horizontal.samples, expected, atol=1e-12)
         assert "0.007 s to 0.013 s apart, straight lines between them" in motion.history[0]
 
-    def test_a_cubic_through_a_cubic_is_that_cubic(self):
+    def test_cubic_interpolation_reproduces_cubic(self):
         cubic = 1.0 + UNEVEN - 3.0 * UNEVEN**2 + 0.5 * UNEVEN**3
         motion = GroundMotion.from_times(
             (UNEVEN, "s"), (cubic, "m/s^2"), "4 ms", interpolation="cubic"
@@ -81,7 +81,7 @@ class TestFromTimes:
         expected = 1.0 + t - 3.0 * t**2 + 0.5 * t**3
         np.testing.assert_allclose(motion.si.horizontal.samples, expected, atol=1e-10)
 
-    def test_even_times_of_the_same_step_change_nothing(self):
+    def test_even_times_preserve_samples(self):
         motion = GroundMotion.from_times(
             (TIMES, "s"), (VALUES, "cm/s^2"), "0.01 s", (-VALUES, "cm/s^2"), name="made up"
         )
@@ -93,7 +93,7 @@ class TestFromTimes:
         motion = GroundMotion.from_times(DATES, (VALUES, "m/s^2"), "0.01 s")
         np.testing.assert_allclose(motion.si.horizontal.samples, VALUES, atol=1e-6)
 
-    def test_a_longer_step_than_between_the_times_is_warned_about(self):
+    def test_time_step_longer_than_intervals_warns(self):
         with pytest.warns(RecordWarning, match="longer than the intervals"):
             GroundMotion.from_times((TIMES, "s"), (VALUES, "m/s^2"), "0.02 s")
 
@@ -109,11 +109,11 @@ class TestFromTimes:
             (TIMES, VALUES, "3 s", "must give 2 to"),
         ],
     )
-    def test_what_is_refused(self, times, values, step, words):
+    def test_invalid_times_and_samples_raise(self, times, values, step, words):
         with pytest.raises(ComponentError, match=words):
             GroundMotion.from_times((times, "s"), (values, "m/s^2"), step)
 
-    def test_units_are_needed(self):
+    def test_missing_units_and_unknown_interpolation_raise(self):
         with pytest.raises(UnitsError, match="needs an array of times with a unit"):
             GroundMotion.from_times(TIMES, (VALUES, "m/s^2"), "0.01 s")
         with pytest.raises(UnitsError):
@@ -141,13 +141,13 @@ class TestFromFrame:
         with pytest.raises(ComponentError, match="column 't' must hold times"):
             GroundMotion.from_frame(frame, "gal", "N", time="t")
 
-    def test_one_that_points_down_is_turned_over(self):
+    def test_downward_vertical_column_is_inverted(self):
         motion = GroundMotion.from_frame(FRAME, "gal", "N", "DWN", time="t")
         np.testing.assert_allclose(motion.si.vertical.samples, -0.03 * VALUES, rtol=1e-14)
         assert motion.history[-1] == "component DWN turned over: positive upwards"
 
     @pytest.mark.parametrize("factor", [1e3, 1e-3])
-    def test_times_that_are_hardly_in_seconds_are_warned_about(self, factor):
+    def test_times_unlikely_to_be_in_seconds_warn(self, factor):
         frame = pd.DataFrame({"t": factor * TIMES, "acc": VALUES})
         with pytest.warns(RecordWarning, match=r"are they in seconds\?"):
             GroundMotion.from_frame(frame, "gal", "acc", time="t")
@@ -177,7 +177,7 @@ class TestFromFrame:
         with pytest.raises(ComponentError, match=words):
             GroundMotion.from_frame(FRAME, "g", time="t", **given)
 
-    def test_what_else_is_refused(self):
+    def test_other_invalid_arguments_raise(self):
         with pytest.raises(ComponentError, match="needs a pandas DataFrame"):
             GroundMotion.from_frame(VALUES, "g")
         with pytest.raises(UnitsError):
@@ -230,7 +230,7 @@ class TestFromTrace:
         with pytest.raises(RecordError, match="masked samples"):
             GroundMotion.from_trace(held, "gal")
 
-    def test_the_unit_is_given_or_stated(self):
+    def test_unit_comes_from_argument_or_trace(self):
         with pytest.raises(RecordError, match="no unit of the samples"):
             GroundMotion.from_trace(trace())
         stated = trace(standard={"units": "cm/s^2"})
@@ -239,13 +239,13 @@ class TestFromTrace:
             GroundMotion.from_trace(trace(), "g")
 
     @pytest.mark.parametrize("given", [3, "path", VALUES, stream(), None])
-    def test_what_is_no_trace(self, given):
+    def test_invalid_traces_raise(self, given):
         with pytest.raises(ComponentError, match="needs an ObsPy Trace, or a Stream"):
             GroundMotion.from_trace(given, "gal")
 
     @pytest.mark.skipif(importlib.util.find_spec("obspy") is None, reason="ObsPy is not installed")
     @pytest.mark.filterwarnings("ignore::DeprecationWarning")
-    def test_obspy_itself(self):
+    def test_obspy_trace_and_stream_are_accepted(self):
         import obspy
 
         own = obspy.Trace(VALUES, {"network": "XX", "station": "MADE", "channel": "HNE"})

@@ -51,28 +51,28 @@ class TestWrapped:
         (only,) = rf.read_suite(path, **ASKED).values()
         assert only.sha256 == motion.sha256
 
-    def test_has_no_columns(self, write):
+    def test_column_of_wrapped_record_is_refused(self, write):
         path = write(rows(WRAPPED, 5), "wrapped.dat")
         with pytest.raises(RecordError, match=r"2998 samples, 5 to a line.*component='row by row'"):
             GroundMotion.read(path, component="column 1", **ASKED)
 
-    def test_a_first_line_that_is_cut_is_no_header(self, write):
+    def test_cut_first_line_is_not_mistaken_for_header(self, write):
         cut = rows(WRAPPED, 5)[37:]  # "...E+00" and two numbers
         with pytest.raises(RecordError, match=r"line 1: found .* expected numbers"):
             GroundMotion.read(write(cut.replace("E", "E-", 1), "wrapped.dat"), **ASKED)
 
-    def test_a_blank_line_between_its_lines_is_told(self, write):
+    def test_blank_line_among_numbers_warns(self, write):
         text = rows(WRAPPED, 5)
         path = write(text[: 76 * 100] + "\n" + text[76 * 100 :], "wrapped.dat")
         with pytest.warns(RecordWarning, match="line 101: a blank line among the numbers"):
             assert len(GroundMotion.read(path, **ASKED)) == 2998
 
-    def test_that_ends_inside_a_number_is_refused(self, write):
+    def test_record_cut_inside_number_is_refused(self, write):
         path = write(rows(WRAPPED, 5)[:-5], "wrapped.dat")
         with pytest.raises(RecordError, match="inside a number"):
             GroundMotion.read(path, **ASKED)
 
-    def test_of_a_download_is_the_one_of_the_database(self):
+    def test_downloaded_wrapped_file_equals_at2_file(self):
         plain, headed = record_path("more2/ALH360.dat"), record_path("more2/ALH360.AT2")
         motion = GroundMotion.read(plain, unit="g", time_step="0.02 s")
         expected = GroundMotion.read(headed).si.horizontal.samples
@@ -80,7 +80,7 @@ class TestWrapped:
 
 
 class TestWhereNumbersDoNotTell:
-    def test_both_ways_are_named_and_can_be_asked_for(self, write):
+    def test_ambiguous_layout_raises_and_lists_both_readings(self, write):
         noise = np.random.default_rng(1).uniform(-0.1, 0.1, size=300)
         path = write(rows(noise, 3), "noise.dat")
         with pytest.raises(RecordError, match=r"'row by row', or .*component='column 1'"):
@@ -101,7 +101,7 @@ class TestWhereNumbersDoNotTell:
 
 class TestReadingOrder:
     @pytest.mark.parametrize("columns", range(2, 11))
-    def test_of_the_motion_of_the_package(self, columns):
+    def test_wrapped_example_motion_is_read_by_rows(self, columns):
         samples = GroundMotion.example("loma-prieta").si.horizontal.samples
         assert reading_order(table(samples, columns)) == ROWS
 
@@ -128,7 +128,7 @@ class TestReadingOrder:
 
     @pytest.mark.parametrize("shared", [0.0, 0.5, 0.9, 1.0])
     @pytest.mark.parametrize("memory", [-0.5, 0.0, 0.5, 0.9, 0.98])
-    def test_of_columns_of_noise(self, shared, memory):
+    def test_noise_columns_are_not_mistaken_for_one_record(self, shared, memory):
         rng = np.random.default_rng(7)
         for columns in (2, 3, 6):
             own, common = rng.normal(size=(500, columns)), rng.normal(size=(500, 1))
@@ -138,6 +138,6 @@ class TestReadingOrder:
             assert reading_order(values) != ROWS
             assert reading_order(values + np.arange(columns)) != ROWS
 
-    def test_smooth_columns_are_known(self):
+    def test_smooth_columns_are_recognised(self):
         pulses = np.random.default_rng(3).normal(size=(600, 3)).cumsum(axis=0)
         assert reading_order(pulses) == COLUMNS

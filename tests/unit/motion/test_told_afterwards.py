@@ -20,7 +20,7 @@ def motion(values, name="one", **metadata):
 
 
 @pytest.mark.parametrize(("own", "theirs", "sign"), [(0, 90, 1), (90, 0, -1), (360, 270, -1)])
-def test_the_azimuth_of_a_turned_component(own, theirs, sign):
+def test_rotation_updates_azimuth(own, theirs, sign):
     one, other = motion(NORTH, azimuth=own), motion(EAST, azimuth=theirs)
     turned = one.rotated(other, "30 deg")
     assert turned.metadata["azimuth"] == pytest.approx((own + sign * 30.0) % 360.0)
@@ -31,16 +31,16 @@ def test_the_azimuth_of_a_turned_component(own, theirs, sign):
     assert back == pytest.approx(NORTH, abs=1e-13)
 
 
-def test_an_azimuth_that_cannot_be_known_is_left_out():
+def test_rotation_drops_unknown_azimuth():
     assert "azimuth" not in motion(NORTH, azimuth=0).rotated(motion(EAST), "30 deg").metadata
 
 
-def test_components_that_are_not_at_a_right_angle_are_not_turned_by_an_angle_either():
+def test_rotation_of_non_orthogonal_components_by_angle_is_refused():
     with pytest.raises(ComponentError, match="are not at a right angle"):
         motion(NORTH, azimuth=0).rotated(motion(EAST, azimuth=45), "30 deg")
 
 
-def test_a_mirrored_component_points_the_other_way():
+def test_negative_scaling_reverses_azimuth():
     southwards = motion(NORTH, azimuth=0).scaled(-2)
     assert southwards.metadata["azimuth"] == 180.0
     pair = rf.HorizontalPair(southwards, motion(EAST, azimuth=90))
@@ -66,7 +66,7 @@ def test_a_window_starts_later(start, later):
     assert whole.window(None, "3 s").metadata["record_time"] == start
 
 
-def test_a_window_and_the_whole_make_no_pair():
+def test_pair_with_different_start_times_is_refused():
     one, other = motion(NORTH, record_time=START), motion(EAST, record_time=START)
     with pytest.raises(ComponentError, match="first starts at 2020-02-03T04:05:08, second at"):
         rf.HorizontalPair(one.window("2 s"), other)
@@ -74,7 +74,7 @@ def test_a_window_and_the_whole_make_no_pair():
 
 
 @pytest.mark.parametrize("start", ["2020/02/03 04:05:06 (GMT+08)", "4 h 5 min"])
-def test_starts_in_any_words_are_compared_after_windows(start):
+def test_start_times_in_any_format_are_compared_after_windows(start):
     one, other = motion(NORTH, record_time=start), motion(EAST, record_time=start)
     twice = one.window("0.3 s").window("1.7 s")
     assert twice.metadata["record_time"] == f"{start}, plus 2 s"
@@ -85,13 +85,13 @@ def test_starts_in_any_words_are_compared_after_windows(start):
     assert cut.metadata["record_time"] == start
 
 
-def test_a_start_on_the_time_axis_of_the_file_moves_with_a_window():
+def test_window_shifts_start_on_file_time_axis():
     whole = motion(NORTH, start_time=0.05, vertical_start_time=0.05)
     part = whole.window("1.5 s").metadata
     assert part["start_time"] == part["vertical_start_time"] == pytest.approx(1.55)
 
 
-def test_padding_that_is_kept_starts_earlier():
+def test_filter_padding_shifts_start_time_back():
     filtered = motion(NORTH, record_time=START).filtered(low="2 Hz", keep_padding=True)
     assert len(filtered) == 400 + 2 * 300
     assert filtered.metadata["record_time"] == "2020-02-03T04:05:03"
@@ -99,7 +99,7 @@ def test_padding_that_is_kept_starts_earlier():
     assert cut.metadata["record_time"] == START
 
 
-def test_the_motions_of_a_velocity_pulse_start_as_much_earlier_as_they_are_longer():
+def test_velocity_pulse_motions_start_earlier_by_lead():
     pulse = GroundMotion.mavroeidis_papageorgiou_pulse("80 cm/s", "0.5 Hz", 2.2, "0 deg")
     record = GroundMotion(pulse.si, metadata={"record_time": START})
     found = record.velocity_pulse()
@@ -109,7 +109,7 @@ def test_the_motions_of_a_velocity_pulse_start_as_much_earlier_as_they_are_longe
         assert np.datetime64(START) - np.datetime64(each.metadata["record_time"]) == lead
 
 
-def test_other_starts_are_warned_about():
+def test_joining_motions_with_different_start_times_warns():
     one, other = motion(NORTH, "a", record_time=START), motion(EAST, "b", record_time=START)
     for joined in (one.with_vertical, lambda late: one.rotated(late, "10 deg")):
         joined(other)
@@ -117,7 +117,7 @@ def test_other_starts_are_warned_about():
             joined(other.window("1 s"))
 
 
-def test_every_scaling_counts():
+def test_scale_factors_accumulate():
     once = motion(NORTH).scaled(2.0)
     assert once.metadata["scale_factor"] == 2.0
     assert once.scaled(peak="1 g_0").scaled(-3.0).metadata["scale_factor"] == pytest.approx(
@@ -129,7 +129,7 @@ def test_every_scaling_counts():
     assert scaled.si.horizontal.samples == pytest.approx(factor * NORTH)
 
 
-def test_what_is_known_of_a_vertical_component_goes_with_it():
+def test_metadata_of_vertical_component_are_replaced_with_it():
     first = motion(EAST, station="first", component="U")
     both = motion(NORTH, station="here").with_vertical(first)
     assert both.metadata["vertical_station"] == "first"
@@ -145,7 +145,7 @@ def test_what_is_known_of_a_vertical_component_goes_with_it():
     assert both.velocity_pulse().residual.metadata["vertical_station"] == "first"
 
 
-def test_components_of_different_factors_have_none_together():
+def test_rotating_differently_scaled_components_drops_scale_factor():
     once, twice = motion(NORTH).scaled(2.0), motion(EAST).scaled(4.0)
     assert "scale_factor" not in once.rotated(twice, "30 deg").metadata
     assert "scale_factor" not in once.rotated(motion(EAST), "30 deg").metadata
@@ -169,7 +169,7 @@ def test_components_of_different_factors_have_none_together():
         (lambda one, other: one.with_vertical(other.with_vertical(one.scaled(7))), None, None),
     ],
 )
-def test_every_scaling_of_each_component_counts(joined, across, upwards):
+def test_scale_factors_accumulate_per_component(joined, across, upwards):
     made = joined(motion(NORTH), motion(EAST))
     assert made.metadata.get("scale_factor") == across
     assert made.si.horizontal.samples == pytest.approx((across or 1.0) * NORTH)
@@ -179,13 +179,13 @@ def test_every_scaling_of_each_component_counts(joined, across, upwards):
     assert not any(name.startswith("vertical_vertical") for name in made.metadata)
 
 
-def test_components_of_different_scales_have_no_common_one():
+def test_rotation_preserves_only_common_scale_factor():
     one, other = motion(NORTH).scaled(2), motion(EAST).scaled(3)
     assert "scale_factor" not in one.rotated(other, "30 deg").metadata
     assert one.rotated(motion(EAST).scaled(-2), "30 deg").metadata["scale_factor"] == 2.0
 
 
-def test_the_misfit_of_a_scaled_vertical_component_is_dropped():
+def test_scaling_drops_misfit_of_vertical_component():
     both = motion(NORTH).with_vertical(motion(EAST, spectral_misfit=0.1))
     assert both.metadata["vertical_spectral_misfit"] == 0.1
     assert "vertical_spectral_misfit" not in both.scaled(2).metadata
@@ -195,7 +195,7 @@ def test_the_misfit_of_a_scaled_vertical_component_is_dropped():
 @pytest.mark.parametrize(
     ("component", "known"), [("N", {"azimuth": 0.0}), ("DWN", {"positive": "down"})]
 )
-def test_a_mirrored_component_is_not_read_as_the_one_before(tmp_path, component, known):
+def test_mirrored_component_is_not_read_as_original(tmp_path, component, known):
     before = motion(NORTH, component=component, **known)
     mirrored = before.scaled(-1)
     assert mirrored.metadata["component"] == f"-{component}"
@@ -207,7 +207,7 @@ def test_a_mirrored_component_is_not_read_as_the_one_before(tmp_path, component,
     assert read.metadata.get("positive") != "down"
 
 
-def test_scaling_and_misfit():
+def test_only_steps_that_change_spectrum_drop_misfit():
     target = rf.TargetSpectrum.eurocode_8("0.2 g_0")
     scaled = rf.MotionSuite({"a": motion(NORTH)}).scaled_to(target, bounds=None)["a"]
     factor = scaled.metadata["scale_factor"]
@@ -247,7 +247,7 @@ def test_scaling_and_misfit():
                                  periods=("0.1 s", "0.5 s"), tolerance=0.3), "one, matched"),
     ],
 )  # fmt: skip
-def test_the_name_in_titles_and_labels_tells_how_a_motion_was_processed(process, name):
+def test_title_and_labels_name_processing_steps(process, name):
     made = process(motion(NORTH))
     system = rf.System(rf.Block(width="2 m", height="4 m", mass="2 t"))
     run = system.simulate(made, duration="0.1 s", outputs=None)

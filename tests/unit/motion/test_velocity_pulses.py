@@ -57,7 +57,7 @@ def wavelet(time, period, middle):
     return mother_wavelet((time - middle) * 1.4 / period + 3.5) / 1.3592
 
 
-def test_the_wavelet_is_that_of_an_independent_library():
+def test_wavelet_agrees_with_independent_library():
     np.testing.assert_allclose(scaling_filter(), FILTER, rtol=1e-13)
     found = mother_wavelet(np.array(list(VALUES)))
     np.testing.assert_allclose(found, list(VALUES.values()), atol=4e-6)
@@ -85,7 +85,7 @@ def test_a_pulse_under_noise_is_found(period):
     assert "pulse-like" in str(found)
 
 
-def test_the_greatest_coefficient_of_all_is_taken():
+def test_pulse_has_largest_wavelet_coefficient():
     """By the integral, at all periods and places, written out."""
     step, count = 0.02, 500
     time = np.arange(count) * step
@@ -107,7 +107,7 @@ def test_the_greatest_coefficient_of_all_is_taken():
     assert found.period.m_as("s") == pytest.approx(best[1], rel=0.03)
 
 
-def test_extracted_pulse_and_residual_are_the_motion_and_do_not_drift():
+def test_pulse_and_residual_sum_to_motion_without_drift():
     # the pulse begins before the record, which drifts a little
     time = np.arange(2001) * STEP
     motion = with_velocity(wavelet(time, 2.0, 1.5) + noise(2001, 0.2) + 1e-3 * time)
@@ -132,7 +132,7 @@ def test_extracted_pulse_and_residual_are_the_motion_and_do_not_drift():
     assert any("pulse taken out" in step for step in found.residual.history)
 
 
-def test_the_criteria_are_those_published():
+def test_criteria_follow_publication():
     """By hand, for a velocity of ones from which a pulse takes a part."""
     velocity = np.ones(100)
     pulse = np.where(np.arange(100) < 40, 0.5, 0.0)
@@ -144,7 +144,7 @@ def test_the_criteria_are_those_published():
     assert (found.pulse_start, found.motion_start) == pytest.approx((0.5 * 3, 0.5 * 19))
 
 
-def test_what_is_not_met_is_said():
+def test_unmet_criteria_are_listed():
     time = np.arange(4001) * STEP
     pulse = 0.8 * wavelet(time, 2.0, 30.0)
     weak = with_velocity(0.1 * pulse).velocity_pulse()
@@ -205,7 +205,7 @@ def test_published_records_without_a_pulse(name):
     assert not found.pulse_like
 
 
-def test_the_embedded_record_has_none():
+def test_embedded_record_has_no_pulse():
     assert not GroundMotion.example("loma-prieta").velocity_pulse().pulse_like
 
 

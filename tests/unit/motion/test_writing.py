@@ -17,7 +17,7 @@ def made(step="0.005 s"):
 
 @pytest.mark.parametrize("component", ["horizontal", "vertical"])
 @pytest.mark.parametrize("step", ["0.005 s", "0.00390625 s", "0.02 s", "0.0033333333333333335 s"])
-def test_what_is_written_is_read_again(tmp_path, component, step):
+def test_motion_survives_at2_round_trip(tmp_path, component, step):
     motion = made(step)
     path = tmp_path / "w.AT2"
     motion.to_at2(path, component)
@@ -44,13 +44,13 @@ def test_the_layout_is_that_of_peer(tmp_path):
     assert len(fields) == 203
 
 
-def test_letters_that_not_every_program_reads(tmp_path):
+def test_non_ascii_letters_are_replaced(tmp_path):
     motion = GroundMotion(made().si, metadata={"event": "İzmir", "station": "Muğla"})
     motion.to_at2(tmp_path / "w.AT2")
     assert GroundMotion.read(tmp_path / "w.AT2").metadata["station"] == "Mu?la"
 
 
-def test_what_cannot_be_written(tmp_path):
+def test_invalid_at2_output_is_refused(tmp_path):
     level = GroundMotion.from_arrays((VALUES, "m/s^2"), "0.01 s")
     with pytest.raises(ComponentError, match="no vertical component"):
         level.to_at2(tmp_path / "w.AT2", "vertical")
@@ -60,7 +60,7 @@ def test_what_cannot_be_written(tmp_path):
         level.to_at2(tmp_path / "nowhere" / "w.AT2")
 
 
-def test_an_analytic_motion_is_written_by_its_samples(tmp_path):
+def test_samples_of_analytic_motion_are_written(tmp_path):
     pulse = GroundMotion.sine_pulse()
     pulse.to_at2(tmp_path / "w.AT2")
     again = GroundMotion.read(tmp_path / "w.AT2")

@@ -22,13 +22,13 @@ def fallen():
 
 
 @pytest.mark.parametrize("draw", [rf.plot.response, rf.plot.phase, rf.plot.state])
-def test_a_case_is_drawn_up_to_its_end(fallen, draw):
+def test_overturned_case_can_be_plotted(fallen, draw):
     axes = draw(fallen)
     figure = axes.figure if hasattr(axes, "figure") else axes[0].figure
     figure.canvas.draw()
 
 
-def test_a_case_is_entitled_with_what_became_of_it_not_of_the_sweep(fallen):
+def test_case_title_states_its_own_outcome(fallen):
     time = fallen.overturning_time.item()
     expected = f"{{}}scale 1.6: overturned at {time:.4g} s"
     of_motion = f"motion {fallen.motion.item()}, "
@@ -50,7 +50,7 @@ def test_a_case_is_entitled_with_what_became_of_it_not_of_the_sweep(fallen):
     assert [text.get_text().split("scale ")[1] for text in legend.get_texts()] == ["0.5", "0.3"]
 
 
-def test_a_case_plays_up_to_its_end(fallen):
+def test_player_and_animation_end_with_the_case(fallen):
     end = float(fallen.time[fallen.rotation.notnull()][-1])
     assert f"player of {end:.1f} s" in repr(rf.plot.player(fallen))
     assert "animation of 13 frames" in repr(rf.plot.animation(fallen))
@@ -80,7 +80,7 @@ def test_a_case_without_a_result_is_refused(fallen):
 
 
 @pytest.mark.wide
-def test_cases_of_stacks_lack_what_is_drawn_of_their_bodies():
+def test_case_of_a_stack_without_body_histories_is_refused():
     stone = rf.RigidGround()
     system = rf.System(rf.Stack(BLOCK, BLOCK, interfaces=[stone]), stone)
     runs = rf.sweep(system, PULSE, scale=[0.5], outputs=[], duration="0.1 s", **QUIET)
@@ -89,7 +89,7 @@ def test_cases_of_stacks_lack_what_is_drawn_of_their_bodies():
 
 
 @pytest.mark.parametrize("kept", [["energy"], None])
-def test_the_advice_for_a_case_without_histories_gives_a_figure(kept):
+def test_error_for_case_without_histories_suggests_a_working_call(kept):
     runs = rf.sweep(rf.System(BLOCK), PULSE, scale=[0.5, 0.6], outputs=kept, **QUIET)
     one = runs.isel(scale=1, motion=0)
     advice = r"got a Dataset with a case of a sweep without .*; rf\.case\(dataset\)\.simulate\(\)"
@@ -109,7 +109,7 @@ def test_the_advice_for_a_case_without_histories_gives_a_figure(kept):
         rf.plot.response(rf.case(one))
 
 
-def test_the_advice_for_energies_of_a_case_gives_a_figure(fallen):
+def test_error_for_case_without_energies_suggests_a_working_call(fallen):
     with pytest.raises(SchemaError, match=r"rf\.case\(dataset\)\.simulate\(outputs=\('energy',\)"):
         rf.plot.energies(fallen)
     rf.plot.energies(rf.case(fallen).simulate(outputs=("energy",)))
@@ -135,7 +135,7 @@ def of_a_function():
 
 
 @pytest.mark.parametrize("owner", NEEDS_SYSTEM)
-def test_a_case_without_what_it_varies_is_refused_by_the_name_of_the_caller(owner, tmp_path):
+def test_case_without_axis_coordinate_is_refused_naming_the_caller(owner, tmp_path):
     runs = rf.sweep(rf.System(BLOCK), PULSE, width=["0.8 m", "1 m"], outputs=[], **QUIET)
     case = runs.isel(width=1, motion=0).drop_vars("width")
     with pytest.raises(
@@ -146,7 +146,7 @@ def test_a_case_without_what_it_varies_is_refused_by_the_name_of_the_caller(owne
 
 @pytest.mark.usefixtures("no_pictures")
 @pytest.mark.parametrize("owner", NEEDS_SYSTEM)
-def test_a_case_of_an_unknown_function_is_refused_by_the_name_of_the_caller(
+def test_case_of_an_unknown_scene_function_is_refused_naming_the_caller(
     owner, tmp_path, of_a_function, monkeypatch
 ):
     NEEDS_SYSTEM[owner](of_a_function, tmp_path)
@@ -156,14 +156,14 @@ def test_a_case_of_an_unknown_function_is_refused_by_the_name_of_the_caller(
         NEEDS_SYSTEM[owner](of_a_function, tmp_path)
 
 
-def test_the_system_of_a_case_of_a_function_is_had_from_the_case(of_a_function):
+def test_system_of_a_function_sweep_is_obtained_from_a_case(of_a_function):
     with pytest.raises(SchemaError, match=r"sweep over width, .*rf\.case\(dataset\)\.system"):
         rf.System.from_dataset(of_a_function)
     assert rf.case(of_a_function).system == tower(1.0)
 
 
 @pytest.mark.usefixtures("no_pictures")
-def test_reports_take_cases_and_what_was_made_of_sweeps(fallen, tmp_path):
+def test_report_accepts_cases_and_derived_sweeps(fallen, tmp_path):
     system, path = rf.System(BLOCK), tmp_path / "report.html"
     some = rf.sweep(system, PULSE, scale=[0.5], outputs=["energy"], **QUIET)
     other = rf.sweep(system, PULSE, scale=[0.6], duration="1 s", **QUIET)
@@ -181,7 +181,7 @@ def test_reports_take_cases_and_what_was_made_of_sweeps(fallen, tmp_path):
 
 
 @pytest.mark.usefixtures("no_pictures")
-def test_a_report_on_a_case_without_its_motion_tells_of_that_case_alone(tmp_path):
+def test_report_without_motion_describes_only_its_case(tmp_path):
     record = rf.GroundMotion.from_arrays(([0.0, 5.0, 5.0, -5.0, 0.0], "m/s^2"), "0.2 s", name="r")
     runs = rf.sweep(rf.System(BLOCK), record, width=["0.8 m", "1.2 m"], scale=[0.1, 1.0], **QUIET)
     of_cases._studies.clear()  # as in another process
@@ -197,7 +197,7 @@ def test_a_report_on_a_case_without_its_motion_tells_of_that_case_alone(tmp_path
         rf.report(case, path, motion=PULSE)
 
 
-def test_a_fragility_needs_the_motions_of_the_runs():
+def test_fragility_requires_motion_coordinate():
     runs = rf.sweep(rf.System(BLOCK), PULSE, scale=[0.5, 1.6], **QUIET)
     with pytest.raises(SchemaError, match="without the coordinate 'motion'"):
         rf.fragility(runs.mean("motion", keep_attrs=True), "PGA")

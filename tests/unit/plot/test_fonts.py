@@ -73,7 +73,7 @@ def drawn(name, run):
 
 
 @pytest.mark.parametrize("name", SOME_DRAWN)
-def test_letters_that_no_font_has_are_told_once(name, run, monkeypatch):
+def test_missing_glyphs_warn_once(name, run, monkeypatch):
     fonts = [one for one in font_manager.fontManager.ttflist if one.name == "DejaVu Sans"]
     monkeypatch.setattr(font_manager.fontManager, "ttflist", fonts)
     _, issued = drawn(name, run)
@@ -82,7 +82,7 @@ def test_letters_that_no_font_has_are_told_once(name, run, monkeypatch):
     assert "install a font with these letters, such as Noto Sans CJK" in str(issued[0])
 
 
-def test_a_report_with_several_figures_tells_them_once(run, monkeypatch, tmp_path):
+def test_report_warns_once_of_missing_glyphs(run, monkeypatch, tmp_path):
     fonts = [one for one in font_manager.fontManager.ttflist if one.name == "DejaVu Sans"]
     monkeypatch.setattr(font_manager.fontManager, "ttflist", fonts)
     with pytest.warns(RockframeWarning, match="no installed font has") as issued:
@@ -94,7 +94,7 @@ def test_a_report_with_several_figures_tells_them_once(run, monkeypatch, tmp_pat
 
 
 @pytest.mark.parametrize("name", SOME_DRAWN)
-def test_letters_are_written_in_a_font_that_has_them(name, run, installed):
+def test_text_uses_a_font_with_its_glyphs(name, run, installed):
     texts, issued = drawn(name, run)
     assert issued == []
     foreign = [one for one in texts if set(one.get_text()) & set(LETTERS)]
@@ -102,7 +102,7 @@ def test_letters_are_written_in_a_font_that_has_them(name, run, installed):
     assert all(one.get_fontfamily()[-1] == installed for one in foreign)
 
 
-def test_fonts_that_the_user_has_chosen_come_first(run, installed):
+def test_user_selected_fonts_take_precedence(run, installed):
     with rc_context({"font.family": [installed, "DejaVu Sans"]}):
         texts, issued = drawn("response", run)
     assert issued == []

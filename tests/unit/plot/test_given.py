@@ -71,7 +71,7 @@ def made():
 
 
 @pytest.mark.parametrize("name", DRAWN)
-def test_what_was_given_and_what_draws_it_are_said(name, made):
+def test_error_names_the_argument_and_the_matching_plot_function(name, made):
     draw, own, needed, error = DRAWN[name]
     for kind in MADE:
         if kind == own:
@@ -87,7 +87,7 @@ def test_what_was_given_and_what_draws_it_are_said(name, made):
         assert len(message) < 250
 
 
-def test_two_axes_are_drawn_beside_the_one_motion():
+def test_sweep_of_two_axes_and_one_motion_is_plotted():
     system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
     pulse = rf.GroundMotion.sine_pulse("2 m/s^2", "1 Hz")
     runs = rf.sweep(system, pulse, scale=[1.0, 2.0, 3.0], height=["3 m", "4 m"], accuracy="fast")
@@ -103,21 +103,21 @@ def test_two_axes_are_drawn_beside_the_one_motion():
         rf.plot.sweep(several, "peak_rotation")
 
 
-def test_a_file_is_opened_by_what_reads_it():
+def test_error_for_a_path_suggests_the_reader():
     with pytest.raises(SchemaError, match=r"rf\.plot\.response\(xr\.open_dataset\('run\.nc'\)\)"):
         rf.plot.response("run.nc")
     with pytest.raises(ComponentError, match=r"rf\.plot\.motion\(rf\.GroundMotion\.read\('a'\)\)"):
         rf.plot.motion("a")
 
 
-def test_a_run_that_was_stored_is_drawn(made, tmp_path):
+def test_reopened_run_is_plotted(made, tmp_path):
     for name, draw in (("run", rf.plot.response), ("rungs", rf.plot.tradeoff)):
         made[name].to_netcdf(tmp_path / "stored.nc")
         with xr.open_dataset(tmp_path / "stored.nc") as stored:
             draw(stored)
 
 
-def test_one_run_is_drawn_whole(made):
+def test_response_requires_a_single_complete_run(made):
     both = xr.concat([made["run"], made["run"]], "scale", data_vars="all")
     with pytest.raises(SchemaError, match=r"several runs over scale; .* dataset\.isel\(scale=0\)"):
         rf.plot.response(both)
@@ -130,7 +130,7 @@ def test_one_run_is_drawn_whole(made):
         rf.plot.tradeoff(made["rungs"].drop_vars("history_error"))
 
 
-def test_a_history_in_another_unit_is_drawn_by_it():
+def test_converted_histories_are_plotted_in_their_unit():
     """The rotation over the overturning angle took degrees for radians."""
     system = rf.System(rf.Block(width="0.6 m", height="2 m", mass="400 kg"))
     run = system.simulate(rf.GroundMotion.sine_pulse("-4 m/s^2", "1.5 Hz"), free_vibration="1 s")

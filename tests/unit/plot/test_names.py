@@ -52,7 +52,7 @@ DRAWN = {
 
 
 @pytest.mark.parametrize("name", DRAWN)
-def test_names_are_in_the_legend_letter_by_letter(runs, swept, counted, name):
+def test_legend_shows_names_verbatim(runs, swept, counted, name):
     figure = DRAWN[name](runs, swept, counted).figure
     texts = [text for text in written(figure) if text not in ("median", "mean", "overturned")]
     assert len(texts) == len(NAMES)
@@ -64,7 +64,7 @@ def test_names_are_in_the_legend_letter_by_letter(runs, swept, counted, name):
 
 
 @pytest.mark.parametrize("name", DRAWN)
-def test_long_names_leave_the_room_of_what_is_drawn(runs, swept, counted, name):
+def test_long_names_do_not_shrink_the_axes(runs, swept, counted, name):
     figure = DRAWN[name](runs, swept, counted).figure
     figure.canvas.draw()
     inside = figure.bbox.get_points()
@@ -78,7 +78,7 @@ def test_long_names_leave_the_room_of_what_is_drawn(runs, swept, counted, name):
     pyplot.close(figure)
 
 
-def test_strips_of_contact_and_ticks_keep_long_names_short(runs, swept):
+def test_contact_strips_and_ticks_shorten_long_names(runs, swept):
     for drawn in (rf.plot.response(runs), rf.plot.sweep(swept.isel(scale=0))):
         figure = drawn.figure
         figure.canvas.draw()
@@ -86,7 +86,7 @@ def test_strips_of_contact_and_ticks_keep_long_names_short(runs, swept):
         pyplot.close(figure)
 
 
-def test_names_that_are_short_alike_are_told_apart(runs):
+def test_shortened_names_remain_distinct(runs):
     one = next(iter(runs.values()))
     names = [f"{'a' * 60}{k}{'b' * 60}" for k in (1, 2)]
     axes = rf.plot.phase(dict.fromkeys(names, one))
@@ -95,7 +95,7 @@ def test_names_that_are_short_alike_are_told_apart(runs):
     pyplot.close(axes.figure)
 
 
-def test_a_point_and_a_title_are_written_letter_by_letter():
+def test_point_labels_and_titles_are_verbatim():
     motion = rf.GroundMotion.from_arrays(
         (np.sin(np.arange(99.0)), "m/s^2"), "0.01 s", name=NAMES[0]
     )

@@ -47,7 +47,7 @@ def shown(thing):
     return " ".join(page.text), html
 
 
-def test_cards_hold_the_numbers():
+def test_notebook_cards_show_parameters():
     text, html = shown(rf.System(BLOCK, PADS, CAP, SOIL))
     for words in ("coupled", "width 0.8 m", "mass 2 t", "frequency ratio 20", "stiffness 9 MPa",
                   "to the left", "uplift angle"):  # fmt: skip
@@ -61,7 +61,7 @@ def test_cards_hold_the_numbers():
     assert "2 m/s² (0.204 g)" in text
 
 
-def test_cards_tell_all_restrainers_and_the_bodies_of_a_stack():
+def test_notebook_cards_list_restrainers_and_bodies():
     ties = [
         rf.Restrainer(on=("-0.4 m", "3 m"), to=("-1 m", "3 m"), stiffness=f"{k} MN/m", name=name)
         for k, name in ((2, "upper"), (3, "other"))
@@ -81,7 +81,7 @@ def test_cards_tell_all_restrainers_and_the_bodies_of_a_stack():
     assert "height 4 m" in text
 
 
-def test_a_drawing_is_to_scale_and_stands_on_its_base():
+def test_block_drawing_is_to_scale():
     _, html = shown(BLOCK)
     corners = re.search(r'<polygon points="([^"]*)"', html)[1].split()
     places = np.array([[float(part) for part in pair.split(",")] for pair in corners])
@@ -92,7 +92,7 @@ def test_a_drawing_is_to_scale_and_stands_on_its_base():
     assert across == pytest.approx(0.5 + 0.1 / 0.8, abs=0.01)
 
 
-def test_what_users_name_is_escaped():
+def test_user_names_are_escaped_in_html():
     for thing in (NASTY, rf.MotionSuite({"<i>": NASTY})):
         text, html = shown(thing)
         assert "<b>" not in html.replace("<div><b>", "").replace("</b></div>", "")
@@ -106,7 +106,7 @@ def test_a_suite_shows_its_first_motions_and_counts_the_others():
     assert "and 3 more" in text
 
 
-def test_a_curve_keeps_its_extremes_and_few_points():
+def test_sparkline_preserves_extremes_with_few_points():
     values = np.zeros(100_000)
     values[54_321] = 1.0
     values[54_322] = -0.5
@@ -118,7 +118,7 @@ def test_a_curve_keeps_its_extremes_and_few_points():
     assert max(heights) == pytest.approx(74.0)
 
 
-def test_numbers_are_written_as_people_do():
+def test_numbers_use_readable_units():
     cases = {(99e3, "kg"): "99 t", (250.0, "kg"): "250 kg", (9e6, "Pa"): "9 MPa",
              (2.5e5, "N m^-1"): "250 kN m^-1", (4.0, "m"): "4 m", (0.5, "s"): "0.5 s"}  # fmt: skip
     for (size, unit), words in cases.items():
@@ -126,7 +126,7 @@ def test_numbers_are_written_as_people_do():
     assert readable_arguments({"type": "x", "shape_factor": 2.92}) == {"shape factor": "2.92"}
 
 
-def test_only_public_names_are_completed():
+def test_dir_lists_only_public_names():
     run = rf.System(BLOCK).simulate(PULSE)
     for thing in (rf.System(BLOCK), BLOCK, PULSE, rf.MotionSuite({"a": PULSE}), run.rockframe):
         assert not [name for name in dir(thing) if name.startswith("_")]
@@ -151,14 +151,14 @@ def test_a_dataset_read_back_plots_and_tabulates_itself(tmp_path):
     assert f"peak_rotation: {run.peak_rotation.item():.4g} rad" in summary
 
 
-def test_what_has_not_occurred_has_no_line_in_a_summary():
+def test_summary_omits_missing_values():
     still = rf.System(BLOCK).simulate(PULSE.scaled(0.01))
     assert np.isnan(still.overturning_time)
     assert "nan" not in repr(still.rockframe)
     assert "impact_count: 0" in repr(still.rockframe)
 
 
-def test_each_kind_of_dataset_finds_what_draws_it():
+def test_accessor_plot_selects_the_plot_function():
     rocking = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
     options = {"free_vibration": "2 s", "progress": False}
     runs = rf.sweep(rocking, {"pulse": PULSE}, scale=[0.5, 1.0, 1.5], **options)
@@ -205,7 +205,7 @@ def test_a_suite_is_drawn_with_its_median_and_target():
         rf.plot.suite(suite, periods, average="middle")
 
 
-def test_a_fitted_test_is_drawn_beside_its_measurement():
+def test_free_decay_fit_is_plotted_with_its_measurement():
     system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
     run = system.simulate(
         duration="8 s", initial=rf.InitialState(rotation="0.1 rad"), output_step="0.02 s"
@@ -220,7 +220,7 @@ def test_a_fitted_test_is_drawn_beside_its_measurement():
     assert above.figure.get_suptitle().startswith(value)
 
 
-def test_a_run_is_a_card_with_its_verdict_on_top():
+def test_run_card_begins_with_its_verdict():
     run = rf.System(BLOCK, PADS).simulate(PULSE, free_vibration="1 s")
     text, html = shown(run.rockframe)
     assert run.attrs["verdict"] in " ".join(text.split())

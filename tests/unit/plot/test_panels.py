@@ -38,7 +38,7 @@ def lines(axes, least=3):
     return [line for line in axes.get_lines() if len(line.get_xdata()) >= least]
 
 
-def test_new_figures_are_those_of_pyplot_and_given_axes_make_none(runs):
+def test_passing_axes_creates_no_new_figure(runs):
     before = plt.get_fignums()
     panels = rf.plot.response(runs["whole"])
     assert panels.figure.number in plt.get_fignums()
@@ -57,7 +57,7 @@ def test_new_figures_are_those_of_pyplot_and_given_axes_make_none(runs):
     assert len(before) + 2 == len(open_now)
 
 
-def test_axes_that_do_not_fit_are_refused_before_anything_is_drawn(runs):
+def test_invalid_plot_arguments_are_refused_without_a_figure(runs):
     figure, axes = plt.subplots(2, 1)
     count = len(plt.get_fignums())
     wanted = r"ax must be 4 Axes, for ground, rotation, vertical, contact, got 2 Axes"
@@ -78,7 +78,7 @@ def test_axes_that_do_not_fit_are_refused_before_anything_is_drawn(runs):
     assert len(plt.get_fignums()) == count
 
 
-def test_units_and_windows_change_what_is_drawn_and_how_it_is_labelled(runs):
+def test_units_and_windows_apply_to_data_and_labels(runs):
     run = runs["whole"]
     ground, rotation, vertical, _ = rf.plot.response(
         run, rotation="deg", vertical="mm", acceleration="g_0", window=("0.5 s", "2 s")
@@ -97,7 +97,7 @@ def test_units_and_windows_change_what_is_drawn_and_how_it_is_labelled(runs):
         assert axes.get_xlim() == (inside.time[0], inside.time[-1])
 
 
-def test_degrees_and_millimetres_stand_beside_what_is_relative(runs):
+def test_secondary_axes_show_degrees_and_millimetres(runs):
     """The body leans more easily to the right, so that a share is fewer degrees there."""
     run = runs["whole"]
     panels = rf.plot.response(run)
@@ -136,7 +136,7 @@ def test_several_runs_have_a_line_a_label_and_a_strip_each(runs):
         rf.plot.response([runs["whole"], 3])
 
 
-def test_events_stand_where_they_happened(runs):
+def test_event_markers_are_at_event_times(runs):
     run = runs["whole"]
     axes = rf.plot.response(run, panels="rotation", rotation="deg", events=True)[0]
     marks = {line.get_label(): line for line in axes.get_lines() if line.get_marker() != "None"}
@@ -149,7 +149,7 @@ def test_events_stand_where_they_happened(runs):
     assert "pivot change" not in marks
 
 
-def test_motions_are_drawn_in_their_units_and_compared():
+def test_motions_and_spectra_are_plotted_in_requested_units():
     panels = rf.plot.motion(PULSE, acceleration="g_0", displacement="cm", window=(None, "0.5 s"))
     drawn = lines(panels[0])[0]
     inside = PULSE.si.horizontal.times <= 0.5
@@ -177,7 +177,7 @@ def test_a_scaled_motion_is_shown_with_its_factor():
     assert [one.get_text() for one in legend.get_texts()] == [PULSE.name, f"2 times {PULSE.name}"]
 
 
-def test_energies_fill_up_to_what_was_put_in(runs):
+def test_stacked_energies_sum_to_input_energy(runs):
     run = runs["whole"]
     axes = rf.plot.energies(run, energy="J")
     tops = np.zeros(run.time.size)
@@ -195,7 +195,7 @@ def test_energies_fill_up_to_what_was_put_in(runs):
         rf.plot.energies(run.drop_vars("kinetic_energy"))
 
 
-def test_moments_and_phases_are_those_of_system_and_run(runs):
+def test_moment_rotation_and_phase_plots_match_the_run(runs):
     run = runs["whole"]
     axes = rf.plot.moment_rotation(SYSTEM, moment="N*m", rotation="rad")
     held = SYSTEM.moment_rotation(([0.05], "rad"))
@@ -217,7 +217,7 @@ def test_moments_and_phases_are_those_of_system_and_run(runs):
 
 
 @pytest.mark.wide
-def test_moments_of_the_highest_body_stand_over_its_rotation_on_the_one_below():
+def test_stack_moments_are_plotted_over_relative_rotation():
     stack = rf.Stack(BLOCK, rf.Block(width="1 m", height="0.8 m", mass="2 t"), interfaces=[PADS])
     run = rf.System(stack, PADS).simulate(PULSE, outputs=("base_overturning_moment",))
     (drawn,) = lines(rf.plot.moment_rotation(run, rotation="rad", moment="N*m"))
@@ -225,7 +225,7 @@ def test_moments_of_the_highest_body_stand_over_its_rotation_on_the_one_below():
     np.testing.assert_array_equal(drawn.get_ydata(), run.base_overturning_moment)
 
 
-def test_counted_shares_reach_to_their_own_bounds():
+def test_error_bars_show_bounds_of_stripe_fractions():
     found = rf.fragility(
         {"intensity": ([0.2, 0.4, 0.8], "m/s"), "exceeded": [1, 6, 19], "trials": 20}, "PGV"
     )
@@ -236,7 +236,7 @@ def test_counted_shares_reach_to_their_own_bounds():
     np.testing.assert_allclose(reach[:, 1], found.stripe_fraction_upper_bound.squeeze())
 
 
-def test_peaks_beyond_overturning_are_drawn_alike():
+def test_peaks_beyond_overturning_are_clipped():
     system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
     motions = {"weak": rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")}
     found = rf.incremental_dynamic_analysis(
@@ -248,7 +248,7 @@ def test_peaks_beyond_overturning_are_drawn_alike():
     assert float(far.peak_relative_rotation.max()) > 1.0
 
 
-def test_a_dynamic_analysis_has_the_measure_upwards_and_fractiles_of_the_motions():
+def test_dynamic_analysis_plot_shows_runs_and_fractiles():
     system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
     motions = {
         f"{k}": rf.GroundMotion.sine_pulse(f"{2.6 + 0.2 * k} m/s^2", "1 Hz") for k in range(7)
@@ -319,7 +319,7 @@ def luminance(colour):
 @pytest.mark.parametrize(
     ("colours", "apart"), [(COLOURS, 7.5), (CONTACT_COLOURS.values(), 11.0), (MAP_COLOURS, 7.5)]
 )
-def test_colours_are_told_apart_without_colours(colours, apart):
+def test_colours_differ_in_lightness(colours, apart):
     shades = np.sort([luminance(colour) for colour in colours])
     assert np.diff(shades).min() > apart
     assert shades.min() > 30.0  # on black
@@ -338,7 +338,7 @@ def test_all_figures_take_their_colours_from_the_palette():
 
 
 @pytest.mark.parametrize("size", [pytest.param((8.0, 6.0), marks=pytest.mark.long), (4.0, 5.0)])
-def test_legends_stand_off_the_curves(runs, size):
+def test_legends_do_not_cover_curves(runs, size):
     figure = plt.figure(figsize=size, layout="constrained")
     rf.plot.response(runs["whole"], units={"force": "kN"}, events=True, ax=figure,
                      panels=("rotation", "left_reaction", "contact"))  # fmt: skip
@@ -386,7 +386,7 @@ def test_any_history_of_a_run_has_a_panel():
     assert "slip [mm]" in shown
 
 
-def test_where_the_fractiles_of_a_dynamic_analysis_end_is_told():
+def test_end_of_dynamic_analysis_fractiles_is_labelled():
     """Two motions are too weak to overturn: above their largest intensity there are fewer lines."""
     system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
     motions = {

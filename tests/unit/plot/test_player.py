@@ -64,7 +64,7 @@ def points_of(data, numbers, name):
 @pytest.mark.parametrize(
     "scene", [pytest.param(name, marks=[pytest.mark.long] * (name == "stack")) for name in SCENES]
 )
-def test_the_numbers_of_a_page_are_where_the_parts_are(scene):
+def test_player_coordinates_match_the_scene(scene):
     run = run_of(scene, points={"top": ("0 m", "4 m")} if scene == "pads" else None)
     data, numbers = read(rf.plot.player(run).to_html())
     moving = SceneHistory(run, "player", 1.0)
@@ -87,7 +87,7 @@ def test_the_numbers_of_a_page_are_where_the_parts_are(scene):
         np.testing.assert_allclose(top[:, 0], block[:, 2:].mean(axis=1), atol=2.0 * step)
 
 
-def test_traces_and_strips_are_those_of_the_run():
+def test_player_traces_and_strips_match_the_run():
     run = run_of("pads")
     data, numbers = read(rf.plot.player(run, rotation="mrad").to_html())
     rotation, ground = data["traces"]
@@ -114,7 +114,7 @@ def test_traces_and_strips_are_those_of_the_run():
 
 
 @pytest.mark.wide
-def test_the_slips_of_all_bodies_that_slide_are_traced():
+def test_slip_is_traced_for_every_sliding_body():
     stone = rf.RigidGround(friction=0.2)
     stack = rf.Stack(
         rf.Block(width="0.8 m", height="1 m", mass="1 t"),
@@ -129,7 +129,7 @@ def test_the_slips_of_all_bodies_that_slide_are_traced():
     assert labels[1:-1] == ["slip of body 2 [m]"]
 
 
-def test_pages_are_small_whole_and_ask_for_nothing(tmp_path):
+def test_player_pages_are_small_and_self_contained(tmp_path):
     run = run_of("pads")
     page = rf.plot.player(run)
     text = page.to_html()
@@ -149,7 +149,7 @@ def test_pages_are_small_whole_and_ask_for_nothing(tmp_path):
     assert written.read_text().startswith("<!doctype html>")
 
 
-def test_what_cannot_be_played_is_refused():
+def test_invalid_player_arguments_are_refused():
     run = run_of("rigid ground")
     with pytest.raises(ComponentError, match=r"rf\.plot\.player: magnify must be greater than"):
         rf.plot.player(run, magnify=0)
@@ -157,7 +157,7 @@ def test_what_cannot_be_played_is_refused():
         rf.plot.player(run_of("rigid ground", outputs=None))
 
 
-def test_states_of_contact_differ_as_shades_of_grey():
+def test_contact_state_colours_differ_in_grey_level():
     def lightness(colour):
         linear = [
             one / 12.92 if one <= 0.04045 else ((one + 0.055) / 1.055) ** 2.4
@@ -169,7 +169,7 @@ def test_states_of_contact_differ_as_shades_of_grey():
     assert np.diff(shades).min() > 9.0
 
 
-def test_a_browser_draws_it(tmp_path):
+def test_browser_renders_the_player(tmp_path):
     """Of which no part asks for anything, and whose script ends without a fault."""
     browser = which("chromium") or which("google-chrome")
     if browser is None:
@@ -209,7 +209,7 @@ def written_by_a_browser(page, tmp_path, height=640, canvas="traces"):
 
 
 @pytest.mark.parametrize("longer", [1.0, 1e-3, 2000.0])
-def test_times_below_the_traces_do_not_run_into_one_another(tmp_path, longer):
+def test_time_labels_do_not_overlap(tmp_path, longer):
     run = run_of("rigid ground")
     stretched = run.assign_coords(time=run.time * longer)
     written = written_by_a_browser(rf.plot.player(stretched), tmp_path)

@@ -36,7 +36,7 @@ def turned(point, about, angle):
     return np.array(about) + moved
 
 
-def test_on_rigid_ground_a_block_turns_about_the_corner_that_bears():
+def test_block_on_rigid_ground_pivots_about_the_bearing_corner():
     run = rf.System(BLOCK).simulate(PULSE, free_vibration="2 s")
     seen = set()
     for place in range(0, run.sizes["time"], 7):
@@ -57,7 +57,7 @@ def test_on_rigid_ground_a_block_turns_about_the_corner_that_bears():
 
 
 @pytest.mark.parametrize("parts", [(), (PADS,), (SOIL,), (CAP, SOIL), (PADS, CAP, SOIL)])
-def test_a_point_of_the_body_is_drawn_where_the_run_says_it_is(parts):
+def test_drawn_points_match_point_displacements(parts):
     system = rf.System(EVEN, *parts)
     point = {"top": ("1 m", "7 m")}
     run = system.simulate(PULSE, free_vibration="1 s", points=point)
@@ -75,7 +75,7 @@ def test_a_point_of_the_body_is_drawn_where_the_run_says_it_is(parts):
         np.testing.assert_allclose(found, np.array([1.0, 7.0 + below]) + moved + raised, atol=1e-12)
 
 
-def test_soil_touches_as_far_as_the_run_says():
+def test_drawn_soil_contact_matches_contact_length():
     run = rf.System(EVEN, SOIL).simulate(PULSE, free_vibration="2 s")
     lengths = run.contact_length.to_numpy()
     assert lengths.min() < 1.5
@@ -85,7 +85,7 @@ def test_soil_touches_as_far_as_the_run_says():
         assert length == pytest.approx(lengths[place], abs=2.0 / 80 + 1e-9)
 
 
-def test_pads_are_as_high_as_the_block_lets_them_be():
+def test_drawn_pad_height_follows_block_corners():
     system = rf.System(EVEN, PADS)
     run = system.simulate(PULSE, free_vibration="2 s")
     free = system.equilibrium().pad_settlement.item()
@@ -102,7 +102,7 @@ def test_pads_are_as_high_as_the_block_lets_them_be():
 
 
 @pytest.mark.parametrize("soil", [None, SOIL])
-def test_each_body_of_a_stack_has_its_contact_its_centre_and_its_outline_at_rest(soil):
+def test_stack_bodies_are_drawn_with_contact_centre_and_outline(soil):
     low = rf.Block(width="2 m", height="3 m", mass="15 t")
     stone = rf.RigidGround()
     stack = rf.Stack(BLOCK, low, interfaces=[stone])
@@ -146,7 +146,7 @@ def test_a_cap_that_moves_apart_has_its_centre():
     assert moving.builder.layout_at(moving.upright).centres[1] == pytest.approx([0.0, 0.2])
 
 
-def test_a_cap_under_pads_turns_about_the_end_that_the_soil_holds():
+def test_cap_under_pads_pivots_about_the_held_soil_end():
     geometry = geometry_of(rf.System(EVEN, PADS, CAP, SOIL).assembly)
     values = {
         "rotation": 0.0, "horizontal_displacement": 0.0, "vertical_displacement": 0.0,
@@ -163,7 +163,7 @@ def test_a_cap_under_pads_turns_about_the_end_that_the_soil_holds():
     assert middle[1] == pytest.approx(0.2)
 
 
-def test_block_and_cap_stay_together_on_their_pads():
+def test_drawn_block_and_cap_remain_joined_on_pads():
     """The cap's place along the base is not in the results; the gap shows how well it is met."""
     run = rf.System(EVEN, PADS, CAP, SOIL).simulate(PULSE, free_vibration="2 s")
     rocked = float(np.abs(run.cap_rotation).max())
@@ -203,7 +203,7 @@ def test_displacements_are_magnified_about_the_place_at_rest():
         rf.plot.state(run, magnify=0)
 
 
-def test_what_is_drawn_of_a_state_is_the_layout_of_its_sample():
+def test_state_plot_shows_the_nearest_sample():
     run = rf.System(EVEN, PADS).simulate(PULSE, free_vibration="1 s")
     axes = rf.plot.state(run, "0.75 s")
     place = int(np.argmin(np.abs(run.time.to_numpy() - 0.75)))
@@ -227,7 +227,7 @@ def test_a_scene_names_its_parts_and_its_points():
         rf.plot.scene(3.0)
 
 
-def test_an_animation_moves_from_sample_to_sample_and_is_written(tmp_path):
+def test_animation_frames_are_evenly_spaced_and_saved(tmp_path):
     from PIL import Image
 
     run = rf.System(EVEN, PADS).simulate(PULSE, free_vibration="1 s")
@@ -242,7 +242,7 @@ def test_an_animation_moves_from_sample_to_sample_and_is_written(tmp_path):
     assert rf.plot.animation(run, speed=2.0).times.size == 21
 
 
-def test_a_film_needs_ffmpeg_and_is_known_again(tmp_path, monkeypatch):
+def test_mp4_animation_requires_ffmpeg(tmp_path, monkeypatch):
     moving = rf.plot.animation(rf.System(EVEN, PADS).simulate(PULSE), frames_per_second=4)
     film = tmp_path / "run.mp4"
     if which("ffmpeg"):
@@ -293,7 +293,7 @@ def test_a_restrainer_stays_broken_in_a_run_that_continues_another():
         assert np.isnan(later.builder.layout_at(later.placement_at(place)).restrainers[0]).all()
 
 
-def test_a_case_of_a_sweep_is_not_drawn_with_a_restrainer_that_broke():
+def test_sweep_case_with_a_broken_restrainer_is_refused():
     runs = rf.sweep(rf.System(SLIM, TIE), PULSE, scale=[0.1, 1.0], outputs=[], progress=False)
     rf.plot.state(runs.isel(scale=0, motion=0))
     broke = runs.isel(scale=1, motion=0)
@@ -323,7 +323,7 @@ def test_walls_points_and_the_block_at_rest_are_within_the_drawing():
     assert lies.figure.get_suptitle().endswith(f"90°, {9000 / 11.3099:.3g} % of overturning")
 
 
-def test_the_legend_tells_bases_loads_and_restrainers_with_their_numbers():
+def test_scene_legend_lists_bases_loads_and_restrainers():
     def told(*parts, **options):
         axes = rf.plot.scene(rf.System(*parts), **options)
         figure = axes.figure
@@ -351,7 +351,7 @@ def test_the_legend_tells_bases_loads_and_restrainers_with_their_numbers():
     assert "width 80 cm\n   height 400 cm\n   mass 2000 kg" in in_units
 
 
-def test_the_title_of_a_state_has_no_sign_on_its_share_and_no_zero_for_what_is_small():
+def test_state_title_shows_small_unsigned_share():
     small = rf.System(SLIM, PADS).simulate(rf.GroundMotion.sine_pulse("1e-5 m/s^2", "1 Hz"))
     words = rf.plot.state(small).figure.get_suptitle()
     angle, share = np.degrees(small.peak_rotation.item()), small.peak_relative_rotation.item()

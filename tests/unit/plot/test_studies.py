@@ -22,7 +22,7 @@ def crosses(axes):
 
 
 @pytest.mark.parametrize("widths", [3, 13])  # lines, and a map
-def test_crosses_stand_where_runs_overturned_and_the_legend_says_so(widths):
+def test_overturned_runs_are_marked_with_crosses(widths):
     scales, sizes = np.linspace(0.5, 3.0, 13).round(6), np.linspace(0.2, 0.4, widths).round(6)
     runs = rf.sweep(SYSTEM, PULSE, scale=scales.tolist(), width=(sizes, "m"), **QUIET)
     axes = rf.plot.sweep(runs, "peak_rotation")
@@ -39,7 +39,7 @@ def test_crosses_stand_where_runs_overturned_and_the_legend_says_so(widths):
     assert "overturned" in [text.get_text() for text in axes.get_legend().get_texts()]
 
 
-def test_a_sweep_says_what_has_no_result():
+def test_sweep_title_counts_cases_without_a_result():
     runs = rf.sweep(SYSTEM, PULSE, scale=[0.5, 0.6, 0.7], **QUIET)
     failed = runs.copy(deep=True)
     failed["status"][{"scale": 1}] = int(RunStatus.STEP_LIMIT)
@@ -48,7 +48,7 @@ def test_a_sweep_says_what_has_no_result():
     assert rf.plot.sweep(runs).figure.get_suptitle() == runs.attrs["verdict"]
 
 
-def test_motions_are_not_joined_by_a_line_and_a_sequence_is_named_once():
+def test_sweep_over_motions_draws_no_connecting_line():
     motions = dict.fromkeys(("a", "b", "c"), PULSE)
     axes = rf.plot.sweep(rf.sweep(SYSTEM, motions, **QUIET))
     assert axes.get_lines()[0].get_linestyle() == "None"
@@ -56,14 +56,14 @@ def test_motions_are_not_joined_by_a_line_and_a_sequence_is_named_once():
     assert axes.get_legend().get_texts()[0].get_text() == "sequence 1"
 
 
-def test_rates_without_a_fragility_are_a_figure_that_says_so():
+def test_annual_rate_without_a_fragility_is_plotted_with_a_note():
     none = rf.fragility({**COUNTS, "exceeded": [0, 0, 0]}, "PGA")
     hazard = {"intensity": ([0.1, 1.0, 10.0], "m/s^2"), "rate": [1.0, 1e-2, 1e-5]}
     axes = rf.plot.annual_rate(rf.annual_rate(none, hazard))
     assert axes.figure.get_suptitle().startswith("There is no fragility")
 
 
-def test_verdicts_that_are_alike_have_no_indices_and_the_figure_says_so():
+def test_equal_verdicts_are_plotted_without_sensitivity_indices():
     spread = {"width": ("uniform", "0.24 m", "0.26 m"), "mass": ("uniform", "90 kg", "110 kg")}
     small = {"a": PULSE.scaled(0.1), "b": PULSE.scaled(0.2)}
     found = rf.probability_of_overturning(SYSTEM, small, spread=spread, cases=20, progress=False)
@@ -89,7 +89,7 @@ def test_logarithmic_axes_have_three_numbers_at_least(ends):
     pyplot.close(axes.figure)
 
 
-def test_the_bands_of_an_ensemble_are_named():
+def test_ensemble_legend_names_the_bands():
     motions = {f"{k}": PULSE.scaled(0.5 + 0.1 * k) for k in range(6)}
     found = rf.ensemble_statistics(rf.sweep(SYSTEM, motions, **QUIET), "peak_rotation")
     (legend,) = rf.plot.ensemble(found).figure.legends
@@ -100,7 +100,7 @@ def test_the_bands_of_an_ensemble_are_named():
     assert rf.plot.ensemble(none).figure.legends == []
 
 
-def test_a_spectrum_of_blocks_that_never_overturn_is_drawn():
+def test_spectrum_without_overturning_is_plotted():
     found = rf.overturning_spectrum(
         SYSTEM, PULSE, periods=([8.0, 20.0], "s"), scale=[0.5, 1.0], free_vibration="2 s", **QUIET
     )

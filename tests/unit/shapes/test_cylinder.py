@@ -23,7 +23,7 @@ def test_a_solid_cylinder():
     assert rf.Block.cylinder(**SIZE, mass=drum.mass).si == drum.si
 
 
-def test_a_cylinder_is_a_body_of_discs_or_of_sticks():
+def test_cylinder_inertia_agrees_with_sum_over_chords():
     # seen from the side it is thin at its edges: chords of 2 sqrt(r^2 - x^2)
     cells = 4000
     x = 0.5 * ((np.arange(cells) + 0.5) / cells * 2.0 - 1.0)
@@ -36,7 +36,7 @@ def test_a_cylinder_is_a_body_of_discs_or_of_sticks():
     assert drum.shape_factor > 3.0
 
 
-def test_a_tube_is_what_is_left_of_a_solid_one():
+def test_tube_equals_difference_of_solid_cylinders():
     given = {"height": "3 m", "density": "2700 kg/m^3"}
     outer, inner = (rf.Block.cylinder(diameter=d, **given).si for d in ("1 m", "0.8 m"))
     tube = rf.Block.cylinder(diameter="1 m", wall_thickness="10 cm", **given).si

@@ -93,7 +93,7 @@ def test_a_body_on_two_feet_stands_on_their_outer_ends():
     assert block.si.centre_height == pytest.approx(middle[1], rel=1e-14)
 
 
-def test_a_disc_of_many_corners_on_a_plinth_tends_to_the_closed_form():
+def test_polygonal_disc_converges_to_closed_form():
     # the polygon's own closed form: m R^2/6 (2 + cos(2 pi/n)); its limit is m R^2/2
     for count in (16, 64, 1024):
         turn = 2.0 * math.pi * (np.arange(count) + 0.5) / count  # its lowest edge is level
@@ -146,7 +146,7 @@ def made_of(points, **given):
 
 @given(stars())
 @settings(max_examples=60, deadline=None)
-def test_any_outline_beside_a_sum_over_points(points):
+def test_random_outlines_agree_with_brute_force(points):
     block = made_of(points, density="1000 kg/m^3", depth="1 m")
     assume(block is not None)
     area, x, y, square = by_brute_force(points)
@@ -171,7 +171,7 @@ def test_brute_force_tends_to_the_exact_inertia():
 
 @given(stars(), st.integers(0, 20))
 @settings(max_examples=100, deadline=None)
-def test_where_and_which_way_the_outline_begins_changes_nothing(points, start):
+def test_starting_point_and_direction_do_not_matter(points, start):
     block = made_of(points, mass="1 t")
     assume(block is not None)
     for other in (np.roll(points, start, axis=0), np.roll(points, start, axis=0)[::-1]):
@@ -202,7 +202,7 @@ def test_origin_and_unit_do_not_matter():
     assert numbers(small) == pytest.approx(numbers(block), rel=1e-14)
 
 
-def test_all_ways_to_give_points_are_the_same():
+def test_points_accept_equivalent_forms():
     written = [(f"{x} m", f"{y} m") for x, y in L_SHAPE]
     ways = [
         written,
@@ -221,7 +221,7 @@ def test_all_ways_to_give_points_are_the_same():
 # an ordinary block ----------------------------------------------------------------------------
 
 
-def test_it_is_an_ordinary_block():
+def test_outline_gives_ordinary_block():
     block = outline(L_SHAPE)
     assert type(block) is rf.Block
     again = component_from_dict(json.loads(json.dumps(block.to_dict())))
@@ -250,7 +250,7 @@ def overhanging(height, reach=0.5):
     return points
 
 
-def test_a_corner_that_touches_before_the_body_overturns_is_warned_about():
+def test_corner_that_touches_before_overturning_warns():
     with pytest.warns(ModelWarning, match=r"leaning to the right, points\[3\], at \(1.5 m, 0.1"):
         block = outline(overhanging(0.1))
     with pytest.warns(ModelWarning, match=r"at 0\.1974 rad, .* 0\.24\d* rad") as caught:
@@ -313,18 +313,18 @@ def test_a_corner_that_touches_before_the_body_overturns_is_warned_about():
         ([("a", "b")], "pairs of lengths"),
     ],
 )
-def test_what_is_no_outline_is_refused(points, words):
+def test_invalid_outlines_are_refused(points, words):
     with pytest.raises(ComponentError, match=words) as caught:
         outline(points)
     assert str(caught.value).startswith("Block")
 
 
-def test_a_single_lowest_point_between_two_others_has_no_inclined_edge():
+def test_single_lowest_point_is_not_reported_as_inclined_edge():
     with pytest.raises(ComponentError, match=r"one height$"):
         outline([(0, 0), (1, 2), (0.6, 1), (0.9, 0.1), (2, 3), (-1, 3)])
 
 
-def test_heights_that_differ_by_rounding_are_one():
+def test_heights_are_compared_up_to_rounding():
     for rise, refused in ((1e-10, False), (1e-7, True)):
         points = [(0.0, rise), (2.0, 0.0), (2.0, 8.0), (0.0, 8.0)]
         if refused:
@@ -351,7 +351,7 @@ def test_points_need_units_of_length(points, words):
 
 
 @pytest.mark.parametrize("points", ["0 m", 3, None, {"x": "1 m"}, ["0 m", "1 m"], [("0 m",)]])
-def test_what_is_no_list_of_pairs_is_refused(points):
+def test_points_must_be_pairs(points):
     with pytest.raises(ComponentError, match=r"points(\[0\])? needs"):
         rf.Block.from_outline(points, mass="1 t")
 
@@ -369,13 +369,13 @@ def test_what_is_no_list_of_pairs_is_refused(points):
         ({"density": "1e300 kg/m^3", "depth": "1e300 m"}, "a mass of inf"),
     ],
 )
-def test_an_outline_needs_its_mass_once(given, words):
+def test_outline_needs_either_mass_or_density(given, words):
     with pytest.raises(ComponentError, match=words) as caught:
         rf.Block.from_outline((RECTANGLE, "m"), **given)
     assert str(caught.value).startswith("Block.from_outline")
 
 
-def test_points_that_have_a_unit_of_their_own_have_no_other():
+def test_contradicting_units_of_points_are_refused():
     points = xr.DataArray(np.array([[0, 0], [500, 0], [500, 2000], [0, 2000.0]]))
     points.attrs["units"] = "mm"
     assert rf.Block.from_outline(points, unit="mm", mass="1 t").si.width == pytest.approx(0.5)

@@ -93,7 +93,7 @@ def test_a_statue_on_its_pedestal():
     assert numbers(same) == pytest.approx(numbers(block), rel=1e-13)
 
 
-def test_points_of_equal_mass_and_one_with_an_inertia():
+def test_point_masses_and_part_with_inertia_are_summed():
     table = {
         "left": {"mass": "1 kg", "at": ("-0.2 m", "1 m")},
         "right": {"mass": "1 kg", "at": ("0.2 m", "1 m")},
@@ -105,7 +105,7 @@ def test_points_of_equal_mass_and_one_with_an_inertia():
     )
 
 
-def test_order_and_mirror():
+def test_order_does_not_matter_and_mirroring_flips_eccentricity():
     parts = {"case": CASE, "books": BOOKS, "clock": CLOCK}
     block = rf.Block.from_parts(parts)
     turned = rf.Block.from_parts(dict(reversed(parts.items())))
@@ -121,7 +121,7 @@ def test_order_and_mirror():
     assert numbers(other) == expected
 
 
-def test_the_base_is_that_of_the_parts_on_the_ground():
+def test_base_spans_parts_on_ground():
     leg = {"width": "0.1 m", "height": "1 m", "mass": "2 kg"}
     legs = {
         "left leg": {**leg, "at": ("-0.4 m", "0 m")},
@@ -139,7 +139,7 @@ def test_the_base_is_that_of_the_parts_on_the_ground():
     assert (wide.si.width, wide.si.eccentricity) == (1.0, 0.0)
 
 
-def test_a_part_that_reaches_out_low_is_warned_about():
+def test_low_overhanging_part_warns():
     def drawer(height):
         return {"width": "1.2 m", "height": "0.1 m", "mass": "1 kg", "at": ("0.3 m", height)}
 
@@ -185,7 +185,7 @@ def test_a_part_that_reaches_out_low_is_warned_about():
         ({"case": CASE, "books": {**BOOKS, "at": ("2 m", "1 m")}}, "would fall on its own"),
     ],
 )
-def test_parts_that_make_no_body_are_refused(parts, words):
+def test_invalid_parts_are_refused(parts, words):
     with pytest.raises(ComponentError, match=words):
         rf.Block.from_parts(parts)
 
@@ -218,7 +218,7 @@ def test_parts_need_units():
             rf.Block.from_parts({"case": part})
 
 
-def test_a_body_that_reaches_out_beside_its_base_may_have_more_inertia_than_its_rectangle():
+def test_overhanging_body_may_exceed_rectangle_inertia():
     mushroom = rf.Block.from_parts(
         {"cap": {"width": "3 m", "height": "0.1 m", "mass": "50 kg", "at": ("0 m", "1 m")}},
         base=("-0.3 m", "0.3 m"),

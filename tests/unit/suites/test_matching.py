@@ -22,7 +22,7 @@ def suite(**verticals):
     )
 
 
-def test_all_motions_have_the_spectrum_of_the_target():
+def test_all_motions_match_target_spectrum():
     upwards = {"up": rf.GroundMotion.stochastic(6.5, "20 km", seed=3)}
     matched = suite(verticals=upwards).matched(TARGET, periods=RANGE)
     periods = np.geomspace(0.3, 0.6, 80)
@@ -48,7 +48,7 @@ def test_all_motions_have_the_spectrum_of_the_target():
 
 
 @pytest.mark.long
-def test_what_was_not_reached_is_told_once_for_all():
+def test_unreached_target_warns_once_for_all_motions():
     jump = rf.TargetSpectrum.from_table(
         (["0.1 s", "0.4 s", "0.401 s", "1 s"]), ([9, 9, 1, 1], "m/s^2")
     )

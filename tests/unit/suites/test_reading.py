@@ -50,7 +50,7 @@ def check_download(suite) -> None:
     assert "a velocity" in left["RSN6_MADE_S6000.VT2"]
 
 
-def test_a_peer_download_in_every_wrapping(folder, tmp_path_factory):
+def test_peer_download_is_read_from_folders_archives_and_lists(folder, tmp_path_factory):
     place = tmp_path_factory.mktemp("packed")
     (place / "download.zip").write_bytes(packed(FILES))
     with tarfile.open(place / "download.tar.gz", "w:gz") as archive:
@@ -77,7 +77,7 @@ def test_a_peer_download_in_every_wrapping(folder, tmp_path_factory):
         check_download(rf.read_suite(file))
 
 
-def test_files_that_the_table_names_are_missed(folder):
+def test_missing_files_of_table_warn(folder):
     (folder / "RSN6_MADE_S6090.AT2").unlink()
     with pytest.warns(RecordWarning, match=r"1 file not read \(.*RSN6_MADE_S6090.AT2: found no"):
         suite = rf.read_suite(folder)
@@ -86,7 +86,7 @@ def test_files_that_the_table_names_are_missed(folder):
     assert any("S6090" in path for path in suite.unread)
 
 
-def test_without_the_table_numbers_in_names_tell(folder):
+def test_record_numbers_in_file_names_replace_missing_table(folder):
     (folder / "_SearchResults.csv").unlink()
     suite = rf.read_suite(folder)
     assert set(suite.pairs) == {"RSN6", "RSN14", "RSN78"}
@@ -95,7 +95,7 @@ def test_without_the_table_numbers_in_names_tell(folder):
     assert suite["RSN6_MADE_S6090"].metadata["event"] == "Valley-02"
 
 
-def test_components_of_one_station_and_earthquake_belong_together(tmp_path):
+def test_components_of_same_station_and_event_form_pair(tmp_path):
     for name, data in FILES.items():
         if name.startswith("RSN") and name.endswith("AT2"):
             (tmp_path / name.split("_", 1)[1]).write_bytes(data)
@@ -107,7 +107,7 @@ def test_components_of_one_station_and_earthquake_belong_together(tmp_path):
     }
 
 
-def test_every_component_of_a_file_with_three(tmp_path):
+def test_three_component_file_is_read_completely(tmp_path):
     sample = SAMPLES["cwa"] if "cwa" in SAMPLES else SAMPLES["cwa pair"]
     suite = rf.read_suite(sample.write(tmp_path))
     stem = sample.name.rsplit(".", 1)[0]
@@ -124,7 +124,7 @@ def test_every_component_of_a_file_with_three(tmp_path):
     assert upright[f"{stem} N"].sha256 == asked.sha256
 
 
-def test_every_sample_of_every_format(tmp_path):
+def test_every_sample_file_is_read_or_listed_as_unread(tmp_path):
     for sample in SAMPLES.values():
         sample.write(tmp_path)
     with pytest.warns(RecordWarning):
@@ -140,7 +140,7 @@ def test_every_sample_of_every_format(tmp_path):
 TEXT = "time (s),acc (g)\n0,0\n0.01,{}\n0.02,0\n"
 
 
-def test_files_of_one_name_are_told_apart(tmp_path):
+def test_files_with_same_name_get_distinct_labels(tmp_path):
     # of two earthquakes, as the folders tell, and so no pair
     for place, peak in (("a", 0.1), ("b", 0.2)):
         (tmp_path / place).mkdir()
@@ -168,7 +168,7 @@ def test_copies_of_a_file_are_read_once(tmp_path):
         assert "expected each record once" in reason
 
 
-def test_what_does_not_make_a_pair_is_told(tmp_path):
+def test_components_that_form_no_pair_warn(tmp_path):
     from unit.motion.motion_files import at2
 
     for name in ("10", "90"):
@@ -197,7 +197,7 @@ def test_what_does_not_make_a_pair_is_told(tmp_path):
         (table(), "no horizontal component"),
     ],
 )
-def test_what_is_no_suite(given, words, tmp_path, monkeypatch):
+def test_input_without_motions_is_refused(given, words, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(RecordError, match=words):
         rf.read_suite(given)
@@ -213,13 +213,13 @@ def test_arguments_are_checked(folder):
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs a pipe")
-def test_pipes_and_broken_links_are_not_waited_for(folder):
+def test_pipes_and_broken_links_are_skipped(folder):
     os.mkfifo(folder / "pipe.AT2")
     (folder / "link.AT2").symlink_to(folder / "nowhere.AT2")
     check_download(rf.read_suite(folder))
 
 
-def test_a_table_that_is_damaged(folder):
+def test_damaged_table_warns(folder):
     good = table().decode()
     row = next(line for line in good.splitlines() if line.startswith("6,"))
     for changed, words in {

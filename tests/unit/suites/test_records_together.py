@@ -40,7 +40,7 @@ def axes(suite):
 
 
 class TestMiniseed:
-    def test_a_location_of_two_hyphens_is_none(self, station, tmp_path):
+    def test_location_of_two_hyphens_is_empty(self, station, tmp_path):
         suite = station(*of(location="--"))
         (pair,) = suite.pairs.values()
         assert pair.vertical is not None
@@ -54,17 +54,17 @@ class TestMiniseed:
         found = {pair.first.metadata["sensor_location"] for pair in suite.pairs.values()}
         assert found == {"D0", "D1"}
 
-    def test_starts_less_than_a_tenth_of_a_step_apart_are_one(self, station):
+    def test_starts_within_tenth_of_time_step_form_pair(self, station):
         suite = station(("HNE", {}), ("HNN", {"tenths": 1}), ("HNZ", {"tenths": 10}))
         assert axes(suite) == ["H1", "H2", "V"]
         assert len(suite.pairs) == 1
 
-    def test_starts_further_apart_are_told(self, station):
+    def test_starts_further_apart_warn(self, station):
         suite = station(("HNE", {}), ("HNN", {"tenths": 11}), said="first starts at .*, second at")
         assert not suite.pairs
         assert axes(suite) == [None, None]
 
-    def test_a_vertical_component_that_starts_later_is_left_out_and_told(self, station):
+    def test_later_vertical_component_is_omitted_with_warning(self, station):
         files = (("HNE", {}), ("HNN", {}), ("HNZ", {"tenths": 50}))
         suite = station(*files, said="without its vertical component: .*vertical at")
         (pair,) = suite.pairs.values()
@@ -77,12 +77,12 @@ class TestMiniseed:
         assert len(suite.pairs) == 2
         assert all(pair.vertical is not None for pair in suite.pairs.values())
 
-    def test_sensors_of_one_component_each_are_told(self, station):
+    def test_single_component_sensors_are_not_paired(self, station):
         files = (("HNE", {"location": "00"}), ("HNN", {"location": "10"}))
         suite = station(*files, said="not put together .sensor locations '00', '10'")
         assert not suite.pairs
 
-    def test_instruments_of_one_location_are_told_apart(self, station):
+    def test_instruments_at_same_location_are_separate_records(self, station):
         suite = station(*of(), *of(("BNE", "BNN", "BNZ")))
         assert len(suite.pairs) == 2
         assert {p.first.metadata["component"][:2] for p in suite.pairs.values()} == {"HN", "BN"}
@@ -123,7 +123,7 @@ class TestWorkspace:
     def channels(self):
         return (("HHE", "E"), ("HNE", "E"), ("HNN", "N"), ("HNZ", "U"))
 
-    def test_every_channel_that_can_be_read(self, tmp_path, channels):
+    def test_readable_channels_are_read_and_others_reported(self, tmp_path, channels):
         (tmp_path / "w.h5").write_bytes(asdf(tmp_path, channels=channels))
         (tmp_path / "made.h5").unlink()
         (tmp_path / "a.csv").write_text("time (s),acc (g)\n0,0\n0.01,0.1\n0.02,0\n")
@@ -135,7 +135,7 @@ class TestWorkspace:
         assert list(suite) == ["a", "w HNE", "w HNN"]
         assert len(suite.pairs) == 1
 
-    def test_a_pair(self, tmp_path, channels):
+    def test_pair_is_read_from_workspace(self, tmp_path, channels):
         path = tmp_path / "w.h5"
         path.write_bytes(asdf(tmp_path, channels=channels[1:]))
         pair = rf.HorizontalPair.read(path)
@@ -144,7 +144,7 @@ class TestWorkspace:
         with pytest.raises(RecordError, match=r"'HHE'.*no unit"):
             rf.HorizontalPair.read(path)
 
-    def test_pieces_of_a_channel_are_no_motions(self, tmp_path, channels):
+    def test_pieces_of_channel_are_refused_as_motions(self, tmp_path, channels):
         path = tmp_path / "w.h5"
         path.write_bytes(asdf(tmp_path, channels=channels[1:], pieces=2))
         with pytest.raises(RecordError, match=r"2 pieces of XX\.MADE\.--\.HNE made_default"):
@@ -153,7 +153,7 @@ class TestWorkspace:
         assert len(rf.GroundMotion.read(path, component=whole)) == 61
 
     @pytest.mark.filterwarnings(UNUSUAL)
-    def test_as_downloaded(self):
+    def test_downloaded_workspace_is_read(self):
         path = record_path("more2/workspace.h5")
         with pytest.warns(RecordWarning, match="6 files not read .*input unit 'M/S'"):
             suite = rf.read_suite(path)
@@ -170,7 +170,7 @@ class TestOneBadFile:
         "fault", [RuntimeError("NetCDF: Not a valid ID"), KeyError("x"), MemoryError()]
     )
     @pytest.mark.parametrize("where", ["read", "recognises"])
-    def test_takes_no_folder_down(self, tmp_path, monkeypatch, fault, where):
+    def test_does_not_stop_reading_of_folder(self, tmp_path, monkeypatch, fault, where):
         (tmp_path / "good.AT2").write_text(self.GOOD)
         (tmp_path / "bad.txt").write_text("0.0\n1.0\n")
 

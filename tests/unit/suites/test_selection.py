@@ -25,7 +25,7 @@ def spectra(suite, periods=PERIODS):
     return found.pseudo_spectral_acceleration.values[:, 0]
 
 
-def test_factors_are_those_of_least_squares():
+def test_scale_factors_minimise_squared_misfit():
     found = FIRSTS.scaling_to(TARGET, periods=PERIODS, bounds=None)
     values, goal = spectra(FIRSTS), TARGET.at(PERIODS)
     for k in range(len(FIRSTS)):
@@ -41,7 +41,7 @@ def test_factors_are_those_of_least_squares():
     np.testing.assert_allclose(found.target_spectral_acceleration, goal, rtol=1e-14)
 
 
-def test_the_scaled_suite_has_the_spectra_that_were_told():
+def test_scaled_suite_has_predicted_spectra():
     found = FIRSTS.scaling_to(TARGET, periods=PERIODS)
     suite = FIRSTS.scaled_to(TARGET, periods=PERIODS)
     np.testing.assert_allclose(spectra(suite), found.scaled_spectral_acceleration, rtol=1e-12)
@@ -56,7 +56,7 @@ def test_the_scaled_suite_has_the_spectra_that_were_told():
     )
 
 
-def test_conditioned_on_a_period_or_an_average():
+def test_conditioning_period_or_average_matches_target():
     one = FIRSTS.scaled_to(TARGET, conditioned_on=["0.7 s"], periods=PERIODS, bounds=None)
     np.testing.assert_allclose(spectra(one, ["0.7 s"])[:, 0], TARGET.at(["0.7 s"])[0], rtol=1e-12)
     several = (np.linspace(0.2, 1.5, 9), "s")
@@ -66,7 +66,7 @@ def test_conditioned_on_a_period_or_an_average():
     np.testing.assert_allclose(averages, goal, rtol=1e-12)
 
 
-def test_bounds():
+def test_scale_factors_respect_bounds():
     free = FIRSTS.scaling_to(TARGET, periods=PERIODS, bounds=None)
     low, high = np.quantile(free.scale_factor, [0.2, 0.7])
     bound = FIRSTS.scaling_to(TARGET, periods=PERIODS, bounds=(low, high))
@@ -85,7 +85,7 @@ def test_bounds():
 
 
 @pytest.mark.long
-def test_both_components_have_one_factor():
+def test_components_of_pair_share_scale_factor():
     suite = rf.read_suite(packed(download(STATIONS[:4])))
     names = {
         "geometric mean": "geometric_mean_acceleration",
@@ -126,7 +126,7 @@ def misfit(residuals, chosen, deviations, weight) -> float:
     ("deviation", "weight"), [(None, None), (0.3, None), (0.5, 0.5), (None, 2.0)]
 )
 @pytest.mark.parametrize("conditioned", [None, ["0.5 s"]])
-def test_the_set_is_the_best_of_all(count, deviation, weight, conditioned):
+def test_selected_set_is_global_optimum(count, deviation, weight, conditioned):
     target = TARGET if deviation is None else TARGET.with_deviation(deviation)
     found = FIRSTS.selection_for(
         target, count, periods=PERIODS, conditioned_on=conditioned, bounds=None,
@@ -157,7 +157,7 @@ def test_a_large_set_is_better_than_chance():
     assert float(found.set_misfit) < min(tried)
 
 
-def test_so_many_of_an_earthquake():
+def test_per_event_limits_motions_of_one_earthquake():
     free = SUITE.chosen_for(TARGET, 8, periods=PERIODS, bounds=None)
     assert len(free) == 8
     bound = SUITE.chosen_for(TARGET, 8, periods=PERIODS, bounds=None, per_event=2)
@@ -167,7 +167,7 @@ def test_so_many_of_an_earthquake():
         SUITE.chosen_for(TARGET, 8, periods=PERIODS, bounds=None, per_event=1)
 
 
-def test_a_set_of_records():
+def test_combination_selects_pairs_of_components():
     chosen = SUITE.chosen_for(TARGET, 3, periods=PERIODS, combination="RotD50")
     assert len(chosen) == 6
     assert len(chosen.pairs) == 3
@@ -191,7 +191,7 @@ def test_arguments_are_checked(given, words):
         FIRSTS.selection_for(**arguments)
 
 
-def test_other_faults():
+def test_invalid_motions_and_targets_raise():
     still = rf.GroundMotion.from_arrays(([0.0, 0.0, 0.0], "m/s^2"), "0.01 s")
     with pytest.raises(ComponentError, match="'still' has no acceleration"):
         rf.MotionSuite({"still": still}).scaling_to(TARGET)
@@ -206,7 +206,7 @@ def test_other_faults():
         FIRSTS.scaling_to(short, periods=PERIODS)
 
 
-def test_the_figure_shows_what_was_found():
+def test_figure_shows_selection():
     target = TARGET.with_deviation(0.4)
     found = SUITE.selection_for(target, 5, periods=PERIODS)
     figure = rf.plot.selection(found).figure

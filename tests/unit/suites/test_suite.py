@@ -38,7 +38,7 @@ def test_it_is_a_mapping_in_order():
     assert copy.deepcopy(SUITE) == SUITE
 
 
-def test_motions_at_hand():
+def test_suite_is_built_from_valid_motions_only():
     suite = rf.MotionSuite(PULSES)
     assert [motion.name for motion in suite.values()] == list(suite)
     assert "1 motion:" in repr(suite.only([PULSES[0].name]))
@@ -124,7 +124,7 @@ def test_sorting_and_picking():
         SUITE.sort("size")
 
 
-def test_changing_all():
+def test_changed_applies_to_all_motions():
     doubled = SUITE.changed(lambda motion: motion.scaled(2))
     for before, after in ((SUITE, doubled), (SUITE.verticals, doubled.verticals)):
         for label in before:
@@ -169,7 +169,7 @@ def test_a_table_of_measures():
     assert list(table.index) == list(SUITE)
 
 
-def test_to_a_file_and_back(tmp_path):
+def test_suite_survives_netcdf_round_trip(tmp_path):
     floor = rf.GroundMotion.stochastic(6, "20 km", seed=1, vertical=0.6)
     mixed = rf.MotionSuite(
         {
@@ -202,7 +202,7 @@ def test_to_a_file_and_back(tmp_path):
         path.unlink()
 
 
-def test_motions_without_names_of_their_own_are_called_by_their_labels():
+def test_unnamed_motions_take_labels_as_names():
     former = PULSE_SUITE.to_dataset().drop_vars("motion_name")
     assert [one.name for one in rf.MotionSuite.from_dataset(former).values()] == ["slow", "fast"]
 
@@ -235,7 +235,7 @@ def test_runs_over_a_suite():
     assert runs.sizes["motion"] == len(SUITE)
 
 
-def test_a_suite_without_vertical_components_says_that_nothing_shakes_vertically():
+def test_missing_vertical_components_warn():
     target = rf.TargetSpectrum.eurocode_8("0.2 g_0")
     scaled = SUITE.scaled_to(target, bounds=None)
     with pytest.warns(RecordWarning, match="no motion has a vertical component; set them beside"):
@@ -245,7 +245,7 @@ def test_a_suite_without_vertical_components_says_that_nothing_shakes_vertically
     assert before.with_verticals()[labels(6)[0]] == before[labels(6)[0]]
 
 
-def test_a_stored_suite_keeps_its_target():
+def test_target_survives_dataset_round_trip():
     wanted = rf.TargetSpectrum.eurocode_8("0.2 g_0", "B", damping_ratio=0.03)
     periods = (np.geomspace(0.2, 3.0, 12), "s")
     scaled = SUITE.scaled_to(wanted.with_deviation(0.3), bounds=None, periods=periods)
