@@ -1,4 +1,4 @@
-"""To a dataset and back, bit for bit, in memory and through a file."""
+"""Round trips through datasets, in memory and in files, preserve every bit."""
 
 import json
 
@@ -36,24 +36,24 @@ def motion(request):
     return request.param()
 
 
-def same(found: GroundMotion, motion: GroundMotion) -> None:
-    assert found == motion
-    assert found.si.time_step == motion.si.time_step
-    assert (found.si.vertical is None) == (motion.si.vertical is None)
+def assert_same(restored: GroundMotion, motion: GroundMotion) -> None:
+    assert restored == motion
+    assert restored.si.time_step == motion.si.time_step
+    assert (restored.si.vertical is None) == (motion.si.vertical is None)
     for name in ("horizontal", "vertical"):
-        ours, theirs = getattr(motion.si, name), getattr(found.si, name)
+        ours, theirs = getattr(motion.si, name), getattr(restored.si, name)
         if ours is not None:
             assert ours.analytic == theirs.analytic
             assert ours.samples.tobytes() == theirs.samples.tobytes()
             assert ours.pieces.tobytes() == theirs.pieces.tobytes()
-    assert found.history == motion.history
-    assert dict(found.metadata) == dict(motion.metadata)
-    assert found.name == motion.name
-    assert found.to_dict() == motion.to_dict()
+    assert restored.history == motion.history
+    assert dict(restored.metadata) == dict(motion.metadata)
+    assert restored.name == motion.name
+    assert restored.to_dict() == motion.to_dict()
 
 
 def test_motion_survives_dataset_round_trip(motion):
-    same(GroundMotion.from_dataset(motion.to_dataset()), motion)
+    assert_same(GroundMotion.from_dataset(motion.to_dataset()), motion)
 
 
 @pytest.mark.parametrize("format_name", ["NETCDF4", "NETCDF3_64BIT"])
@@ -61,7 +61,7 @@ def test_motion_survives_netcdf_round_trip(motion, tmp_path, format_name):
     path = tmp_path / "motion.nc"
     motion.to_dataset().to_netcdf(path, engine="netcdf4", format=format_name)
     with xr.open_dataset(path, engine="netcdf4") as stored:
-        same(GroundMotion.from_dataset(stored), motion)
+        assert_same(GroundMotion.from_dataset(stored), motion)
         assert "_FillValue" not in stored["time"].encoding
         assert stored["time"].dtype == np.float64
 
@@ -71,9 +71,9 @@ def test_record_survives_netcdf_round_trip(write, tmp_path):
     path = tmp_path / "motion.nc"
     read.to_dataset().to_netcdf(path)
     with xr.open_dataset(path) as stored:
-        found = GroundMotion.from_dataset(stored)
-    same(found, read)
-    assert found.metadata["component"] == "67"
+        restored = GroundMotion.from_dataset(stored)
+    assert_same(restored, read)
+    assert restored.metadata["component"] == "67"
 
 
 def test_layout(motion):

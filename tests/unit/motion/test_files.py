@@ -1,4 +1,4 @@
-"""What is wrong with a file before its format matters, and the choice of format."""
+"""Files that are invalid in any format, and the choice of format."""
 
 import os
 import sys
@@ -111,13 +111,13 @@ def test_source_is_recorded(write):
 
 @st.composite
 def damaged(draw):
-    """A record with some bytes changed, cut out or put in."""
+    """A record with some bytes changed, deleted or inserted."""
     name, text = draw(st.sampled_from([("r.AT2", AT2), ("r.csv", CSV)]))
     data = bytearray(text.encode())
     for _ in range(draw(st.integers(1, 4))):
         place = draw(st.integers(0, len(data)))
         kind = draw(st.sampled_from(["change", "cut", "insert", "end"]))
-        some = draw(
+        inserted = draw(
             st.binary(min_size=1, max_size=4)
             | st.sampled_from(
                 [
@@ -138,11 +138,11 @@ def damaged(draw):
             )
         )
         if kind == "change":
-            data[place : place + len(some)] = some
+            data[place : place + len(inserted)] = inserted
         elif kind == "cut":
             del data[place : place + draw(st.integers(1, 40))]
         elif kind == "insert":
-            data[place:place] = some
+            data[place:place] = inserted
         elif kind == "end":
             del data[max(place, 1) :]
     return name, bytes(data)

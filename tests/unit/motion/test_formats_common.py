@@ -1,4 +1,4 @@
-"""What must hold for a file of every format."""
+"""Properties required of every format."""
 
 import hashlib
 import re
@@ -111,12 +111,12 @@ def test_truncated_file_never_gives_wrong_samples(sample, share, tmp_path):
     path = tmp_path / sample.name
     path.write_bytes(sample.data[: int(share * len(sample.data))])
     if sample.format == "text":
-        return  # nothing announces how many rows there are
+        return  # the number of rows is not stated
     try:
         motion = GroundMotion.read(path, component=sample.component)
     except RecordError:
         return
-    # the component that was asked for may stand before the cut, all of it
+    # the requested component may lie entirely before the cut
     np.testing.assert_allclose(motion.si.horizontal.samples, sample.samples, rtol=1e-12, atol=1e-12)
 
 

@@ -1,4 +1,4 @@
-"""Which component is read: names, directions, numbers, pairs."""
+"""Choice of components: names, directions, channel numbers, pairs."""
 
 import numpy as np
 import pytest
@@ -85,7 +85,7 @@ def test_azimuths_0_and_360_match():
 
 
 @pytest.mark.parametrize(
-    ("asked", "expected"),
+    ("component", "expected"),
     [
         ("N", NORTH),
         ("n-s", NORTH),
@@ -100,19 +100,19 @@ def test_azimuths_0_and_360_match():
         ("V", UP),
     ],
 )
-def test_component_is_chosen_by_name_or_direction(write, asked, expected):
-    motion = GroundMotion.read(write(cwa(), "r.dat"), component=asked)
+def test_component_is_chosen_by_name_or_direction(write, component, expected):
+    motion = GroundMotion.read(write(cwa(), "r.dat"), component=component)
     assert motion.si.horizontal.samples.tolist() == pytest.approx(expected.tolist())
     assert motion.si.vertical is None
     assert "(of U, N, E)" in motion.history[1]
 
 
 @pytest.mark.parametrize(
-    ("asked", "expected"),
+    ("component", "expected"),
     [("channel 1", NORTH), ("chan 2", UP), ("Ch. 3", EAST), ("#3", EAST), ("3", EAST), ("2", UP)],
 )
-def test_component_is_chosen_by_channel_number(write, asked, expected):
-    motion = GroundMotion.read(write(csmip(2), "r.V2"), component=asked)
+def test_component_is_chosen_by_channel_number(write, component, expected):
+    motion = GroundMotion.read(write(csmip(2), "r.V2"), component=component)
     assert motion.si.horizontal.samples.tolist() == pytest.approx(expected.tolist())
 
 
@@ -162,9 +162,9 @@ def test_components_with_same_name_need_channel_number(write):
 
 
 class TestPairs:
-    @pytest.mark.parametrize("asked", [("E", "U"), ["090", "up"], ("E", "Z")])
-    def test_a_horizontal_and_the_vertical_component(self, write, asked):
-        motion = GroundMotion.read(write(cwa(), "r.dat"), component=asked)
+    @pytest.mark.parametrize("component", [("E", "U"), ["090", "up"], ("E", "Z")])
+    def test_a_horizontal_and_the_vertical_component(self, write, component):
+        motion = GroundMotion.read(write(cwa(), "r.dat"), component=component)
         assert motion.si.horizontal.samples.tolist() == pytest.approx(EAST.tolist())
         assert motion.si.vertical.samples.tolist() == pytest.approx(UP.tolist())
         assert motion.metadata["component"] == "E"
@@ -178,7 +178,7 @@ class TestPairs:
         assert both.sha256 == across.with_vertical(upwards).sha256
 
     @pytest.mark.parametrize(
-        ("asked", "words"),
+        ("component", "words"),
         [
             (("N", "E"), "'E' .* asked for as the vertical one; expected a vertical"),
             (("U", "N"), "'U' .* asked for as the horizontal one"),
@@ -186,9 +186,9 @@ class TestPairs:
             (("N", "T"), "expected the component 'T'"),
         ],
     )
-    def test_invalid_pairs_are_refused(self, write, asked, words):
+    def test_invalid_pairs_are_refused(self, write, component, words):
         with pytest.raises(RecordError, match=words):
-            GroundMotion.read(write(cwa(), "r.dat"), component=asked)
+            GroundMotion.read(write(cwa(), "r.dat"), component=component)
 
     def test_a_file_of_one_component_has_no_pair(self, write):
         with pytest.raises(RecordError, match=r"one component, '360'.*with_vertical"):
@@ -205,8 +205,8 @@ class TestPairs:
         turned = GroundMotion.read(path, component="up")
         assert turned.si.horizontal.samples.tolist() == pytest.approx((-UP).tolist())
         assert "turned over" in turned.history[-1]
-        as_it_is = GroundMotion.read(path, component="-U")
-        assert as_it_is.si.horizontal.samples.tolist() == pytest.approx(UP.tolist())
+        unchanged = GroundMotion.read(path, component="-U")
+        assert unchanged.si.horizontal.samples.tolist() == pytest.approx(UP.tolist())
 
     def test_a_component_of_unknown_sense_is_warned_about(self, write):
         text = cosmos_block("acceleration", VALUES["N"])

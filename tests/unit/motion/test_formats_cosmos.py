@@ -1,4 +1,4 @@
-"""COSMOS v1.20: fixed width, milliseconds, marks for what is unknown, many channels."""
+"""COSMOS v1.20: fixed width, milliseconds, markers of unknown values, several channels."""
 
 import numpy as np
 import pytest
@@ -11,8 +11,8 @@ from rockframe.motion import GroundMotion
 NORTH = VALUES["N"]
 
 
-def read(write, text, **given):
-    return GroundMotion.read(write(text, "r.V2c"), **given)
+def read(write, text, **options):
+    return GroundMotion.read(write(text, "r.V2c"), **options)
 
 
 def expect(motion, values=NORTH, factor=0.01, step=0.01):
@@ -46,7 +46,7 @@ def test_the_length_may_be_one_step_less(write):
 
 @pytest.mark.parametrize("milliseconds", [0.01, 1000.0])
 def test_time_step_that_contradicts_length_is_refused(write, milliseconds):
-    # 0.01 is what a file would say that takes the header for seconds
+    # 0.01 is written by programs that take the unit of the header for seconds
     text = cosmos_block("acceleration", NORTH, milliseconds=milliseconds, length=0.61)
     with pytest.raises(RecordError, match=r"real headers 62, 63.*in milliseconds") as caught:
         read(write, text)
@@ -199,17 +199,17 @@ def test_absurd_numbers_of_samples_are_refused(write, count, words):
 
 
 @pytest.mark.parametrize(
-    ("found", "replaced"),
+    ("reported", "field"),
     [("*", "*" * 10), ("nan", "NaN".rjust(10)), ("", " " * 10), ("_", "1_0".rjust(10))],
 )
-def test_a_field_that_is_no_number_is_refused_at_its_line(write, found, replaced):
+def test_a_field_that_is_no_number_is_refused_at_its_line(write, reported, field):
     lines = cosmos_block("acceleration", NORTH).split("\n")
     assert lines[47].strip().startswith(f"{COUNT} acceleration")
-    lines[50] = lines[50][:20] + replaced + lines[50][30:]
+    lines[50] = lines[50][:20] + field + lines[50][30:]
     with pytest.raises(RecordError, match="expected a number") as caught:
         read(write, "\n".join(lines))
     assert caught.value.line == 51
-    assert found.strip("_") in caught.value.found.lower()
+    assert reported.strip("_") in caught.value.found.lower()
 
 
 def test_d_exponents(write):

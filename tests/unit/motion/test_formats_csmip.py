@@ -1,4 +1,4 @@
-"""CSMIP volumes 1 and 2: layouts, channels, what is skipped and what is refused."""
+"""CSMIP volumes 1 and 2: layouts, channels, skipped and refused data."""
 
 import numpy as np
 import pytest
@@ -10,8 +10,8 @@ from rockframe.errors import RecordError
 from rockframe.motion import GroundMotion
 
 
-def read(write, text, name="r.V2", **given):
-    return GroundMotion.read(write(text, name), **given)
+def read(write, text, name="r.V2", **options):
+    return GroundMotion.read(write(text, name), **options)
 
 
 def test_metadata_are_read_from_header(write):
@@ -64,7 +64,7 @@ def test_spectra_are_refused(write):
 
 
 def test_a_file_of_time_and_acceleration_pairs_is_refused(write):
-    # the oldest volume 1: pairs at uneven times, no line that announces equal steps
+    # the oldest volume 1 has pairs at uneven times and no line that states equal steps
     text = "UNCORRECTED ACCELEROGRAM DATA\nMADE UP\n" + "  .0000  .0012  .0210 -.0021\n" * 9
     with pytest.raises(RecordError, match="no evenly sampled accelerations"):
         read(write, text, "r.V1")

@@ -1,4 +1,4 @@
-"""miniSEED: refused with advice without ObsPy, read with the response if it is there."""
+"""miniSEED: advice if ObsPy is missing, instrument response, damaged files."""
 
 import importlib.util
 import io
@@ -33,11 +33,11 @@ def compressed(counts, channel: str) -> bytes:
 
 
 @pytest.mark.parametrize("name", ["r.mseed", "r.txt", "r"])
-@pytest.mark.parametrize("given", [{}, {"unit": "g"}, {"format": "miniseed"}])
-def test_missing_obspy_error_names_extra_to_install(write, monkeypatch, name, given):
+@pytest.mark.parametrize("arguments", [{}, {"unit": "g"}, {"format": "miniseed"}])
+def test_missing_obspy_error_names_extra_to_install(write, monkeypatch, name, arguments):
     monkeypatch.setitem(sys.modules, "obspy", None)
     with pytest.raises(RecordError, match=r"no ObsPy.*pip install 'rockframe\[records\]'"):
-        GroundMotion.read(write(miniseed(), name), **given)
+        GroundMotion.read(write(miniseed(), name), **arguments)
 
 
 def test_text_is_no_miniseed(write):
@@ -97,16 +97,16 @@ class TestWithObspy:
     def test_response_argument_is_read_and_checked(self, write, tmp_path):
         folder = tmp_path / "elsewhere"
         folder.mkdir()
-        given = folder / "anything"
-        given.write_text(station_xml(), encoding="utf-8")
+        response = folder / "anything"
+        response.write_text(station_xml(), encoding="utf-8")
         path = write(miniseed(), "r.mseed")
-        assert len(GroundMotion.read(path, response=given)) == COUNT
-        given.write_text("no xml", encoding="utf-8")
+        assert len(GroundMotion.read(path, response=response)) == COUNT
+        response.write_text("no xml", encoding="utf-8")
         with pytest.raises(RecordError, match="no StationXML that can be read"):
-            GroundMotion.read(path, response=given)
-        given.write_text(station_xml(channels=(("HNZ", 0, -90),)), encoding="utf-8")
+            GroundMotion.read(path, response=response)
+        response.write_text(station_xml(channels=(("HNZ", 0, -90),)), encoding="utf-8")
         with pytest.raises(RecordError, match=r"the response of XX\.MADE\.\.HNE"):
-            GroundMotion.read(path, response=given)
+            GroundMotion.read(path, response=response)
         with pytest.raises(RecordError, match="no such file"):
             GroundMotion.read(path, response=folder / "nothing")
 
@@ -166,9 +166,9 @@ class TestWithObspy:
             GroundMotion.read(write(miniseed(), "r.mseed"))
 
     def test_oversized_response_is_refused(self, write):
-        given = write(station_xml().ljust(9 * 2**20), "given")
+        response = write(station_xml().ljust(9 * 2**20), "given")
         with pytest.raises(RecordError, match="found 9 MiB; expected StationXML of at most 8 MiB"):
-            GroundMotion.read(write(miniseed(), "r.mseed"), response=given)
+            GroundMotion.read(write(miniseed(), "r.mseed"), response=response)
 
     def test_channels_of_one_file(self, write):
         channels = (("HNE", 90, 0), ("HNZ", 0, -90), ("HN1", 30, 0))
@@ -238,7 +238,7 @@ class TestWithObspy:
 
     @pytest.mark.wide
     def test_obspy_output_does_not_reach_terminal(self, write):
-        # a length of 10^9 samples, and data that end early: errors in callbacks of the library
+        # a length of 10^9 samples and truncated data cause errors in callbacks of the library
         code = (
             "import sys; from rockframe.motion import GroundMotion\n"
             "from rockframe.errors import RecordError\n"
@@ -270,7 +270,7 @@ class TestWithObspy:
         assert motion.metadata["sensitivity"] == 1e3
 
     def test_corrupt_steim_compression_is_refused(self, write):
-        # a wrong difference shifts all samples behind it
+        # a wrong difference shifts all later samples
         data = bytearray(compressed(np.arange(400) // 3, "HNE") + compressed(np.arange(400), "HNN"))
         data[103] ^= 1
         path = write(bytes(data), "r.mseed")

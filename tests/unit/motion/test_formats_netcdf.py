@@ -1,4 +1,4 @@
-"""Motions that this package stored: back as they were, or refused."""
+"""Motions stored by this package survive the round trip; damaged files are refused."""
 
 import json
 import pickle
@@ -41,20 +41,20 @@ def test_motion_survives_netcdf_round_trip(make, format_name, tmp_path):
     motion = make(tmp_path)
     path = tmp_path / "stored.nc"
     motion.to_dataset().to_netcdf(path, engine="netcdf4", format=format_name)
-    again = GroundMotion.read(path)
-    assert again == motion
-    assert again.si.time_step == motion.si.time_step
-    assert (again.si.vertical is None) == (motion.si.vertical is None)
+    restored = GroundMotion.read(path)
+    assert restored == motion
+    assert restored.si.time_step == motion.si.time_step
+    assert (restored.si.vertical is None) == (motion.si.vertical is None)
     for name in ("horizontal", "vertical"):
-        ours, theirs = getattr(motion.si, name), getattr(again.si, name)
+        ours, theirs = getattr(motion.si, name), getattr(restored.si, name)
         if ours is not None:
             assert ours.analytic == theirs.analytic
             assert ours.samples.tobytes() == theirs.samples.tobytes()
             assert ours.pieces.tobytes() == theirs.pieces.tobytes()
-    assert again.name == motion.name
-    assert again.history == motion.history
-    assert dict(again.metadata) == dict(motion.metadata)
-    assert again.to_dict() == motion.to_dict()
+    assert restored.name == motion.name
+    assert restored.history == motion.history
+    assert dict(restored.metadata) == dict(motion.metadata)
+    assert restored.to_dict() == motion.to_dict()
 
 
 def test_compression_makes_no_difference(tmp_path):
@@ -137,8 +137,8 @@ def test_error_message_is_not_repeated_and_survives_pickling(tmp_path):
     arrays(tmp_path).to_dataset().drop_vars("acceleration").to_netcdf(path)
     with pytest.raises(RecordError) as caught:
         GroundMotion.read(path)
-    told = str(caught.value).removeprefix(str(path))
-    assert told.count("found") == told.count("expected") == 1
+    message = str(caught.value).removeprefix(str(path))
+    assert message.count("found") == message.count("expected") == 1
     with pytest.raises(SchemaError) as plain:
         GroundMotion.from_dataset(xr.Dataset())
     assert str(pickle.loads(pickle.dumps(plain.value))) == str(plain.value)  # noqa: S301

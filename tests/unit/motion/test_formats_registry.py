@@ -1,4 +1,4 @@
-"""The list of formats, and readers of others in it."""
+"""The registry of formats, and readers registered by users."""
 
 import doctest
 from types import SimpleNamespace
@@ -34,14 +34,14 @@ def read(source, request):
 
 
 def reader(**changed):
-    given = {
+    attributes = {
         "NAME": "made-up",
         "TITLE": "file made up for a test",
         "SUFFIXES": (".mup",),
         "recognises": lambda source: source.lines[0] == "MADE UP FORMAT",
         "read": read,
     }
-    return SimpleNamespace(**{**given, **changed})
+    return SimpleNamespace(**{**attributes, **changed})
 
 
 @pytest.fixture
@@ -59,19 +59,20 @@ def registered():
 
 def test_formats_are_listed_with_name_title_and_suffixes():
     listed = formats()
-    assert all(one.holds and one.unit for one in listed if one.own)  # as the manual lists them
+    # as the manual lists them
+    assert all(entry.holds and entry.unit for entry in listed if entry.own)
     names = [entry.name for entry in listed]
     assert len(set(names)) == len(names)
-    assert names[-1] == "text"  # it takes every column of numbers
+    assert names[-1] == "text"  # it accepts every column of numbers
     for entry in listed:
         assert entry.title
         assert all(suffix.startswith(".") for suffix in entry.suffixes)
 
 
 def test_a_list_of_formats_can_be_printed():
-    shown = repr(formats()[0])
+    text = repr(formats()[0])
     expected = "name='peer-at2', title='PEER acceleration file (AT2)', suffixes=('.at2',)"
-    assert shown == f"Format({expected})"
+    assert text == f"Format({expected})"
 
 
 def test_the_example_runs():
@@ -104,10 +105,10 @@ def test_an_unknown_format_is_refused_and_the_others_listed(write):
 
 
 @pytest.mark.parametrize("name", ["r.mup", "r.txt"])
-@pytest.mark.parametrize("given", [None, "made-up"])
-def test_an_added_format_is_recognised_and_read(write, registered, name, given):
+@pytest.mark.parametrize("format_name", [None, "made-up"])
+def test_an_added_format_is_recognised_and_read(write, registered, name, format_name):
     registered()
-    motion = GroundMotion.read(write(FILE, name), format=given, component="N")
+    motion = GroundMotion.read(write(FILE, name), format=format_name, component="N")
     assert motion.si.horizontal.samples.tolist() == pytest.approx(
         (0.01 * VALUES).tolist(), abs=1e-9
     )

@@ -1,4 +1,4 @@
-"""SAC and ASDF: byte orders, units that must be given, orientations, what is checked."""
+"""SAC and ASDF: byte orders, missing units, orientations, checks."""
 
 import importlib.util
 import re
@@ -18,9 +18,11 @@ needs_lxml = pytest.mark.skipif(
 SINGLE = VALUES["E"].astype(np.float32).astype(np.float64)
 
 
-def read_sac(write, name="r.sac", *, unit="gal", **given):
-    asked = {key: given.pop(key) for key in ("component", "response") if key in given}
-    return GroundMotion.read(write(sac(**given), name), unit=unit, **asked)
+def read_sac(write, name="r.sac", *, unit="gal", **sample_options):
+    read_options = {
+        key: sample_options.pop(key) for key in ("component", "response") if key in sample_options
+    }
+    return GroundMotion.read(write(sac(**sample_options), name), unit=unit, **read_options)
 
 
 class TestSac:

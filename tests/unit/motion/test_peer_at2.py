@@ -1,4 +1,4 @@
-"""The AT2 reader: every dialect, and every refusal with its line."""
+"""The AT2 reader: every dialect, and every error with its line number."""
 
 import numpy as np
 import pytest
@@ -92,15 +92,15 @@ def test_numbers_run_together_without_exponents(write):
 
 
 @pytest.mark.parametrize(
-    "together",
+    "adjoining",
     ["123.45678123.45678", "1.0E-021.0E-02", "0.1234567-103", "1-2.5", "-.1E-02--.2E-02"],
 )
-def test_ambiguous_adjoining_numbers_are_refused(write, together):
-    text = "\n".join([TITLE, EVENT, UNIT, "NPTS= 3, DT= .005 SEC", "0.1 0.1", together + "\n"])
+def test_ambiguous_adjoining_numbers_are_refused(write, adjoining):
+    text = "\n".join([TITLE, EVENT, UNIT, "NPTS= 3, DT= .005 SEC", "0.1 0.1", adjoining + "\n"])
     with pytest.raises(RecordError) as caught:
         GroundMotion.read(write(text))
     assert caught.value.line == 6
-    assert together in str(caught.value)
+    assert adjoining in str(caught.value)
 
 
 def test_eight_columns_and_a_unit_in_parentheses(write):

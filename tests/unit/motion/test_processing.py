@@ -1,4 +1,4 @@
-"""Processing steps: what each does to the function of time, and what it says of it."""
+"""Processing steps: their effect on the function of time, and their history entries."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ def motion(values=NOISE, vertical=None, step=STEP):
 
 
 def tone(frequency, step=STEP, count=4001):
-    """A tone that swells and fades, so that its ends do not matter."""
+    """A tone with a smooth envelope, so that end effects vanish."""
     time = np.arange(count) * step
     swell = np.sin(np.pi * time / time[-1]) ** 2
     return swell * np.sin(2.0 * np.pi * frequency * time)
@@ -281,36 +281,36 @@ def test_band_pass_padding_depends_on_lower_corner():
     ],
 )
 def test_narrow_filter_padding_avoids_end_effects(kind, corners, order):
-    """Such a filter decays slowly, as does one with a corner close to the Nyquist frequency."""
-    given = {name: f"{value} Hz" for name, value in corners.items()}
-    found = motion().filtered(**given, order=order).si.horizontal.samples
+    """Narrow filters decay slowly, as do filters with a corner close to the Nyquist frequency."""
+    options = {name: f"{value} Hz" for name, value in corners.items()}
+    filtered = motion().filtered(**options, order=order).si.horizontal.samples
     sos = signal.butter(order, np.squeeze([*corners.values()]), kind, fs=100.0, output="sos")
     rest = np.zeros(60_000)
     expected = signal.sosfiltfilt(sos, np.concatenate([rest, NOISE, rest]), padtype=None)
     expected = expected[rest.size : -rest.size]
-    assert np.abs(found - expected).max() < 1e-7 * np.abs(expected).max()
+    assert np.abs(filtered - expected).max() < 1e-7 * np.abs(expected).max()
 
 
 @pytest.mark.parametrize("causal", [False, True])
 @pytest.mark.parametrize("arguments", [{"low": "0.1 Hz"}, {"low": "0.2 Hz", "high": "25 Hz"}])
 def test_filtered_motion_with_padding_ends_at_rest(causal, arguments):
-    """The motion is pushed off and ends in full swing, so that it drifts."""
+    """The window begins and ends during strong shaking, so that the motion drifts."""
     record = GroundMotion.example("loma-prieta").window("5 s", "15 s")
     cut = record.filtered(**arguments, causal=causal)
-    kept = record.filtered(**arguments, causal=causal, keep_padding=True)
-    before = round((len(kept) - len(cut)) / 2) if not causal else 1
-    within = kept.si.horizontal.samples[before : before + len(cut)]
+    padded = record.filtered(**arguments, causal=causal, keep_padding=True)
+    before = round((len(padded) - len(cut)) / 2) if not causal else 1
+    within = padded.si.horizontal.samples[before : before + len(cut)]
     np.testing.assert_allclose(within, cut.si.horizontal.samples, rtol=0.0, atol=1e-15)
     ends = {}
-    for name, found in (("cut", cut), ("kept", kept)):
-        path = velocity_and_displacement(found)
+    for name, filtered in (("cut", cut), ("padded", padded)):
+        path = velocity_and_displacement(filtered)
         ends[name] = [
             abs(float(values[-1])) / float(np.abs(values).max())
             for values in (path.ground_velocity, path.ground_displacement)
         ]
     assert max(ends["cut"]) > (0.02 if causal else 0.5)
-    assert max(ends["kept"]) < 1e-4
-    assert "padding kept: " in kept.history[-1]
+    assert max(ends["padded"]) < 1e-4
+    assert "padding kept: " in padded.history[-1]
 
 
 @pytest.mark.parametrize(
@@ -362,8 +362,8 @@ def test_a_drift_of_the_velocity_is_removed(order):
     corrected = drifting.baseline_corrected(order, fit="velocity").si.horizontal.samples
     velocity = np.concatenate([[0.0], np.cumsum(corrected[1:] + corrected[:-1]) * 0.5 * STEP])
     assert np.abs(velocity).max() < 1e-12
-    again = drifting.baseline_corrected(order, fit="velocity")
-    assert again.history[-1].startswith("baseline corrected: slope of the polynomial of degree")
+    recorded = drifting.baseline_corrected(order, fit="velocity")
+    assert recorded.history[-1].startswith("baseline corrected: slope of the polynomial of degree")
 
 
 def test_velocity_fit_is_independent_of_added_drift():
@@ -372,7 +372,7 @@ def test_velocity_fit_is_independent_of_added_drift():
     drifting = motion(np.sin(2.0 * np.pi * time) + 0.2 + 0.1 * time)
     one, other = (m.baseline_corrected(2, fit="velocity") for m in (clean, drifting))
     assert other.si.horizontal.samples == pytest.approx(one.si.horizontal.samples, abs=1e-12)
-    # fitting the acceleration instead leaves a velocity at the end
+    # a fit of the acceleration leaves a velocity at the end
     left = drifting.baseline_corrected(1).si.horizontal.samples
     assert one.si.peak > 0.9
     assert left != pytest.approx(one.si.horizontal.samples, abs=1e-3)
@@ -420,7 +420,7 @@ def test_with_vertical_of_another_step():
 
 @pytest.mark.parametrize(("off", "same"), [(1e-12, True), (1e-6, False)])
 def test_time_steps_are_the_same_up_to_rounding(off, same):
-    """Over a record of 100 s, a millionth would be a tenth of a millisecond."""
+    """An error of one millionth would be a tenth of a millisecond after 100 s."""
     other = motion(step=STEP * (1.0 + off))
     if same:
         assert motion().with_vertical(other).si.time_step == STEP
@@ -430,9 +430,9 @@ def test_time_steps_are_the_same_up_to_rounding(off, same):
 
 
 def test_with_vertical_preserves_metadata_of_vertical_component():
-    made = motion()
-    told = GroundMotion(made.si, name="up", metadata={"station": "A"}, history=made.history)
-    assert motion().with_vertical(told).metadata["vertical_station"] == "A"
+    record = motion()
+    upwards = GroundMotion(record.si, name="up", metadata={"station": "A"}, history=record.history)
+    assert motion().with_vertical(upwards).metadata["vertical_station"] == "A"
 
 
 @pytest.mark.parametrize("other", [NOISE, 3, "vertical"])

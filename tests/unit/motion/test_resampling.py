@@ -1,4 +1,4 @@
-"""Resampling: the same function, a band-limited one, or a smoothed one."""
+"""Resampling by straight lines or band-limited interpolation, and coarsening."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ def motion(values=NOISE, step=STEP):
 
 
 def tone(frequency, step=STEP, count=4001):
-    """A tone that swells and fades, so that its ends do not matter."""
+    """A tone with a smooth envelope, so that end effects vanish."""
     time = np.arange(count) * step
     swell = np.sin(np.pi * time / time[-1]) ** 2
     return swell * np.sin(2.0 * np.pi * frequency * time)
@@ -41,8 +41,8 @@ def test_step_ratio_is_rounded_to_integer():
 
 
 def test_coarsening_preserves_constant_away_from_ends():
-    still = GroundMotion.from_arrays((np.ones(2000), "m/s^2"), "0.005 s").resampled("0.02 s")
-    np.testing.assert_allclose(still.si.horizontal.samples[100:-100], 1.0, rtol=1e-9)
+    constant = GroundMotion.from_arrays((np.ones(2000), "m/s^2"), "0.005 s").resampled("0.02 s")
+    np.testing.assert_allclose(constant.si.horizontal.samples[100:-100], 1.0, rtol=1e-9)
 
 
 @pytest.mark.parametrize("step", [0.003, 0.003332])
@@ -56,12 +56,12 @@ def test_refining_by_another_number_reads_off_the_straight_lines(step):
 
 def test_refining_records_interpolation_in_history():
     pulse = GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
-    for made, how in (
+    for refined, description in (
         (motion().resampled("0.005 s"), "without anything beyond the old Nyquist frequency"),
         (motion().resampled("0.005 s", interpolation="linear"), "linear between samples"),
         (pulse.resampled("0.005 s"), "read off the analytic pieces"),
     ):
-        assert any(sentence.endswith(f"to 0.005 s, {how}") for sentence in made.history)
+        assert any(sentence.endswith(f"to 0.005 s, {description}") for sentence in refined.history)
 
 
 def test_refining_records_omitted_end_in_history():
@@ -91,8 +91,9 @@ def test_coarsening_keeps_slow_and_removes_fast_motion_without_delay(step):
 
 @pytest.mark.parametrize("step", [0.02, 0.025, 0.0333])
 def test_coarsening_cuts_close_to_the_new_nyquist_frequency(step):
-    kept, removed = tone(0.35 / step), tone(0.55 / step)  # 0.7 and 1.1 of it
-    coarse = motion(kept).resampled(f"{step} s")
+    # 0.7 and 1.1 of the new Nyquist frequency
+    passed, removed = tone(0.35 / step), tone(0.55 / step)
+    coarse = motion(passed).resampled(f"{step} s")
     time = np.arange(len(coarse)) * step
     exact = np.sin(np.pi * time / 40.0) ** 2 * np.sin(2.0 * np.pi * 0.35 / step * time)
     assert coarse.si.horizontal.samples == pytest.approx(exact, abs=0.03)
@@ -147,7 +148,7 @@ def test_band_limited_samples_keep_the_old_ones(times):
 )
 @pytest.mark.parametrize("frequency", [1.0, 20.0, 40.0])
 def test_band_limited_refining_follows_tone(step, frequency):
-    """Up to 0.8 of the Nyquist frequency, where straight lines are far off."""
+    """Up to 0.8 of the Nyquist frequency, where straight lines are inaccurate."""
     fine = motion(tone(frequency)).resampled(f"{step} s")
     time = np.arange(len(fine)) * step
     swell = np.sin(np.pi * time / 40.0) ** 2

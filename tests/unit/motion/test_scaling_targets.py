@@ -14,9 +14,11 @@ def record(vertical=None):
     return rf.GroundMotion.from_arrays((NOISE, "m/s^2"), "0.01 s", up, name="noise")
 
 
-@pytest.mark.parametrize("made", [record(), rf.GroundMotion.sine_pulse("3 m/s^2", "0.7 Hz", 1.3)])
-def test_the_peak_velocity_is_reached(made):
-    scaled = made.scaled(peak_velocity="35 cm/s")
+@pytest.mark.parametrize(
+    "record_or_pulse", [record(), rf.GroundMotion.sine_pulse("3 m/s^2", "0.7 Hz", 1.3)]
+)
+def test_the_peak_velocity_is_reached(record_or_pulse):
+    scaled = record_or_pulse.scaled(peak_velocity="35 cm/s")
     assert float(rf.intensity_measures(scaled).peak_ground_velocity) == pytest.approx(
         0.35, rel=1e-12
     )

@@ -1,4 +1,4 @@
-"""Motions drawn from the stochastic model: arguments, recipe, reproducibility."""
+"""Motions of the stochastic model: arguments, recipe, reproducibility."""
 
 import json
 import pickle
@@ -27,7 +27,7 @@ def draw(magnitude=5.0, distance="20 km", seed=1, **others):
     return GroundMotion.stochastic(magnitude, distance, seed, **others)
 
 
-# the same again ------------------------------------------------------------------------------
+# reproducibility ---------------------------------------------------------------------------------
 
 
 def test_the_same_seed_gives_the_same_motion():
@@ -41,12 +41,12 @@ def test_another_seed_gives_another_motion():
 
 
 def test_random_numbers_are_reproducible_across_versions():
-    found = [normal_numbers(4, seed=1, stream=stream) for stream in (0, 1)]
+    numbers = [normal_numbers(4, seed=1, stream=stream) for stream in (0, 1)]
     expected = [
         [0.52162579, -0.93717015, 0.37217449, -0.46713293],
         [-0.06078676, 0.25487041, -0.69003457, -0.75411062],
     ]
-    np.testing.assert_allclose(found, expected, atol=1e-8)
+    np.testing.assert_allclose(numbers, expected, atol=1e-8)
 
 
 @pytest.mark.parametrize("others", [{}, {"vertical": 0.5}, ALL])
@@ -54,9 +54,9 @@ def test_description_rebuilds_motion(others):
     motion = draw(**others)
     description = json.loads(json.dumps(motion.to_dict()))
     assert description["constructor"] == "stochastic"
-    again = GroundMotion.from_dict(description)
-    assert again == motion
-    assert again.to_dict() == motion.to_dict()
+    rebuilt = GroundMotion.from_dict(description)
+    assert rebuilt == motion
+    assert rebuilt.to_dict() == motion.to_dict()
 
 
 def test_description_rebuilds_processed_motion():
@@ -84,7 +84,7 @@ def test_name_metadata_and_history_describe_motion():
         assert words in sentence
 
 
-# arguments -----------------------------------------------------------------------------------
+# arguments ---------------------------------------------------------------------------------------
 
 
 def test_units_of_the_arguments_do_not_matter():
@@ -202,7 +202,7 @@ def test_arguments_beyond_calibration_warn(arguments, words):
         draw(**arguments)
 
 
-# parts ---------------------------------------------------------------------------------------
+# parts -------------------------------------------------------------------------------------------
 
 
 def test_exponential_window_has_specified_peak_and_end():

@@ -1,4 +1,4 @@
-"""Floor motions: how a building is given, what is recorded, what is refused."""
+"""Floor motions: descriptions of buildings, history, invalid arguments."""
 
 import json
 import warnings
@@ -48,12 +48,12 @@ def test_floor_motion_is_described_and_survives_round_trips():
             description = json.loads(json.dumps(after.to_dict(samples=True)))
             assert rf.GroundMotion.from_dict(description) == after
             assert ("operations" in description) == (before.recipe is not None)
-    told = motion().through_storeys(**buildings[2]).history
-    assert told[1].startswith(
+    history = motion().through_storeys(**buildings[2]).history
+    assert history[1].startswith(
         "absolute acceleration of a floor, floor 17 of a shear building of equal storeys, "
         "40 in number, of 40 modes the first 12: period 1.3 s, damping ratio 0.05, "
     )
-    assert "; 2 further modes; participation " in told[1]
+    assert "; 2 further modes; participation " in history[1]
 
 
 def test_floor_motion_includes_free_vibration():
@@ -61,7 +61,7 @@ def test_floor_motion_includes_free_vibration():
     assert len(floor) == 300 + 124
     assert floor.history[2] == "with 1.24 s of free vibration after the ground motion"
     assert floor.acceleration[0].magnitude == 0.0
-    # 4.61/(2 pi 0.05) periods for a hundredth, and one more
+    # decay to one hundredth takes 4.61/(2 pi 0.05) periods; one more is added
     assert len(motion().through_storeys(["0.5 s"])) == 300 + 783
     softest = motion().through_storeys(
         ["0.5 s", "2 s", "9 s"], [0.05, 0.5, 0.05], floor_participations=[1, 0.3, 0]
@@ -160,10 +160,10 @@ def test_invalid_buildings_are_refused():
         ({**uniform, "vertical": "kept"}, "vertical must be 'unchanged' or 'omitted'"),
         ({"periods": ["1e-9 s"]}, "too short for the time step, 0.01 s; a rigid mode has"),
     )
-    for given, words in cases:
+    for arguments, words in cases:
         with pytest.raises(ComponentError, match=f"GroundMotion.through_storeys: .*{words}"):
-            motion().through_storeys(**given)
-    for given, words in (
+            motion().through_storeys(**arguments)
+    for arguments, words in (
         ({"periods": [0.5]}, "periods needs a time"),
         ({"periods": ["0.5 kg"]}, "periods needs a time"),
         ({**masses, "masses": ([1, 2], "kN")}, "masses needs a mass"),
@@ -171,15 +171,15 @@ def test_invalid_buildings_are_refused():
         ({**uniform, "free_vibration": 20}, "free_vibration needs a time"),
     ):
         with pytest.raises(UnitsError, match=words):
-            motion().through_storeys(**given)
+            motion().through_storeys(**arguments)
 
 
 def test_floor_without_modal_response_moves_with_ground():
-    for given in (
+    for arguments in (
         {"periods": ["0 s"]},
         {"periods": ["0.5 s"], "floor_participations": 0},
     ):
-        floor = motion().through_storeys(**given)
+        floor = motion().through_storeys(**arguments)
         assert floor.si.horizontal.samples.tolist() == NOISE.tolist()
     still = rf.GroundMotion.from_arrays(([0.0, 0.0], "m/s^2"), "0.01 s")
     assert still.through_storeys(["0.5 s"]).si.peak == 0.0

@@ -1,4 +1,4 @@
-"""Motions from uneven times, data frames and traces, and the times that an array carries."""
+"""Motions from uneven times, data frames and traces, and arrays with time axes."""
 
 import importlib.util
 from types import SimpleNamespace
@@ -53,10 +53,10 @@ class TestTimesOfAnArray:
     )
     def test_a_time_axis_of_any_kind(self, axis, attributes):
         array = xr.DataArray(VALUES, {"time": ("time", axis, attributes)}, attrs={"units": "m/s^2"})
-        for given in (array, (array, "m/s^2")):
-            assert len(GroundMotion.from_arrays(given, "0.01 s")) == COUNT
+        for acceleration in (array, (array, "m/s^2")):
+            assert len(GroundMotion.from_arrays(acceleration, "0.01 s")) == COUNT
             with pytest.raises(ComponentError, match=r"has the step 0\.01 s"):
-                GroundMotion.from_arrays(given, "0.02 s")
+                GroundMotion.from_arrays(acceleration, "0.02 s")
 
 
 class TestFromTimes:
@@ -151,8 +151,8 @@ class TestFromFrame:
         frame = pd.DataFrame({"t": factor * TIMES, "acc": VALUES})
         with pytest.warns(RecordWarning, match=r"are they in seconds\?"):
             GroundMotion.from_frame(frame, "gal", "acc", time="t")
-        meant = f"{factor * STEP!r} s"
-        motion = GroundMotion.from_frame(frame, "gal", "acc", time="t", time_step=meant)
+        time_step = f"{factor * STEP!r} s"
+        motion = GroundMotion.from_frame(frame, "gal", "acc", time="t", time_step=time_step)
         assert motion.si.time_step == pytest.approx(factor * STEP)
 
     def test_times_in_the_index_or_a_time_step(self):
@@ -166,16 +166,16 @@ class TestFromFrame:
             GroundMotion.from_frame(only, "g", time_step="0.02 s")
 
     @pytest.mark.parametrize(
-        ("given", "words"),
+        ("arguments", "words"),
         [
             ({}, "component must name one of the columns 'N', 'E', 'DWN'"),
             ({"component": "U"}, "component 'U' is none of the columns"),
             ({"component": "N", "vertical": "Z"}, "vertical 'Z' is none of the columns"),
         ],
     )
-    def test_columns_that_are_not_there(self, given, words):
+    def test_columns_that_are_not_there(self, arguments, words):
         with pytest.raises(ComponentError, match=words):
-            GroundMotion.from_frame(FRAME, "g", time="t", **given)
+            GroundMotion.from_frame(FRAME, "g", time="t", **arguments)
 
     def test_other_invalid_arguments_raise(self):
         with pytest.raises(ComponentError, match="needs a pandas DataFrame"):
@@ -191,11 +191,11 @@ class TestFromFrame:
 
 
 def trace(channel="HNE", values=VALUES, *, start=0.0, rate=100.0, **more):
-    """What a trace of ObsPy looks like from outside."""
+    """An object with the attributes of an ObsPy trace."""
     stats = {"delta": 1.0 / rate, "sampling_rate": rate, "starttime": start, **more}
-    held = SimpleNamespace(**stats)
-    held.get = stats.get
-    return SimpleNamespace(id=f"XX.MADE..{channel}", data=np.asarray(values), stats=held)
+    header = SimpleNamespace(**stats)
+    header.get = stats.get
+    return SimpleNamespace(id=f"XX.MADE..{channel}", data=np.asarray(values), stats=header)
 
 
 def stream(*traces):
@@ -211,11 +211,11 @@ class TestFromTrace:
         assert motion.metadata["unit_as_read"] == "gal"
 
     def test_a_pair_of_a_stream(self):
-        held = stream(trace("HNN"), trace("HNE"), trace("HNZ", 2.0 * VALUES))
-        motion = GroundMotion.from_trace(held, "gal", ("N", "Z"))
+        traces = stream(trace("HNN"), trace("HNE"), trace("HNZ", 2.0 * VALUES))
+        motion = GroundMotion.from_trace(traces, "gal", ("N", "Z"))
         np.testing.assert_allclose(motion.si.vertical.samples, 0.02 * VALUES, rtol=1e-14)
         with pytest.raises(RecordError, match="3 components"):
-            GroundMotion.from_trace(held, "gal")
+            GroundMotion.from_trace(traces, "gal")
 
     def test_pieces_of_a_channel_are_joined_unless_there_is_a_gap(self):
         whole = GroundMotion.from_trace(trace(), "gal")
@@ -225,10 +225,10 @@ class TestFromTrace:
         with pytest.raises(RecordError, match=r"a gap of 0\.05 s"):
             GroundMotion.from_trace(pieces, "gal")
         masked = np.ma.masked_array(VALUES, VALUES > 1.0)
-        held = trace()
-        held.data = masked
+        gappy = trace()
+        gappy.data = masked
         with pytest.raises(RecordError, match="masked samples"):
-            GroundMotion.from_trace(held, "gal")
+            GroundMotion.from_trace(gappy, "gal")
 
     def test_unit_comes_from_argument_or_trace(self):
         with pytest.raises(RecordError, match="no unit of the samples"):
@@ -238,10 +238,10 @@ class TestFromTrace:
         with pytest.warns(RecordWarning, match=r"peak acceleration is .* g"):
             GroundMotion.from_trace(trace(), "g")
 
-    @pytest.mark.parametrize("given", [3, "path", VALUES, stream(), None])
-    def test_invalid_traces_raise(self, given):
+    @pytest.mark.parametrize("argument", [3, "path", VALUES, stream(), None])
+    def test_invalid_traces_raise(self, argument):
         with pytest.raises(ComponentError, match="needs an ObsPy Trace, or a Stream"):
-            GroundMotion.from_trace(given, "gal")
+            GroundMotion.from_trace(argument, "gal")
 
     @pytest.mark.skipif(importlib.util.find_spec("obspy") is None, reason="ObsPy is not installed")
     @pytest.mark.filterwarnings("ignore::DeprecationWarning")
@@ -250,7 +250,7 @@ class TestFromTrace:
 
         own = obspy.Trace(VALUES, {"network": "XX", "station": "MADE", "channel": "HNE"})
         own.stats.sampling_rate = 100.0
-        for given in (own, obspy.Stream([own])):
-            motion = GroundMotion.from_trace(given, "gal")
+        for traces in (own, obspy.Stream([own])):
+            motion = GroundMotion.from_trace(traces, "gal")
             assert motion.sha256 == GroundMotion.from_trace(trace(), "gal").sha256
             assert motion.metadata["record_time"] == "1970-01-01T00:00:00.000000Z"

@@ -1,4 +1,4 @@
-"""The reader of one or two columns: separators, headers, units, uneven times."""
+"""Text of one or two columns: separators, headers, units, uneven times."""
 
 import numpy as np
 import pytest
@@ -42,11 +42,11 @@ def test_decimal_commas_in_one_column_of_a_semicolon_file(write):
     expect(GroundMotion.read(write(text, "r.csv"), unit="g", time_step="0.005 s"))
 
 
-@pytest.mark.parametrize("given", [{}, {"time_step": "0.005 s"}])
-def test_ambiguous_decimal_commas_are_refused(write, given):
+@pytest.mark.parametrize("arguments", [{}, {"time_step": "0.005 s"}])
+def test_ambiguous_decimal_commas_are_refused(write, arguments):
     text = "".join(f"{value:.7f}\n".replace(".", ",") for value in VALUES)
     with pytest.raises(RecordError, match="comma may be a decimal sign or a separator") as caught:
-        GroundMotion.read(write(text, "r.csv"), unit="g", **given)
+        GroundMotion.read(write(text, "r.csv"), unit="g", **arguments)
     assert caught.value.line == 1
 
 
@@ -301,7 +301,7 @@ def test_a_field_that_is_no_finite_number_is_refused_at_its_line(write, field, r
     lines[row] = lines[row].split(",")[0] + "," + field
     with pytest.raises(RecordError) as caught:
         GroundMotion.read(write("\n".join(lines), "r.csv"), unit="g")
-    # an empty field in the first row makes the second row the odd one
+    # after an empty field in the first row, the second row is the exception
     assert caught.value.line in ({1, 2} if (field, row) == ("", 0) else {row + 1})
 
 

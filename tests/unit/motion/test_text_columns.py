@@ -12,8 +12,8 @@ COUNT = 64
 VALUES = numbers(COUNT)
 
 
-def read(write, text, name="r.txt", **given):
-    return GroundMotion.read(write(text, name), **given)
+def read(write, text, name="r.txt", **options):
+    return GroundMotion.read(write(text, name), **options)
 
 
 def column(head: str = "", values=VALUES) -> str:
@@ -46,9 +46,9 @@ class TestSpectra:
     @pytest.mark.parametrize("separator", [",", " "])
     def test_a_table_of_a_spectrum_at_even_periods_is_refused(self, write, head, separator):
         text = table(head.replace(",", separator), [np.abs(VALUES)], separator)
-        for given in ({}, {"unit": "g"}, {"format": "text", "unit": "g"}):
+        for options in ({}, {"unit": "g"}, {"format": "text", "unit": "g"}):
             with pytest.raises(RecordError, match="a spectrum") as caught:
-                read(write, text, **given)
+                read(write, text, **options)
             assert caught.value.line == 1
 
     @pytest.mark.parametrize(
@@ -99,9 +99,9 @@ class TestNames:
     @pytest.mark.parametrize("head", [",time (s),acc (g)\n", "No,t (s),acc (g)\n"])
     def test_times_after_first_column_are_refused(self, write, head):
         text = head + "".join(f"{k},{0.01 * k:.2f},{a:.7f}\n" for k, a in enumerate(VALUES))
-        for given in ({}, {"time_step": "0.02 s"}, {"time_step": "0.01 s", "component": "acc"}):
+        for options in ({}, {"time_step": "0.02 s"}, {"time_step": "0.01 s", "component": "acc"}):
             with pytest.raises(RecordError, match=r"line 1: found the times 't.* after"):
-                read(write, text, **given)
+                read(write, text, **options)
 
     def test_columns_v_and_d_are_not_read_as_vertical(self, write):
         path = write(table("t,a,v,d\n", [VALUES, 2.0 * VALUES, 3.0 * VALUES]), "r.csv")
@@ -133,11 +133,11 @@ class TestBreaks:
     def test_interrupting_lines_among_samples_warn(self, write, between, columns):
         row = "".join(f"{value:.7f} " * columns + "\n" for value in VALUES)
         names = "# dt = 0.01 s\n" + "NS EW\n" * (columns == 2)
-        given = {"unit": "g", "component": "NS" if columns == 2 else None}
-        assert len(read(write, names + row, **given)) == COUNT
+        options = {"unit": "g", "component": "NS" if columns == 2 else None}
+        assert len(read(write, names + row, **options)) == COUNT
         first = names.count("\n") + COUNT + 1
         with pytest.warns(RecordWarning, match=rf"line {first}: .* among the numbers, in 1 places"):
-            assert len(read(write, names + row + between + row, **given)) == 2 * COUNT
+            assert len(read(write, names + row + between + row, **options)) == 2 * COUNT
 
     def test_double_spaced_lines_are_one_record(self, write):
         assert len(read(write, column().replace("\n", "\n\n"), unit="g", time_step="0.02 s"))
@@ -153,15 +153,15 @@ class TestFirstLines:
     @pytest.mark.parametrize("first", ["0.01\n", ".0050\n", "0.02\n", "1e-2\n"])
     def test_time_step_above_column_is_not_read_as_sample(self, write, first):
         text = first + column()
-        tidy = "e" not in first
-        if tidy:
+        ambiguous = "e" not in first
+        if ambiguous:
             with pytest.raises(RecordError, match="looks like a time step"):
                 read(write, text, unit="g")
             with pytest.raises(RecordError, match="above the samples"):
                 read(write, text, unit="g", time_step="0.5 s")
         with pytest.warns(RecordWarning, match="the time step"):
             motion = read(write, text, unit="g", time_step=f"{float(first)} s")
-        assert len(motion) == COUNT + (not tidy)
+        assert len(motion) == COUNT + (not ambiguous)
 
     def test_small_first_sample_is_not_mistaken_for_time_step(self, write):
         motion = read(write, column(values=[0.005, *VALUES]), unit="g", time_step="0.01 s")

@@ -1,4 +1,4 @@
-"""A vertical component is positive upwards in a motion, whatever its file calls it."""
+"""Vertical components of motions are positive upwards, whatever the sign in the file."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ POINTS = f"NPTS= {COUNT}, DT= .01 SEC"
 
 
 def pair(write, name: str):
-    """A level component of one file, and a vertical one of another, by the name it has there."""
+    """A horizontal component of one file with the named vertical component of another."""
     values = numbers(COUNT)
     level = GroundMotion.read(write(at2(POINTS, values), "h.AT2"))
     event = EVENT.replace(", 67", f", {name}")
@@ -64,7 +64,7 @@ def test_file_header_sets_sign_of_vertical_component(write, text, name, componen
     assert upwards.metadata["positive"] == "up"
     np.testing.assert_array_equal(upwards.si.horizontal.samples, -vertical.si.horizontal.samples)
     level = GroundMotion.from_arrays((VALUES["N"], "m/s^2"), f"{vertical.si.time_step!r} s")
-    both = [level.with_vertical(one).si.vertical.samples for one in (vertical, upwards)]
+    both = [level.with_vertical(motion).si.vertical.samples for motion in (vertical, upwards)]
     np.testing.assert_array_equal(both[0], both[1])
 
 

@@ -1,10 +1,10 @@
-"""What a file says of itself is held against its data, and what looks wrong is said."""
+"""Metadata of a file are compared with its data; contradictions warn."""
 
 import re
 
 import numpy as np
 import pytest
-from unit.motion import dialect_samples as made
+from unit.motion import dialect_samples as dialects
 from unit.motion import format_samples as formats
 from unit.motion.dialect_samples import COUNT, VALUES, peak
 
@@ -34,13 +34,13 @@ def geonet(stated: float) -> str:
     return formats.geonet_component(values, name="S74E", azimuth=106, peak=10.0 * stated)
 
 
-# of every format that states a peak: a file with that peak, and how to ask for its component
+# for every format that states a peak: a file with that peak, and reading arguments
 STATED = {
     "cosmos": (cosmos, {}),
-    "csmip": (lambda stated: made.usc(stated=stated), {}),
+    "csmip": (lambda stated: dialects.usc(stated=stated), {}),
     "smc": (smc, {}),
     "esm": (lambda stated: formats.esm(**{"PGA_CM/S^2": f"{-stated:.6f}"}), {}),
-    "itaca": (lambda stated: made.itaca(**{"PGA_CM/S^2": f"{stated:.6f}"}), {}),
+    "itaca": (lambda stated: dialects.itaca(**{"PGA_CM/S^2": f"{stated:.6f}"}), {}),
     "geonet": (geonet, {}),
     "cwa": (
         lambda stated: formats.cwa().replace(
@@ -49,15 +49,17 @@ STATED = {
         {"component": "E"},
     ),
     "afad": (
-        lambda stated: made.afad(**{"RAW PGA VALUES (gal)": f"(E-W) {stated:.6f}"}),
+        lambda stated: dialects.afad(**{"RAW PGA VALUES (gal)": f"(E-W) {stated:.6f}"}),
         {"component": "E"},
     ),
     "csmnc": (
-        lambda stated: re.sub(r"PEAK VALUE: *\S+", f"PEAK VALUE: {stated:.3f}", made.csmnc()),
+        lambda stated: re.sub(r"PEAK VALUE: *\S+", f"PEAK VALUE: {stated:.3f}", dialects.csmnc()),
         {},
     ),
     "unam": (
-        lambda stated: re.sub(r"(Gal\), C1-C6 *: /.*?/).*?/", rf"\g<1>{-stated:.3f}/", made.unam()),
+        lambda stated: re.sub(
+            r"(Gal\), C1-C6 *: /.*?/).*?/", rf"\g<1>{-stated:.3f}/", dialects.unam()
+        ),
         {"component": "E"},
     ),
     "text": (
@@ -72,14 +74,14 @@ STATED = {
 
 @pytest.mark.parametrize("key", STATED)
 def test_contradicting_stated_peak_warns(key, write):
-    text, given = STATED[key]
+    text, arguments = STATED[key]
     truth = peak(VALUES["E"])
     for share in (1.0, 1.005, 0.995):
-        GroundMotion.read(write(text(share * truth), "record"), **given)
+        GroundMotion.read(write(text(share * truth), "record"), **arguments)
     for share in (1.05, 0.95, 0.1, 9.81):
         path = write(text(share * truth), "record")
         with pytest.warns(RecordWarning, match=r"line \d+: the header states a peak of") as caught:
-            motion = GroundMotion.read(path, **given)
+            motion = GroundMotion.read(path, **arguments)
         assert len(caught) == 1
         line = int(re.search(r"line (\d+)", str(caught[0].message)).group(1))
         stated = re.search(r"a peak of (\S+)", str(caught[0].message)).group(1)
@@ -94,46 +96,48 @@ def test_zero_or_non_numeric_stated_peak_is_ignored(write):
 
 
 @pytest.mark.parametrize(
-    ("text", "given"),
+    ("text", "arguments"),
     [
         (formats.esm(DURATION_S="1.2"), {}),
-        (made.pairs().replace("RECORD LENGTH =  0.600", "RECORD LENGTH =  1.200"), {}),
-        (made.csmnc().replace("DURATION:  0.61", "DURATION:  1.2"), {}),
-        (made.unam().replace("/0.61/0.61/0.61", "/1.2/1.2/1.2"), {"component": "E"}),
+        (dialects.pairs().replace("RECORD LENGTH =  0.600", "RECORD LENGTH =  1.200"), {}),
+        (dialects.csmnc().replace("DURATION:  0.61", "DURATION:  1.2"), {}),
+        (dialects.unam().replace("/0.61/0.61/0.61", "/1.2/1.2/1.2"), {"component": "E"}),
         (formats.geonet().replace("Duration 1.2 sec", "Duration 2.4 sec"), {"component": "S74E"}),
     ],
     ids=["esm", "csmip", "csmnc", "unam", "geonet"],
 )
-def test_contradicting_stated_length_warns(text, given, write):
-    asked = {"component": "EW"} if "RENADIC" in text or "G/10" in text else given
+def test_contradicting_stated_length_warns(text, arguments, write):
+    component_arguments = {"component": "EW"} if "RENADIC" in text or "G/10" in text else arguments
     with pytest.warns(RecordWarning, match=r"line \d+: the header states a length of"):
-        GroundMotion.read(write(text, "record"), **asked)
+        GroundMotion.read(write(text, "record"), **component_arguments)
 
 
 @pytest.mark.parametrize(
-    ("text", "mark", "given"),
+    ("text", "mark", "arguments"),
     [
-        (made.cgs(), "/&", {"component": "360"}),
+        (dialects.cgs(), "/&", {"component": "360"}),
         (COSMOS, "End-of-data", {}),
         (formats.smc(), None, {}),
-        (made.pairs(), "/&", {"component": "EW"}),
-        (made.bhrc(), "/&", {"component": "L1"}),
-        (made.resorce(), None, {}),
+        (dialects.pairs(), "/&", {"component": "EW"}),
+        (dialects.bhrc(), "/&", {"component": "L1"}),
+        (dialects.resorce(), None, {}),
     ],
     ids=["csmip", "cosmos", "smc", "pairs", "bhrc", "resorce"],
 )
-def test_rows_after_announced_samples_are_ignored_with_warning(text, mark, given, write):
-    own = GroundMotion.read(write(text, "record"), **given)
+def test_rows_after_announced_samples_are_ignored_with_warning(text, mark, arguments, write):
+    own = GroundMotion.read(write(text, "record"), **arguments)
     lines = text.rstrip("\n").split("\n")
     end = next((k for k, line in enumerate(lines) if mark and line.startswith(mark)), len(lines))
     # the last full row of the samples, once more and twice
     extra = [lines[end - 2]] * 2
     path = write("\n".join([*lines[:end], *extra, *lines[end:]]) + "\n", "record")
     with pytest.warns(RecordWarning, match=rf"line {end + 1}: 2 rows of numbers after"):
-        assert GroundMotion.read(path, **given).sha256 == own.sha256
+        assert GroundMotion.read(path, **arguments).sha256 == own.sha256
 
 
-@pytest.mark.parametrize("text", [formats.smc() * 2, made.resorce() * 2], ids=["smc", "resorce"])
+@pytest.mark.parametrize(
+    "text", [formats.smc() * 2, dialects.resorce() * 2], ids=["smc", "resorce"]
+)
 def test_second_record_in_file_is_ignored_with_warning(text, write):
     with pytest.warns(RecordWarning, match="rows of numbers after the last sample"):
         GroundMotion.read(write(text, "record"))
@@ -143,14 +147,14 @@ def test_second_record_in_file_is_ignored_with_warning(text, write):
     ("text", "mark", "words"),
     [
         (formats.cosmos(), "(Format v", "acceleration pts.*the second in this block"),
-        (made.bhrc(), "* VOL", "'COMP T3', the second below one first line"),
+        (dialects.bhrc(), "* VOL", "'COMP T3', the second below one first line"),
     ],
     ids=["cosmos", "bhrc"],
 )
 def test_component_with_damaged_first_line_is_not_skipped(text, mark, words, write):
-    before, _, behind = text.rpartition(mark)
+    before, _, after = text.rpartition(mark)
     with pytest.raises(RecordError, match=words):
-        GroundMotion.read(write(before + behind, "record"))
+        GroundMotion.read(write(before + after, "record"))
 
 
 @pytest.mark.parametrize(
@@ -193,8 +197,8 @@ def test_a_constant_offset_is_mentioned(write, offset):
     path = write(column(SHAKING / 980.665 + offset, "g"), "r.txt")
     with pytest.warns(RecordWarning, match="lie around an offset of") as caught:
         motion = GroundMotion.read(path)
-    said = float(re.search(r"offset of (\S+) g", str(caught[0].message)).group(1))
-    assert said == pytest.approx(offset, abs=0.01)
+    reported = float(re.search(r"offset of (\S+) g", str(caught[0].message)).group(1))
+    assert reported == pytest.approx(offset, abs=0.01)
     assert abs(motion.baseline_corrected(order=0).si.horizontal.samples.mean()) < 1e-9
     GroundMotion.read(write(column(SHAKING / 980.665, "g"), "r.txt"))
 

@@ -1,4 +1,4 @@
-"""What the metadata of a motion tell holds after each operation: azimuth, start, misfit."""
+"""Metadata of a motion stay true after each operation: azimuth, start time, misfit."""
 
 import numpy as np
 import pytest
@@ -15,8 +15,8 @@ START = "2020-02-03T04:05:06"
 
 
 def motion(values, name="one", **metadata):
-    made = GroundMotion.from_arrays((values, "m/s^2"), f"{STEP} s")
-    return GroundMotion(made.si, name=name, metadata=metadata)
+    record = GroundMotion.from_arrays((values, "m/s^2"), f"{STEP} s")
+    return GroundMotion(record.si, name=name, metadata=metadata)
 
 
 @pytest.mark.parametrize(("own", "theirs", "sign"), [(0, 90, 1), (90, 0, -1), (360, 270, -1)])
@@ -25,8 +25,10 @@ def test_rotation_updates_azimuth(own, theirs, sign):
     turned = one.rotated(other, "30 deg")
     assert turned.metadata["azimuth"] == pytest.approx((own + sign * 30.0) % 360.0)
     axes = rf.HorizontalPair(one, other).in_axes("30 deg")
-    found = [each.metadata["azimuth"] for each in (axes.first, axes.second)]
-    assert found == pytest.approx([(each + sign * 30.0) % 360.0 for each in (own, theirs)])
+    azimuths = [component.metadata["azimuth"] for component in (axes.first, axes.second)]
+    assert azimuths == pytest.approx(
+        [(component + sign * 30.0) % 360.0 for component in (own, theirs)]
+    )
     back = axes.rotated(azimuth=f"{own} deg").si.horizontal.samples
     assert back == pytest.approx(NORTH, abs=1e-13)
 
@@ -102,19 +104,19 @@ def test_filter_padding_shifts_start_time_back():
 def test_velocity_pulse_motions_start_earlier_by_lead():
     pulse = GroundMotion.mavroeidis_papageorgiou_pulse("80 cm/s", "0.5 Hz", 2.2, "0 deg")
     record = GroundMotion(pulse.si, metadata={"record_time": START})
-    found = record.velocity_pulse()
-    lead = np.timedelta64(round(float(found.lead.m_as("us"))), "us")
+    result = record.velocity_pulse()
+    lead = np.timedelta64(round(float(result.lead.m_as("us"))), "us")
     assert lead > np.timedelta64(0, "us")
-    for each in (found.extracted, found.residual):
-        assert np.datetime64(START) - np.datetime64(each.metadata["record_time"]) == lead
+    for part in (result.extracted, result.residual):
+        assert np.datetime64(START) - np.datetime64(part.metadata["record_time"]) == lead
 
 
 def test_joining_motions_with_different_start_times_warns():
     one, other = motion(NORTH, "a", record_time=START), motion(EAST, "b", record_time=START)
-    for joined in (one.with_vertical, lambda late: one.rotated(late, "10 deg")):
-        joined(other)
+    for join in (one.with_vertical, lambda late: one.rotated(late, "10 deg")):
+        join(other)
         with pytest.warns(RecordWarning, match=r"a starts at .*:06, b at .*:07; their first"):
-            joined(other.window("1 s"))
+            join(other.window("1 s"))
 
 
 def test_scale_factors_accumulate():
@@ -150,13 +152,16 @@ def test_rotating_differently_scaled_components_drops_scale_factor():
     assert "scale_factor" not in once.rotated(twice, "30 deg").metadata
     assert "scale_factor" not in once.rotated(motion(EAST), "30 deg").metadata
     axes = rf.HorizontalPair(once, motion(EAST).scaled(2.0)).in_axes("30 deg")
-    assert [one.metadata["scale_factor"] for one in (axes.first, axes.second)] == [2.0, 2.0]
+    assert [component.metadata["scale_factor"] for component in (axes.first, axes.second)] == [
+        2.0,
+        2.0,
+    ]
     plain = rf.HorizontalPair(motion(NORTH), motion(EAST)).in_axes("30 deg")
     assert "scale_factor" not in plain.second.metadata
 
 
 @pytest.mark.parametrize(
-    ("joined", "across", "upwards"),
+    ("join", "across", "upwards"),
     [
         (lambda one, other: one.scaled(2).with_vertical(other), 2.0, None),
         (lambda one, other: one.with_vertical(other).scaled(2), 2.0, 2.0),
@@ -169,14 +174,14 @@ def test_rotating_differently_scaled_components_drops_scale_factor():
         (lambda one, other: one.with_vertical(other.with_vertical(one.scaled(7))), None, None),
     ],
 )
-def test_scale_factors_accumulate_per_component(joined, across, upwards):
-    made = joined(motion(NORTH), motion(EAST))
-    assert made.metadata.get("scale_factor") == across
-    assert made.si.horizontal.samples == pytest.approx((across or 1.0) * NORTH)
-    assert made.metadata.get("vertical_scale_factor") == upwards
-    if made.si.vertical is not None:
-        assert made.si.vertical.samples == pytest.approx((upwards or 1.0) * EAST)
-    assert not any(name.startswith("vertical_vertical") for name in made.metadata)
+def test_scale_factors_accumulate_per_component(join, across, upwards):
+    result = join(motion(NORTH), motion(EAST))
+    assert result.metadata.get("scale_factor") == across
+    assert result.si.horizontal.samples == pytest.approx((across or 1.0) * NORTH)
+    assert result.metadata.get("vertical_scale_factor") == upwards
+    if result.si.vertical is not None:
+        assert result.si.vertical.samples == pytest.approx((upwards or 1.0) * EAST)
+    assert not any(name.startswith("vertical_vertical") for name in result.metadata)
 
 
 def test_rotation_preserves_only_common_scale_factor():
@@ -193,10 +198,10 @@ def test_scaling_drops_misfit_of_vertical_component():
 
 
 @pytest.mark.parametrize(
-    ("component", "known"), [("N", {"azimuth": 0.0}), ("DWN", {"positive": "down"})]
+    ("component", "metadata"), [("N", {"azimuth": 0.0}), ("DWN", {"positive": "down"})]
 )
-def test_mirrored_component_is_not_read_as_original(tmp_path, component, known):
-    before = motion(NORTH, component=component, **known)
+def test_mirrored_component_is_not_read_as_original(tmp_path, component, metadata):
+    before = motion(NORTH, component=component, **metadata)
     mirrored = before.scaled(-1)
     assert mirrored.metadata["component"] == f"-{component}"
     assert mirrored.scaled(-2).metadata["component"] == component
@@ -231,25 +236,25 @@ def test_only_steps_that_change_spectrum_drop_misfit():
 @pytest.mark.parametrize(
     ("process", "name"),
     [
-        (lambda one: one, "one"),
-        (lambda one: one.scaled(0.5), "0.5 times one"),
-        (lambda one: one.filtered(low="1 Hz").scaled(0.5), "0.5 times one, filtered"),
-        (lambda one: one.window("1 s", taper="0.1 s").window("0.5 s"), "one, cut, tapered"),
-        (lambda one: one.resampled("0.005 s").baseline_corrected(),
+        (lambda m: m, "one"),
+        (lambda m: m.scaled(0.5), "0.5 times one"),
+        (lambda m: m.filtered(low="1 Hz").scaled(0.5), "0.5 times one, filtered"),
+        (lambda m: m.window("1 s", taper="0.1 s").window("0.5 s"), "one, cut, tapered"),
+        (lambda m: m.resampled("0.005 s").baseline_corrected(),
          "one, resampled, baseline corrected"),
-        (lambda one: one.resampled("0.01 s"), "one"),
-        (lambda one: one.rotated(motion(EAST), "30 deg"), "one, rotated"),
-        (lambda one: one.with_vertical(one), "one"),
-        (lambda one: one.through_storeys(periods=["0.5 s"], time_step="0.01 s"), "one, at a floor"),
-        (lambda one: one.through_storeys(storeys=3, floor=2, period="0.5 s", time_step="0.01 s"),
+        (lambda m: m.resampled("0.01 s"), "one"),
+        (lambda m: m.rotated(motion(EAST), "30 deg"), "one, rotated"),
+        (lambda m: m.with_vertical(m), "one"),
+        (lambda m: m.through_storeys(periods=["0.5 s"], time_step="0.01 s"), "one, at a floor"),
+        (lambda m: m.through_storeys(storeys=3, floor=2, period="0.5 s", time_step="0.01 s"),
          "one, at floor 2"),
-        (lambda one: one.matched(rf.TargetSpectrum.eurocode_8("0.2 g_0"),
+        (lambda m: m.matched(rf.TargetSpectrum.eurocode_8("0.2 g_0"),
                                  periods=("0.1 s", "0.5 s"), tolerance=0.3), "one, matched"),
     ],
 )  # fmt: skip
 def test_title_and_labels_name_processing_steps(process, name):
-    made = process(motion(NORTH))
+    processed = process(motion(NORTH))
     system = rf.System(rf.Block(width="2 m", height="4 m", mass="2 t"))
-    run = system.simulate(made, duration="0.1 s", outputs=None)
+    run = system.simulate(processed, duration="0.1 s", outputs=None)
     assert motion_words(run.attrs) == name
-    assert rf.plot.motion(made).figure.get_suptitle() == name
+    assert rf.plot.motion(processed).figure.get_suptitle() == name
