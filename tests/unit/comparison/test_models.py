@@ -87,7 +87,7 @@ def test_ladder_of_a_tied_block_ends_with_sliding():
 
 @pytest.mark.parametrize("options", [{}, {"rotation": "small"}])
 def test_ladder_without_the_wall_does_not_slide(options):
-    """Without the wall its ground has friction, and it would slide."""
+    """Without the wall, the ground has friction and the block slides."""
     wall, ground = rf.RearWall(side="left"), rf.RigidGround(friction=0.3)
     ladder = rf.model_ladder(rf.System(BLOCK, ground, wall, **options))
     assert list(ladder)[-1].startswith("rigid ground and wall")

@@ -1,4 +1,4 @@
-"""The answers as datasets: names, units, meanings, files."""
+"""Datasets of results: names, units, descriptions, files."""
 
 import math
 from pathlib import Path
@@ -70,10 +70,10 @@ def test_attributes_name_motion_and_references(answer, motion):
 def test_dataset_survives_netcdf_round_trip(answer, tmp_path):
     _, dataset = answer
     dataset.to_netcdf(tmp_path / "answer.nc")
-    with xr.open_dataset(tmp_path / "answer.nc") as again:
-        xr.testing.assert_identical(again.load(), dataset)
+    with xr.open_dataset(tmp_path / "answer.nc") as stored:
+        xr.testing.assert_identical(stored.load(), dataset)
         for name in dataset.coords:
-            assert "_FillValue" not in again[name].encoding
+            assert "_FillValue" not in stored[name].encoding
 
 
 def test_changing_dataset_does_not_change_motion(motion):
@@ -110,8 +110,8 @@ def test_frame_is_accepted_as_block(motion):
 
 
 def test_measures_of_still_ground_are_zero_or_nan():
-    still = rf.GroundMotion.from_arrays((np.zeros(100), "m/s^2"), "0.01 s")
-    measures = intensity_measures(still, block=BLOCK)
+    at_rest = rf.GroundMotion.from_arrays((np.zeros(100), "m/s^2"), "0.01 s")
+    measures = intensity_measures(at_rest, block=BLOCK)
     undefined = {"mean_period", "predominant_velocity_period", "relative_predominant_frequency"}
     of_the_block = {"overturning_angle", "uplift_acceleration"}
     for name, value in measures.data_vars.items():
@@ -119,20 +119,20 @@ def test_measures_of_still_ground_are_zero_or_nan():
             assert math.isnan(value.item()), name
         elif name not in of_the_block:
             assert value.item() == 0.0, name
-    assert (response_spectrum(still).spectral_displacement == 0.0).all()
-    assert (fourier_spectrum(still).fourier_amplitude == 0.0).all()
+    assert (response_spectrum(at_rest).spectral_displacement == 0.0).all()
+    assert (fourier_spectrum(at_rest).fourier_amplitude == 0.0).all()
 
 
 @pytest.mark.parametrize(("peak", "counts"), [(0.3, False), (0.5, True)])
 def test_standardized_absolute_velocity_interpolates_start_of_second(peak, counts):
-    """The second from 1 s on begins with two thirds of the peak at 0.9 s, and has no other."""
+    """The second from 1 s on begins with two thirds of the peak at 0.9 s, its largest value."""
     samples = [0.0, 0.0, 0.0, peak, 0.0, 0.0, 0.0]
     motion = rf.GroundMotion.from_arrays((samples, "m/s^2"), "0.3 s")
-    found = intensity_measures(motion, gravity="10 m/s^2")  # threshold 0.25 m/s^2
-    standard = found.standardized_cumulative_absolute_velocity.item()
-    whole = found.cumulative_absolute_velocity.item()
-    assert whole == pytest.approx(0.3 * peak)
-    assert (standard == pytest.approx(whole)) is counts
+    measures = intensity_measures(motion, gravity="10 m/s^2")  # threshold 0.25 m/s^2
+    standard = measures.standardized_cumulative_absolute_velocity.item()
+    total = measures.cumulative_absolute_velocity.item()
+    assert total == pytest.approx(0.3 * peak)
+    assert (standard == pytest.approx(total)) is counts
 
 
 def test_standardized_absolute_velocity_leaves_out_weak_seconds():

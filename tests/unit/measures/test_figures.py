@@ -15,8 +15,8 @@ def test_a_motion_is_drawn_in_three_rows(tmp_path):
     labels = [axes.get_ylabel().split("\n")[0] for axes in figure.axes]
     assert labels == ["acceleration", "velocity", "displacement"]
     assert figure.axes[-1].get_xlabel() == "time [s]"
-    drawn = figure.axes[0].get_lines()[0].get_ydata()
-    np.testing.assert_array_equal(drawn, PULSE.si.horizontal.samples)
+    plotted = figure.axes[0].get_lines()[0].get_ydata()
+    np.testing.assert_array_equal(plotted, PULSE.si.horizontal.samples)
     assert figure.get_suptitle() == PULSE.name
     figure.savefig(tmp_path / "motion.png")
 

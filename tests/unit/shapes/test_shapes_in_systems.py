@@ -1,4 +1,4 @@
-"""Bodies by their shape are blocks: a result keeps them, through a file too."""
+"""Bodies defined by their shape are blocks, and survive round trips of results."""
 
 import pytest
 import xarray as xr
@@ -28,8 +28,8 @@ def test_shaped_bodies_survive_result_round_trip(tmp_path):
         )
         file = tmp_path / f"{number}.nc"
         response.to_netcdf(file)
-        with xr.open_dataset(file) as kept:
-            assert rf.System.from_dataset(kept) == system
+        with xr.open_dataset(file) as stored:
+            assert rf.System.from_dataset(stored) == system
 
 
 def test_description_gives_uplift_acceleration_to_either_side():

@@ -1,4 +1,4 @@
-"""Motions in numbers: one function of time per component, and its value anywhere."""
+"""Signals: one function of time per component, evaluated at any time."""
 
 import copy
 import pickle
@@ -105,9 +105,9 @@ def test_both_components_are_changed_alike():
 )
 def test_copies_are_equal_and_read_only(twin):
     motion = Motion(ANALYTIC, RECORD)
-    again = twin(motion)
-    assert again.digest == motion.digest
-    for signal in (again.horizontal, again.vertical):
+    copied = twin(motion)
+    assert copied.digest == motion.digest
+    for signal in (copied.horizontal, copied.vertical):
         assert not signal.samples.flags.writeable
         assert not signal.pieces.flags.writeable
 

@@ -1,4 +1,4 @@
-"""Suites from folders, archives and lists: nothing is lost in silence."""
+"""Suites from folders, archives and lists: whatever is not read causes a warning."""
 
 import io
 import os
@@ -33,13 +33,13 @@ def check_download(suite) -> None:
             motion = suite[name[:-4]]
             samples = motion.si.horizontal.samples
             np.testing.assert_allclose(samples, 9.80665 * noise(10 * station.number + place))
-            about = motion.metadata
-            assert about["record"] == f"RSN{station.number}"
-            assert about["axis"] == ("H1", "H2")[place]
-            assert about["magnitude"] == station.magnitude
-            assert about["joyner_boore_distance"] == pytest.approx(1e3 * station.distance)
-            assert about.get("shear_wave_velocity_30", -999) == station.velocity
-            assert about["station"] == f"Station {station.number}"
+            metadata = motion.metadata
+            assert metadata["record"] == f"RSN{station.number}"
+            assert metadata["axis"] == ("H1", "H2")[place]
+            assert metadata["magnitude"] == station.magnitude
+            assert metadata["joyner_boore_distance"] == pytest.approx(1e3 * station.distance)
+            assert metadata.get("shear_wave_velocity_30", -999) == station.velocity
+            assert metadata["station"] == f"Station {station.number}"
     assert suite["RSN14_MADE_S14000"].metadata["stated_pulse_period"] == 4.4
     assert set(suite.pairs) == {"RSN6", "RSN14", "RSN78"}
     assert suite.pairs["RSN78"].vertical is None
@@ -60,7 +60,7 @@ def test_peer_download_is_read_from_folders_archives_and_lists(folder, tmp_path_
     below.mkdir(parents=True)
     (below / "download.zip").write_bytes(packed(FILES))
     (below / ".hidden.AT2").write_bytes(b"hidden")
-    given = [
+    sources = [
         folder,
         str(folder),
         place / "download.zip",
@@ -71,8 +71,8 @@ def test_peer_download_is_read_from_folders_archives_and_lists(folder, tmp_path_
         sorted(folder.iterdir()),
         [below],
     ]
-    for one in given:
-        check_download(rf.read_suite(one))
+    for source in sources:
+        check_download(rf.read_suite(source))
     with (place / "download.zip").open("rb") as file:
         check_download(rf.read_suite(file))
 
@@ -120,8 +120,8 @@ def test_three_component_file_is_read_completely(tmp_path):
     assert both.second.sha256 == pair.second.sha256
     upright = suite.with_verticals()
     assert all(motion.si.vertical is not None for motion in upright.values())
-    asked = rf.GroundMotion.read(tmp_path / sample.name, component=("N", "U"))
-    assert upright[f"{stem} N"].sha256 == asked.sha256
+    expected = rf.GroundMotion.read(tmp_path / sample.name, component=("N", "U"))
+    assert upright[f"{stem} N"].sha256 == expected.sha256
 
 
 def test_every_sample_file_is_read_or_listed_as_unread(tmp_path):
@@ -141,13 +141,13 @@ TEXT = "time (s),acc (g)\n0,0\n0.01,{}\n0.02,0\n"
 
 
 def test_files_with_same_name_get_distinct_labels(tmp_path):
-    # of two earthquakes, as the folders tell, and so no pair
+    # the folders show two earthquakes, so the components form no pair
     for place, peak in (("a", 0.1), ("b", 0.2)):
         (tmp_path / place).mkdir()
         (tmp_path / place / "x.csv").write_text(TEXT.format(peak))
     suite = rf.read_suite(tmp_path)
     assert list(suite) == ["x", "x (2)"]
-    assert [one.metadata["record"] for one in suite.values()] == ["x.csv", "x.csv (2)"]
+    assert [motion.metadata["record"] for motion in suite.values()] == ["x.csv", "x.csv (2)"]
     assert suite.pairs == {}
 
 
@@ -160,9 +160,9 @@ def test_bytes_without_a_name_are_no_pair():
 def test_copies_of_a_file_are_read_once(tmp_path):
     for name in ("x.csv", "x (1).csv"):
         (tmp_path / name).write_text(TEXT.format(0.1))
-    for given in (tmp_path, [tmp_path / "x.csv"] * 2, [TEXT.format(0.1).encode()] * 2):
+    for source in (tmp_path, [tmp_path / "x.csv"] * 2, [TEXT.format(0.1).encode()] * 2):
         with pytest.warns(RecordWarning, match="1 file not read .*a copy of "):
-            suite = rf.read_suite(given)
+            suite = rf.read_suite(source)
         assert len(suite) == 1
         (reason,) = suite.unread.values()
         assert "expected each record once" in reason
@@ -186,7 +186,7 @@ def test_components_that_form_no_pair_warn(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("given", "words"),
+    ("source", "words"),
     [
         ("nowhere", "no such file or folder"),
         ([], "no horizontal component in 0 files"),
@@ -197,10 +197,10 @@ def test_components_that_form_no_pair_warn(tmp_path):
         (table(), "no horizontal component"),
     ],
 )
-def test_input_without_motions_is_refused(given, words, tmp_path, monkeypatch):
+def test_input_without_motions_is_refused(source, words, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(RecordError, match=words):
-        rf.read_suite(given)
+        rf.read_suite(source)
 
 
 def test_arguments_are_checked(folder):
@@ -220,20 +220,20 @@ def test_pipes_and_broken_links_are_skipped(folder):
 
 
 def test_damaged_table_warns(folder):
-    good = table().decode()
-    row = next(line for line in good.splitlines() if line.startswith("6,"))
+    intact = table().decode()
+    row = next(line for line in intact.splitlines() if line.startswith("6,"))
     for changed, words in {
-        good.replace("Result ID", "Result"): "no line that begins with 'Result ID'",
-        good.replace(row, row[:60]): r"line 9: found \d+ fields",
-        good.replace(row, row.replace('"Station 6"', "Station 6, A")): "line 9: found 23 fields",
-        good.replace("6.95", "strong"): "'strong' in the column 'magnitude'",
-        good.replace("Filename", "File"): "no column with the names of files",
+        intact.replace("Result ID", "Result"): "no line that begins with 'Result ID'",
+        intact.replace(row, row[:60]): r"line 9: found \d+ fields",
+        intact.replace(row, row.replace('"Station 6"', "Station 6, A")): "line 9: found 23 fields",
+        intact.replace("6.95", "strong"): "'strong' in the column 'magnitude'",
+        intact.replace("Filename", "File"): "no column with the names of files",
     }.items():
         (folder / "_SearchResults.csv").write_text(changed)
         with pytest.warns(RecordWarning, match="_SearchResults.csv"):
             suite = rf.read_suite(folder)
         assert len(suite) == len(HORIZONTAL)
-        (reason,) = [why for path, why in suite.unread.items() if path.endswith(".csv")]
+        (reason,) = [message for path, message in suite.unread.items() if path.endswith(".csv")]
         import re
 
         assert re.search(words, reason)
@@ -248,16 +248,18 @@ def test_the_published_records():
     for pair in suite.pairs.values():
         assert pair.vertical is not None
     names = {path.rsplit("/", 1)[-1] for path in suite.unread}
-    read = {one.metadata["source_file"] for one in (*suite.values(), *suite.verticals.values())}
+    read = {
+        motion.metadata["source_file"] for motion in (*suite.values(), *suite.verticals.values())
+    }
     assert read | names == {path.name for path in records_folder().glob("*.*")}
 
 
 def test_the_published_table():
     path = record_path("more/PEER_SearchResults.csv")
-    known = peer_table(read_source(path))
-    assert known is not None
-    assert len(known) == 3 * 30 - 1  # one record has no vertical component
-    first = known["RSN6_IMPVALL.I_I-ELC180.AT2"]
+    entries = peer_table(read_source(path))
+    assert entries is not None
+    assert len(entries) == 3 * 30 - 1  # one record has no vertical component
+    first = entries["RSN6_IMPVALL.I_I-ELC180.AT2"]
     assert first == {
         "axis": "H1",
         "event": "Imperial Valley-02",
@@ -271,4 +273,4 @@ def test_the_published_table():
         "station": "El Centro Array #9",
         "year": 1940,
     }
-    assert known["RSN138_TABAS_BOS-V1.AT2"]["axis"] == "V"
+    assert entries["RSN138_TABAS_BOS-V1.AT2"]["axis"] == "V"

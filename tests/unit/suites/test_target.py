@@ -1,4 +1,4 @@
-"""Target spectra: tables and codes, by their printed equations."""
+"""Target spectra from tables and codes agree with the printed equations."""
 
 import copy
 import pickle
@@ -162,12 +162,12 @@ EQUAL = {
 @pytest.mark.parametrize("name", EQUAL)
 def test_equal_targets_compare_and_hash_equal(name):
     target, periods = EQUAL[name](), np.array([0.1, 0.3, 1.0])
-    kept = pickle.loads(pickle.dumps(target))  # noqa: S301
-    for again in (EQUAL[name](), kept, copy.deepcopy(target)):
-        assert again == target
-        assert hash(again) == hash(target)
-        assert again.at((periods, "s")).tolist() == target.at((periods, "s")).tolist()
-        assert again.deviations_at(periods).tolist() == target.deviations_at(periods).tolist()
+    pickled = pickle.loads(pickle.dumps(target))  # noqa: S301
+    for copied in (EQUAL[name](), pickled, copy.deepcopy(target)):
+        assert copied == target
+        assert hash(copied) == hash(target)
+        assert copied.at((periods, "s")).tolist() == target.at((periods, "s")).tolist()
+        assert copied.deviations_at(periods).tolist() == target.deviations_at(periods).tolist()
     assert len({*(make() for make in EQUAL.values()), target}) == len(EQUAL)
     assert target != target.scaled(1.5)
     assert target != target.with_deviation(0.1)
