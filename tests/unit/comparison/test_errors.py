@@ -86,7 +86,7 @@ def test_unfinished_run_has_no_errors(status):
 
 
 def test_verdicts_agree_by_the_overturning_criterion_of_the_run():
-    passed = run_of(status=Status.COMPLETED, overturned=True)
-    assert verdicts_agree(passed, REFERENCE)
-    assert not verdicts_agree(passed, run_of(status=Status.TOPPLED, overturned=True))
+    completed = run_of(status=Status.COMPLETED, overturned=True)
+    assert verdicts_agree(completed, REFERENCE)
+    assert not verdicts_agree(completed, run_of(status=Status.TOPPLED, overturned=True))
     assert verdicts_agree(run_of(status=Status.OVERTURNED), run_of(status=Status.TOPPLED))

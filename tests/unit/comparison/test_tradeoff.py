@@ -260,13 +260,13 @@ def test_recommendation_sentence():
 
 
 def test_recommendation_for_overturned_runs_suggests_history_error():
-    fallen = comparison_of(TIMES, ERRORS)
-    fallen = fallen.assign(overturned=xr.ones_like(fallen.peak_error, bool))
+    overturned = comparison_of(TIMES, ERRORS)
+    overturned = overturned.assign(overturned=xr.ones_like(overturned.peak_error, bool))
     hint = "error='history_error' compares them along time."
-    assert str(rf.recommend(fallen, 0.05)).endswith(hint)
-    along = fallen.assign(history_error=fallen.peak_error)
-    assert hint not in str(rf.recommend(along, 0.05, error="history_error"))
-    assert hint not in str(rf.recommend(fallen.assign(overturned=~fallen.overturned), 0.05))
+    assert str(rf.recommend(overturned, 0.05)).endswith(hint)
+    history_based = overturned.assign(history_error=overturned.peak_error)
+    assert hint not in str(rf.recommend(history_based, 0.05, error="history_error"))
+    assert hint not in str(rf.recommend(overturned.assign(overturned=~overturned.overturned), 0.05))
 
 
 @pytest.mark.parametrize(

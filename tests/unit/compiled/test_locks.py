@@ -1,4 +1,4 @@
-"""One process compiles a module at a time, and none waits for one that was killed."""
+"""One process compiles a module at a time, and none waits for a killed process."""
 
 import errno
 import os
@@ -37,7 +37,7 @@ def module(tmp_path):
 
 @pytest.fixture
 def no_locks(monkeypatch):
-    """Stand for a folder of a network that knows no store."""
+    """Replace a network folder without locks."""
 
     def refuse(number):
         raise OSError(errno.ENOLCK, "No locks available")
@@ -46,7 +46,7 @@ def no_locks(monkeypatch):
 
 
 def keep(module, seconds):
-    """Have another process compile for so long; it has begun."""
+    """Start another process that compiles for `seconds`, and wait until it has begun."""
     process = subprocess.Popen(
         [sys.executable, "-c", KEEP, str(module), str(seconds)], text=True, stdout=subprocess.PIPE
     )
@@ -55,9 +55,9 @@ def keep(module, seconds):
 
 
 def seconds_until_compiled(module):
-    begun = time.monotonic()
+    start = time.monotonic()
     with store.lock_while_compiling(module, lambda: True):
-        return time.monotonic() - begun
+        return time.monotonic() - start
 
 
 def test_lock_of_killed_process_does_not_delay(module):
@@ -83,9 +83,9 @@ def test_two_processes_do_not_compile_at_once(module):
 
 
 def test_waiting_for_lock_ends_when_no_longer_worthwhile(module):
-    asked = iter([True, True, False])
+    answers = iter([True, True, False])
     with keep(module, 600) as process:
-        with store.lock_while_compiling(module, lambda: next(asked)):
+        with store.lock_while_compiling(module, lambda: next(answers)):
             assert store.is_compiled_elsewhere(module)
         assert store.is_compiled_elsewhere(module)
         process.kill()

@@ -1,4 +1,4 @@
-"""Machine code on disk: kept for other processes, and made anew when a source has changed."""
+"""Machine code on disk: shared with other processes, and compiled again if a source changes."""
 
 import importlib
 import itertools
@@ -24,7 +24,7 @@ from rockframe.compiled import (
 
 pytestmark = [
     pytest.mark.unit,
-    pytest.mark.skipif(not COMPILED, reason="this run does without compilation"),
+    pytest.mark.skipif(not COMPILED, reason="compilation is off in this run"),
 ]
 
 HELP = """
@@ -79,12 +79,12 @@ def folder(tmp_path, monkeypatch):
 
 @pytest.fixture
 def own(tmp_path, monkeypatch):
-    """Return the folder of two modules of a user's."""
+    """Return a folder with two user modules."""
     (tmp_path / "own.py").write_text(OWN)
     (tmp_path / "own_help.py").write_text(HELP)
     path = os.pathsep.join([str(tmp_path), *filter(None, [os.environ.get("PYTHONPATH")])])
     monkeypatch.setenv("PYTHONPATH", path)
-    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")  # a source may change within a second
+    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")  # a source may change within one second
     return tmp_path
 
 
@@ -142,7 +142,7 @@ def test_helper_compiles_importable_functions(own, folder, monkeypatch):
 
     monkeypatch.setattr(parallel, "processors", lambda: 2)
     job = Job(load(own, monkeypatch).add_one.source, (("float64", 1, True),), False)
-    with parallel._start_helper([job, job]) as helper:  # for one alone it would not start
+    with parallel._start_helper([job, job]) as helper:  # it would not start for one job
         assert helper.wait(timeout=120) == 0
     assert job.is_stored
     values = np.array([1.0])
@@ -156,11 +156,11 @@ def test_functions_helper_cannot_import_are_still_compiled(monkeypatch):
 
     monkeypatch.setattr(parallel, "processors", lambda: 2)
     structure = (("float64", 1, True),)
-    jobs = [Job(one.source, structure, False) for one in (add_two, add_three)]
+    jobs = [Job(function.source, structure, False) for function in (add_two, add_three)]
     monkeypatch.delitem(sys.modules, __name__, raising=False)
     values = np.zeros(1)
-    for made in parallel.compile_all(jobs):
-        made(values)
+    for routine in parallel.compile_all(jobs):
+        routine(values)
     assert values.tolist() == [5.0]
 
 
@@ -203,7 +203,7 @@ def test_dead_helper_ends_waiting(monkeypatch, ends, waits):
 
 
 def load(own, monkeypatch):
-    """Import the user's module here."""
+    """Import the user module."""
     for name in ("own", "own_help"):
         monkeypatch.delitem(sys.modules, name, raising=False)
     monkeypatch.syspath_prepend(own)
@@ -211,7 +211,7 @@ def load(own, monkeypatch):
 
 
 def some_function():
-    """Stand for a function that is compiled."""
+    """Represent a compiled function."""
 
 
 def test_every_state_of_the_sources_has_a_folder_of_its_own(own, tmp_path, monkeypatch):
@@ -284,23 +284,23 @@ def test_changed_bytes_of_imported_library_change_folder(own, monkeypatch):
 
 def test_digest_covers_all_compiled_package_sources():
     marks = re.compile(r"^\s*@(kernel|inlined|entry)\b", re.MULTILINE)
-    counted = set(
-        itertools.chain.from_iterable(store.PACKAGE.glob(each) for each in store._SOURCES)
+    included = set(
+        itertools.chain.from_iterable(store.PACKAGE.glob(pattern) for pattern in store._SOURCES)
     )
     marked = {path for path in store.PACKAGE.rglob("*.py") if marks.search(path.read_text())}
     assert len(marked) > 20
-    assert marked <= counted
+    assert marked <= included
 
 
 def test_code_of_other_sources_is_removed_after_a_month(folder):
     times = {"code-old": time.time() - 40 * 24 * 3600.0, "code-young": time.time() - 3600.0}
     for name, moment in times.items():
-        kept = folder / name / "__pycache__"
-        kept.mkdir(parents=True)
-        (kept / "some.nbc").write_bytes(b"code")
+        cache = folder / name / "__pycache__"
+        cache.mkdir(parents=True)
+        (cache / "some.nbc").write_bytes(b"code")
         os.utime(folder / name, (moment, moment))
-    made = store.module_file(some_function, "pass", ())
-    assert {path.name for path in folder.iterdir()} == {"code-young", made.parent.name}
+    file = store.module_file(some_function, "pass", ())
+    assert {path.name for path in folder.iterdir()} == {"code-young", file.parent.name}
 
 
 @entry
@@ -352,20 +352,20 @@ def test_long_compilation_is_announced_with_purpose(monkeypatch, caplog):
     from rockframe.compiled import parallel
     from rockframe.compiled.jobs import Job
 
-    def told_of(words, called, seconds):
+    def announcements(words, called, seconds):
         monkeypatch.setattr(Job, "seconds", seconds)
         with compiling_for(words):
             called(np.zeros(1))
-        said = [text for text in caplog.messages if "compiles what" in text]
+        messages = [text for text in caplog.messages if "compiles what" in text]
         caplog.clear()
-        return said
+        return messages
 
     monkeypatch.setattr(parallel, "_announced", set())
     text = "rockframe compiles what a run (pads) needs for this machine: about 1 s where nothing"
-    assert told_of("a run (pads)", add_four, 0.1)[0].startswith(text)
-    assert told_of("a run (pads)", add_four, 30.0) == []
-    assert told_of("a run (pads)", add_five, 0.1) == []  # nobody notices
-    [text] = told_of("lanes (soil)", add_six, 30.0)
+    assert announcements("a run (pads)", add_four, 0.1)[0].startswith(text)
+    assert announcements("a run (pads)", add_four, 30.0) == []
+    assert announcements("a run (pads)", add_five, 0.1) == []  # too short to notice
+    [text] = announcements("lanes (soil)", add_six, 30.0)
     assert text.startswith(
         "rockframe compiles what lanes (soil) needs for this machine: about 30 s"
     )
@@ -381,9 +381,9 @@ def test_compilation_beyond_time_budget_is_skipped(folder, monkeypatch):
     assert not list(folder.rglob("*.nbc"))
     assert compiled_within(11.0, add_seven, values)
     assert list(folder.rglob("*.nbc"))
-    assert compiled_within(0.0, add_seven, values)  # it is there
+    assert compiled_within(0.0, add_seven, values)  # already compiled
     add_seven._routines.clear()
-    assert compiled_within(0.0, add_seven, values)  # and kept for others
+    assert compiled_within(0.0, add_seven, values)  # and stored for other processes
     add_seven(values)
     assert values.tolist() == [7.0]
 
