@@ -1,4 +1,4 @@
-"""Pages that play a run: their numbers are those of the run, and browsers draw them."""
+"""Player pages contain the numbers of the run, and browsers draw them."""
 
 import base64
 import json
@@ -42,7 +42,7 @@ def run_of(scene, **options):
 
 
 def read(page):
-    """Read a page's numbers, as its script does."""
+    """Read the numbers of a page as its script does."""
     data = json.loads(re.search(r"^const run = (.*);$", page, re.MULTILINE)[1])
     packed = zlib.decompress(base64.b64decode(data["numbers"]))
     low, high = np.frombuffer(packed, np.uint8).reshape(2, -1).astype(int)
@@ -51,14 +51,14 @@ def read(page):
 
 
 def points_of(data, numbers, name):
-    """Return where a layer is at all instants [m]."""
-    drawn, instants = data["layers"], len(data["times"])
-    (layer,) = [one for one in drawn["list"] if one["name"] == name]
+    """Return the points of a layer at all instants [m]."""
+    layers, instants = data["layers"], len(data["times"])
+    (layer,) = [layer for layer in layers["list"] if layer["name"] == name]
     size = 2 * layer["points"] * instants
     columns = numbers[layer["first"] : layer["first"] + size].reshape(-1, 2, instants)
-    step = max(drawn["width"], drawn["height"]) / data["levels"]
+    step = max(layers["width"], layers["height"]) / data["levels"]
     places = np.where(columns == data["nowhere"], np.nan, step * columns).transpose(2, 0, 1)
-    return places + np.array([drawn["left"], drawn["bottom"]]), step
+    return places + np.array([layers["left"], layers["bottom"]]), step
 
 
 @pytest.mark.parametrize(
@@ -70,15 +70,15 @@ def test_player_coordinates_match_the_scene(scene):
     moving = SceneHistory(run, "player", 1.0)
     times = run.time.to_numpy()
     assert (data["times"][0], data["times"][-1]) == pytest.approx(times[[0, -1]])
-    names = {one["name"] for one in data["layers"]["list"]}
+    names = {layer["name"] for layer in data["layers"]["list"]}
     assert {"block", "centre of mass", "contact"} <= names
     block, step = points_of(data, numbers, "block")
     cross, _ = points_of(data, numbers, "centre of mass")
-    for place, when in list(enumerate(data["times"]))[::7]:
-        there = moving.builder.layout_at(moving.placement_at(int(np.argmin(abs(times - when)))))
-        np.testing.assert_allclose(block[place], there.block, atol=0.51 * step)
-        np.testing.assert_allclose(cross[place], there.centres, atol=0.51 * step)
-    rest = [one for one in data["layers"]["list"] if one["name"] == "at rest"]
+    for place, time in list(enumerate(data["times"]))[::7]:
+        layout = moving.builder.layout_at(moving.placement_at(int(np.argmin(abs(times - time)))))
+        np.testing.assert_allclose(block[place], layout.block, atol=0.51 * step)
+        np.testing.assert_allclose(cross[place], layout.centres, atol=0.51 * step)
+    rest = [layer for layer in data["layers"]["list"] if layer["name"] == "at rest"]
     assert len(rest) == (2 if scene in ("stack", "pads, cap and soil") else 1)
     box = data["layers"]
     assert (np.nanmin(block, axis=(0, 1)) >= (box["left"], box["bottom"])).all()
@@ -105,11 +105,11 @@ def test_player_traces_and_strips_match_the_run():
     changes = int((np.diff(run.contact_state.to_numpy()) != 0).sum())
     assert len(strip["times"]) == len(strip["states"]) == 1 + changes
     assert {"left", "right"} <= set(strip["states"])
-    slid = run.assign(slip=run.vertical_displacement)
-    label = read(rf.plot.player(slid, units={"length": "mm"}).to_html())[0]["traces"][1]["label"]
+    sliding = run.assign(slip=run.vertical_displacement)
+    label = read(rf.plot.player(sliding, units={"length": "mm"}).to_html())[0]["traces"][1]["label"]
     assert label == "slip [mm]"
-    panels = rf.plot.response(slid)
-    assert [one.get_ylabel() for one in panels][3:] == ["slip\n[m]", "contact"]
+    panels = rf.plot.response(sliding)
+    assert [panel.get_ylabel() for panel in panels][3:] == ["slip\n[m]", "contact"]
     plt.close(panels.figure)
 
 
@@ -122,10 +122,10 @@ def test_slip_is_traced_for_every_sliding_body():
     )  # fmt: skip
     pulse = rf.GroundMotion.sine_pulse("4 m/s^2", "1 Hz")
     run = rf.System(stack, stone.replace(friction=0.3)).simulate(pulse, free_vibration="0.5 s")
-    labels = [one["label"] for one in read(rf.plot.player(run).to_html())[0]["traces"]]
+    labels = [trace["label"] for trace in read(rf.plot.player(run).to_html())[0]["traces"]]
     assert labels[1:-1] == ["slip of body 1 [m]", "slip of body 2 [m]"]
     still = run.assign(body_slip=run.body_slip.where(run.body == 2, 0.0))
-    labels = [one["label"] for one in read(rf.plot.player(still).to_html())[0]["traces"]]
+    labels = [trace["label"] for trace in read(rf.plot.player(still).to_html())[0]["traces"]]
     assert labels[1:-1] == ["slip of body 2 [m]"]
 
 
@@ -137,7 +137,7 @@ def test_player_pages_are_small_and_self_contained(tmp_path):
     assert len(text) < 40_000
     length = float(run.time[-1])
     assert repr(page) == f"<player of {length:.1f} s, {len(text) / 1e3:.0f} kB; save('run.html')>"
-    # words are text, whatever they hold
+    # titles are escaped
     odd = rf.plot.player(run.assign_attrs(motion="</script><b>5"), title="a</script>").to_html()
     assert odd.count("</script>") == 1
     assert "<b>" not in odd
@@ -160,8 +160,8 @@ def test_invalid_player_arguments_are_refused():
 def test_contact_state_colours_differ_in_grey_level():
     def lightness(colour):
         linear = [
-            one / 12.92 if one <= 0.04045 else ((one + 0.055) / 1.055) ** 2.4
-            for one in (int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5))
+            channel / 12.92 if channel <= 0.04045 else ((channel + 0.055) / 1.055) ** 2.4
+            for channel in (int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5))
         ]
         return 116.0 * float(np.dot([0.2126, 0.7152, 0.0722], linear)) ** (1 / 3) - 16.0
 
@@ -170,49 +170,49 @@ def test_contact_state_colours_differ_in_grey_level():
 
 
 def test_browser_renders_the_player(tmp_path):
-    """Of which no part asks for anything, and whose script ends without a fault."""
+    """The page loads nothing else, and its script ends without error."""
     browser = which("chromium") or which("google-chrome")
     if browser is None:
         pytest.skip("neither chromium nor google-chrome is installed")
     path = rf.plot.player(run_of("pads, cap and soil")).save(tmp_path / "run.html")
     usual = ["--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=5000"]
-    seen = subprocess.run(
+    output = subprocess.run(
         [browser, *usual, f"--user-data-dir={tmp_path}/profile", "--dump-dom", path.as_uri()],
         capture_output=True, text=True, timeout=120, check=True,
     ).stdout  # fmt: skip
-    assert 'data-ready="yes"' in seen
-    assert "flight" in seen or "left" in seen
+    assert 'data-ready="yes"' in output
+    assert "flight" in output or "left" in output
 
 
-def written_by_a_browser(page, tmp_path, height=640, canvas="traces"):
-    """Return what a page writes on a canvas, with its place [pixels]."""
+def texts_in_browser(page, tmp_path, height=640, canvas="traces"):
+    """Return the texts that a page writes on a canvas, with their places [pixels]."""
     browser = which("chromium") or which("google-chrome")
     if browser is None:
         pytest.skip("neither chromium nor google-chrome is installed")
     listens = """<script>
-    const plain = CanvasRenderingContext2D.prototype.fillText, told = [];
+    const plain = CanvasRenderingContext2D.prototype.fillText, texts = [];
     CanvasRenderingContext2D.prototype.fillText = function (words, x, y) {
-      if (this.canvas.id === "CANVAS") told.push(words + "@" + x + "@" + y);
-      document.body.dataset.told = told.join("|");
+      if (this.canvas.id === "CANVAS") texts.push(words + "@" + x + "@" + y);
+      document.body.dataset.texts = texts.join("|");
       plain.call(this, words, x, y);
     };</script><script>"""
     path = tmp_path / "run.html"
     path.write_text(page.to_html().replace("<script>", listens.replace("CANVAS", canvas), 1))
     usual = ["--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=5000"]
-    seen = subprocess.run(
+    output = subprocess.run(
         [browser, *usual, f"--window-size=800,{height}", f"--user-data-dir={tmp_path}/profile",
          "--dump-dom", path.as_uri()],
         capture_output=True, text=True, timeout=120, check=True,
     ).stdout  # fmt: skip
-    told = re.search(r'data-told="([^"]*)"', seen)[1].split("|")
-    return [(words, float(x), float(y)) for words, x, y in (one.split("@") for one in told)]
+    texts = re.search(r'data-texts="([^"]*)"', output)[1].split("|")
+    return [(words, float(x), float(y)) for words, x, y in (text.split("@") for text in texts)]
 
 
 @pytest.mark.parametrize("longer", [1.0, 1e-3, 2000.0])
 def test_time_labels_do_not_overlap(tmp_path, longer):
     run = run_of("rigid ground")
     stretched = run.assign_coords(time=run.time * longer)
-    written = written_by_a_browser(rf.plot.player(stretched), tmp_path)
+    written = texts_in_browser(rf.plot.player(stretched), tmp_path)
     places = sorted({x for words, x, _ in written if words.endswith(" s")})
     assert 4 <= len(places) <= 11
     assert np.diff(places).min() > 40.0
@@ -224,7 +224,7 @@ def test_time_labels_do_not_overlap(tmp_path, longer):
 def test_the_scale_bar_has_the_unit_of_lengths(tmp_path, unit, bar):
     units = None if unit is None else {"length": unit}
     page = rf.plot.player(run_of("rigid ground"), units=units)
-    written = written_by_a_browser(page, tmp_path, canvas="scene")
+    written = texts_in_browser(page, tmp_path, canvas="scene")
     assert {words for words, _, _ in written} == {bar}
 
 
@@ -232,7 +232,7 @@ def test_numbers_beside_low_traces_do_not_overlap(tmp_path):
     run = run_of("rigid ground")
     run = run.assign(slip=run.vertical_displacement)
     page = rf.plot.player(run, title="a long title " * 60)
-    written = written_by_a_browser(page, tmp_path, 480)
+    written = texts_in_browser(page, tmp_path, 480)
     assert "slip [m]" in [words for words, _, _ in written]
     heights = sorted({y for _, x, y in written if x < 52.0})
     assert np.diff(heights).min(initial=99.0) > 9.0

@@ -1,4 +1,4 @@
-"""The figure of a run: strips of contact, title and labels."""
+"""The figure of a run: contact strips, title and labels."""
 
 import numpy as np
 import pytest
@@ -24,7 +24,7 @@ def strip(times, states):
 
 
 def pixels(figure, axes, start, end):
-    """Colours drawn from one time to another, halfway up a panel."""
+    """Colours between two times, at half the height of a panel."""
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     image = np.asarray(canvas.buffer_rgba())[::-1, :, :3] / 255.0
@@ -52,8 +52,8 @@ def test_contact_states_narrower_than_a_pixel_are_blended(dpi):
     ).figure
     figure.set_dpi(dpi)
     for start, colour in ((0, FULL), (10, LEFT), (20, 0.5 * (LEFT + RIGHT)), (30, RIGHT)):
-        drawn = pixels(figure, figure.axes[-1], start + 0.5, start + 9.5)
-        np.testing.assert_allclose(drawn, np.tile(colour, (len(drawn), 1)), atol=0.02)
+        colours = pixels(figure, figure.axes[-1], start + 0.5, start + 9.5)
+        np.testing.assert_allclose(colours, np.tile(colour, (len(colours), 1)), atol=0.02)
 
 
 def test_chattering_block_has_a_blended_contact_strip():
@@ -63,8 +63,8 @@ def test_chattering_block_has_a_blended_contact_strip():
     assert np.mean(rocking == 1) == pytest.approx(0.5, abs=0.03)
     assert np.mean(rocking == 2) == pytest.approx(0.5, abs=0.03)
     figure = rf.plot.response(run).figure
-    drawn = pixels(figure, figure.axes[-1], 24.6, 26.9)
-    np.testing.assert_allclose(drawn.mean(axis=0), 0.5 * (LEFT + RIGHT), atol=0.03)
+    colours = pixels(figure, figure.axes[-1], 24.6, 26.9)
+    np.testing.assert_allclose(colours.mean(axis=0), 0.5 * (LEFT + RIGHT), atol=0.03)
 
 
 LONGEST = (
@@ -126,7 +126,7 @@ def test_slip_panel_shows_only_runs_with_slip():
     slides = rf.System(BLOCK, rf.RigidGround(friction=0.15)).simulate(PULSE)
     runs = {"held": rf.System(BLOCK).simulate(PULSE), "slides": slides}
     assert "slip" not in runs["held"]
-    *_, slip, _, _ = rf.plot.response(runs)  # beneath it a strip of contact for each run
+    *_, slip, _, _ = rf.plot.response(runs)  # a contact strip for each run below
     assert slip.get_ylabel() == "slip\n[m]"
     assert [line.get_label() for line in slip.get_lines()][:1] == ["slides"]
     with pytest.raises(ComponentError, match=r"They hold .*'slip'"):
@@ -147,7 +147,7 @@ def test_stack_response_labels_bodies_and_omits_uplift_line(monkeypatch):
     rotation, *strips = rf.plot.response(run, panels=("rotation", "contact"), events=True)
     assert words_of(rotation)[0] == "body 1"
     assert rotation.get_legend().get_title().get_text() == "events of all bodies"
-    # uplift is at a rotation on the base, what is drawn is that from the upright
+    # uplift occurs at a rotation on the base; the rotation from upright is drawn
     assert "uplift" not in [line.get_label() for line in rotation.get_lines()]
     assert [strip.get_ylabel() for strip in strips] == ["body 1", "body 2"]
     first, _ = rf.plot.response([run, run], panels="contact")
