@@ -16,7 +16,7 @@ from processor_time import processor_time
 from property.damaged_files import DAMAGE, damaged
 from property.test_reading import check
 from unit.motion.format_samples import SAMPLES
-from unit.motion.test_received import AT2, tarred, zipped
+from unit.motion.test_record_sources import AT2, tarred, zipped
 
 import rockframe as rf
 from rockframe.errors import RecordError

@@ -1,4 +1,4 @@
-"""A folder with a scene, records and studies, and commands that are carried out in it."""
+"""Fixtures: a folder with a scene and a record, and commands run in it."""
 
 import io
 import os
@@ -14,13 +14,13 @@ from rockframe.command.main import main
 
 @pytest.fixture
 def uncompiled():
-    """Return the environment of processes whose single short run is no matter for a compiler."""
+    """Return the environment of processes whose short run needs no compilation."""
     return os.environ | {"ROCKFRAME_COMPILE": "0"}
 
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
-    """Stand in a folder with a scene and a record."""
+    """Change to a folder with a scene and a record."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "scene.toml").write_text(TEMPLATES["block"])
     rf.GroundMotion.sine_pulse("-4 m/s^2", "1 Hz").to_at2("record.AT2")
@@ -28,25 +28,25 @@ def folder(tmp_path, monkeypatch):
 
 
 @pytest.fixture
-def typed(capsys):
-    """Carry out a command; give its exit code and what it wrote."""
+def run_command(capsys):
+    """Run a command; return exit code, output and error output."""
 
-    def carry_out(*words):
+    def run(*words):
         code = main(list(words))
-        told = capsys.readouterr()
-        return code, told.out, told.err
+        output = capsys.readouterr()
+        return code, output.out, output.err
 
-    return carry_out
+    return run
 
 
 @pytest.fixture
-def piped(capsysbinary, monkeypatch):
-    """Carry out a command that is handed a file; give its exit code and what it wrote, in bytes."""
+def run_with_input(capsysbinary, monkeypatch):
+    """Run a command with standard input; return exit code, output in bytes and error output."""
 
-    def carry_out(handed, *words):
-        monkeypatch.setattr(sys, "stdin", SimpleNamespace(buffer=io.BytesIO(handed), closed=False))
+    def run(data, *words):
+        monkeypatch.setattr(sys, "stdin", SimpleNamespace(buffer=io.BytesIO(data), closed=False))
         code = main(list(words))
-        told = capsysbinary.readouterr()
-        return code, told.out, told.err.decode()
+        output = capsysbinary.readouterr()
+        return code, output.out, output.err.decode()
 
-    return carry_out
+    return run

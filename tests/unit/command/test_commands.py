@@ -1,4 +1,4 @@
-"""The commands: what they print and write, and their exit codes."""
+"""Commands: output, files and exit codes."""
 
 import itertools
 import json
@@ -25,38 +25,38 @@ pytestmark = pytest.mark.unit
 
 
 @pytest.mark.usefixtures("no_pictures")
-def test_a_run_from_the_template_to_the_report(typed, folder):
-    code, told, _ = typed("template")
-    assert (code, told) == (0, TEMPLATES["block"])
-    code, told, _ = typed("describe", "scene.toml")
+def test_a_run_from_the_template_to_the_report(run_command, folder):
+    code, out, _ = run_command("template")
+    assert (code, out) == (0, TEMPLATES["block"])
+    code, out, _ = run_command("describe", "scene.toml")
     assert code == 0
-    assert "Model: rigid ground" in told
-    assert '[block]  width = "0.8 m", height = "3.2 m", mass = "5500.0 kg"' in told
-    assert "cycles: 1: 129 samples at 0.00390625 s, 0.5 s long, peak 5 m/s^2 (0.51 g)" in told
-    code, told, _ = typed("run", "scene.toml", "-o", "out.nc")
+    assert "Model: rigid ground" in out
+    assert '[block]  width = "0.8 m", height = "3.2 m", mass = "5500.0 kg"' in out
+    assert "cycles: 1: 129 samples at 0.00390625 s, 0.5 s long, peak 5 m/s^2 (0.51 g)" in out
+    code, out, _ = run_command("run", "scene.toml", "-o", "out.nc")
     assert code == 0
-    assert "Verdict: Did not overturn" in told
-    with xr.open_dataset("out.nc") as kept:
+    assert "Verdict: Did not overturn" in out
+    with xr.open_dataset("out.nc") as stored:
         block = rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t")
         pulse = rf.GroundMotion.sine_pulse("-5 m/s^2", "2 Hz")
-        again = rf.System(block).simulate(pulse, free_vibration="5 s")
-        assert float(kept.peak_rotation) == float(again.peak_rotation)
-    code, told, _ = typed("plot", "out.nc", "-o", "out.png")
+        expected = rf.System(block).simulate(pulse, free_vibration="5 s")
+        assert float(stored.peak_rotation) == float(expected.peak_rotation)
+    code, out, _ = run_command("plot", "out.nc", "-o", "out.png")
     assert code == 0
     assert (folder / "out.png").read_bytes().startswith(b"\x89PNG")
     forces = ("--panels", "base_shear", "ground", "--units", "force=kN", "acceleration=g")
-    assert typed("plot", "out.nc", "-o", "out.svg", *forces)[0] == 0
-    code, _, problem = typed("plot", "out.nc", "-o", "out.svg", "--panels", "base_sheer")
+    assert run_command("plot", "out.nc", "-o", "out.svg", *forces)[0] == 0
+    code, _, problem = run_command("plot", "out.nc", "-o", "out.svg", "--panels", "base_sheer")
     assert (code, "was 'base_shear' meant?" in problem) == (2, True)
-    code, _, problem = typed("report", "out.nc", "-o", "out.pdf")
+    code, _, problem = run_command("report", "out.nc", "-o", "out.pdf")
     assert (code, "a browser prints the page into a PDF" in problem) == (2, True)
-    code, told, _ = typed("report", "out.nc", "--no-certificate", "--title", "A <tower>")
+    code, out, _ = run_command("report", "out.nc", "--no-certificate", "--title", "A <tower>")
     assert code == 0
     assert "A &lt;tower&gt;" in (folder / "out.html").read_text()
 
 
 @pytest.mark.usefixtures("no_pictures")
-def test_a_study_of_records_of_unlike_time_steps_down_to_its_report(typed, folder):
+def test_study_of_records_with_unlike_time_steps_is_reported(run_command, folder):
     (folder / "records").mkdir()
     for step in ("0.01 s", "0.02 s"):
         motion = rf.GroundMotion.sine_pulse("4 m/s^2", "1 Hz").resampled(step)
@@ -65,208 +65,219 @@ def test_a_study_of_records_of_unlike_time_steps_down_to_its_report(typed, folde
         'scene = "scene.toml"\nmotions = ["records"]\noutput = "runs.nc"\n'
         '[axes]\nscale = [1.0]\n[sweep]\noutputs = ["base_shear"]\n'
     )
-    code, _, said = typed("study", "study.toml")
+    code, _, err = run_command("study", "study.toml")
     assert code == 0
-    assert "time steps from 0.01 s to 0.02 s; histories are kept every 0.01 s" in said
-    code, told, _ = typed("report", "runs.nc", "--motions", "records", "--units", "force=kN")
-    assert (code, told) == (0, "Report: runs.html\n")
+    assert "time steps from 0.01 s to 0.02 s; histories are kept every 0.01 s" in err
+    code, out, _ = run_command("report", "runs.nc", "--motions", "records", "--units", "force=kN")
+    assert (code, out) == (0, "Report: runs.html\n")
     page = (folder / "runs.html").read_text()
     assert "peak base shear [kN]" in page
     assert "The worst case in full" in page
 
 
-def test_a_table_without_a_unit_is_asked_for_the_option(typed, folder):
+def test_record_table_without_unit_requires_unit_option(run_command, folder):
     rows = "\n".join(f"{0.01 * k:.2f},{0.1 * (k % 3)}" for k in range(50))
     (folder / "x.csv").write_text(f"{rows}\n")
-    code, _, problem = typed("motion", "x.csv")
+    code, _, problem = run_command("motion", "x.csv")
     assert code == 2
     assert problem.count("--unit 'g'") == 1
-    code, _, problem = typed("motion", "x.csv", "--unit", "g")
+    code, _, problem = run_command("motion", "x.csv", "--unit", "g")
     assert code == 0
 
 
 @pytest.mark.usefixtures("no_pictures")
-def test_a_scaled_motion_is_told_with_its_factor(typed, folder):
-    typed("template")
-    code, told, _ = typed("run", "scene.toml", "-o", "out.nc", "--scale", "3")
+def test_scaled_motion_is_printed_with_its_factor(run_command, folder):
+    run_command("template")
+    code, out, _ = run_command("run", "scene.toml", "-o", "out.nc", "--scale", "3")
     assert code == 0
-    assert "Motion:  3 times sine pulse, -5 m/s^2, 2 Hz" in told
-    with xr.open_dataset("out.nc") as kept:
-        assert kept.attrs["motion"].startswith("sine pulse, -5 m/s^2, 2 Hz")  # which motion it is
-    typed("report", "out.nc", "--no-certificate")
+    assert "Motion:  3 times sine pulse, -5 m/s^2, 2 Hz" in out
+    with xr.open_dataset("out.nc") as stored:
+        assert stored.attrs["motion"].startswith("sine pulse, -5 m/s^2, 2 Hz")  # names the motion
+    run_command("report", "out.nc", "--no-certificate")
     assert "3 times sine pulse, -5 m/s^2, 2 Hz" in (folder / "out.html").read_text()
 
 
-def test_a_result_where_a_scene_is_needed_is_named_as_one(typed):
-    typed("template")
-    typed("run", "scene.toml", "-o", "out.nc")
-    code, _, problem = typed("certify", "out.nc")
+def test_result_file_as_scene_is_refused(run_command):
+    run_command("template")
+    run_command("run", "scene.toml", "-o", "out.nc")
+    code, _, problem = run_command("certify", "out.nc")
     assert code == 2
     assert "out.nc: this is no text; expected a scene or a study in TOML" in problem
     assert "rockframe report" in problem
 
 
-def test_options_take_the_place_of_what_the_scene_says(typed):
-    given = ["run", "scene.toml", "-o", "out.nc", "--free-vibration", "1 s", "--accuracy", "1e-6"]
-    code, *_ = typed(*given, "--motion", "record.AT2", "--scale", "0.5")
+def test_options_override_the_scene(run_command):
+    options = [
+        "run",
+        "scene.toml",
+        "-o",
+        "out.nc",
+        "--free-vibration",
+        "1 s",
+        "--accuracy",
+        "1e-6",
+    ]
+    code, *_ = run_command(*options, "--motion", "record.AT2", "--scale", "0.5")
     assert code == 0
-    with xr.open_dataset("out.nc") as kept:
-        assert float(abs(kept.ground_acceleration).max()) == pytest.approx(2.0, rel=1e-3)
-        assert float(kept.time[-1]) == pytest.approx(2.0, abs=0.02)
-        assert kept.attrs["solver_rtol"] == 1e-6
-    code, *_ = typed("run", "scene.toml", "-o", "out.nc", "--duration", "0.7 s")
+    with xr.open_dataset("out.nc") as stored:
+        assert float(abs(stored.ground_acceleration).max()) == pytest.approx(2.0, rel=1e-3)
+        assert float(stored.time[-1]) == pytest.approx(2.0, abs=0.02)
+        assert stored.attrs["solver_rtol"] == 1e-6
+    code, *_ = run_command("run", "scene.toml", "-o", "out.nc", "--duration", "0.7 s")
     assert code == 0
-    with xr.open_dataset("out.nc") as kept:
-        assert float(kept.time[-1]) == pytest.approx(0.7, abs=0.01)
+    with xr.open_dataset("out.nc") as stored:
+        assert float(stored.time[-1]) == pytest.approx(0.7, abs=0.01)
     scene = Path("scene.toml").read_text()
     Path("short.toml").write_text(re.sub('free_vibration = "[^"]*"', 'duration = "0.7 s"', scene))
-    for given, end in (([], 0.7), (["--free-vibration", "1.5 s"], 2.0)):
-        code, *_ = typed("run", "short.toml", "-o", "out.nc", *given)
+    for options, end in (([], 0.7), (["--free-vibration", "1.5 s"], 2.0)):
+        code, *_ = run_command("run", "short.toml", "-o", "out.nc", *options)
         assert code == 0
-        with xr.open_dataset("out.nc") as kept:
-            assert float(kept.time[-1]) == pytest.approx(end, abs=0.02)
+        with xr.open_dataset("out.nc") as stored:
+            assert float(stored.time[-1]) == pytest.approx(end, abs=0.02)
 
 
-def test_a_certificate_is_told_and_kept(typed):
-    code, told, _ = typed("certify", "scene.toml", "--runs", "60", "-o", "sure.nc")
+def test_certificate_is_printed_and_stored(run_command):
+    code, out, _ = run_command("certify", "scene.toml", "--runs", "60", "-o", "sure.nc")
     assert code == 0
-    assert "Certificate: The body stands" in told
-    with xr.open_dataset("sure.nc") as kept:
-        assert bool(kept.verdict_robust)
+    assert "Certificate: The body stands" in out
+    with xr.open_dataset("sure.nc") as stored:
+        assert bool(stored.verdict_robust)
 
 
-def test_motions_are_listed_with_their_measures(typed, folder):
+def test_motions_are_listed_with_their_measures(run_command, folder):
     rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz").to_at2("other.AT2")
-    code, told, _ = typed(
+    code, out, _ = run_command(
         "motion", "record.AT2", "other.AT2", "--picture", "m.png", "--csv", "m.csv"
     )
     assert code == 0
-    assert "peak ground acceleration [m s^-2]" in told
+    assert "peak ground acceleration [m s^-2]" in out
     assert {"m-1.png", "m-2.png"} <= {path.name for path in folder.iterdir()}
     assert (folder / "m.csv").read_text().count("\n") == 3
-    code, *_ = typed("motion", "record.AT2", "--picture", "m.svg")
+    code, *_ = run_command("motion", "record.AT2", "--picture", "m.svg")
     assert code == 0
     assert (folder / "m.svg").exists()
 
 
-def test_many_motions_are_a_table_that_is_not_too_wide(typed, folder):
+def test_table_of_many_motions_is_wrapped(run_command, folder):
     for number in range(1, 12):
         pulse = rf.GroundMotion.sine_pulse(f"{number} m/s^2", "1 Hz")
         pulse.to_at2(f"a_record_with_a_name_{number}.AT2")
-    code, told, _ = typed("motion", *sorted(path.name for path in folder.glob("a_*.AT2")))
+    code, out, _ = run_command("motion", *sorted(path.name for path in folder.glob("a_*.AT2")))
     assert code == 0
-    lines = told.splitlines()
+    lines = out.splitlines()
     assert max(map(len, lines)) <= 100
-    parts = told.split("\n\n")
+    parts = out.split("\n\n")
     assert len(parts) > 1  # the labels of the rows are repeated
     assert all(part.count("a_record_with_a_name_11") == 1 for part in parts)
-    assert " ".join(told.split()).count("[m s^-1]") == 4
+    assert " ".join(out.split()).count("[m s^-1]") == 4
     assert all("\\" not in line and line == line.rstrip() for line in lines)
 
 
-def test_a_file_without_a_unit_is_told_the_option_once(typed, folder):
+def test_error_for_missing_unit_mentions_the_option_once(run_command, folder):
     (folder / "index.txt").write_text("\n".join(f"{0.01 * k:.2f}" for k in range(200)))
-    code, _, error = typed("run", "scene.toml", "--motion", "index.txt", "--time-step", "0.01 s")
+    code, _, error = run_command(
+        "run", "scene.toml", "--motion", "index.txt", "--time-step", "0.01 s"
+    )
     assert code == 2
     assert error.count("--unit") == 1
     assert "unit='g'" not in error
 
 
-def test_a_study_goes_on_with_its_store(typed, folder):
+def test_finished_study_is_not_run_again(run_command, folder):
     (folder / "study.toml").write_text(TEMPLATES["study"].replace('accuracy = "fast"', "chunk = 5"))
-    code, told, _ = typed("study", "study.toml", "--csv", "runs.csv")
+    code, out, _ = run_command("study", "study.toml", "--csv", "runs.csv")
     assert code == 0
-    assert "Of all 12 cases of the sweep" in told
+    assert "Of all 12 cases of the sweep" in out
     assert (folder / "runs.csv").read_text().count("\n") == 13
-    kept = sorted((folder / "study").rglob("*"))
-    before = {path: path.stat().st_mtime_ns for path in kept if path.is_file()}
-    assert typed("study", "study.toml")[0] == 0
-    assert all(path.stat().st_mtime_ns == when for path, when in before.items())
+    paths = sorted((folder / "study").rglob("*"))
+    before = {path: path.stat().st_mtime_ns for path in paths if path.is_file()}
+    assert run_command("study", "study.toml")[0] == 0
+    assert all(path.stat().st_mtime_ns == modified for path, modified in before.items())
     with xr.open_dataset("study.nc") as runs:
         assert dict(runs.overturned.sizes) == {"scale": 4, "width": 3, "motion": 1}
-        one = rf.case(runs, scale=2.0, width=0.7).simulate()
-        assert bool(one.overturned) == bool(runs.overturned.sel(scale=2.0, width=0.7).item())
+        case = rf.case(runs, scale=2.0, width=0.7).simulate()
+        assert bool(case.overturned) == bool(runs.overturned.sel(scale=2.0, width=0.7).item())
 
 
 @pytest.mark.parametrize("store", ["my kept", None])
-def test_an_interrupted_study_tells_the_command_that_goes_on(typed, folder, monkeypatch, store):
+def test_interrupted_study_prints_the_command_to_resume(run_command, folder, monkeypatch, store):
     template = TEMPLATES["study"].replace('accuracy = "fast"', "chunk = 2")
     lines = [line for line in template.splitlines() if not line.startswith("store")]
     (folder / "study.toml").write_text("\n".join(lines))
     words = ["study", "study.toml", "--csv", "runs.csv", *(["--store", store] if store else [])]
     run_chunk, calls = execution.run_chunk, itertools.count()
 
-    def interrupted(*given, **named):
+    def interrupted(*arguments, **keywords):
         if next(calls) == 3:
             raise KeyboardInterrupt
-        return run_chunk(*given, **named)
+        return run_chunk(*arguments, **keywords)
 
     with monkeypatch.context() as patch:
         patch.setattr(execution, "run_chunk", interrupted)
-        code, told, problem = typed(*words)
+        code, out, problem = run_command(*words)
     assert code == 130
-    assert "have not been run" in told
+    assert "have not been run" in out
     if store is None:
         assert "has to be run again; with a store it could continue: rockframe study" in problem
         assert problem.endswith("study.toml --csv runs.csv --store study\n")
     else:
-        again = problem.splitlines()[-1].partition("command continues it: ")[2]
-        assert shlex.split(again) == ["rockframe", *words]
+        command = problem.splitlines()[-1].partition("command continues it: ")[2]
+        assert shlex.split(command) == ["rockframe", *words]
         files = [path for path in (folder / store).iterdir() if path.is_file()]
-        kept = {path: path.stat().st_mtime_ns for path in files}
-        code, told, _ = typed(*shlex.split(again)[1:])
+        modified = {path: path.stat().st_mtime_ns for path in files}
+        code, out, _ = run_command(*shlex.split(command)[1:])
         assert code == 0
-        assert "not been run" not in told
-        assert all(path.stat().st_mtime_ns == when for path, when in kept.items())
+        assert "not been run" not in out
+        assert all(path.stat().st_mtime_ns == time for path, time in modified.items())
 
-    def at_once(*given, **named):
+    def interrupted_at_once(*arguments, **keywords):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(study, "sweep", at_once)
-    code, _, problem = typed(*words)
+    monkeypatch.setattr(study, "sweep", interrupted_at_once)
+    code, _, problem = run_command(*words)
     assert code == 130
     assert "rockframe study study.toml --csv runs.csv --store " in problem
 
 
 @pytest.mark.usefixtures("no_pictures")
-def test_a_table_of_cases_is_read(typed, folder):
+def test_a_table_of_cases_is_read(run_command, folder):
     (folder / "cases.csv").write_text("width [m],scale\n0.7,1\n0.8,2\n")
     (folder / "study.toml").write_text('scene = "scene.toml"\ncases = "cases.csv"\n')
-    assert typed("study", "study.toml", "-o", "runs.nc")[0] == 0
+    assert run_command("study", "study.toml", "-o", "runs.nc")[0] == 0
     with xr.open_dataset("runs.nc") as runs:
         assert runs.sizes["case"] == 2
         assert np.isfinite(runs.peak_rotation).all()
     words = ["report", "runs.nc", "--case", "case=1", "--no-certificate", "-o", "one.html"]
-    assert typed(*words)[0] == 0
+    assert run_command(*words)[0] == 0
     assert "0.8 m" in (folder / "one.html").read_text()
 
 
 @pytest.mark.usefixtures("no_pictures")
-def test_the_report_of_a_study_is_that_of_all_or_of_a_case(typed, folder):
+def test_study_can_be_reported_whole_or_by_case(run_command, folder):
     (folder / "study.toml").write_text(
         'scene = "scene.toml"\n[axes]\nscale = [1.0, 2.0]\nwidth = ["0.7 m", "0.8 m"]\n'
     )
-    assert typed("study", "study.toml", "-o", "runs.nc")[0] == 0
-    for words, said in (
+    assert run_command("study", "study.toml", "-o", "runs.nc")[0] == 0
+    for words, message in (
         (["--units", "force"], "--units: expected NAME=VALUE, such as force=kN"),
         (["--units", "force=kg"], "units['force'] needs a force"),
         (["--case", "scale"], "expected NAME=VALUE"),
         (["--case", "scale=3", "width=0.7 m"], "scale has no '3'"),
         (["--case", "scale=2"], "width"),
     ):
-        code, _, err = typed("report", "runs.nc", *words)
-        assert (code, said in err) == (2, True), err
-    given = ["--case", "scale=2", "width=0.7 m", "--no-certificate", "-o", "case.html"]
-    assert typed("report", "runs.nc", *given)[0] == 0
+        code, _, err = run_command("report", "runs.nc", *words)
+        assert (code, message in err) == (2, True), err
+    arguments = ["--case", "scale=2", "width=0.7 m", "--no-certificate", "-o", "case.html"]
+    assert run_command("report", "runs.nc", *arguments)[0] == 0
     with xr.open_dataset("runs.nc") as runs:
         verdict = rf.case(runs, scale=2.0, width="0.7 m").simulate().attrs["verdict"]
     assert verdict in (folder / "case.html").read_text()
-    assert typed("report", "runs.nc", "--units", "angle=deg")[0] == 0
+    assert run_command("report", "runs.nc", "--units", "angle=deg")[0] == 0
     assert "The worst case in full" in (folder / "runs.html").read_text()
 
 
 @pytest.mark.usefixtures("no_pictures")
-def test_the_report_of_a_study_takes_its_records_a_target_and_checks(typed, folder, monkeypatch):
+def test_study_report_accepts_records_target_and_checks(run_command, folder, monkeypatch):
     (folder / "records").mkdir()
     for seed in (1, 2):
         motion = rf.GroundMotion.stochastic(6.5, "20 km", seed=seed).window("2 s", "8 s")
@@ -275,27 +286,27 @@ def test_the_report_of_a_study_takes_its_records_a_target_and_checks(typed, fold
         'scene = "scene.toml"\nmotions = ["records/*.AT2"]\n'
         '[axes]\nscale = [1.0, 2.0]\n[sweep]\naccuracy = "fast"\n'
     )
-    assert typed("study", "study.toml", "-o", "runs.nc")[0] == 0
-    monkeypatch.setattr("rockframe.studies.sweeps.case._studies", {})  # as of another process
+    assert run_command("study", "study.toml", "-o", "runs.nc")[0] == 0
+    monkeypatch.setattr("rockframe.studies.sweeps.case._studies", {})  # as in another process
     spectrum = ["--target", "eurocode_8", "ground_acceleration=0.2 g_0", "ground_type=B"]
     check = ["--check", "circolare_2019", "confidence_factor=1.2"]
     component = ["--check", "asce_7_22", "spectral_acceleration=1"]
-    given = ["--motions", "records", *spectrum, *check, *component]
-    assert typed("report", "runs.nc", *given)[0] == 0
+    arguments = ["--motions", "records", *spectrum, *check, *component]
+    assert run_command("report", "runs.nc", *arguments)[0] == 0
     text = (folder / "runs.html").read_text()
-    for said in ("Target: Eurocode 8, type 1, ground B", "spectral misfit", "FC</td>",
+    for message in ("Target: Eurocode 8, type 1, ground B", "spectral misfit", "FC</td>",
                  '<td class="value">1.2</td>', "C8.7.1.2.1.9", "tipping: "):  # fmt: skip
-        assert said in text, said
+        assert message in text, message
     (folder / "ntc.csv").write_text("period [s],acceleration [g_0]\n0.1,0.5\n1,0.3\n4,0.05\n")
     table = ["--target", "ntc.csv", "damping_ratio=0.08"]
-    assert typed("report", "runs.nc", "--motions", "records", *table)[0] == 0
+    assert run_command("report", "runs.nc", "--motions", "records", *table)[0] == 0
     assert "Target: ntc. Compared at 40 periods from 0.1 s" in (folder / "runs.html").read_text()
     assert "8 % damping" in (folder / "runs.html").read_text()
-    assert typed("run", "scene.toml", "-o", "out.nc")[0] == 0
-    assert typed("report", "out.nc", "--no-certificate", *check)[0] == 0
+    assert run_command("run", "scene.toml", "-o", "out.nc")[0] == 0
+    assert run_command("report", "out.nc", "--no-certificate", *check)[0] == 0
     assert "dynamic, SLV: " in (folder / "out.html").read_text()
     (folder / "bad.csv").write_text("T [s],Sa [g]\n0.1,0.5\n")
-    for words, said in (
+    for words, message in (
         (["--target", "eurocode8"], "there is no 'eurocode8'; was 'eurocode_8' meant?"),
         (["--target", "asce_7", "one=2 g_0"], "has no 'one'"),
         (["--target", "asce_7"], "needs short_period_acceleration=..."),
@@ -305,51 +316,53 @@ def test_the_report_of_a_study_takes_its_records_a_target_and_checks(typed, fold
         (["--check", "circolare_2019", "limit_state=SLX", "--motions", "records"], "'SLV', 'SLC'"),
         (["--check", "asce"], "known are circolare_2019, asce_7_22"),
     ):
-        code, _, err = typed("report", "runs.nc", *words)
-        assert (code, said in err) == (2, True), err
+        code, _, err = run_command("report", "runs.nc", *words)
+        assert (code, message in err) == (2, True), err
 
 
 @pytest.mark.usefixtures("no_pictures")
-def test_the_file_of_a_scene_says_what_its_reports_say_of_the_project(typed, folder):
+def test_project_table_of_a_scene_appears_in_reports(run_command, folder):
     scene = (folder / "scene.toml").read_text()
     project = '[project]\nobject = "Tower"\ndate = 2026-11-24\n'
     (folder / "scene.toml").write_text(f"{scene}\n{project}")
-    assert typed("run", "scene.toml", "-o", "out.nc")[0] == 0
-    assert typed("report", "out.nc", "--no-certificate")[0] == 0
+    assert run_command("run", "scene.toml", "-o", "out.nc")[0] == 0
+    assert run_command("report", "out.nc", "--no-certificate")[0] == 0
     text = (folder / "out.html").read_text()
     assert "Tower" in text
     assert "2026-11-24" in text
     (folder / "study.toml").write_text('scene = "scene.toml"\n[axes]\nscale = [1.0]\n')
-    assert typed("study", "study.toml", "-o", "runs.nc")[0] == 0
-    assert typed("report", "runs.nc")[0] == 0
+    assert run_command("study", "study.toml", "-o", "runs.nc")[0] == 0
+    assert run_command("report", "runs.nc")[0] == 0
     assert "Tower" in (folder / "runs.html").read_text()
     own = 'scene = "scene.toml"\n[axes]\nscale = [1.0]\n[project]\nobject = "All towers"\n'
     (folder / "study.toml").write_text(own)
     assert "All towers" in read_study("study.toml").project
     (folder / "study.toml").write_text(f"{own}[run]\naccuracy = 'fast'\n")
-    assert "belong in [sweep]" in typed("study", "study.toml")[2]
-    asked = 'checks = ["circolare_2019 confidence_factor=1.2", "asce_7_22 spectral_acceleration=1"]'
-    (folder / "scene.toml").write_text(f"{scene}\n{project}{asked}\n")
-    assert typed("run", "scene.toml", "-o", "out.nc")[0] == 0
-    assert typed("report", "out.nc", "--no-certificate")[0] == 0
+    assert "belong in [sweep]" in run_command("study", "study.toml")[2]
+    checks = (
+        'checks = ["circolare_2019 confidence_factor=1.2", "asce_7_22 spectral_acceleration=1"]'
+    )
+    (folder / "scene.toml").write_text(f"{scene}\n{project}{checks}\n")
+    assert run_command("run", "scene.toml", "-o", "out.nc")[0] == 0
+    assert run_command("report", "out.nc", "--no-certificate")[0] == 0
     text = (folder / "out.html").read_text()
     assert '<td>FC</td><td class="value">1.2</td>' in text
     assert "tipping: " in text
-    with xr.open_dataset("out.nc") as kept:
-        rf.report(kept, "python.html", certify=False)
+    with xr.open_dataset("out.nc") as stored:
+        rf.report(stored, "python.html", certify=False)
     text = (folder / "python.html").read_text()
     assert "Not checked</strong>Requested: circolare_2019 confidence_factor=1.2; asce_7_22" in text
-    for wrong, said in (
+    for wrong, message in (
         ("circolare", "there is no 'circolare'"),
         ("circolare_2019 factor=1", "circolare_2019 has no 'factor'"),
         ("asce_7_22", "asce_7_22 needs spectral_acceleration=..."),
         ("", "found an empty check"),
     ):
         (folder / "scene.toml").write_text(f'{scene}\n[project]\nchecks = ["{wrong}"]\n')
-        code, _, err = typed("run", "scene.toml")
-        assert (code, said in err) == (2, True), err
+        code, _, err = run_command("run", "scene.toml")
+        assert (code, message in err) == (2, True), err
     (folder / "scene.toml").write_text(f"{scene}\n[project]\nobjekt = 'Tower'\n")
-    code, _, err = typed("run", "scene.toml")
+    code, _, err = run_command("run", "scene.toml")
     assert code == 2
     assert "project has no entry 'objekt'; was 'object' meant?" in err
 
@@ -372,53 +385,53 @@ WRONG = {
 
 
 @pytest.mark.parametrize("name", WRONG)
-def test_what_is_wrong_is_told_without_a_traceback(name, typed, folder):
+def test_errors_are_printed_without_a_traceback(name, run_command, folder):
     (folder / "broken.toml").write_text("[block]\nwidth = 3\n")
     words, expected = WRONG[name]
-    code, out, err = typed(*words)
+    code, out, err = run_command(*words)
     assert code == 2
     assert expected in out + err
     assert "Traceback" not in err
 
 
-def test_other_wrong_results_are_told(typed, folder):
+def test_unsuitable_results_are_refused(run_command, folder):
     rf.intensity_measures(rf.GroundMotion.sine_pulse()).to_netcdf("measures.nc")
-    code, _, err = typed("plot", "measures.nc", "-o", "x.png")
+    code, _, err = run_command("plot", "measures.nc", "-o", "x.png")
     assert (code, "no function of rf.plot draws" in err) == (2, True)
-    code, _, err = typed("report", "measures.nc")
+    code, _, err = run_command("report", "measures.nc")
     assert (code, "no result of a run" in err) == (2, True)
-    typed("run", "scene.toml", "-o", "out.nc")
-    code, _, err = typed("plot", "out.nc", "-o", "x.xyz")
+    run_command("run", "scene.toml", "-o", "out.nc")
+    code, _, err = run_command("plot", "out.nc", "-o", "x.xyz")
     assert (code, "xyz" in err) == (2, True)
 
 
-def test_a_run_that_is_not_finished_has_its_exit_code(typed, folder):
+def test_unfinished_run_exits_with_code_1(run_command, folder):
     text = TEMPLATES["block"].replace(
         'accuracy = "standard"', "accuracy = { rtol = 1e-9, max_steps = 20 }"
     )
     (folder / "short.toml").write_text(text)
-    code, told, err = typed("run", "short.toml")
+    code, out, err = run_command("run", "short.toml")
     assert code == 1
     assert "warning:" in err
-    assert "Verdict:" in told
+    assert "Verdict:" in out
 
 
-def test_a_traceback_is_shown_on_request(typed):
-    code, _, err = typed("run", "none.toml", "--debug")
+def test_a_traceback_is_shown_on_request(run_command):
+    code, _, err = run_command("run", "none.toml", "--debug")
     assert code == 2
     assert "Traceback" in err
     assert "FileError" in err
 
 
-def test_help_teaches_by_examples(typed):
-    code, told, _ = typed("--help")
+def test_help_examples_are_valid_commands(run_command):
+    code, out, _ = run_command("--help")
     assert code == 0
     for command in COMMANDS:
-        assert command.name in told
-        code, one, _ = typed(command.name, "--help")
+        assert command.name in out
+        code, help_text, _ = run_command(command.name, "--help")
         assert code == 0
-        assert "examples:" in one
-        assert "exit codes:" in one
+        assert "examples:" in help_text
+        assert "exit codes:" in help_text
         built = parser.build_parser()
         for line in command.examples.splitlines():
             if line.startswith("  rockframe "):
@@ -428,16 +441,16 @@ def test_help_teaches_by_examples(typed):
                 assert built.parse_args(words).command == command.name
 
 
-def test_an_error_of_the_command_line_has_its_own_message(capsys):
+def test_usage_errors_carry_their_own_message(capsys):
     lines = (["run"], "required: scene.toml"), (["map", "a.toml"], "required: --amplitude")
     parsers = [parser.build_parser() for _ in lines]
-    found = []
-    for one, (line, _) in zip(parsers, lines, strict=True):
+    problems = []
+    for command_parser, (line, _) in zip(parsers, lines, strict=True):
         with pytest.raises(parser.UsageError) as caught:
-            one.parse_args(line)
-        found.append(caught.value)
+            command_parser.parse_args(line)
+        problems.append(caught.value)
     written = capsys.readouterr().err
-    for problem, (_, words) in zip(found, lines, strict=True):
+    for problem, (_, words) in zip(problems, lines, strict=True):
         assert words in str(problem)
         assert str(problem) in written
 
@@ -486,58 +499,58 @@ def test_it_runs_as_a_module():
     assert done.stdout.strip() == f"rockframe {rf.__version__}"
 
 
-def test_a_certificate_is_what_the_file_asks_for(typed, folder):
-    wanted = "\n[run.certify]\nnudge = 0.02\nruns = 60\n"
-    (folder / "far.toml").write_text(TEMPLATES["block"] + wanted)
-    code, told, _ = typed("certify", "far.toml")
-    assert (code, "up to 2 %" in " ".join(told.split())) == (0, True)
-    code, told, _ = typed("certify", "far.toml", "--nudge", "0.005", "--json")
-    answer = json.loads(told)
+def test_certificate_settings_are_read_from_the_scene(run_command, folder):
+    settings = "\n[run.certify]\nnudge = 0.02\nruns = 60\n"
+    (folder / "far.toml").write_text(TEMPLATES["block"] + settings)
+    code, out, _ = run_command("certify", "far.toml")
+    assert (code, "up to 2 %" in " ".join(out.split())) == (0, True)
+    code, out, _ = run_command("certify", "far.toml", "--nudge", "0.005", "--json")
+    answer = json.loads(out)
     assert "up to 0.5 %" in answer["certificate"]
     assert answer["certificate_runs"] <= 60
 
 
-def test_a_report_of_a_case_names_each_axis_once(typed, folder):
+def test_case_option_refuses_repeated_or_unknown_axes(run_command, folder):
     (folder / "study.toml").write_text('scene = "scene.toml"\n[axes]\nscale = [1, 2]\n')
-    assert typed("study", "study.toml", "-o", "runs.nc")[0] == 0
-    given = ("report", "runs.nc", "--no-certificate", "--case")
-    code, _, problem = typed(*given, "scale=1", "scale=2")
+    assert run_command("study", "study.toml", "-o", "runs.nc")[0] == 0
+    arguments = ("report", "runs.nc", "--no-certificate", "--case")
+    code, _, problem = run_command(*arguments, "scale=1", "scale=2")
     assert (code, "--case: found scale twice" in problem) == (2, True)
-    code, _, problem = typed(*given, "scale=1", "motions=2")
+    code, _, problem = run_command(*arguments, "scale=1", "motions=2")
     assert (code, "there is no axis 'motions'" in problem) == (2, True)
-    code, _, problem = typed("report", "runs.nc", "--motion", "record.AT2")
+    code, _, problem = run_command("report", "runs.nc", "--motion", "record.AT2")
     assert (code, "a study takes motions=" in problem) == (2, True)
 
 
 @pytest.mark.usefixtures("no_pictures")
 def test_a_report_on_a_store_has_the_whole_of_its_name(typed, folder, monkeypatch):
     (folder / "study.toml").write_text('scene = "scene.toml"\n[axes]\nscale = [1, 2]\n')
-    assert typed("study", "study.toml", "--store", "kept.1")[0] == 0
-    given = ("report", "--no-certificate")
-    assert typed(*given, "kept.1")[:2] == (0, "Report: kept.1.html\n")
+    assert run_command("study", "study.toml", "--store", "kept.1")[0] == 0
+    arguments = ("report", "--no-certificate")
+    assert run_command(*arguments, "kept.1")[:2] == (0, "Report: kept.1.html\n")
     monkeypatch.chdir(folder / "kept.1")
-    assert typed(*given, ".")[:2] == (0, f"Report: {folder / 'kept.1.html'}\n")
+    assert run_command(*arguments, ".")[:2] == (0, f"Report: {folder / 'kept.1.html'}\n")
 
 
-def test_answers_in_json_have_no_negative_zero(typed):
-    code, told, _ = typed("run", "scene.toml", "--scale", "0", "--json")
+def test_answers_in_json_have_no_negative_zero(run_command):
+    code, out, _ = run_command("run", "scene.toml", "--scale", "0", "--json")
     assert code == 0
-    assert "-0.0," not in told
+    assert "-0.0," not in out
 
 
 @pytest.mark.usefixtures("folder")
-def test_a_vertical_component_that_a_file_has_no_place_for_is_told(typed):
+def test_conversion_warns_of_a_dropped_vertical_component(run_command):
     pulse = rf.GroundMotion.sine_pulse("3 m/s^2", "2 Hz")
     pulse.with_vertical(pulse.scaled(0.5)).to_dataset().to_netcdf("both.nc")
-    code, _, said = typed("convert", "both.nc", "-o", "both.AT2")
-    assert (code, "the vertical component is left out" in said) == (0, True)
-    code, _, said = typed("convert", "both.nc", "-o", "both.csv")
-    assert (code, said) == (0, "")
+    code, _, err = run_command("convert", "both.nc", "-o", "both.AT2")
+    assert (code, "the vertical component is left out" in err) == (0, True)
+    code, _, err = run_command("convert", "both.nc", "-o", "both.csv")
+    assert (code, err) == (0, "")
 
 
 @pytest.mark.usefixtures("no_pictures")
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "expected"),
     [
         ("run short.toml", "Not finished"),
         ("certify short.toml", "No certificate: the run was not finished"),
@@ -548,37 +561,37 @@ def test_a_vertical_component_that_a_file_has_no_place_for_is_told(typed):
         ("animate short.toml -o x.html", "Not finished"),
     ],
 )
-def test_runs_that_cannot_be_finished_have_an_exit_code(words, told, typed):
+def test_commands_with_unfinished_runs_exit_with_code_1(words, expected, run_command):
     text = TEMPLATES["block"].replace('"standard"', "{ rtol = 1e-8, max_steps = 20 }")
     Path("short.toml").write_text(text)
-    code, said, _ = typed(*shlex.split(words))
-    assert (code, told in " ".join(said.split())) == (1, True)
-    assert "stands throughout" not in said
+    code, out, _ = run_command(*shlex.split(words))
+    assert (code, expected in " ".join(out.split())) == (1, True)
+    assert "stands throughout" not in out
 
 
-def test_what_no_figure_shows_is_told_with_what_does(typed, folder):
+def test_plot_of_three_axes_is_refused_with_an_alternative(run_command, folder):
     axes = '[axes]\nscale = [1, 2]\nwidth = ["0.8 m", "0.9 m"]\nheight = ["3 m", "3.2 m"]\n'
     (folder / "study.toml").write_text(f'scene = "scene.toml"\n{axes}')
-    typed("template")
-    assert typed("study", "study.toml", "-o", "runs.nc")[0] == 0
-    code, _, err = typed("plot", "runs.nc", "-o", "runs.png")
+    run_command("template")
+    assert run_command("study", "study.toml", "-o", "runs.nc")[0] == 0
+    code, _, err = run_command("plot", "runs.nc", "-o", "runs.png")
     assert code == 2
     assert "runs.nc: found a study with more than 2 axes" in err
     assert "(scale, width, height)" in err
     assert "'rockframe report' lists its cases" in err
 
 
-def test_a_study_of_two_axes_and_one_motion_is_drawn(typed, folder):
+def test_a_study_of_two_axes_and_one_motion_is_drawn(run_command, folder):
     (folder / "study.toml").write_text(TEMPLATES["study"])
-    assert typed("study", "study.toml")[0] == 0
-    assert typed("plot", "study.nc", "-o", "study.png")[0] == 0
+    assert run_command("study", "study.toml")[0] == 0
+    assert run_command("plot", "study.nc", "-o", "study.png")[0] == 0
 
 
-def test_an_axis_in_a_stack_is_answered_for_a_file(typed, folder):
+def test_axis_of_a_stack_part_is_refused_for_a_file(run_command, folder):
     axes = '[axes]\nwidth = ["0.8 m", "0.9 m"]\n'
     (folder / "study.toml").write_text(f'scene = "statue.toml"\n{axes}')
     (folder / "statue.toml").write_text(TEMPLATES["statue"])
-    code, _, err = typed("study", "study.toml")
+    code, _, err = run_command("study", "study.toml")
     assert code == 2
     assert "a part of the Stack; no file of a study varies it: write a scene for each" in err
     assert "function" not in err

@@ -1,4 +1,4 @@
-"""Scenes and studies in TOML: what they build, and where their faults are."""
+"""Scenes and studies in TOML: systems built from them, and lines of errors."""
 
 import re
 import tomllib
@@ -38,16 +38,16 @@ def file(tmp_path):
 
 
 def faults(read, path):
-    """Return what is wrong with a file, as pairs of a line and words."""
+    """Return the errors of a file, as messages by line."""
     with pytest.raises(FileError) as caught:
         read(path)
     for line, words in caught.value.faults:
-        at = "" if line is None else f", line {line}"
-        assert f"{path}{at}: {words}" in str(caught.value)
+        place = "" if line is None else f", line {line}"
+        assert f"{path}{place}: {words}" in str(caught.value)
     return dict(caught.value.faults)
 
 
-def test_lines_are_those_of_keys_and_tables():
+def test_line_numbers_of_keys_and_tables_are_found():
     text = """# a comment with [a.table] = "in it"
 top = 1
 "quoted key" = '''
@@ -72,7 +72,7 @@ x = "]["
 [ one . deeper ]
 z = 0
 """
-    text = text.replace("x = 1,\n  y = 2 }", "x = 1, y = 2 }")  # TOML 1.0 has it on one line
+    text = text.replace("x = 1,\n  y = 2 }", "x = 1, y = 2 }")  # TOML 1.0 requires it on one line
     assert lines_of(text) == {
         ("top",): 2,
         ("quoted key",): 3,
@@ -92,7 +92,7 @@ z = 0
     }
 
 
-def test_a_scene_is_what_its_classes_make_of_it(file):
+def test_scene_file_builds_the_same_system_as_python(file):
     (file(OWN, "soft.py"))
     path = file(
         """
@@ -137,26 +137,26 @@ rotation = "0.001 rad"
 rtol = 1e-6
 """
     )
-    found = read_scene(path)
+    scene = read_scene(path)
     frame = rf.FrameEquivalent.from_members(
         storeys=2, width="4 m", height="6 m", column_width="0.25 m", beam_height="0.3 m",
         beam_width="0.25 m", density="2500 kg/m^3",
     )  # fmt: skip
-    pads = type(found.system.parts.pads)(stiffness="12 MN/m", damping_ratio=0.05)
+    pads = type(scene.system.parts.pads)(stiffness="12 MN/m", damping_ratio=0.05)
     assert issubclass(type(pads), rf.TwoSpringSupport)
     cap = rf.CushionCap(height="0.9 m", mass="36 t")
     soil = rf.WinklerSoil(stiffness="80 MPa", damping_ratio=0.2)
-    assert found.system == rf.System(
+    assert scene.system == rf.System(
         frame, pads, cap, soil, coupling="cascade", gravity="9.81 m/s^2"
     )
     pulse = rf.GroundMotion.sine_pulse("-3 m/s^2", "0.5 Hz").scaled(1.5).resampled("0.01 s")
-    assert found.motion == pulse
-    assert found.run["initial"] == rf.InitialState(rotation="0.001 rad")
-    assert found.run["accuracy"] == rf.Accuracy(rtol=1e-6)
-    assert found.run["outputs"] == ["energy"]
+    assert scene.motion == pulse
+    assert scene.run["initial"] == rf.InitialState(rotation="0.001 rad")
+    assert scene.run["accuracy"] == rf.Accuracy(rtol=1e-6)
+    assert scene.run["outputs"] == ["energy"]
 
 
-def test_files_are_found_beside_the_scene(file, tmp_path, monkeypatch):
+def test_relative_paths_are_resolved_from_the_scene_file(file, tmp_path, monkeypatch):
     (tmp_path / "records").mkdir()
     for name, peak in (("a", "-3 m/s^2"), ("b", "-2 m/s^2")):
         rf.GroundMotion.sine_pulse(peak).to_at2(tmp_path / "records" / f"{name}.AT2")
@@ -284,17 +284,17 @@ SCENES = {
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_faults_of_scenes_have_their_line(name, file):
+def test_scene_errors_have_line_numbers(name, file):
     text, expected = SCENES[name]
-    found = faults(read_scene, file(text))
+    errors = faults(read_scene, file(text))
     for line, words in expected.items():
-        said = found[line] if line in found else " ".join(found.values())
-        assert words in said, (line, found)
+        message = errors[line] if line in errors else " ".join(errors.values())
+        assert words in message, (line, errors)
         if line is not None:
-            assert line in found, found
+            assert line in errors, errors
 
 
-def test_a_constructor_in_a_message_is_that_of_a_table():
+def test_constructor_calls_in_messages_are_translated_to_toml():
     words = "WinklerSoil.from_subgrade_modulus('20 MN/m^3', depth='4 m', ...) takes it"
     table = '[soil] with constructor = "from_subgrade_modulus", depth = "4 m"'
     assert in_toml(words) == f"{table} takes it"
@@ -302,13 +302,13 @@ def test_a_constructor_in_a_message_is_that_of_a_table():
     assert own == 'give [restrainer] with type = "Load", vertical = "1 kN", or a file \'x=(1).AT2\''
 
 
-def test_a_module_that_has_the_name_of_another_is_not_passed_over(file):
+def test_module_named_like_another_is_refused(file):
     file("raise RuntimeError\n", "json.py")
-    found = faults(read_scene, file(f'modules = ["json.py"]\n{BLOCK}'))
-    assert "json is another module already" in found[1]
+    errors = faults(read_scene, file(f'modules = ["json.py"]\n{BLOCK}'))
+    assert "json is another module already" in errors[1]
 
 
-def test_all_faults_are_told_at_once(file):
+def test_all_scene_errors_are_reported_at_once(file):
     text = BLOCK.replace('"1 m"', "1").replace('"5 t"', '"5 m"') + "[pads]\nstifness = 3\n"
     assert set(faults(read_scene, file(text))) == {2, 4, 6}
 
@@ -324,16 +324,16 @@ STUDIES = {
 
 
 @pytest.mark.parametrize("name", STUDIES)
-def test_faults_of_studies_are_named(name, file):
+def test_study_errors_are_described(name, file):
     text, words = STUDIES[name]
     assert words in " ".join(faults(read_study, file(text)).values())
 
 
 def test_rows_longer_than_their_head_are_refused(file):
-    # the first value of each would be a label, and the others those of the columns before
+    # the first value of each row would be read as a label, and the others one column too early
     file("width [m],scale\n0.7,1,9\n0.8,2,9\n", "rows.csv")
-    found = faults(read_study, file(f'cases = "rows.csv"\n{BLOCK}'))
-    assert "its rows have 3 values, but there are 2 heads" in found[1]
+    errors = faults(read_study, file(f'cases = "rows.csv"\n{BLOCK}'))
+    assert "its rows have 3 values, but there are 2 heads" in errors[1]
 
 
 def test_motions_of_a_table_are_found_by_their_names(file, tmp_path):
@@ -342,50 +342,50 @@ def test_motions_of_a_table_are_found_by_their_names(file, tmp_path):
         pulse.to_at2(tmp_path / f"0{number}.AT2")
     file("motion, scale\n01, 1\n02, 1\n", "rows.csv")
     head = 'motions = ["*.AT2"]\ncases = "rows.csv"\n'
-    found = read_study(file(head + BLOCK))
-    runs = rf.sweep(found.system, found.motions, **found.arguments)
+    study = read_study(file(head + BLOCK))
+    runs = rf.sweep(study.system, study.motions, **study.arguments)
     assert runs.motion.values.tolist() == ["01", "02"]
-    file("motion, scale\n1, 1\n2, 1\n", "rows.csv")  # as programs for tables write them
-    found = read_study(file(head + BLOCK))
+    file("motion, scale\n1, 1\n2, 1\n", "rows.csv")  # as written by spreadsheet programs
+    study = read_study(file(head + BLOCK))
     with pytest.raises(StudyError, match="give the name, '01'"):
-        rf.sweep(found.system, found.motions, **found.arguments)
+        rf.sweep(study.system, study.motions, **study.arguments)
 
 
-def test_other_files_are_named_relative_to_the_folder_of_theirs(file, tmp_path, monkeypatch):
+def test_store_and_record_paths_are_relative_to_the_file(file, tmp_path, monkeypatch):
     text = f'{BLOCK}[axes]\nscale = [1]\n[sweep]\nknown = "kept"\n'
     assert read_study(file(text)).arguments["known"] == [tmp_path / "kept"]
-    asked = []
+    requests = []
 
     def read(path, *, response=None):
-        asked.append((path, response))
+        requests.append((path, response))
         return rf.GroundMotion.sine_pulse("3 m/s^2", "2 Hz")
 
     monkeypatch.setattr(rf.GroundMotion, "read", read)
     read_scene(file(f'{BLOCK}[motion]\nfile = "x.mseed"\nresponse = "x.xml"\n'))
-    assert asked == [(tmp_path / "x.mseed", tmp_path / "x.xml")]
+    assert requests == [(tmp_path / "x.mseed", tmp_path / "x.xml")]
 
 
-def test_faults_of_a_sweep_have_the_line_of_its_table(file):
+def test_sweep_errors_have_the_line_of_their_table(file):
     text = f'{BLOCK}[axes]\naccuracy = ["fast"]\n[sweep]\noverturning = "halt"\n'
-    found = read_study(file(text))
+    study = read_study(file(text))
     with pytest.raises(StudyError) as caught:
-        rf.sweep(found.system, found.motions, duration="1 s", **found.arguments)
-    said = dict(found.at_lines(caught.value).faults)
-    assert "axis 'accuracy' is an argument of the runs" in said[6]
-    assert "overturning must be one of" in said[8]
+        rf.sweep(study.system, study.motions, duration="1 s", **study.arguments)
+    faults_by_line = dict(study.at_lines(caught.value).faults)
+    assert "axis 'accuracy' is an argument of the runs" in faults_by_line[6]
+    assert "overturning must be one of" in faults_by_line[8]
 
 
-def test_templates_are_sound(file):
+def test_templates_can_be_read(file):
     for name, text in TEMPLATES.items():
         if name == "study":
             file(TEMPLATES["block"])
             assert read_study(file(text, "study.toml")).arguments["axes"]["scale"]
         else:
-            found = read_scene(file(text))
-            assert np.isfinite(found.motion.si.duration), name
+            scene = read_scene(file(text))
+            assert np.isfinite(scene.motion.si.duration), name
 
 
-def test_every_key_that_can_be_written_is_told():
+def test_full_template_lists_every_key():
     text = all_keys_template()
     for slot in part_slots():
         assert f"\n[{slot}]" in text
@@ -396,18 +396,18 @@ def test_every_key_that_can_be_written_is_told():
             assert all(f"\n# {key} = " in text for key in kind.declared() if key not in inner)
     examples = re.findall(r"^# (\w+ = .+?)(?:  .*)?$", text, re.MULTILINE)
     assert len(examples) > 60
-    assert all(tomllib.loads(one) for one in examples)
+    assert all(tomllib.loads(example) for example in examples)
     bare = re.findall(r"^# (\w+)  ", text, re.MULTILINE)
     assert bare == []  # every key has a value
-    assert "eq-" not in text  # labels of equations say nothing outside the manual
+    assert "eq-" not in text  # labels of equations have no meaning outside the manual
     assert "``" not in text
     assert max(map(len, text.splitlines())) < 125
 
 
 @pytest.mark.parametrize(
-    ("table", "left_out"),
+    ("table", "omitted"),
     [
-        # values that go with another one, or need a scene of their own
+        # values that require another value or another scene
         ("system", {"coupling", "sliding"}),
         ("run", {"duration"}),
         ("run.initial", set()),
@@ -416,12 +416,12 @@ def test_every_key_that_can_be_written_is_told():
         ("pads", {"stiffness", "damping"}),
     ],
 )
-def test_a_file_with_the_values_of_every_key_can_be_read(file, table, left_out):
+def test_a_file_with_the_values_of_every_key_can_be_read(file, table, omitted):
     of_table = all_keys_template().split(f"\n[{table}] ", 1)[1].split("\n[", 1)[0]
     lines = re.findall(r"^# (\w+ = .+?)(?:  .*)?$", of_table, re.MULTILINE)
-    kept = "\n".join(one for one in lines if one.split()[0] not in left_out)
+    settings = "\n".join(setting for setting in lines if setting.split()[0] not in omitted)
     body = "[block]\nwidth = '1 m'\nheight = '4 m'\nmass = '9 t'\n" * (table != "block")
-    text = f"{body}[{table}]\n{kept}\n"
+    text = f"{body}[{table}]\n{settings}\n"
     if table == "sweep":
         motion = "[motion]\nconstructor = 'sine_pulse'\namplitude = '1 m/s^2'\nfrequency = '1 Hz'\n"
         read_study(file(f"{text}{motion}[axes]\nscale = [1.0, 2.0]\n", "study.toml"))
@@ -455,7 +455,7 @@ WRITTEN = {
 
 
 @pytest.mark.parametrize("name", WRITTEN)
-def test_written_parts_are_a_file_of_the_same_parts(name, file):
+def test_written_parts_survive_toml_round_trip(name, file):
     system = rf.System(*WRITTEN[name])
     lines = [
         line for head, keys in toml_tables(system.parts.structural()) for line in (head, *keys)

@@ -1,4 +1,4 @@
-"""Misuse of each kind: a message that says what is wrong, where, and what leads on."""
+"""Each kind of misuse gives a message with the error, its place and a remedy."""
 
 import json
 import os
@@ -17,7 +17,7 @@ from rockframe.command.main import main
 pytestmark = pytest.mark.unit
 
 WORDS = {
-    # of commands and options
+    # commands and options
     "rnu scene.toml": "was 'run' meant?",
     "Run scene.toml": "'Run' is no command; was 'run' meant?",
     "critcal scene.toml": "was 'critical' meant?",
@@ -34,7 +34,7 @@ WORDS = {
     "run scene.toml other.toml": "other.toml",
 }
 VALUES = {
-    # of options
+    # values of options
     "run still.toml --scale 2": "--scale 2 multiplies a motion, and there is no motion",
     "animate still.toml --scale 2 -o x.html": "--scale 2 multiplies a motion",
     "certify scene.toml --proved --nudge 0.01": "which --proved replaces",
@@ -69,7 +69,7 @@ VALUES = {
     "motion record.AT2 --unit furlong": "furlong",
 }
 FILES = {
-    # that are read or written
+    # files that are read or written
     "run none.toml": "none.toml: there is no such file",
     "run .": "this is a folder",
     "run bytes.toml": "this is no text",
@@ -93,7 +93,7 @@ FILES = {
     "run scene.toml -o shut/x.nc": "shut",
 }
 STREAMS = {
-    # in the place of files
+    # standard streams in place of files
     "run - -m -": "a scene is read from it already",
     "run - --json -o -": "the answer in JSON goes to the standard output already",
     "critical - -o - --picture -": "another file goes to the standard output already",
@@ -109,8 +109,8 @@ def split(words):
 
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory):
-    """Return the result of the scene, and its record, in netCDF."""
+def run_files(tmp_path_factory):
+    """Return the result of the scene and its record as netCDF."""
     place = tmp_path_factory.mktemp("made")
     (place / "scene.toml").write_text(TEMPLATES["block"])
     assert main(["run", str(place / "scene.toml"), "-o", str(place / "run.nc")]) == 0
@@ -119,11 +119,11 @@ def made(tmp_path_factory):
 
 
 @pytest.fixture
-def files(folder, made):
+def files(folder, run_files):
     """Return files of all kinds."""
     Path("bytes.toml").write_bytes(bytes(range(256)))
     Path("still.toml").write_text(Path("scene.toml").read_text().split("[motion]")[0])
-    for name, content in made.items():
+    for name, content in run_files.items():
         Path(name).write_bytes(content)
     Path("shut").mkdir()
     Path("shut").chmod(0o500)
@@ -131,10 +131,10 @@ def files(folder, made):
 
 
 @pytest.mark.parametrize("words", [*WORDS, *VALUES, *FILES])
-def test_misuse_is_told_and_leads_on(words, typed, files, folder):
+def test_misuse_prints_an_error_and_leaves_files_unchanged(words, run_command, files, folder):
     if words.endswith("shut/x.nc") and os.access("shut", os.W_OK):
-        pytest.skip("this user writes everywhere")
-    code, out, err = typed(*split(words))
+        pytest.skip("this user may write everywhere")
+    code, out, err = run_command(*split(words))
     assert code == 2
     assert {**WORDS, **VALUES, **FILES}[words] in err
     assert "Traceback" not in out + err
@@ -143,15 +143,15 @@ def test_misuse_is_told_and_leads_on(words, typed, files, folder):
 
 
 @pytest.mark.parametrize("words", STREAMS)
-def test_misuse_of_streams_is_told(words, piped, folder):
-    code, out, err = piped(Path("scene.toml").read_bytes(), *split(words))
+def test_misuse_of_streams_prints_an_error(words, run_with_input, folder):
+    code, out, err = run_with_input(Path("scene.toml").read_bytes(), *split(words))
     assert code == 2
     assert STREAMS[words] in err
     assert b"Traceback" not in out
 
 
-def test_an_error_is_told_to_programs_too(typed):
-    code, out, err = typed("run", "none.toml", "--json")
+def test_json_output_contains_the_error(run_command):
+    code, out, err = run_command("run", "none.toml", "--json")
     answer = json.loads(out)
     assert answer["error"] == "none.toml: there is no such file"
     assert answer["exit_code"] == code == 2
@@ -159,8 +159,8 @@ def test_an_error_is_told_to_programs_too(typed):
 
 
 @pytest.mark.parametrize("words", WORDS)
-def test_a_wrong_command_line_is_told_to_programs_too(words, typed):
-    code, out, err = typed(*split(words), "--json")
+def test_json_output_contains_usage_errors(words, run_command):
+    code, out, err = run_command(*split(words), "--json")
     answer = json.loads(out)
     assert answer["exit_code"] == code == 2
     assert WORDS[words] in answer["error"]
@@ -168,7 +168,7 @@ def test_a_wrong_command_line_is_told_to_programs_too(words, typed):
 
 
 SCENES = {
-    # a file: the line and what is said of it
+    # file: line and message
     '[block]\nwidth = "1 m"\nheight = 3\nmass = "1 t"\n': (3, 'write for example height = "4 m"'),
     '[block]\nwidth = "1 m"\nheight = "3 m"\nmas = "1 t"\n': (4, "was 'mass' meant?"),
     '[blok]\nwidth = "1 m"\n': (1, "was 'block' meant?"),
@@ -197,13 +197,13 @@ PLAIN = '[block]\nwidth = "0.8 m"\nheight = "3.2 m"\nmass = "5.5 t"\n'
 
 
 @pytest.mark.parametrize("text", SCENES)
-def test_faults_of_a_scene_have_their_line(text, typed):
+def test_scene_errors_have_line_numbers(text, run_command):
     line, words = SCENES[text]
     Path("wrong.toml").write_text(text.format(block=PLAIN) if "{block}" in text else text)
-    code, _, err = typed("run", "wrong.toml", "--duration", "1 s")
+    code, _, err = run_command("run", "wrong.toml", "--duration", "1 s")
     assert code == 2
-    said = [one for one in err.splitlines() if f"wrong.toml, line {line}: " in one]
-    assert any(words in one for one in said), err
+    messages = [message for message in err.splitlines() if f"wrong.toml, line {line}: " in message]
+    assert any(words in message for message in messages), err
 
 
 @pytest.mark.parametrize(
@@ -215,30 +215,30 @@ def test_faults_of_a_scene_have_their_line(text, typed):
         ("Block.width = ['1 m']\n", 4, 'in quotation marks: "Block.width" = [...]'),
     ],
 )
-def test_faults_of_a_study_have_their_line(axes, line, words, typed):
+def test_study_errors_have_line_numbers(axes, line, words, run_command):
     Path("study.toml").write_text(f'scene = "scene.toml"\n\n[axes]\n{axes}')
     for command in ("study", "fragility"):
-        code, _, err = typed(command, "study.toml")
+        code, _, err = run_command(command, "study.toml")
         assert code == 2
         assert f"study.toml, line {line}: " in err
         assert words in err
 
 
-def test_files_of_other_editors_are_read(typed):
+def test_other_encodings_and_line_endings_are_read(run_command):
     text = f'# Caf\u00e9\n{PLAIN}[run]\nduration = "1 s"\n'
     for encoding, newline in (("utf-8-sig", "\n"), ("utf-16", "\r\n"), ("utf-8", "\r\n")):
         Path("other.toml").write_text(text, encoding=encoding, newline=newline)
-        code, told, err = typed("run", "other.toml")
+        code, out, err = run_command("run", "other.toml")
         assert (code, err) == (0, "")
-        assert "Verdict: " in told
+        assert "Verdict: " in out
     Path("other.toml").write_text(text, encoding="latin-1")
-    code, told, err = typed("run", "other.toml")
+    code, out, err = run_command("run", "other.toml")
     assert code == 0
     assert "other.toml, line 1: found '\u00e9' in the old encoding of Windows" in err
     for encoding in ("utf-8-sig", "utf-16", "utf-8"):
         wrong = text.replace('"3.2 m"', '"3.2 s"')
         Path("other.toml").write_text(wrong, encoding=encoding, newline="\r\n")
-        code, _, err = typed("run", "other.toml")
+        code, _, err = run_command("run", "other.toml")
         assert (code, "other.toml, line 4: " in err) == (2, True)
 
 
@@ -251,7 +251,7 @@ def test_files_of_other_editors_are_read(typed):
         pytest.param("run scene.toml 2>&-", 0, marks=pytest.mark.long),
     ],
 )
-def test_closed_streams_are_no_tracebacks(words, code, folder, uncompiled):
+def test_closed_streams_cause_no_traceback(words, code, folder, uncompiled):
     done = subprocess.run(
         [shutil.which("sh"), "-c", f"{sys.executable} -m rockframe {words}"],
         capture_output=True, text=True, check=False, cwd=folder, env=uncompiled,

@@ -1,4 +1,4 @@
-"""Standard streams: pipes, answers for programs, colours, progress, interrupts, closed pipes."""
+"""Standard streams: pipes, JSON, colours, progress, interrupts, closed pipes."""
 
 import io
 import json
@@ -22,36 +22,36 @@ pytestmark = pytest.mark.unit
 
 
 class Terminal(io.StringIO):
-    """A stream that says it is a terminal."""
+    """A stream that acts as a terminal."""
 
     def isatty(self):
         return True
 
 
 @pytest.mark.usefixtures("no_pictures")
-def test_a_scene_and_a_result_go_through_pipes(piped, folder):
+def test_scene_and_result_can_be_piped(run_with_input, folder):
     scene = Path("scene.toml").read_bytes()
-    code, result, told = piped(scene, "run", "-", "-o", "-")
+    code, result, err = run_with_input(scene, "run", "-", "-o", "-")
     assert code == 0
-    assert "Verdict: Did not overturn" in told
+    assert "Verdict: Did not overturn" in err
     Path("piped.nc").write_bytes(result)
-    with xr.open_dataset("piped.nc") as kept:
+    with xr.open_dataset("piped.nc") as stored:
         block = rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t")
         pulse = rf.GroundMotion.sine_pulse("-5 m/s^2", "2 Hz")
-        again = rf.System(block).simulate(pulse, free_vibration="5 s")
-        assert float(kept.peak_rotation) == float(again.peak_rotation)
+        expected = rf.System(block).simulate(pulse, free_vibration="5 s")
+        assert float(stored.peak_rotation) == float(expected.peak_rotation)
     for form, begins in (("png", b"\x89PNG"), ("svg", b"<?xml"), ("pdf", b"%PDF")):
-        code, picture, _ = piped(result, "plot", "-", "-o", "-", "--format", form)
+        code, picture, _ = run_with_input(result, "plot", "-", "-o", "-", "--format", form)
         assert (code, picture[: len(begins)]) == (0, begins)
-    code, page, _ = piped(result, "report", "-", "-o", "-", "--no-certificate")
+    code, page, _ = run_with_input(result, "report", "-", "-o", "-", "--no-certificate")
     assert (code, page[:15].lower()) == (0, b"<!doctype html>")
-    code, page, _ = piped(scene, "animate", "-", "-o", "-")
+    code, page, _ = run_with_input(scene, "animate", "-", "-o", "-")
     assert (code, page[:15].lower()) == (0, b"<!doctype html>")
 
 
-def test_a_record_goes_through_a_pipe(piped, folder):
+def test_record_can_be_piped(run_with_input, folder):
     record = Path("record.AT2").read_bytes()
-    code, table, _ = piped(record, "convert", "-", "--to", "csv", "-o", "-")
+    code, table, _ = run_with_input(record, "convert", "-", "--to", "csv", "-o", "-")
     assert code == 0
     assert table.splitlines()[0] == b"time [s],acceleration [m s^-2]"
     for words in (
@@ -59,55 +59,55 @@ def test_a_record_goes_through_a_pipe(piped, folder):
         ["motion", "-"],
         ["fragility", "scene.toml", "-"],
     ):
-        assert piped(record, *words)[0] == 0
-    code, table, _ = piped(b"", "motion", "record.AT2", "--csv", "-", "-q")
+        assert run_with_input(record, *words)[0] == 0
+    code, table, _ = run_with_input(b"", "motion", "record.AT2", "--csv", "-", "-q")
     assert table.startswith(b"motion,")
 
 
-def test_programs_get_all_numbers_with_their_units(typed):
-    code, told, err = typed("run", "scene.toml", "--json", "-o", "out.nc")
-    answer = json.loads(told)
+def test_json_output_contains_all_numbers_with_units(run_command):
+    code, out, err = run_command("run", "scene.toml", "--json", "-o", "out.nc")
+    answer = json.loads(out)
     assert (code, err) == (0, "")
     assert answer["exit_code"] == 0
     assert answer["files"] == {"results": "out.nc"}
     numbers = answer["numbers"]
-    with xr.open_dataset("out.nc") as kept:
-        assert answer["verdict"] == kept.attrs["verdict"]
-        scalars = [str(name) for name, one in kept.data_vars.items() if not one.dims]
+    with xr.open_dataset("out.nc") as stored:
+        assert answer["verdict"] == stored.attrs["verdict"]
+        scalars = [str(name) for name, variable in stored.data_vars.items() if not variable.dims]
         assert set(scalars) <= set(numbers)
-        assert numbers["peak_rotation"] == {"value": float(kept.peak_rotation), "unit": "rad"}
+        assert numbers["peak_rotation"] == {"value": float(stored.peak_rotation), "unit": "rad"}
     assert numbers["overturned"] == {"value": False}
     assert numbers["overturning_direction"]["value"] == "none"
     assert numbers["overturning_time"] == {"value": None, "unit": "s"}  # there is none
 
 
-def test_warnings_reach_programs_and_not_who_wants_quiet(typed, folder):
+def test_warnings_appear_in_json_but_not_with_quiet(run_command, folder):
     text = TEMPLATES["block"].replace(
         'accuracy = "standard"', "accuracy = { rtol = 1e-9, max_steps = 20 }"
     )
     Path("short.toml").write_text(text)
-    code, told, err = typed("run", "short.toml", "--json")
-    answer = json.loads(told)
+    code, out, err = run_command("run", "short.toml", "--json")
+    answer = json.loads(out)
     assert code == answer["exit_code"] == 1
     assert answer["warnings"]
     assert f"warning: {answer['warnings'][0]}" in err
-    code, told, err = typed("run", "short.toml", "-q")
+    code, out, err = run_command("run", "short.toml", "-q")
     assert (code, err) == (1, "")
-    assert [line.split(":")[0] for line in told.splitlines()] == ["Verdict"]
+    assert [line.split(":")[0] for line in out.splitlines()] == ["Verdict"]
 
 
-def test_who_wants_more_gets_all_numbers(typed):
-    plain = typed("run", "scene.toml")[1]
-    told = typed("-v", "run", "scene.toml")[1]
-    assert told.startswith(plain)
-    assert re.search(r"^  peak_rotation: 0\.0821\d* rad$", told, re.MULTILINE)
+def test_verbose_option_prints_all_numbers(run_command):
+    plain = run_command("run", "scene.toml")[1]
+    out = run_command("-v", "run", "scene.toml")[1]
+    assert out.startswith(plain)
+    assert re.search(r"^  peak_rotation: 0\.0821\d* rad$", out, re.MULTILINE)
 
 
 @pytest.mark.parametrize(
     ("environment", "coloured"),
     [({}, True), ({"NO_COLOR": "1"}, False), ({"NO_COLOR": ""}, True), ({"TERM": "dumb"}, False)],
 )
-def test_messages_are_coloured_on_terminals_that_want_it(environment, coloured, monkeypatch):
+def test_messages_are_coloured_only_on_capable_terminals(environment, coloured, monkeypatch):
     for name in ("NO_COLOR", "TERM"):
         monkeypatch.delenv(name, raising=False)
     for name, value in environment.items():
@@ -139,61 +139,61 @@ ANALYSES = {
         pytest.param("map", marks=pytest.mark.long),
     ],
 )
-def test_progress_is_shown_on_a_terminal_alone(name, typed, monkeypatch):
+def test_progress_is_shown_only_on_a_terminal(name, run_command, monkeypatch):
     Path("study.toml").write_text('scene = "scene.toml"\n[axes]\nscale = [1.0, 2.0]\n')
     monkeypatch.setattr(streams, "_DELAY", 0.0)
     monkeypatch.setattr(streams, "_UPDATE_INTERVAL", 0.0)
     monkeypatch.delenv("TERM", raising=False)
-    assert "runs (" not in typed(*ANALYSES[name])[2]
+    assert "runs (" not in run_command(*ANALYSES[name])[2]
     for quiet in ((), ("-q",)):
         monkeypatch.setattr(sys, "stderr", Terminal())
-        assert typed(*ANALYSES[name], *quiet)[0] == 0
-        shown = sys.stderr.getvalue()
-        assert ("runs (100 %)" in shown) == (not quiet)
-        assert not shown or shown.endswith("\r\x1b[K")
+        assert run_command(*ANALYSES[name], *quiet)[0] == 0
+        progress = sys.stderr.getvalue()
+        assert ("runs (100 %)" in progress) == (not quiet)
+        assert not progress or progress.endswith("\r\x1b[K")
 
 
 @pytest.mark.parametrize("name", ["study", "fragility", "ida", "map"])
-def test_an_interrupted_analysis_tells_what_it_has(name, typed, monkeypatch):
+def test_interrupted_analysis_exits_with_code_130(name, run_command, monkeypatch):
     Path("study.toml").write_text('scene = "scene.toml"\n[axes]\nscale = [1.0, 2.0]\n')
     run_chunk, calls = execution.run_chunk, []
     before = signal.getsignal(signal.SIGINT)
 
-    def interrupted(*given, **named):
-        calls.append(given)
+    def interrupted(*arguments, **keywords):
+        calls.append(arguments)
         if len(calls) == 1:
             os.kill(os.getpid(), signal.SIGINT)
-        return run_chunk(*given, **named)
+        return run_chunk(*arguments, **keywords)
 
     monkeypatch.setattr(execution, "run_chunk", interrupted)
-    code, told, _ = typed(*ANALYSES[name], "--json")
-    assert code == json.loads(told)["exit_code"] == 130
+    code, out, _ = run_command(*ANALYSES[name], "--json")
+    assert code == json.loads(out)["exit_code"] == 130
     assert signal.getsignal(signal.SIGINT) is before
 
 
-def test_a_terminal_is_spared_what_it_cannot_show(typed, monkeypatch):
+def test_binary_output_to_a_terminal_is_refused(run_command, monkeypatch):
     monkeypatch.setattr(sys, "stdout", Terminal())
-    code, _, err = typed("run", "scene.toml", "-o", "-")
+    code, _, err = run_command("run", "scene.toml", "-o", "-")
     assert (code, "the standard output is a terminal" in err) == (2, True)
 
 
 @pytest.mark.parametrize("form", [[], pytest.param(["--json"], marks=pytest.mark.long)])
-def test_nothing_is_lost_where_nobody_reads_on(form, folder, uncompiled):
+def test_output_file_survives_closed_pipe(form, folder, uncompiled):
     with subprocess.Popen(
         [sys.executable, "-m", "rockframe", "run", "scene.toml", "-o", "out.nc", *form],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=uncompiled,
-    ) as going:  # fmt: skip
-        going.stdout.close()
-        assert going.stderr.read() == b""
-    assert going.returncode == 0
+    ) as process:  # fmt: skip
+        process.stdout.close()
+        assert process.stderr.read() == b""
+    assert process.returncode == 0
     assert Path("out.nc").is_file()
 
 
-def test_every_command_takes_json(typed):
+def test_every_command_takes_json(run_command):
     for command in COMMANDS:
-        told = typed(command.name, "--help")[1]
-        assert "--json" in told
-    assert json.loads(typed("template", "--json")[1])["text"] == TEMPLATES["block"]
-    assert json.loads(typed("describe", "scene.toml", "--json")[1])["model"] == "rigid ground"
-    measures = json.loads(typed("motion", "record.AT2", "--json")[1])["numbers"]
+        out = run_command(command.name, "--help")[1]
+        assert "--json" in out
+    assert json.loads(run_command("template", "--json")[1])["text"] == TEMPLATES["block"]
+    assert json.loads(run_command("describe", "scene.toml", "--json")[1])["model"] == "rigid ground"
+    measures = json.loads(run_command("motion", "record.AT2", "--json")[1])["numbers"]
     assert measures["peak_ground_acceleration"]["value"] == [pytest.approx(4.0)]

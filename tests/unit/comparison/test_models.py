@@ -27,7 +27,7 @@ def with_small(names):
         ((BLOCK, CAP, SOIL), {}, ("rigid ground", "soil", "cap and soil")),
     ],
 )
-def test_a_scene_has_the_rungs_below_it(parts, options, names):
+def test_model_ladder_contains_the_simpler_models(parts, options, names):
     system = rf.System(*parts, **options)
     ladder = rf.model_ladder(system)
     assert list(ladder) == with_small(names)
@@ -41,7 +41,7 @@ def test_small_rotations_stay_small():
     assert list(ladder.values())[-1].to_dict() == system.to_dict()
 
 
-def test_options_and_ground_are_kept():
+def test_ladder_preserves_options_and_ground():
     ground = rf.RigidGround(restitution=0.8)
     system = rf.System(BLOCK, ground, restraint="leading-corner", gravity="3.7 m/s^2")
     for rung in rf.model_ladder(system).values():
@@ -50,7 +50,7 @@ def test_options_and_ground_are_kept():
         assert rung.options.gravity == 3.7
 
 
-def test_a_ladder_does_not_repeat_what_the_scene_has_warned_of():
+def test_ladder_does_not_repeat_warnings_of_the_scene():
     with pytest.warns(ModelWarning, match="restitution"):
         system = rf.System(BLOCK, rf.RigidGround(restitution=1.0))
     assert len(rf.model_ladder(system)) == 2
@@ -70,7 +70,7 @@ LOAD = rf.Load(at=("0 m", "4 m"), vertical="5 kN")
         ((BENT, rf.Tendon(stiffness="1 MN/m")), ("rigid ground",), "tendons"),
     ],
 )
-def test_each_base_comes_without_and_with_what_pulls(parts, bases, acts):
+def test_ladder_has_rungs_without_and_with_restrainers_and_loads(parts, bases, acts):
     system = rf.System(*parts)
     ladder = rf.model_ladder(system)
     rungs = [(f"{base}, small rotations", base, f"{base} with {acts}") for base in bases]
@@ -78,7 +78,7 @@ def test_each_base_comes_without_and_with_what_pulls(parts, bases, acts):
     assert list(ladder.values())[-1].to_dict() == system.to_dict()
 
 
-def test_a_tied_block_is_held_before_it_slides():
+def test_ladder_of_a_tied_block_ends_with_sliding():
     ladder = rf.model_ladder(rf.System(BLOCK, rf.RigidGround(friction=0.2), TIE))
     assert list(ladder)[-2:] == [
         "rigid ground with restrainers", "rigid ground with restrainers, sliding",
@@ -100,8 +100,8 @@ def test_a_squat_body_has_only_the_rung_that_slides_named_by_its_base():
 
 
 @pytest.mark.parametrize("options", [{}, {"rotation": "small"}])
-def test_a_block_that_a_wall_holds_is_held_without_it(options):
-    """Without the wall its ground has friction, and it would slide."""
+def test_ladder_without_the_wall_does_not_slide(options):
+    """Without the wall, the ground has friction and the block slides."""
     wall, ground = rf.RearWall(side="left"), rf.RigidGround(friction=0.3)
     ladder = rf.model_ladder(rf.System(BLOCK, ground, wall, **options))
     assert list(ladder)[-1].startswith("rigid ground and wall")

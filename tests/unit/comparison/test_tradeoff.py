@@ -1,4 +1,4 @@
-"""Speed against accuracy: what is measured, and what is recommended."""
+"""Speed and accuracy: measured errors and times, recommendations."""
 
 import importlib
 import json
@@ -24,7 +24,7 @@ def measured():
     return rf.tradeoff(SYSTEM, PULSE, accuracies=ACCURACIES, repeats=2, free_vibration="3 s")
 
 
-def test_axes(measured):
+def test_tradeoff_has_model_and_accuracy_axes(measured):
     assert measured.sizes == {"model": 4, "accuracy": 4}
     assert measured.model.values.tolist() == list(rf.model_ladder(SYSTEM))
     assert measured.accuracy.values.tolist() == [
@@ -44,7 +44,7 @@ def test_times_are_ordered_and_positive(measured):
     assert (median <= greatest).all()
 
 
-def test_outcomes_are_those_of_the_runs(measured):
+def test_outcomes_equal_single_runs(measured):
     run = SYSTEM.simulate(PULSE, free_vibration="3 s", accuracy="standard")
     cell = measured.sel(model="two pads", accuracy="standard")
     assert float(cell.peak_rotation) == float(run.peak_rotation)
@@ -57,7 +57,7 @@ def test_errors_fall_with_the_tolerance(measured):
     assert errors[3] < 1e-9
 
 
-def test_errors_are_what_they_are_called(measured):
+def test_errors_match_their_definitions(measured):
     reference = rf.Accuracy(rtol=1e-12)
     scene = SYSTEM.simulate(PULSE, free_vibration="3 s", accuracy=reference)
     rigid = rf.System(BLOCK).simulate(PULSE, free_vibration="3 s", accuracy="standard")
@@ -71,7 +71,7 @@ def test_errors_are_what_they_are_called(measured):
     assert bool(cell.verdict_agrees)
 
 
-def test_numerical_errors_are_those_against_the_same_model(measured):
+def test_numerical_errors_compare_with_the_same_model(measured):
     rigid = rf.System(BLOCK)
     reference, run = (
         rigid.simulate(PULSE, free_vibration="3 s", accuracy=rf.Accuracy(rtol=rtol))
@@ -88,7 +88,7 @@ def test_numerical_errors_are_those_against_the_same_model(measured):
     assert float(cell.event_time_error) == pytest.approx(off, rel=1e-9)
 
 
-def test_it_tells_what_was_compared(measured):
+def test_attributes_describe_the_comparison(measured):
     assert measured.scene == "two pads"
     assert measured.benchmark_rtol == 1e-12
     assert measured.repeats == 2
@@ -104,9 +104,9 @@ def test_the_time_is_the_median_of_runs_without_histories(monkeypatch):
     monkeypatch.setattr(
         module, "_time_of_run", lambda _, plan: steps.append(plan.output_step) or next(times)
     )
-    found = rf.tradeoff(SYSTEM, PULSE, models=["two pads"], accuracies=["fast"], repeats=3)
+    comparison = rf.tradeoff(SYSTEM, PULSE, models=["two pads"], accuracies=["fast"], repeats=3)
     least, median, greatest = (
-        found[name].item() for name in ("run_time_least", "run_time", "run_time_greatest")
+        comparison[name].item() for name in ("run_time_least", "run_time", "run_time_greatest")
     )
     assert (least, median, greatest) == (1.0, 2.0, 5.0)
     assert steps == [None] * 3
@@ -115,43 +115,43 @@ def test_the_time_is_the_median_of_runs_without_histories(monkeypatch):
 SINGLE = {"models": ["two pads"], "accuracies": [1e-4], "repeats": 1}
 
 
-def test_the_motion_among_the_parts_is_taken_unless_another_is_given():
+def test_explicit_motion_overrides_motion_of_the_system():
     other = PULSE.scaled(0.5)
     system = rf.System(BLOCK, PADS, other)
-    own, given = rf.tradeoff(system, **SINGLE), rf.tradeoff(system, PULSE, **SINGLE)
-    for found, motion in ((own, other), (given, PULSE)):
+    own, explicit = rf.tradeoff(system, **SINGLE), rf.tradeoff(system, PULSE, **SINGLE)
+    for comparison, motion in ((own, other), (explicit, PULSE)):
         run = SYSTEM.simulate(motion, accuracy=rf.Accuracy(rtol=1e-4))
-        assert found.peak_rotation.item() == float(run.peak_rotation)
-        assert found.motion_sha256 == motion.sha256
+        assert comparison.peak_rotation.item() == float(run.peak_rotation)
+        assert comparison.motion_sha256 == motion.sha256
 
 
-def test_start_length_and_output_times_are_those_asked_for():
+def test_start_duration_and_output_step_are_used():
     start = rf.InitialState(rotation="0.1 rad")
     arguments = {"duration": "2 s", "initial": start, "output_step": "0.3 s"}
-    found = rf.tradeoff(SYSTEM, **SINGLE, **arguments)
+    comparison = rf.tradeoff(SYSTEM, **SINGLE, **arguments)
     run, reference = (
         SYSTEM.simulate(**arguments, accuracy=rf.Accuracy(rtol=rtol)) for rtol in (1e-4, 1e-12)
     )
     assert run.time.size == 7
-    assert found.energy_residual.item() == float(run.energy_residual)
+    assert comparison.energy_residual.item() == float(run.energy_residual)
     off = np.abs(run.rotation - reference.rotation).max() / np.abs(reference.rotation).max()
-    assert found.history_error.item() == pytest.approx(float(off), rel=1e-9)
+    assert comparison.history_error.item() == pytest.approx(float(off), rel=1e-9)
 
 
 def test_runs_that_overturn_end_there():
-    found = rf.tradeoff(SYSTEM, PULSE.scaled(8.0), **SINGLE, free_vibration="3 s")
-    assert bool(found.overturned.item())
-    assert found.peak_rotation.item() == pytest.approx(BLOCK.si.overturning_angle, rel=1e-6)
+    comparison = rf.tradeoff(SYSTEM, PULSE.scaled(8.0), **SINGLE, free_vibration="3 s")
+    assert bool(comparison.overturned.item())
+    assert comparison.peak_rotation.item() == pytest.approx(BLOCK.si.overturning_angle, rel=1e-6)
 
 
-def test_models_stand_in_the_order_asked_for():
+def test_models_retain_requested_order():
     names = ["two pads", "rigid ground"]
-    found = rf.tradeoff(SYSTEM, PULSE, models=names, accuracies=["fast"], repeats=1)
-    assert found.model.values.tolist() == names
+    comparison = rf.tradeoff(SYSTEM, PULSE, models=names, accuracies=["fast"], repeats=1)
+    assert comparison.model.values.tolist() == names
 
 
-def test_a_rung_does_not_warn_of_what_it_cannot_show():
-    """Of the ground that would have to pull at a block without pads."""
+def test_rungs_do_not_emit_model_warnings():
+    """The ground would have to pull at a block without pads."""
     motion = PULSE.with_vertical(PULSE.scaled(peak="1.2 g_0"))
     with pytest.warns(ModelWarning):
         rf.System(BLOCK).simulate(motion)
@@ -164,14 +164,14 @@ def test_the_scene_has_no_error_of_the_model(measured):
     assert (measured.peak_error.sel(model="rigid ground") > 1e-3).all()
 
 
-def test_it_can_be_stored(measured, tmp_path):
+def test_tradeoff_survives_netcdf_round_trip(measured, tmp_path):
     measured.to_netcdf(tmp_path / "ladder.nc")
     with xr.open_dataset(tmp_path / "ladder.nc") as stored:
         xr.testing.assert_identical(stored, measured)
 
 
-def test_overturning_disagrees_where_it_does():
-    """On rigid ground the block stands what overturns it on pads, or the other way round."""
+def test_overturning_mismatch_is_reported():
+    """The block overturns on pads only, or on rigid ground only."""
     for amplitude in np.arange(4.0, 12.0, 0.25):
         motion = rf.GroundMotion.sine_pulse(f"{-amplitude} m/s^2", "1 Hz")
         fell = [
@@ -180,7 +180,7 @@ def test_overturning_disagrees_where_it_does():
         ]
         if fell[0] != fell[1]:
             break
-    found = rf.tradeoff(
+    comparison = rf.tradeoff(
         SYSTEM,
         motion,
         models=["rigid ground", "two pads"],
@@ -188,12 +188,12 @@ def test_overturning_disagrees_where_it_does():
         repeats=1,
         free_vibration="3 s",
     )
-    assert found.verdict_agrees.values.tolist() == [[False], [True]]
-    assert rf.recommend(found, 1.0).model == "two pads"
+    assert comparison.verdict_agrees.values.tolist() == [[False], [True]]
+    assert rf.recommend(comparison, 1.0).model == "two pads"
 
 
-def made(times, errors, agrees=True):
-    """A comparison with given times and errors, over two models and two accuracies."""
+def comparison_of(times, errors, agrees=True):
+    """Build a comparison from times and errors of two models and two accuracies."""
     dims = ("model", "accuracy")
     return xr.Dataset(
         {
@@ -218,15 +218,15 @@ TIMES, ERRORS = [[1e-3, 2e-3], [3e-3, 8e-3]], [[0.2, 0.1], [0.03, 1e-6]]
         (1e-9, ("pads", "standard"), False),
     ],
 )
-def test_the_cheapest_rung_that_meets_the_tolerance(tolerance, rung, met):
-    advice = rf.recommend(made(TIMES, ERRORS), tolerance)
+def test_cheapest_rung_within_tolerance_is_recommended(tolerance, rung, met):
+    advice = rf.recommend(comparison_of(TIMES, ERRORS), tolerance)
     assert (advice.model, advice.accuracy) == rung
     assert advice.met == met
     assert str(advice).count(".") >= 1
     assert ("No rung tried" in str(advice)) == (not met)
 
 
-def test_a_part_of_a_comparison_in_any_order_of_dimensions(measured):
+def test_recommendation_accepts_subsets_and_transposed_dimensions(measured):
     best = rf.recommend(measured, 0.01)
     assert rf.recommend(measured.transpose("accuracy", "model"), 0.01) == best
     chosen = measured.sel(accuracy=best.accuracy)
@@ -235,36 +235,38 @@ def test_a_part_of_a_comparison_in_any_order_of_dimensions(measured):
 
 
 def test_an_error_as_large_as_the_tolerance_meets_it():
-    assert rf.recommend(made(TIMES, ERRORS), 0.1).accuracy == "standard"
+    assert rf.recommend(comparison_of(TIMES, ERRORS), 0.1).accuracy == "standard"
 
 
-def test_a_hundredth_is_the_usual_tolerance():
-    advice = rf.recommend(made(TIMES, ERRORS))
+def test_default_tolerance_is_one_percent():
+    advice = rf.recommend(comparison_of(TIMES, ERRORS))
     assert (advice.model, advice.accuracy) == ("pads", "standard")
 
 
-def test_the_error_that_was_asked_for_counts():
-    found = made(TIMES, ERRORS).assign(history_error=(("model", "accuracy"), ERRORS[::-1]))
-    advice = rf.recommend(found, 0.05, error="history_error")
+def test_recommendation_uses_the_requested_error():
+    comparison = comparison_of(TIMES, ERRORS).assign(
+        history_error=(("model", "accuracy"), ERRORS[::-1])
+    )
+    advice = rf.recommend(comparison, 0.05, error="history_error")
     assert (advice.model, advice.accuracy) == ("rigid", "fast")
     assert "off by 3 % in the rotation along time" in str(advice)
 
 
-def test_a_recommendation_in_words():
-    assert str(rf.recommend(made(TIMES, ERRORS), 0.05)) == (
+def test_recommendation_sentence():
+    assert str(rf.recommend(comparison_of(TIMES, ERRORS), 0.05)) == (
         "For an error of at most 5 %, take 'pads' at accuracy 'fast': off by 3 % in the "
         "peak rotation, 3 ms a run, 2.67 times faster than the slowest rung."
     )
 
 
-def test_peaks_of_runs_that_overturn_recommend_nothing_on_their_own():
-    fallen = made(TIMES, ERRORS)
-    fallen = fallen.assign(overturned=xr.ones_like(fallen.peak_error, bool))
-    told = "error='history_error' compares them along time."
-    assert str(rf.recommend(fallen, 0.05)).endswith(told)
-    along = fallen.assign(history_error=fallen.peak_error)
-    assert told not in str(rf.recommend(along, 0.05, error="history_error"))
-    assert told not in str(rf.recommend(fallen.assign(overturned=~fallen.overturned), 0.05))
+def test_recommendation_for_overturned_runs_suggests_history_error():
+    overturned = comparison_of(TIMES, ERRORS)
+    overturned = overturned.assign(overturned=xr.ones_like(overturned.peak_error, bool))
+    hint = "error='history_error' compares them along time."
+    assert str(rf.recommend(overturned, 0.05)).endswith(hint)
+    history_based = overturned.assign(history_error=overturned.peak_error)
+    assert hint not in str(rf.recommend(history_based, 0.05, error="history_error"))
+    assert hint not in str(rf.recommend(overturned.assign(overturned=~overturned.overturned), 0.05))
 
 
 @pytest.mark.parametrize(
@@ -279,7 +281,9 @@ def test_peaks_of_runs_that_overturn_recommend_nothing_on_their_own():
     ],
 )
 def test_no_percentage_has_an_exponent(tolerance, error, words):
-    advice = str(rf.recommend(made([[8.0, 8.0], [1.2345, 8e3]], [[9, 9], [error, 9]]), tolerance))
+    advice = str(
+        rf.recommend(comparison_of([[8.0, 8.0], [1.2345, 8e3]], [[9, 9], [error, 9]]), tolerance)
+    )
     assert words in advice
     assert not re.search(r"\de[-+]?\d+ %", advice)
     if "at most" in words:
@@ -294,21 +298,21 @@ def test_no_percentage_has_an_exponent(tolerance, error, words):
         ("500 %", "got '500 %'; for 5 % write 0.05"),
     ],
 )
-def test_a_percentage_is_not_taken_for_a_ratio(tolerance, hint):
+def test_tolerance_above_one_is_refused_with_a_hint(tolerance, hint):
     with pytest.raises(ComponentError, match=f"tolerance must be at most 1, .*{re.escape(hint)}"):
-        rf.recommend(made(TIMES, ERRORS), tolerance)
-    assert rf.recommend(made(TIMES, ERRORS), 1.0).met
-    assert rf.recommend(made(TIMES, ERRORS), "5 %").sentence.startswith(
+        rf.recommend(comparison_of(TIMES, ERRORS), tolerance)
+    assert rf.recommend(comparison_of(TIMES, ERRORS), 1.0).met
+    assert rf.recommend(comparison_of(TIMES, ERRORS), "5 %").sentence.startswith(
         "For an error of at most 5 %"
     )
 
 
-def test_a_wrong_verdict_is_no_rung():
+def test_rungs_with_a_wrong_verdict_are_not_recommended():
     agrees = np.array([[False, True], [True, True]])
-    assert rf.recommend(made(TIMES, ERRORS, agrees), 0.5).accuracy == "standard"
-    none = rf.recommend(made(TIMES, ERRORS, agrees=False), 0.5)
-    assert not none.met
-    assert str(none) == "No rung tried has the verdict of the scene itself."
+    assert rf.recommend(comparison_of(TIMES, ERRORS, agrees), 0.5).accuracy == "standard"
+    unmet = rf.recommend(comparison_of(TIMES, ERRORS, agrees=False), 0.5)
+    assert not unmet.met
+    assert str(unmet) == "No rung tried has the verdict of the scene itself."
 
 
 @pytest.mark.parametrize(
@@ -320,9 +324,9 @@ def test_a_wrong_verdict_is_no_rung():
         ({"error": "history_error"}, SchemaError, "expected one of tradeoff"),
     ],
 )
-def test_recommendations_that_are_refused(arguments, error, words):
+def test_invalid_recommendation_arguments_are_refused(arguments, error, words):
     with pytest.raises(error, match=words):
-        rf.recommend(made(TIMES, ERRORS), **arguments)
+        rf.recommend(comparison_of(TIMES, ERRORS), **arguments)
 
 
 @pytest.mark.parametrize(
@@ -336,30 +340,30 @@ def test_recommendations_that_are_refused(arguments, error, words):
         ({"accuracies": [2.0]}, SolverError, "rtol must lie from"),
     ],
 )
-def test_comparisons_that_are_refused(arguments, error, words):
+def test_invalid_tradeoff_arguments_are_refused(arguments, error, words):
     with pytest.raises(error, match=words):
         rf.tradeoff(SYSTEM, PULSE, **arguments)
 
 
 @pytest.mark.parametrize("function", [rf.tradeoff, rf.model_ladder])
-def test_only_systems_are_compared(function):
+def test_only_systems_are_accepted(function):
     with pytest.raises(ComponentError, match=f"{function.__name__}: system needs a System, got Bl"):
         function(BLOCK)
 
 
-def test_one_model_and_one_accuracy():
+def test_single_model_and_accuracy_are_accepted_as_scalars():
     measured = rf.tradeoff(SYSTEM, PULSE, models="two pads", accuracies=1e-6, repeats=1)
     assert measured.model.values.tolist() == ["two pads"]
     assert measured.accuracy.values.tolist() == ["rtol 1e-06"]
 
 
-def test_tolerances_that_differ_little_are_two():
+def test_nearly_equal_tolerances_are_distinct():
     near = (1e-6, np.float64(1.0000001e-6))
     measured = rf.tradeoff(SYSTEM, PULSE, models="two pads", accuracies=near, repeats=1)
     assert measured.accuracy.values.tolist() == ["rtol 1e-06", "rtol 1.0000001e-06"]
 
 
-def test_rungs_that_are_cut_off_are_no_rungs():
+def test_unfinished_rungs_are_not_recommended():
     short = rf.Accuracy(rtol=1e-3, max_steps=60)
     measured = rf.tradeoff(
         SYSTEM,
@@ -379,7 +383,7 @@ def test_rungs_that_are_cut_off_are_no_rungs():
         assert rf.recommend(measured, 0.5, error=error).accuracy == "standard"
 
 
-def test_the_figure(measured):
+def test_tradeoff_figure_labels_models_and_axes(measured):
     figure = rf.plot.tradeoff(measured).figure
     FigureCanvasAgg(figure).draw()
     left, right = figure.axes
@@ -395,7 +399,7 @@ def legend(figure):
     return [text.get_text() for text in figure.legends[0].get_texts()]
 
 
-def test_the_legend_says_what_hollow_markers_are(measured):
+def test_legend_explains_hollow_markers(measured):
     figure = rf.plot.tradeoff(measured).figure
     assert legend(figure)[-2:] == ["hollow: small rotations", "other verdict"]
     key = figure.legends[0].get_lines()[-2]
@@ -407,8 +411,8 @@ def test_the_legend_says_what_hollow_markers_are(measured):
 def markers(axes):
     """Places of all markers, in pixels."""
     FigureCanvasAgg(axes.figure).draw()
-    drawn = [line.get_xydata()[0] for line in axes.lines if line.get_marker() not in ("None", "x")]
-    return axes.transData.transform(drawn)
+    places = [line.get_xydata()[0] for line in axes.lines if line.get_marker() not in ("None", "x")]
+    return axes.transData.transform(places)
 
 
 def test_small_errors_of_models_share_a_band(measured):
@@ -422,7 +426,7 @@ def test_small_errors_of_models_share_a_band(measured):
     box = right.get_window_extent()
     assert (box.x0 < spots[:, 0]).all()
     assert (spots[:, 0] < box.x1).all()
-    for spot in spots:  # no marker hides another
+    for spot in spots:  # markers do not overlap
         assert np.sort(np.hypot(*(spots - spot).T))[1] > 5.0
     labels = {text.get_text(): tick for tick, text in zip(
         right.get_xticks(), right.get_xticklabels(), strict=True)}  # fmt: skip
@@ -453,39 +457,39 @@ def test_nothing_is_drawn_beyond_the_figure(measured, rungs):
         assert box.y1 <= figure.bbox.height
 
 
-def test_a_rung_is_timed_once_its_machine_code_is_there(monkeypatch):
+def test_rung_is_timed_only_after_compilation(monkeypatch):
     module = importlib.import_module("rockframe.comparison.tradeoff")
-    there = iter((False, False, True))
+    compiled = iter((False, False, True))
     done = []
 
-    def counted(*given):
+    def compute_untimed(*arguments):
         done.append("untimed")
-        return compute_response(*given)
+        return compute_response(*arguments)
 
     def timed(*_):
         done.append("timed")
         return 1.0
 
     compute_response = module.compute_response
-    monkeypatch.setattr(module, "is_fully_compiled", lambda _: next(there))
+    monkeypatch.setattr(module, "is_fully_compiled", lambda _: next(compiled))
     monkeypatch.setattr(module, "runs_as_python", lambda _: False)
-    monkeypatch.setattr(module, "compute_response", counted)
+    monkeypatch.setattr(module, "compute_response", compute_untimed)
     monkeypatch.setattr(module, "_time_of_run", timed)
     rf.tradeoff(SYSTEM, PULSE, models="two pads", accuracies="standard", repeats=1, duration="1 s")
     assert done == ["untimed", "untimed", "timed"]
 
 
-def test_a_model_that_holds_a_block_is_off_by_its_slip():
+def test_model_without_sliding_has_the_slip_as_error():
     floor = rf.RigidGround(friction=0.2, kinetic_friction=0.15)
     system = rf.System(rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t"), floor)
-    pulse = rf.GroundMotion.sine_pulse("2.3 m/s^2", "1 Hz")  # which slides before it rocks
-    found = rf.tradeoff(system, pulse, accuracies="standard", repeats=1)
-    assert (found.peak_rotation == 0.0).all()
-    assert found.peak_error.values.ravel() == pytest.approx([1.0, 1.0, 0.0], abs=1e-6)
+    pulse = rf.GroundMotion.sine_pulse("2.3 m/s^2", "1 Hz")  # slides before it rocks
+    comparison = rf.tradeoff(system, pulse, accuracies="standard", repeats=1)
+    assert (comparison.peak_rotation == 0.0).all()
+    assert comparison.peak_error.values.ravel() == pytest.approx([1.0, 1.0, 0.0], abs=1e-6)
     slip = float(system.simulate(pulse, outputs=None).peak_slip)
-    assert found.peak_slip.values.ravel().tolist() == [0.0, 0.0, slip]
+    assert comparison.peak_slip.values.ravel().tolist() == [0.0, 0.0, slip]
     assert slip > 0.03
-    best = rf.recommend(found)
+    best = rf.recommend(comparison)
     assert best.model == "rigid ground, sliding"
     assert "in the peak rotation or slip" in best.sentence
 

@@ -1,4 +1,4 @@
-"""Runs go on in plain Python until their machine code is there, and nobody can tell by numbers."""
+"""Runs start in plain Python until machine code is compiled; results do not depend on this."""
 
 import subprocess
 import sys
@@ -25,7 +25,7 @@ from rockframe.solve import integrate
 
 pytestmark = [
     pytest.mark.unit,
-    pytest.mark.skipif(not COMPILED, reason="this run does without compilation"),
+    pytest.mark.skipif(not COMPILED, reason="compilation is off in this run"),
 ]
 
 
@@ -34,7 +34,7 @@ NEEDED = 8.0 / parallel.SAFETY_FACTOR
 
 
 class Compiler:
-    """Stands for a process that compiles."""
+    """Replaces a process that compiles."""
 
     def __init__(self):
         self.ended = None
@@ -44,7 +44,7 @@ class Compiler:
 
 
 class Job:
-    """Stands for what is to be compiled: some functions."""
+    """Replaces a job of some functions to compile."""
 
     def __init__(self, *calls):
         self.is_stored = False
@@ -61,145 +61,147 @@ def jobs(monkeypatch):
 
 @pytest.fixture
 def started(monkeypatch):
-    """Compilers that were started."""
-    found = []
+    """Return the list of started compilers."""
+    compilers = []
 
     def start(jobs):
-        found.append(Compiler())
-        found[-1].jobs = jobs
-        return found[-1]
+        compilers.append(Compiler())
+        compilers[-1].jobs = jobs
+        return compilers[-1]
 
     monkeypatch.setattr(parallel, "start_compiler", start)
-    return found
+    return compilers
 
 
-def spend(one, seconds):
-    one._seconds += seconds
+def spend(compilation, seconds):
+    compilation._seconds += seconds
 
 
-def test_what_is_stored_is_loaded(jobs, started):
+def test_stored_code_is_loaded(jobs, started):
     for job in jobs:
         job.is_stored = True
     assert BackgroundCompilation(jobs).is_due()
     assert not started
 
 
-def test_a_short_run_starts_no_compiler_and_a_longer_one_one(jobs, started):
-    one = BackgroundCompilation(jobs)
-    assert not one.is_due()
-    spend(one, 0.9 * START_AFTER)
-    assert not one.is_due()
+def test_only_longer_run_starts_compiler(jobs, started):
+    compilation = BackgroundCompilation(jobs)
+    assert not compilation.is_due()
+    spend(compilation, 0.9 * START_AFTER)
+    assert not compilation.is_due()
     assert not started
-    spend(one, 0.2 * START_AFTER)
-    assert not one.is_due()
-    assert not one.is_due()
+    spend(compilation, 0.2 * START_AFTER)
+    assert not compilation.is_due()
+    assert not compilation.is_due()
     assert len(started) == 1
     for job in jobs:
         job.is_stored = True
     started[0].ended = 0
-    assert one.is_due()
+    assert compilation.is_due()
 
 
-def test_a_run_that_will_take_longer_than_both_need_compiles_too(jobs, started):
-    one = BackgroundCompilation(jobs)
+def test_run_with_long_remaining_time_compiles_too(jobs, started):
+    compilation = BackgroundCompilation(jobs)
     with expecting_remaining(0.9 * START_AT_ONCE):
-        assert not one.is_due()
+        assert not compilation.is_due()
     assert not started
     with expecting_remaining(0.99 * NEEDED):
-        assert not one.is_due()
-        assert not one.is_due()
+        assert not compilation.is_due()
+        assert not compilation.is_due()
     with expecting_remaining(1.01 * NEEDED):
-        assert one.is_due()
+        assert compilation.is_due()
     assert len(started) == 1
 
 
 def test_a_run_that_is_nearly_over_waits_for_nothing(jobs, started):
-    one = BackgroundCompilation(jobs)
-    spend(one, 100.0)
+    compilation = BackgroundCompilation(jobs)
+    spend(compilation, 100.0)
     with expecting_remaining(0.1):
-        assert not one.is_due()
-        assert not one.is_due()
+        assert not compilation.is_due()
+        assert not compilation.is_due()
 
 
-def test_what_adds_little_is_compiled_behind_what_is_waited_for(started, monkeypatch):
+def test_cheap_extra_jobs_are_compiled_after_needed_ones(started, monkeypatch):
     monkeypatch.setattr(parallel, "_compilers", [])
     monkeypatch.setattr(
-        parallel, "estimate_seconds", lambda jobs: len(set().union(*(one.calls for one in jobs)))
+        parallel, "estimate_seconds", lambda jobs: len(set().union(*(job.calls for job in jobs)))
     )
-    known, inside, beside = Job("march", "slope"), Job("slope"), Job("slope", "switch")
-    assert not BackgroundCompilation([known], [inside, beside]).is_due(at_once=True)
-    assert started[0].jobs == [inside, known]  # of which the last is the first
+    needed, inside, other = Job("march", "slope"), Job("slope"), Job("slope", "switch")
+    assert not BackgroundCompilation([needed], [inside, other]).is_due(at_once=True)
+    assert started[0].jobs == [inside, needed]  # the last job is compiled first
 
 
-def test_a_run_compiles_too_once_it_has_taken_as_long_as_both_need(jobs, started):
-    one = BackgroundCompilation(jobs)
-    spend(one, 7.9)
-    assert not one.is_due()
-    assert not one.is_due()
-    spend(one, 0.2)
-    assert one.is_due()
+def test_run_compiles_too_after_exceeding_compilation_time(jobs, started):
+    compilation = BackgroundCompilation(jobs)
+    spend(compilation, 7.9)
+    assert not compilation.is_due()
+    assert not compilation.is_due()
+    spend(compilation, 0.2)
+    assert compilation.is_due()
     assert len(started) == 1
 
 
 def test_two_processes_compile_from_both_ends(jobs, started, monkeypatch):
-    made = []
+    compiled = []
 
     class Stored(Job):
         file = None
 
         def make(self, waiting=None):
-            made.append(self)
+            compiled.append(self)
             return self
 
     monkeypatch.setattr(parallel, "_announce", lambda jobs: None)
-    monkeypatch.setattr(parallel, "_process", lambda *words: pytest.fail("a third one"))
+    monkeypatch.setattr(
+        parallel, "_process", lambda *words: pytest.fail("a third compiler was started")
+    )
     monkeypatch.setattr(parallel, "_jobs_in", lambda order: order)
     parallel._compilers.append(Compiler())
-    some = [Stored(), Stored(), Stored()]
-    assert parallel.compile_all(some) == some
-    assert made == some
-    parallel.compile_all_of(some)
-    assert made[3:] == some[::-1]
+    stored = [Stored(), Stored(), Stored()]
+    assert parallel.compile_all(stored) == stored
+    assert compiled == stored
+    parallel.compile_all_of(stored)
+    assert compiled[3:] == stored[::-1]
 
 
-def test_lanes_are_compiled_though_nothing_has_run(jobs, started):
+def test_lanes_start_compiler_before_any_run(jobs, started):
     assert not BackgroundCompilation(jobs).is_due(at_once=True)
     assert len(started) == 1
 
 
-def test_where_no_process_can_compile_this_one_waits_as_long_as_it_has_run(jobs, monkeypatch):
+def test_run_compiles_itself_if_no_compiler_can_start(jobs, monkeypatch):
     monkeypatch.setattr(parallel, "start_compiler", lambda jobs: None)
-    one = BackgroundCompilation(jobs)
-    spend(one, 7.9)
-    assert not one.is_due()
-    spend(one, 0.2)
-    assert one.is_due()
+    compilation = BackgroundCompilation(jobs)
+    spend(compilation, 7.9)
+    assert not compilation.is_due()
+    spend(compilation, 0.2)
+    assert compilation.is_due()
     assert BackgroundCompilation(jobs).is_due(at_once=True)
 
 
-def test_one_that_has_died_is_not_started_again(jobs, started):
-    one = BackgroundCompilation(jobs)
-    spend(one, 1.0)
-    assert not one.is_due()
+def test_dead_compiler_is_not_restarted(jobs, started):
+    compilation = BackgroundCompilation(jobs)
+    spend(compilation, 1.0)
+    assert not compilation.is_due()
     started[0].ended = 1
-    assert not one.is_due()
-    spend(one, 8.0)
-    assert one.is_due()
+    assert not compilation.is_due()
+    spend(compilation, 8.0)
+    assert compilation.is_due()
     assert len(started) == 1
 
 
 def test_no_more_compilers_at_once_than_half_the_processors(jobs, started):
     first, second = BackgroundCompilation(jobs), BackgroundCompilation([Job()])
-    for one in (first, second):
-        spend(one, 1.0)
-        assert not one.is_due()
+    for compilation in (first, second):
+        spend(compilation, 1.0)
+        assert not compilation.is_due()
     assert len(started) == 1
     started[0].ended = 0
     assert not second.is_due()
     assert len(started) == 2
 
 
-def test_what_cannot_be_described_is_compiled_at_once_so_that_it_is_said():
+def test_undescribable_job_is_compiled_immediately():
     class Broken:
         @property
         def is_stored(self):
@@ -227,12 +229,12 @@ def call_on(function: BoundFunction, values: Vector, numbers: Vector) -> int:
     return 0
 
 
-def test_what_takes_a_moment_is_compiled_at_once(tmp_path, monkeypatch):
+def test_non_waiting_entry_compiles_only_quick_code(tmp_path, monkeypatch):
     monkeypatch.setenv("ROCKFRAME_CACHE_DIR", str(tmp_path))
     force, stored = bind((force_of, stored_in), Slope(2.0))
     values, numbers = np.array([1.5]), numbers_in(Slope(2.0))
     Entry(call_on)(force, values, numbers)
-    for function, code in ((force, True), (stored, False)):  # the one is compiled, the other not
+    for function, code in ((force, True), (stored, False)):  # only the first is compiled
         later = Entry(call_on, waits=False)
         assert later(function, values, numbers) == 0
         assert any(later._routines.values()) is code
@@ -265,14 +267,14 @@ if __name__ == "__main__":
 
 
 @pytest.mark.wide
-def test_a_call_becomes_machine_code_when_another_process_has_made_it(tmp_path):
+def test_call_switches_to_machine_code_of_other_process(tmp_path):
     (tmp_path / "slow.py").write_text(RUN)
     environment = {"PYTHONPATH": ":".join(sys.path), "ROCKFRAME_CACHE_DIR": str(tmp_path / "code")}
-    found = subprocess.run(
+    lines = subprocess.run(
         [sys.executable, "slow.py"], cwd=tmp_path, env=environment, check=True, text=True,
         capture_output=True,
     ).stdout.splitlines()  # fmt: skip
-    code, values = zip(*(line.split(" ", 1) for line in found), strict=True)
+    code, values = zip(*(line.split(" ", 1) for line in lines), strict=True)
     if parallel.processors() > 1:
         assert code[0] == "False"
     assert code[-1] == "True"
@@ -280,7 +282,7 @@ def test_a_call_becomes_machine_code_when_another_process_has_made_it(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("stands_on", "accuracy"),
+    ("supports", "accuracy"),
     [
         ((), "standard"),
         ((PADS,), "fast"),
@@ -288,33 +290,33 @@ def test_a_call_becomes_machine_code_when_another_process_has_made_it(tmp_path):
         pytest.param((PADS,), "standard", marks=pytest.mark.long),
     ],
 )
-def test_a_run_that_comes_back_now_and_then_is_the_same_run(monkeypatch, accuracy, stands_on):
+def test_pausing_run_gives_identical_results(monkeypatch, accuracy, supports):
     rng = np.random.default_rng(1)
     motion = rf.GroundMotion.from_arrays((5.0 * rng.normal(size=300), "m/s^2"), "0.02 s")
-    system = rf.System(BLOCK, *stands_on)
-    whole = system.simulate(motion, accuracy=accuracy, outputs=["energy"], duration="9 s")
+    system = rf.System(BLOCK, *supports)
+    uninterrupted = system.simulate(motion, accuracy=accuracy, outputs=["energy"], duration="9 s")
     counts = []
     advance = integrate.advance
 
-    def counted(*arguments):
+    def count_steps(*arguments):
         counts.append(advance(*arguments))
         return counts[-1]
 
     monkeypatch.setattr(integrate, "_steps_to_pause", lambda equations: 7)
-    monkeypatch.setattr(integrate, "advance", counted)
-    pieces = system.simulate(motion, accuracy=accuracy, outputs=["energy"], duration="9 s")
+    monkeypatch.setattr(integrate, "advance", count_steps)
+    paused = system.simulate(motion, accuracy=accuracy, outputs=["energy"], duration="9 s")
     assert len(counts) > 20
-    assert whole.drop_attrs().identical(pieces.drop_attrs())
-    assert whole.attrs["verdict"] == pieces.attrs["verdict"]
+    assert uninterrupted.drop_attrs().identical(paused.drop_attrs())
+    assert uninterrupted.attrs["verdict"] == paused.attrs["verdict"]
 
 
-def test_the_limit_of_steps_ends_a_run_that_comes_back_too(monkeypatch):
+def test_step_limit_ends_pausing_run(monkeypatch):
     motion = rf.GroundMotion.harmonic("1 m/s^2", "2 Hz", duration="5 s")
     system = rf.System(BLOCK, PADS)
     accuracy = rf.Accuracy(rtol=1e-9, max_steps=100)
     with pytest.warns(SolverWarning, match="limit of steps"):
-        whole = system.simulate(motion, accuracy=accuracy)
+        uninterrupted = system.simulate(motion, accuracy=accuracy)
     monkeypatch.setattr(integrate, "_steps_to_pause", lambda equations: 7)
     with pytest.warns(SolverWarning, match="limit of steps"):
-        run = system.simulate(motion, accuracy=accuracy)
-    assert run.drop_attrs().identical(whole.drop_attrs())
+        paused = system.simulate(motion, accuracy=accuracy)
+    assert paused.drop_attrs().identical(uninterrupted.drop_attrs())

@@ -1,4 +1,4 @@
-"""What is called seldom runs as plain Python until it is worth compiling, and gives the same."""
+"""Callbacks run as plain Python until compilation pays, with equal results."""
 
 from typing import Any, NamedTuple
 
@@ -22,7 +22,7 @@ from rockframe.compiled.bound import _bound_source
 
 pytestmark = [
     pytest.mark.unit,
-    pytest.mark.skipif(not COMPILED, reason="this run does without compilation"),
+    pytest.mark.skipif(not COMPILED, reason="compilation is off in this run"),
 ]
 
 
@@ -36,7 +36,7 @@ def gathered(
     scale: Scale, row: int, x: float, out: Vector, counts: Integers, table: ReadOnlyMatrix,
     y: float, more: Vector, last: int,
 ) -> int:  # fmt: skip
-    """Take as many arguments as registers do not hold."""
+    """Take more arguments than registers hold."""
     if row < 0:
         raise ValueError("no such row")  # noqa: EM101
     out[0] = scale.factor * (x + 10.0 * y) * scale.table[row] + table[row, last]
@@ -63,7 +63,7 @@ def through(
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
     monkeypatch.setenv("ROCKFRAME_CACHE_DIR", str(tmp_path / "code"))
-    _bound_source.cache_clear()  # and with them what they know of another folder
+    _bound_source.cache_clear()  # together with their references to another folder
 
 
 def arguments(row, own=0.0):
@@ -75,22 +75,22 @@ def arguments(row, own=0.0):
     return handed, row, np.zeros(3), np.array([5, 6]), table, np.array([0.25, 0.75])
 
 
-def result_of(given):
-    code = through(*given)
-    return code, given[2].tolist(), given[3].tolist()
+def result_of(inputs):
+    code = through(*inputs)
+    return code, inputs[2].tolist(), inputs[3].tolist()
 
 
 EXPECTED = (1 + 5 + 28, [3.0 * (0.5 - 2.5) * 4.0 + 7.0, 5.75, 0.0], [33, 6])
 
 
-def test_python_machine_code_and_what_calls_back_give_the_same():
-    given = arguments(2)
-    source = given[0].function.source
+def test_python_machine_code_and_callbacks_agree():
+    inputs = arguments(2)
+    source = inputs[0].function.source
     source.address, source.fallback_seconds = 0, 0.0
-    assert result_of(given) == EXPECTED
+    assert result_of(inputs) == EXPECTED
     assert source.address == 0
     assert source.fallback_seconds > 0.0
-    # of the numbers that are handed over, not of those that it was bound to
+    # the passed numbers are used, not those at binding
     handed, *others = arguments(2)
     other = Handed(handed.function, numbers_in(Scale(-3.0, np.array([1.0, 2.0, 8.0]))))
     through(other, *others)
@@ -99,7 +99,7 @@ def test_python_machine_code_and_what_calls_back_give_the_same():
     source.fallback_seconds = 1e9
     assert result_of(arguments(2)) == EXPECTED
     assert source.address != 0
-    # what was kept is taken at once
+    # stored machine code is used at once
     source.address, source.fallback_seconds = 0, 0.0
     assert result_of(arguments(2)) == EXPECTED
     assert source.address != 0
@@ -107,26 +107,26 @@ def test_python_machine_code_and_what_calls_back_give_the_same():
 
 @kernel
 def interrupted(scale: Scale, out: Vector) -> int:
-    """Be left by a key."""
+    """Be interrupted by the keyboard."""
     raise KeyboardInterrupt("by hand")  # noqa: EM101
 
 
-def test_what_it_raises_arrives():
-    given = arguments(-1)
-    source = given[0].function.source
+def test_exceptions_of_callbacks_propagate():
+    inputs = arguments(-1)
+    source = inputs[0].function.source
     source.address, source.fallback_seconds = 0, 0.0
     with pytest.raises(ValueError, match="no such row"):
-        through(*given)
+        through(*inputs)
     (function,) = bind((interrupted,), Scale(1.0, np.zeros(1)), rarely_called=True)
     with pytest.raises(KeyboardInterrupt, match="by hand"):
         call(Handed(function, np.zeros(2)), np.zeros(1))
-    # and does not come again
+    # and is raised only once
     assert result_of(arguments(2)) == EXPECTED
 
 
 @kernel
 def hopeless(scale: Scale, out: Vector) -> int:
-    """Do what is not compiled."""
+    """Do what numba cannot compile."""
     out[0] = eval("1.0") * scale.factor  # noqa: S307
     return 3
 
@@ -136,7 +136,7 @@ def call(handed: Handed, out: Vector) -> int:
     return handed.function.call(out, handed.numbers)
 
 
-def test_what_cannot_be_compiled_goes_on_as_python(fallbacks):
+def test_uncompilable_callback_runs_as_python(fallbacks):
     scale = Scale(1.0, np.zeros(1))
     (function,) = bind((hopeless,), scale, rarely_called=True)
     function.source.fallback_seconds = 1e9
@@ -155,12 +155,12 @@ def at_length(handed: Handed, out: Vector) -> int:
 
 @kernel
 def plain(scale: Scale, out: Vector) -> int:
-    """Do little."""
+    """Do little work."""
     out[0] = scale.factor
     return 5
 
 
-def test_what_does_not_return_for_long_calls_nothing_back():
+def test_long_running_call_compiles_instead_of_calling_back():
     scale = Scale(2.0, np.zeros(1))
     (function,) = bind((plain,), scale, rarely_called=True)
     out = np.zeros(1)
@@ -170,7 +170,7 @@ def test_what_does_not_return_for_long_calls_nothing_back():
     assert function.source.fallback_seconds == 0.0
 
 
-def test_another_function_stands_in_until_it_has_taken_as_long_as_compiling(monkeypatch):
+def test_function_is_compiled_once_fallback_exceeds_compilation_time(monkeypatch):
     scale = Scale(2.0, np.zeros(1))
     (own,) = bind((plain,), scale)
     source = own.source
@@ -182,15 +182,15 @@ def test_another_function_stands_in_until_it_has_taken_as_long_as_compiling(monk
     source.fallback_seconds = 2.0 * source.job.seconds
     assert is_worth_calling(own)
     assert source.address != 0
-    # another process, which knows nothing of that time, finds it stored
+    # another process, without these timings, finds it stored
     _bound_source.cache_clear()
-    (again,) = bind((plain,), scale)
-    assert again.source is not source
-    assert is_worth_calling(again)
-    assert again.source.address != 0
+    (rebound,) = bind((plain,), scale)
+    assert rebound.source is not source
+    assert is_worth_calling(rebound)
+    assert rebound.source.address != 0
 
 
-def test_what_cannot_be_compiled_is_not_tried_again(fallbacks):
+def test_uncompilable_function_is_not_retried(fallbacks):
     (own,) = bind((hopeless,), Scale(1.0, np.zeros(1)))
     own.source.fallback_seconds = 1e9
     for _ in range(3):

@@ -1,4 +1,4 @@
-"""Compiled functions give what Python gives, or say that they run as Python."""
+"""Compiled functions give the results of Python, or report that they run as Python."""
 
 import importlib
 import os
@@ -28,7 +28,7 @@ from rockframe.compiled import (
 
 pytestmark = [
     pytest.mark.unit,
-    pytest.mark.skipif(not COMPILED, reason="this run does without compilation"),
+    pytest.mark.skipif(not COMPILED, reason="compilation is off in this run"),
 ]
 
 
@@ -98,11 +98,11 @@ PAIRS = (
 
 @entry
 def tabulate(
-    pair: Pair, given: Matrix, row: int, arrays: Arrays, codes: Integers, out: Vector
+    pair: Pair, rows: Matrix, row: int, arrays: Arrays, codes: Integers, out: Vector
 ) -> int:
     found = 0
-    for i in range(given.shape[1]):
-        arrays.values[i] += pair.total_at(given[row, i])
+    for i in range(rows.shape[1]):
+        arrays.values[i] += pair.total_at(rows[row, i])
         codes[i] = 10 * i - arrays.counts[0]
         if arrays.values[i] < 0.0:
             found += 1
@@ -113,28 +113,28 @@ def tabulate(
     return found
 
 
-def test_time_is_estimated_from_all_that_a_function_calls():
+def test_callees_include_all_called_functions():
     from rockframe.compiled.jobs import callees_of
 
-    found = callees_of(Pair.total_at, {Pair, Linear, Hardening})
-    assert found == {Pair.total_at, Linear.force_at, Hardening.force_at, cubed}
+    callees = callees_of(Pair.total_at, {Pair, Linear, Hardening})
+    assert callees == {Pair.total_at, Linear.force_at, Hardening.force_at, cubed}
     assert callees_of(Pair.total_at, {Pair, Linear}) == {Pair.total_at, Linear.force_at}
 
 
 def arguments(pair):
-    given = np.linspace(-2.0, 1.7, 12).reshape(3, 4)
-    given.setflags(write=False)
+    rows = np.linspace(-2.0, 1.7, 12).reshape(3, 4)
+    rows.setflags(write=False)
     arrays = Arrays(np.array([1.0, -0.5, 0.25, 0.0]), np.array([5]))
-    return pair, given, 1, arrays, np.zeros(4, np.int16), np.full(6, -7.0)
+    return pair, rows, 1, arrays, np.zeros(4, np.int16), np.full(6, -7.0)
 
 
-def contents(given):
-    _, _, _, arrays, codes, out = given
+def contents(call_arguments):
+    _, _, _, arrays, codes, out = call_arguments
     return [part.tolist() for part in (*arrays, codes, out)]
 
 
-def test_kernels_and_methods_compute_what_python_computes():
-    """The methods are told apart by the class of the tuple, whatever stands in it."""
+def test_kernels_and_methods_agree_with_python():
+    """Methods are chosen by the class of the tuple, whatever its contents."""
     for pair in PAIRS:
         compiled, plain = arguments(pair), arguments(pair)
         assert tabulate(*compiled) == tabulate.__wrapped__(*plain)
@@ -180,7 +180,7 @@ def import_bound(pair: Pair, x: float, out: Vector) -> float:
     return floor(x) + pair.total_at(x)
 
 
-def test_a_bound_function_that_cannot_be_compiled_spoils_no_other(fallbacks):
+def test_uncompilable_bound_function_does_not_affect_others(fallbacks):
     pair = PAIRS[0]
     numbers = numbers_in(pair)
     forces, broken, counting = bind((force_of, import_bound, count_in), pair)
@@ -192,16 +192,16 @@ def test_a_bound_function_that_cannot_be_compiled_spoils_no_other(fallbacks):
     assert len(fallbacks) == 1
     assert "import_bound could not be compiled" in fallbacks[0]
     fallbacks.clear()
-    called = out[0]
+    count = out[0]
     call_all(forces, counting, numbers, values, out)
-    assert out[0] == called + 1.0
+    assert out[0] == count + 1.0
     assert forces.source.address != 0 != counting.source.address
     assert None not in call_all._routines.values()
 
 
-def test_arrays_in_another_order_and_other_things_are_refused():
+def test_unsupported_arguments_are_refused():
     _, _, row, arrays, codes, out = arguments(PAIRS[0])
-    for given, held, words in (
+    for rows, array_fields, words in (
         (np.zeros((3, 4), order="F"), arrays, "arrays in C order"),
         (np.zeros((3, 8))[:, ::2], arrays, "arrays in C order"),
         (np.zeros((3, 4)), arrays._replace(values=np.zeros(8)[::2]), "arrays in C order"),
@@ -210,7 +210,7 @@ def test_arrays_in_another_order_and_other_things_are_refused():
         (len, arrays, "numbers, arrays and tuples"),
     ):
         with pytest.raises(TypeError, match=words):
-            tabulate(PAIRS[0], given, row, held, codes, out)
+            tabulate(PAIRS[0], rows, row, array_fields, codes, out)
 
 
 @entry
@@ -221,16 +221,18 @@ def import_inside(values: Vector) -> int:
     return floor(2.5)
 
 
-def test_what_cannot_be_compiled_runs_as_python_and_is_told_once(caplog, fallbacks):
+def test_uncompilable_function_runs_as_python_with_one_message(caplog, fallbacks):
     for first in (3.0, 4.0):
         values = np.array([first, 0.0])
         assert import_inside(values) == 2
         assert values.tolist() == [first, first]
-    told = [text for text in caplog.messages if "could not" in text]
-    assert len(told) == 1
-    assert told[0].startswith(f"{__name__}.import_inside could not be compiled, and runs as plain")
-    assert len(told[0].splitlines()) == 1
-    assert fallbacks == told
+    messages = [text for text in caplog.messages if "could not" in text]
+    assert len(messages) == 1
+    assert messages[0].startswith(
+        f"{__name__}.import_inside could not be compiled, and runs as plain"
+    )
+    assert len(messages[0].splitlines()) == 1
+    assert fallbacks == messages
     fallbacks.clear()
 
 
@@ -246,7 +248,7 @@ class Shaded(NamedTuple):
         return self.slope * x + int(Shade.DARK)
 
 
-def test_what_cannot_be_compiled_is_told_with_its_innermost_reason_and_place(fallbacks):
+def test_compilation_failure_reports_innermost_reason_and_line(fallbacks):
     pair = Pair(Shaded(2.0), Linear(0.5))
     values, out = np.array([0.5]), np.zeros(3)
     functions, numbers = bind((force_of, count_in), pair), numbers_in(pair)
@@ -257,7 +259,7 @@ def test_what_cannot_be_compiled_is_told_with_its_innermost_reason_and_place(fal
 
 
 def test_methods_belong_to_their_classes(fallbacks):
-    """Neither fields nor other methods of their names, elsewhere, are taken for them."""
+    """Fields and methods of other classes with equal names are not used."""
 
     class One(NamedTuple):
         size: float  # a method of bodies
@@ -289,22 +291,22 @@ def test_methods_belong_to_their_classes(fallbacks):
     assert of_all(One(1.0), Other(100.0), Derived(1000.0)) == 10 + 1 + 200 + 100 + 3000
 
 
-def test_arrays_that_are_read_only_stay_so(fallbacks):
+def test_writing_to_read_only_array_raises(fallbacks):
     @entry
     def write(out: Vector) -> None:
         out[0] = 5.0
 
-    kept = np.zeros(2)
-    kept.flags.writeable = False
+    values = np.zeros(2)
+    values.flags.writeable = False
     with pytest.raises(TypeError, match="read-only"):
-        write(kept)
+        write(values)
     assert len(fallbacks) == 1
     fallbacks.clear()
 
 
 @pytest.mark.long
 def test_damaged_machine_code_is_made_anew(tmp_path):
-    told = "from rockframe.compiled import entry\nimport own\nprint(own.twice(4))\n"
+    program = "from rockframe.compiled import entry\nimport own\nprint(own.twice(4))\n"
     (tmp_path / "own.py").write_text(
         "from rockframe.compiled import entry\n"
         "@entry\n"
@@ -315,30 +317,30 @@ def test_damaged_machine_code_is_made_anew(tmp_path):
     environment["PYTHONPATH"] = os.pathsep.join([str(tmp_path), *sys.path])
 
     def run() -> str:
-        found = subprocess.run(
-            [sys.executable, "-c", told], env=environment, capture_output=True, text=True,
+        done = subprocess.run(
+            [sys.executable, "-c", program], env=environment, capture_output=True, text=True,
             check=True,
         )  # fmt: skip
-        assert "plain Python" not in found.stderr
-        return found.stdout.strip()
+        assert "plain Python" not in done.stderr
+        return done.stdout.strip()
 
     assert run() == "8"
-    kept = list((tmp_path / "code").rglob("*.nb[ci]"))
-    assert len(kept) == 2
-    for file in kept:
+    stored = list((tmp_path / "code").rglob("*.nb[ci]"))
+    assert len(stored) == 2
+    for file in stored:
         file.write_bytes(b"damaged")
     assert run() == "8"
-    assert all(file.read_bytes() != b"damaged" for file in kept)
+    assert all(file.read_bytes() != b"damaged" for file in stored)
 
 
 def test_compilation_can_be_turned_off():
-    told = (
+    program = (
         "from rockframe.compiled import COMPILED, entry\n"
         "def function(): pass\n"
         "print(COMPILED, entry(function).__wrapped__ is function)"
     )
     done = subprocess.run(
-        [sys.executable, "-c", told],
+        [sys.executable, "-c", program],
         env=os.environ | {"ROCKFRAME_COMPILE": "0"},
         capture_output=True,
         text=True,

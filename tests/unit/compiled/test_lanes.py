@@ -59,33 +59,33 @@ def systems():
     return [Oscillator(Spring(2.0 + k, k), 0.5 + 0.1 * k, k % 3 == 0) for k in range(LANES)]
 
 
-def filled():
+def filled_room():
     room = np.zeros((7, LANES))
     room[0] = np.linspace(-1.0, 1.0, LANES)
-    room[2:6] = np.transpose([numbers_in(one) for one in systems()])
+    room[2:6] = np.transpose([numbers_in(system) for system in systems()])
     return room
 
 
-def test_a_tuple_is_made_of_its_numbers():
-    one = systems()[3]
-    again = tuple_from(structure_of(one))(numbers_in(one))
-    assert again == one
-    assert [type(value) for value in again] == [Spring, float, bool]
+def test_tuple_is_rebuilt_from_its_numbers():
+    system = systems()[3]
+    rebuilt = tuple_from(structure_of(system))(numbers_in(system))
+    assert rebuilt == system
+    assert [type(value) for value in rebuilt] == [Spring, float, bool]
 
 
-@pytest.mark.parametrize("way", ["compiled", "plain"])
-def test_each_lane_has_its_own_system(way, tmp_path, monkeypatch):
+@pytest.mark.parametrize("mode", ["compiled", "plain"])
+def test_each_lane_has_its_own_system(mode, tmp_path, monkeypatch):
     monkeypatch.setenv("ROCKFRAME_CACHE_DIR", str(tmp_path))
-    room = filled()
+    room = filled_room()
     pulls = bind_in_lanes(pull_all, systems()[0])
-    if way == "plain":
+    if mode == "plain":
         assert pulls.call(LANES, room.reshape(-1), np.zeros(0)) == LANES
     else:
         if not COMPILED:
-            pytest.skip("this run does without compilation")
+            pytest.skip("compilation is off in this run")
         assert pull_once(pulls, room.reshape(-1), np.zeros(0)) == LANES
         assert pulls.source.address
     x = np.linspace(-1.0, 1.0, LANES)
-    expected = [one.lanes_pull(float(place)) for one, place in zip(systems(), x, strict=True)]
+    expected = [system.lanes_pull(float(place)) for system, place in zip(systems(), x, strict=True)]
     assert room[1].tolist() == expected
-    assert room[6].view(np.int64).tolist() == [int(each > 0.0) for each in expected]
+    assert room[6].view(np.int64).tolist() == [int(value > 0.0) for value in expected]

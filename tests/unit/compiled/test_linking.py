@@ -1,4 +1,4 @@
-"""Functions wait for their entries: what comes of it is what numba makes by itself."""
+"""Functions compiled only with their entries equal those that numba compiles by itself."""
 
 import re
 
@@ -9,7 +9,7 @@ from rockframe.compiled import COMPILED, Vector, entry, inlined, kernel
 
 pytestmark = [
     pytest.mark.unit,
-    pytest.mark.skipif(not COMPILED, reason="this run does without compilation"),
+    pytest.mark.skipif(not COMPILED, reason="compilation is off in this run"),
 ]
 
 
@@ -54,7 +54,7 @@ def one(values: Vector) -> None:
 
 @entry
 def alone(values: Vector) -> None:
-    """Is called by one test, which may run after the others: what is compiled stays."""
+    """Called by one test only, since compiled code remains between tests."""
     for i in range(len(values)):
         values[i] = left(values[i])
 
@@ -71,8 +71,8 @@ def folder(tmp_path, monkeypatch):
 
 
 @pytest.fixture
-def made(monkeypatch):
-    """Return the names of all that numba makes machine code of."""
+def compiled_names(monkeypatch):
+    """Return the names of all functions that numba turns into machine code."""
     from numba.core.codegen import JITCodeLibrary
 
     names = []
@@ -84,41 +84,41 @@ def made(monkeypatch):
     return names
 
 
-def test_only_entries_become_machine_code(made):
+def test_only_entries_become_machine_code(compiled_names):
     from rockframe.compiled import linking
 
     if not linking.IS_SUPPORTED:
-        pytest.skip(f"this numba is none of {linking.TESTED}")
+        pytest.skip(f"this version of numba is none of {linking.TESTED}")
     values = np.array([9.0, 16.0])
     both(values)
     assert values.tolist() == [13.0, 17.0]
     alone(values)
     assert values.tolist() == [13.0**0.5 + 1.0, 17.0**0.5 + 1.0]
-    # and numba's own runtime, once in a process
-    assert [name for name in made if name != "nrt"] == ["run", "run"]
+    # besides the runtime of numba, compiled once in a process
+    assert [name for name in compiled_names if name != "nrt"] == ["run", "run"]
 
 
-def test_an_entry_is_optimised_once(made, monkeypatch):
+def test_an_entry_is_optimised_once(compiled_names, monkeypatch):
     from numba.core.codegen import CPUCodegen
 
-    asked, passes = [], CPUCodegen._module_pass_manager
+    options, passes = [], CPUCodegen._module_pass_manager
     monkeypatch.setattr(
         CPUCodegen, "_module_pass_manager",
-        lambda self, **words: (asked.append(words), passes(self, **words))[1],
+        lambda self, **words: (options.append(words), passes(self, **words))[1],
     )  # fmt: skip
     values = np.array([-9.0, 16.0])
     many(values)
     assert values.tolist() == [81.0, 256.0]
-    assert asked == [{}] * len(made) != []
+    assert options == [{}] * len(compiled_names) != []
 
 
-def test_errors_of_what_waits_arrive():
-    with pytest.raises(ValueError, match="below zero") as found:
+def test_errors_of_deferred_functions_propagate():
+    with pytest.raises(ValueError, match="below zero") as caught:
         one(np.array([-4.0]))
-    assert found.value.args == ("below zero", -4.0)
+    assert caught.value.args == ("below zero", -4.0)
 
 
-def test_functions_of_a_users_own_call_what_waits(made):
+def test_user_njit_function_can_call_deferred_function(compiled_names):
     import numba
 
     one(np.array([4.0]))
@@ -128,17 +128,17 @@ def test_functions_of_a_users_own_call_what_waits(made):
         return left(x) + 1.0
 
     assert own(9.0) == 5.0
-    assert sum("left" in name for name in made) == 1
+    assert sum("left" in name for name in compiled_names) == 1
 
 
-def test_another_numba_goes_its_ordinary_way(made, monkeypatch):
+def test_unsupported_numba_compiles_normally(compiled_names, monkeypatch):
     from rockframe.compiled import linking
 
     monkeypatch.setattr(linking, "IS_SUPPORTED", False)
     values = np.array([9.0])
     again(values)
     assert values.tolist() == [12.0]
-    assert any("thrice" in name for name in made)
+    assert any("thrice" in name for name in compiled_names)
 
 
 @kernel
@@ -157,14 +157,16 @@ def summed(values: Vector) -> None:
         values[i] = right(listed(values[i]))
 
 
-def test_what_makes_lists_and_arrays_counts_their_references():
-    """They are let go, and those that use them have nothing to count."""
+def test_allocating_functions_count_references():
+    """Arrays that are returned or released need counts; functions of numbers alone do not."""
     from numba.core.runtime import _nrt_python, rtsys
 
     from rockframe.compiled.passes import makes_only_numbers
 
     counting = [
-        each for each in (root_of, left, right, thrice, listed) if not makes_only_numbers(each)
+        function
+        for function in (root_of, left, right, thrice, listed)
+        if not makes_only_numbers(function)
     ]
     assert counting == [root_of, listed]
     values = np.array([9.0, 16.0])
@@ -185,7 +187,7 @@ def of_all_kinds(pair, x):
     return bool(total > 1.0) & (x == x), (total, int(x))
 
 
-def test_plain_functions_become_the_same_code_by_fewer_passes():
+def test_omitted_passes_do_not_change_generated_code():
     import numba
 
     from rockframe.compiled.passes import _OMITTED_PASSES, PlainPasses, makes_only_numbers
@@ -196,30 +198,30 @@ def test_plain_functions_become_the_same_code_by_fewer_passes():
         code = numba.njit(error_model="numpy", _nrt=False, **words)(of_all_kinds)
         assert code((2.0, 3.0), 4.0) == of_all_kinds((2.0, 3.0), 4.0)
         (text,), ((_, done),) = code.inspect_asm().values(), code.get_metadata().items()
-        # names hold numbers that count functions and addresses of them
+        # names contain counters and addresses
         text = re.sub(r'"[^"]*"|\S*_ZN\S*', "", text)
         written.append([line for line in text.splitlines() if re.match(r"\t[a-z]", line)])
-        done = {each.partition("_")[2] for each in done["pipeline_times"]["nopython"]}
+        done = {name.partition("_")[2] for name in done["pipeline_times"]["nopython"]}
         assert done.isdisjoint(_OMITTED_PASSES) if words else done >= _OMITTED_PASSES
     assert written[0] == written[1] != []
 
 
-def test_an_operator_is_looked_up_once_and_only_while_something_is_compiled():
+def test_operator_lookup_is_cached_only_during_compilation():
     import numba
 
     from rockframe.compiled.jobs import cached_operators
 
     kind = numba.types.Function
-    plain, looked = kind.get_call_type, []
+    plain, lookups = kind.get_call_type, []
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(
             numba.core.types.functions.BaseFunction, "get_call_type",
-            lambda *words: (looked.append(words[2]), plain(*words))[1],
+            lambda *words: (lookups.append(words[2]), plain(*words))[1],
         )  # fmt: skip
         with cached_operators():
             many = numba.njit(lambda x, n: (x + x) * (x + x) + (n + n) * (x + n))
             assert many(2.0, 3) == 46.0
-    sums = [words for words in looked if words == (numba.float64, numba.float64)]
+    sums = [words for words in lookups if words == (numba.float64, numba.float64)]
     assert 1 <= len(sums) <= 2  # an addition, a multiplication
     assert kind.get_call_type is plain
     assert "get_call_type" not in vars(kind)

@@ -1,4 +1,4 @@
-"""One process compiles a module at a time, and none waits for one that was killed."""
+"""One process compiles a module at a time, and none waits for a killed process."""
 
 import errno
 import os
@@ -37,7 +37,7 @@ def module(tmp_path):
 
 @pytest.fixture
 def no_locks(monkeypatch):
-    """Stand for a folder of a network that knows no store."""
+    """Replace a network folder without locks."""
 
     def refuse(number):
         raise OSError(errno.ENOLCK, "No locks available")
@@ -46,7 +46,7 @@ def no_locks(monkeypatch):
 
 
 def keep(module, seconds):
-    """Have another process compile for so long; it has begun."""
+    """Start another process that compiles for `seconds`, and wait until it has begun."""
     process = subprocess.Popen(
         [sys.executable, "-c", KEEP, str(module), str(seconds)], text=True, stdout=subprocess.PIPE
     )
@@ -55,12 +55,12 @@ def keep(module, seconds):
 
 
 def seconds_until_compiled(module):
-    begun = time.monotonic()
+    start = time.monotonic()
     with store.lock_while_compiling(module, lambda: True):
-        return time.monotonic() - begun
+        return time.monotonic() - start
 
 
-def test_what_a_killed_process_leaves_behind_delays_nobody(module):
+def test_lock_of_killed_process_does_not_delay(module):
     with keep(module, 600) as process:
         assert store.is_compiled_elsewhere(module)
         process.kill()
@@ -68,7 +68,7 @@ def test_what_a_killed_process_leaves_behind_delays_nobody(module):
     assert seconds_until_compiled(module) < AT_ONCE
 
 
-def test_a_file_that_stands_for_a_lock_delays_nobody_where_there_are_locks(module):
+def test_lock_file_is_ignored_where_locks_exist(module):
     module.with_suffix(".lock").touch()
     assert not store.is_compiled_elsewhere(module)
     assert seconds_until_compiled(module) < AT_ONCE
@@ -82,23 +82,23 @@ def test_two_processes_do_not_compile_at_once(module):
     assert module.read_text() == "pass"
 
 
-def test_it_is_not_waited_for_longer_than_is_worth_it(module):
-    asked = iter([True, True, False])
+def test_waiting_for_lock_ends_when_no_longer_worthwhile(module):
+    answers = iter([True, True, False])
     with keep(module, 600) as process:
-        with store.lock_while_compiling(module, lambda: next(asked)):
+        with store.lock_while_compiling(module, lambda: next(answers)):
             assert store.is_compiled_elsewhere(module)
         assert store.is_compiled_elsewhere(module)
         process.kill()
 
 
-def test_nobody_waits_where_nothing_can_be_written(tmp_path):
+def test_unwritable_folder_does_not_delay(tmp_path):
     missing = tmp_path / "nowhere" / "run.py"
     assert not store.is_compiled_elsewhere(missing)
     assert seconds_until_compiled(missing) < AT_ONCE
 
 
 @pytest.mark.usefixtures("no_locks")
-def test_a_file_stands_for_a_lock_where_there_are_none(module):
+def test_lock_file_replaces_missing_locks(module):
     assert not store.is_compiled_elsewhere(module)
     with store.lock_while_compiling(module, lambda: True):
         assert store.is_compiled_elsewhere(module)
@@ -108,7 +108,7 @@ def test_a_file_stands_for_a_lock_where_there_are_none(module):
 
 
 @pytest.mark.usefixtures("no_locks")
-def test_such_a_file_counts_no_longer_than_one_would_wait(module):
+def test_old_lock_file_expires(module):
     mark = module.with_suffix(".lock")
     mark.touch()
     assert store.is_compiled_elsewhere(module)

@@ -1,4 +1,4 @@
-"""Machine code on disk: kept for other processes, and made anew when a source has changed."""
+"""Machine code on disk: shared with other processes, and compiled again if a source changes."""
 
 import importlib
 import itertools
@@ -24,7 +24,7 @@ from rockframe.compiled import (
 
 pytestmark = [
     pytest.mark.unit,
-    pytest.mark.skipif(not COMPILED, reason="this run does without compilation"),
+    pytest.mark.skipif(not COMPILED, reason="compilation is off in this run"),
 ]
 
 HELP = """
@@ -79,12 +79,12 @@ def folder(tmp_path, monkeypatch):
 
 @pytest.fixture
 def own(tmp_path, monkeypatch):
-    """Return the folder of two modules of a user's."""
+    """Return a folder with two user modules."""
     (tmp_path / "own.py").write_text(OWN)
     (tmp_path / "own_help.py").write_text(HELP)
     path = os.pathsep.join([str(tmp_path), *filter(None, [os.environ.get("PYTHONPATH")])])
     monkeypatch.setenv("PYTHONPATH", path)
-    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")  # a source may change within a second
+    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")  # a source may change within one second
     return tmp_path
 
 
@@ -114,7 +114,7 @@ def written(folder):
     return sorted(path for path in folder.rglob("*") if path.is_file())
 
 
-def test_the_next_process_compiles_nothing_unless_a_source_has_changed(own, folder):
+def test_stored_code_is_reused_until_source_changes(own, folder):
     first = run()
     assert first[0].startswith(ANNOUNCEMENT)
     assert first[1:] == ["[4.0, -9.0]"]
@@ -136,13 +136,13 @@ def test_processes_that_start_at_once_do_not_harm_each_other(own, folder):
     assert {path.suffix for path in written(folder)} == {".py", ".nbc", ".nbi"}
 
 
-def test_a_helper_compiles_what_it_can_import(own, folder, monkeypatch):
+def test_helper_compiles_importable_functions(own, folder, monkeypatch):
     from rockframe.compiled import parallel
     from rockframe.compiled.jobs import Job
 
     monkeypatch.setattr(parallel, "processors", lambda: 2)
     job = Job(load(own, monkeypatch).add_one.source, (("float64", 1, True),), False)
-    with parallel._start_helper([job, job]) as helper:  # for one alone it would not start
+    with parallel._start_helper([job, job]) as helper:  # it would not start for one job
         assert helper.wait(timeout=120) == 0
     assert job.is_stored
     values = np.array([1.0])
@@ -150,21 +150,21 @@ def test_a_helper_compiles_what_it_can_import(own, folder, monkeypatch):
     assert values.tolist() == [2.0]
 
 
-def test_what_a_helper_cannot_import_is_compiled_all_the_same(monkeypatch):
+def test_functions_helper_cannot_import_are_still_compiled(monkeypatch):
     from rockframe.compiled import parallel
     from rockframe.compiled.jobs import Job
 
     monkeypatch.setattr(parallel, "processors", lambda: 2)
     structure = (("float64", 1, True),)
-    jobs = [Job(one.source, structure, False) for one in (add_two, add_three)]
+    jobs = [Job(function.source, structure, False) for function in (add_two, add_three)]
     monkeypatch.delitem(sys.modules, __name__, raising=False)
     values = np.zeros(1)
-    for made in parallel.compile_all(jobs):
-        made(values)
+    for routine in parallel.compile_all(jobs):
+        routine(values)
     assert values.tolist() == [5.0]
 
 
-def test_functions_that_jobs_share_are_compiled_again_for_each(monkeypatch):
+def test_estimated_wall_time_counts_shared_functions_per_job(monkeypatch):
     from rockframe.compiled import parallel
 
     monkeypatch.setattr(parallel, "estimate_seconds", lambda jobs: 4.0)  # the jobs share 1 s
@@ -175,7 +175,7 @@ def test_functions_that_jobs_share_are_compiled_again_for_each(monkeypatch):
     assert parallel.estimate_wall_time(jobs) == 3.0  # the longest
 
 
-def test_what_others_compile_is_left_for_last(monkeypatch):
+def test_jobs_compiled_elsewhere_are_done_last(monkeypatch):
     from rockframe.compiled import parallel
 
     order = []
@@ -192,7 +192,7 @@ def test_what_others_compile_is_left_for_last(monkeypatch):
 
 
 @pytest.mark.parametrize(("ends", "waits"), [("0", True), ("1", False)])
-def test_others_are_waited_for_unless_a_helper_has_died(monkeypatch, ends, waits):
+def test_dead_helper_ends_waiting(monkeypatch, ends, waits):
     from rockframe.compiled import parallel
 
     helper = subprocess.Popen([sys.executable, "-c", f"raise SystemExit({ends})"])
@@ -203,7 +203,7 @@ def test_others_are_waited_for_unless_a_helper_has_died(monkeypatch, ends, waits
 
 
 def load(own, monkeypatch):
-    """Import the user's module here."""
+    """Import the user module."""
     for name in ("own", "own_help"):
         monkeypatch.delitem(sys.modules, name, raising=False)
     monkeypatch.syspath_prepend(own)
@@ -211,7 +211,7 @@ def load(own, monkeypatch):
 
 
 def some_function():
-    """Stand for a function that is compiled."""
+    """Represent a compiled function."""
 
 
 def test_every_state_of_the_sources_has_a_folder_of_its_own(own, tmp_path, monkeypatch):
@@ -251,14 +251,14 @@ def test_every_state_of_the_sources_has_a_folder_of_its_own(own, tmp_path, monke
     assert file() is None
 
 
-def test_the_module_of_an_entry_counts_whatever_it_is_called_with(own, monkeypatch):
+def test_editing_entry_module_changes_folder(own, monkeypatch):
     module = load(own, monkeypatch)
     before = store.module_file(module.add_one.__wrapped__, "pass", ())
     edit(own / "own.py", "+= 1.0", "+= 5.0")
     assert store.module_file(module.add_one.__wrapped__, "pass", ()).parent != before.parent
 
 
-def test_a_module_counts_if_its_functions_are_named_by_it(own, monkeypatch):
+def test_editing_module_used_as_attribute_changes_folder(own, monkeypatch):
     edit(own / "own.py", "from own_help import twice", "import own_help")
     edit(own / "own.py", "twice(", "own_help.twice(")
     module = load(own, monkeypatch)
@@ -267,7 +267,7 @@ def test_a_module_counts_if_its_functions_are_named_by_it(own, monkeypatch):
     assert store.module_file(some_function, "pass", (module.Law,)).parent != before.parent
 
 
-def test_a_library_that_a_module_imports_counts_by_its_bytes(own, monkeypatch):
+def test_changed_bytes_of_imported_library_change_folder(own, monkeypatch):
     (own / "own_library.so").write_bytes(b"\x7fELF\0one")
     library = SimpleNamespace(__file__=str(own / "own_library.so"))
     monkeypatch.setitem(sys.modules, "own_library", library)
@@ -282,25 +282,25 @@ def test_a_library_that_a_module_imports_counts_by_its_bytes(own, monkeypatch):
     assert store.module_file(some_function, "pass", (module.Law,)).parent != before.parent
 
 
-def test_every_source_of_the_package_that_is_compiled_counts():
+def test_digest_covers_all_compiled_package_sources():
     marks = re.compile(r"^\s*@(kernel|inlined|entry)\b", re.MULTILINE)
-    counted = set(
-        itertools.chain.from_iterable(store.PACKAGE.glob(each) for each in store._SOURCES)
+    included = set(
+        itertools.chain.from_iterable(store.PACKAGE.glob(pattern) for pattern in store._SOURCES)
     )
     marked = {path for path in store.PACKAGE.rglob("*.py") if marks.search(path.read_text())}
     assert len(marked) > 20
-    assert marked <= counted
+    assert marked <= included
 
 
 def test_code_of_other_sources_is_removed_after_a_month(folder):
     times = {"code-old": time.time() - 40 * 24 * 3600.0, "code-young": time.time() - 3600.0}
     for name, moment in times.items():
-        kept = folder / name / "__pycache__"
-        kept.mkdir(parents=True)
-        (kept / "some.nbc").write_bytes(b"code")
+        cache = folder / name / "__pycache__"
+        cache.mkdir(parents=True)
+        (cache / "some.nbc").write_bytes(b"code")
         os.utime(folder / name, (moment, moment))
-    made = store.module_file(some_function, "pass", ())
-    assert {path.name for path in folder.iterdir()} == {"code-young", made.parent.name}
+    file = store.module_file(some_function, "pass", ())
+    assert {path.name for path in folder.iterdir()} == {"code-young", file.parent.name}
 
 
 @entry
@@ -333,7 +333,7 @@ def add_seven(values: Vector) -> None:
     values[0] += 7.0
 
 
-def test_where_nothing_can_be_written_a_warning_is_all(tmp_path, monkeypatch, caplog):
+def test_unwritable_cache_only_warns(tmp_path, monkeypatch, caplog):
     from rockframe.compiled import parallel
 
     monkeypatch.setattr(parallel, "_announced", set())
@@ -348,30 +348,30 @@ def test_where_nothing_can_be_written_a_warning_is_all(tmp_path, monkeypatch, ca
     assert None not in (*add_two._routines.values(), *add_three._routines.values())
 
 
-def test_each_long_compilation_is_told_with_what_it_is_for(monkeypatch, caplog):
+def test_long_compilation_is_announced_with_purpose(monkeypatch, caplog):
     from rockframe.compiled import parallel
     from rockframe.compiled.jobs import Job
 
-    def told_of(words, called, seconds):
+    def announcements(words, called, seconds):
         monkeypatch.setattr(Job, "seconds", seconds)
         with compiling_for(words):
             called(np.zeros(1))
-        said = [text for text in caplog.messages if "compiles what" in text]
+        messages = [text for text in caplog.messages if "compiles what" in text]
         caplog.clear()
-        return said
+        return messages
 
     monkeypatch.setattr(parallel, "_announced", set())
     text = "rockframe compiles what a run (pads) needs for this machine: about 1 s where nothing"
-    assert told_of("a run (pads)", add_four, 0.1)[0].startswith(text)
-    assert told_of("a run (pads)", add_four, 30.0) == []
-    assert told_of("a run (pads)", add_five, 0.1) == []  # nobody notices
-    [text] = told_of("lanes (soil)", add_six, 30.0)
+    assert announcements("a run (pads)", add_four, 0.1)[0].startswith(text)
+    assert announcements("a run (pads)", add_four, 30.0) == []
+    assert announcements("a run (pads)", add_five, 0.1) == []  # too short to notice
+    [text] = announcements("lanes (soil)", add_six, 30.0)
     assert text.startswith(
         "rockframe compiles what lanes (soil) needs for this machine: about 30 s"
     )
 
 
-def test_what_takes_longer_than_it_is_worth_is_not_compiled(folder, monkeypatch):
+def test_compilation_beyond_time_budget_is_skipped(folder, monkeypatch):
     from rockframe.compiled.jobs import Job
 
     monkeypatch.setattr(Job, "seconds", 10.0)
@@ -381,14 +381,14 @@ def test_what_takes_longer_than_it_is_worth_is_not_compiled(folder, monkeypatch)
     assert not list(folder.rglob("*.nbc"))
     assert compiled_within(11.0, add_seven, values)
     assert list(folder.rglob("*.nbc"))
-    assert compiled_within(0.0, add_seven, values)  # it is there
+    assert compiled_within(0.0, add_seven, values)  # already compiled
     add_seven._routines.clear()
-    assert compiled_within(0.0, add_seven, values)  # and kept for others
+    assert compiled_within(0.0, add_seven, values)  # and stored for other processes
     add_seven(values)
     assert values.tolist() == [7.0]
 
 
-def test_the_next_folder_serves_where_the_first_cannot(tmp_path, monkeypatch):
+def test_next_cache_folder_replaces_unusable_first(tmp_path, monkeypatch):
     monkeypatch.delenv("ROCKFRAME_CACHE_DIR")
     for variable in ("XDG_CACHE_HOME", "LOCALAPPDATA", "HOME"):
         monkeypatch.setenv(variable, str(tmp_path / "own"))
@@ -403,7 +403,7 @@ def test_the_next_folder_serves_where_the_first_cannot(tmp_path, monkeypatch):
     assert second.read_text() == "pass"
 
 
-def test_a_user_without_a_home_keeps_machine_code_beside_the_package(monkeypatch):
+def test_missing_home_folder_is_skipped_for_cache(monkeypatch):
     def homeless(path):
         msg = "Could not determine home directory."
         raise RuntimeError(msg)

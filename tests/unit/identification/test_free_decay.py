@@ -1,4 +1,4 @@
-"""A free-decay test: what goes in, what comes out, and what is refused."""
+"""Free-decay tests: accepted data, fitted parameters, invalid arguments."""
 
 import math
 
@@ -32,19 +32,19 @@ def run():
 
 
 @pytest.fixture(scope="module")
-def found(run):
+def fit(run):
     return rf.fit_free_decay(START, run.rotation)
 
 
-def test_a_result_of_rockframe_is_read_with_its_units(found, run):
-    assert float(found.fitted_value.sel(parameter="restitution")) == pytest.approx(0.9, rel=1e-6)
-    assert float(found.initial_rotation) == pytest.approx(-0.1, rel=1e-6)
-    assert float(found.release_time) == pytest.approx(0.0, abs=1e-6)
-    np.testing.assert_allclose(found.rotation_residual, 0.0, atol=1e-7)
-    np.testing.assert_array_equal(found.time, run.time)
+def test_fit_recovers_parameters_of_simulated_run(fit, run):
+    assert float(fit.fitted_value.sel(parameter="restitution")) == pytest.approx(0.9, rel=1e-6)
+    assert float(fit.initial_rotation) == pytest.approx(-0.1, rel=1e-6)
+    assert float(fit.release_time) == pytest.approx(0.0, abs=1e-6)
+    np.testing.assert_allclose(fit.rotation_residual, 0.0, atol=1e-7)
+    np.testing.assert_array_equal(fit.time, run.time)
 
 
-def test_units_and_arrays_of_all_kinds_mean_the_same(found, run):
+def test_measured_data_accept_equivalent_forms(fit, run):
     time, rotation = run.time.to_numpy(), run.rotation.to_numpy()
     labelled = xr.DataArray(
         np.degrees(rotation),
@@ -54,69 +54,69 @@ def test_units_and_arrays_of_all_kinds_mean_the_same(found, run):
     )
     pair = ((time.tolist(), "s"), (1e3 * rotation, "mrad"))
     table = pd.DataFrame({"time [ms]": 1e3 * time, "rotation [deg]": np.degrees(rotation)})
-    for given in (labelled, pair, table):
-        again = rf.fit_free_decay(START, given)
-        np.testing.assert_allclose(again.fitted_value, found.fitted_value, rtol=1e-8)
-        np.testing.assert_allclose(again.measured_rotation, rotation, rtol=1e-12)
+    for measured in (labelled, pair, table):
+        refit = rf.fit_free_decay(START, measured)
+        np.testing.assert_allclose(refit.fitted_value, fit.fitted_value, rtol=1e-8)
+        np.testing.assert_allclose(refit.measured_rotation, rotation, rtol=1e-12)
 
 
-def test_the_dataset_follows_the_schema_and_comes_back_from_a_file(found, tmp_path):
-    for name, variable in found.variables.items():
+def test_dataset_follows_schema_and_survives_netcdf_round_trip(fit, tmp_path):
+    for name, variable in fit.variables.items():
         if name not in ("parameter", "unknown", "other_unknown"):
             assert variable.dims == SCHEMA[name].dims, name
             assert variable.attrs.get("units") == SCHEMA[name].attributes().get("units"), name
-    assert found.attrs["title"] == "Free-decay test"
-    assert found.attrs["verdict"].startswith("Restitution 0.")
-    assert list(found.unknown.values) == [
+    assert fit.attrs["title"] == "Free-decay test"
+    assert fit.attrs["verdict"].startswith("Restitution 0.")
+    assert list(fit.unknown.values) == [
         "restitution", "initial_rotation", "release_time", "gauge_offset",
     ]  # fmt: skip
-    np.testing.assert_allclose(np.diag(found.correlation), 1.0)
-    found.to_netcdf(tmp_path / "found.nc")
-    with xr.open_dataset(tmp_path / "found.nc") as again:
-        xr.testing.assert_identical(again.load(), found)
+    np.testing.assert_allclose(np.diag(fit.correlation), 1.0)
+    fit.to_netcdf(tmp_path / "found.nc")
+    with xr.open_dataset(tmp_path / "found.nc") as stored:
+        xr.testing.assert_identical(stored.load(), fit)
 
 
-def test_the_fitted_system_is_the_given_one_but_for_the_parameters(found):
-    system = rf.System.from_dataset(found)
+def test_fitted_system_differs_only_in_parameters(fit):
+    system = rf.System.from_dataset(fit)
     restitution = system.parts.ground.restitution
-    assert restitution == float(found.fitted_value[0])
+    assert restitution == float(fit.fitted_value[0])
     assert system == rf.System(
         BLOCK, rf.RigidGround(restitution=restitution), rotation="small", gravity="9.8 m/s^2"
     )
 
 
-def test_parameters_of_two_parts_are_told_apart():
+def test_ambiguous_parameter_name_raises():
     soil = rf.WinklerSoil(stiffness="2 MPa", damping_ratio=0.2)
     system = rf.System(BLOCK, PADS, rf.CushionCap(height="0.1 m", mass="100 kg"), soil)
     with pytest.raises(ComponentError, match=r"'TwoSpringSupport\.damping_ratio', 'Winkler"):
         rf.fit_free_decay(system, peaks=PEAKS, parameters="damping_ratio")
 
 
-def test_what_is_known_of_the_test_is_not_fitted(run):
-    found = rf.fit_free_decay(START, run.rotation, circumstances=())
-    assert list(found.unknown.values) == ["restitution"]
-    assert float(found.initial_rotation) == float(run.rotation[0])
-    assert math.isnan(float(found.gauge_offset_error))
-    assert float(found.gauge_offset) == 0.0
+def test_known_circumstances_are_not_fitted(run):
+    fit = rf.fit_free_decay(START, run.rotation, circumstances=())
+    assert list(fit.unknown.values) == ["restitution"]
+    assert float(fit.initial_rotation) == float(run.rotation[0])
+    assert math.isnan(float(fit.gauge_offset_error))
+    assert float(fit.gauge_offset) == 0.0
 
 
-def test_what_leaves_no_trace_is_told():
+def test_unidentifiable_parameter_warns():
     system = rf.System(BLOCK, PADS)
-    held = rf.InitialState(rotation=f"{0.5 * system.setting.uplift_angle!r} rad")
-    run = system.simulate(duration="3 s", initial=held, output_step="0.02 s")
+    released = rf.InitialState(rotation=f"{0.5 * system.setting.uplift_angle!r} rad")
+    run = system.simulate(duration="3 s", initial=released, output_step="0.02 s")
     with pytest.warns(ModelWarning, match="does not tell restitution"):
-        found = rf.fit_free_decay(system, run.rotation, ("damping_ratio", "restitution"))
-    assert float(found.fitted_value[0]) == pytest.approx(0.1, rel=1e-5)
-    assert math.isnan(float(found.standard_error[1]))
+        fit = rf.fit_free_decay(system, run.rotation, ("damping_ratio", "restitution"))
+    assert float(fit.fitted_value[0]) == pytest.approx(0.1, rel=1e-5)
+    assert math.isnan(float(fit.standard_error[1]))
 
 
-def test_times_in_another_unit_leave_nothing_to_fit(run):
+def test_wrong_time_unit_warns(run):
     with pytest.warns(ModelWarning):
-        found = rf.fit_free_decay(START, ((run.time.values, "ms"), (run.rotation.values, "rad")))
-    assert np.isnan(found.correlation).any()
+        fit = rf.fit_free_decay(START, ((run.time.values, "ms"), (run.rotation.values, "rad")))
+    assert np.isnan(fit.correlation).any()
 
 
-def test_the_motion_between_samples_is_that_of_a_run():
+def test_release_response_agrees_with_simulation():
     system = rf.System(BLOCK, PADS)
     run = system.simulate(
         duration="3 s", initial=rf.InitialState(rotation="0.1 rad"), output_step="1.7 ms"
@@ -179,10 +179,10 @@ REFUSED = [
 ]
 
 
-def test_what_is_no_test_is_refused():
-    for given, words in REFUSED:
+def test_invalid_test_data_are_refused():
+    for arguments, words in REFUSED:
         with pytest.raises(ComponentError, match=words):
-            rf.fit_free_decay(START, **given)
+            rf.fit_free_decay(START, **arguments)
     with pytest.raises(ComponentError, match="needs a System, got Block"):
         rf.fit_free_decay(BLOCK, history())
     stiff = rf.TwoSpringSupport(stiffness="500 kN/m", damping_ratio=0.1)
@@ -191,7 +191,7 @@ def test_what_is_no_test_is_refused():
 
 
 @pytest.mark.parametrize(
-    "given",
+    "arguments",
     [
         {"measured": (TIME, SWING)},
         {"measured": SWING},
@@ -216,8 +216,8 @@ def test_arrays_need_units(given):
 
 @pytest.mark.parametrize("rotation", ["finite", "small"])
 @pytest.mark.parametrize("first", ["6 deg", "-6 deg", "-12 deg"])
-def test_peaks_of_an_eccentric_block_tell_of_both_sides(first, rotation):
-    """To the left it may lean beyond the angle at which it overturns to the right."""
+def test_signed_peaks_of_eccentric_block_give_restitution(first, rotation):
+    """To the left the rotation may exceed the overturning angle to the right."""
     block = BLOCK.replace(centre_of_mass=("0.6 m", "0.03 m"))
     ground = rf.RigidGround(restitution=0.7 if first.startswith("-12") else 0.85)
     start = rf.InitialState(rotation=first)
@@ -226,24 +226,24 @@ def test_peaks_of_an_eccentric_block_tell_of_both_sides(first, rotation):
     assert not run.overturned
     swings = swings_of(History(run.time.to_numpy(), run.rotation.to_numpy()))
     peaks = swings.peaks.rotation[:7]
-    found = rf.fit_free_decay(rf.System(block, rotation=rotation), peaks=(peaks, "rad"))
-    assert found.fitted_value.item() == pytest.approx(ground.restitution, abs=1e-3)
-    # on rigid ground the peaks alone tell it all but exactly, :eq:`eq-rigid-decay`
-    assert found.trial_count <= 4
+    fit = rf.fit_free_decay(rf.System(block, rotation=rotation), peaks=(peaks, "rad"))
+    assert fit.fitted_value.item() == pytest.approx(ground.restitution, abs=1e-3)
+    # on rigid ground the start from :eq:`eq-rigid-decay` is nearly exact
+    assert fit.trial_count <= 4
     with pytest.raises(ComponentError, match="without their signs do not tell the sides"):
         rf.fit_free_decay(rf.System(block), peaks=(np.abs(peaks), "rad"))
 
 
 @pytest.mark.parametrize("data", [{"peaks": ([9.0, 4.0, 2.1], "deg")}, {"measured": "history"}])
 def test_a_block_before_a_rigid_wall_is_refused(data, run):
-    """Its peaks are all on one side, where the model's were not told apart."""
+    """All peaks are on one side, but the model gives peaks of both sides."""
     wall = rf.RearWall(side="left", restitution="newton", wall_restitution=0.6)
-    given = data if "peaks" in data else {"measured": run.rotation}
+    arguments = data if "peaks" in data else {"measured": run.rotation}
     with pytest.raises(ComponentError, match="before a rigid RearWall and rocks to one side only"):
-        rf.fit_free_decay(rf.System(BLOCK, wall), parameters="wall_restitution", **given)
+        rf.fit_free_decay(rf.System(BLOCK, wall), parameters="wall_restitution", **arguments)
 
 
-def test_interfaces_of_stacks_are_refused_with_what_can_be_fitted():
+def test_stack_interface_parameter_raises_and_lists_alternatives():
     joint = rf.TwoSpringSupport(frequency_ratio=40, damping_ratio=0.1)
     bodies = [
         rf.Block(width=f"{w} m", height=f"{h} m", mass="900 kg") for w, h in ((0.5, 1.8), (0.9, 1))

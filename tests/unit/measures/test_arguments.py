@@ -1,4 +1,4 @@
-"""What the functions take, and what they refuse."""
+"""Valid and invalid arguments of the functions for measures."""
 
 import warnings
 
@@ -21,14 +21,14 @@ BLOCK = rf.Block(width="1 m", height="4 m", mass="1 t")
 
 
 @pytest.mark.parametrize("function", ALL)
-@pytest.mark.parametrize("given", [None, 3.0, "record.AT2", np.zeros(5), BLOCK])
-def test_only_a_motion_is_measured(function, given):
+@pytest.mark.parametrize("argument", [None, 3.0, "record.AT2", np.zeros(5), BLOCK])
+def test_only_a_motion_is_measured(function, argument):
     with pytest.raises(ComponentError, match=rf"{function.__name__}: motion needs a Ground"):
-        function(given)
+        function(argument)
 
 
 @pytest.mark.parametrize("function", ALL)
-def test_a_component_must_be_there(function):
+def test_missing_or_unknown_component_raises(function):
     with pytest.raises(ComponentError, match="has no vertical acceleration"):
         function(PULSE, component="vertical")
     with pytest.raises(ComponentError, match="'horizontal' or 'vertical', got 'up'"):
@@ -43,16 +43,16 @@ def test_the_vertical_component_is_measured_like_the_horizontal_one(function):
         (across, "m/s^2"), "0.02 s", vertical=(upwards, "m/s^2"), name="both"
     )
     alone = rf.GroundMotion.from_arrays((upwards, "m/s^2"), "0.02 s")
-    found, expected = function(both, component="vertical"), function(alone)
-    assert found.attrs["component"] == "vertical"
-    assert found.attrs["motion"] == "both"
+    result, expected = function(both, component="vertical"), function(alone)
+    assert result.attrs["component"] == "vertical"
+    assert result.attrs["motion"] == "both"
     for name in expected.data_vars:
-        mine = name if name in found else f"vertical_{name}"
-        np.testing.assert_array_equal(found[mine].values, expected[name].values)
+        key = name if name in result else f"vertical_{name}"
+        np.testing.assert_array_equal(result[key].values, expected[name].values)
 
 
 @pytest.mark.parametrize(
-    ("argument", "given"),
+    ("argument", "value"),
     [
         ("periods", [0.1, 0.2]),
         ("periods", np.linspace(0.1, 1.0, 4)),
@@ -63,13 +63,13 @@ def test_the_vertical_component_is_measured_like_the_horizontal_one(function):
         ("damping_ratios", None),
     ],
 )
-def test_spectra_refuse_numbers_of_another_kind(argument, given):
+def test_spectra_refuse_wrong_units(argument, value):
     with pytest.raises(UnitsError, match=f"response_spectrum: {argument}"):
-        response_spectrum(PULSE, **{argument: given})
+        response_spectrum(PULSE, **{argument: value})
 
 
 @pytest.mark.parametrize(
-    ("argument", "given"),
+    ("argument", "value"),
     [
         ("periods", ([0.2, 0.1], "s")),
         ("periods", ([0.1, 0.1], "s")),
@@ -82,9 +82,9 @@ def test_spectra_refuse_numbers_of_another_kind(argument, given):
         ("damping_ratios", ()),
     ],
 )
-def test_spectra_refuse_values_out_of_range(argument, given):
+def test_spectra_refuse_values_out_of_range(argument, value):
     with pytest.raises(ComponentError, match=f"response_spectrum: {argument}"):
-        response_spectrum(PULSE, **{argument: given})
+        response_spectrum(PULSE, **{argument: value})
 
 
 def test_spectra_that_would_take_minutes_are_refused():
@@ -96,7 +96,7 @@ def test_spectra_that_would_take_minutes_are_refused():
     assert response_spectrum(slow, "0 s").sizes == {"damping_ratio": 1, "period": 1}
 
 
-def test_periods_and_damping_come_in_many_forms():
+def test_periods_and_damping_accept_equivalent_forms():
     expected = response_spectrum(PULSE, (["0.1", "0.5"], "s"), (0.05, 0.1))
     registry = pint.get_application_registry()
     for periods, ratios in (
@@ -104,11 +104,11 @@ def test_periods_and_damping_come_in_many_forms():
         (registry.Quantity([100.0, 500.0], "ms"), np.array([0.05, 0.1])),
         (([100, 500], "ms"), [registry.Quantity(5.0, "percent"), "10 %"]),
     ):
-        found = response_spectrum(PULSE, periods, ratios)
-        np.testing.assert_allclose(found.period, [0.1, 0.5], rtol=1e-15)
-        np.testing.assert_allclose(found.damping_ratio, [0.05, 0.1], rtol=1e-15)
+        spectra = response_spectrum(PULSE, periods, ratios)
+        np.testing.assert_allclose(spectra.period, [0.1, 0.5], rtol=1e-15)
+        np.testing.assert_allclose(spectra.damping_ratio, [0.05, 0.1], rtol=1e-15)
         np.testing.assert_allclose(
-            found.spectral_displacement, expected.spectral_displacement, rtol=1e-12
+            spectra.spectral_displacement, expected.spectral_displacement, rtol=1e-12
         )
 
 
@@ -121,7 +121,7 @@ def test_default_periods():
 
 
 @pytest.mark.parametrize(
-    ("argument", "given", "error"),
+    ("argument", "value", "error"),
     [
         ("threshold", 0.05, UnitsError),
         ("threshold", "0.05 kg", UnitsError),
@@ -133,12 +133,12 @@ def test_default_periods():
         ("block", rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1), ComponentError),
     ],
 )
-def test_intensity_measures_refuse(argument, given, error):
+def test_intensity_measures_refuse_invalid_arguments(argument, value, error):
     with pytest.raises(error, match=f"intensity_measures: {argument}"):
-        intensity_measures(PULSE, **{argument: given})
+        intensity_measures(PULSE, **{argument: value})
 
 
-def test_a_block_is_not_rocked_by_the_vertical_component():
+def test_block_measures_of_vertical_component_are_refused():
     motion = PULSE.with_vertical(PULSE)
     with pytest.raises(ComponentError, match="leave out block or component"):
         intensity_measures(motion, block=BLOCK, component="vertical")
@@ -148,14 +148,14 @@ def test_fourier_resolution():
     assert fourier_spectrum(PULSE).frequency.values[1] == pytest.approx(128.0 / 129.0)
     fine = fourier_spectrum(PULSE, resolution="0.1 Hz")
     assert fine.frequency.values[1] <= 0.1
-    for given, error in (("0 Hz", ComponentError), (0.1, UnitsError)):
+    for resolution, error in (("0 Hz", ComponentError), (0.1, UnitsError)):
         with pytest.raises(error, match="fourier_spectrum: resolution"):
-            fourier_spectrum(PULSE, resolution=given)
+            fourier_spectrum(PULSE, resolution=resolution)
     with pytest.raises(ComponentError, match="too many samples"):
         fourier_spectrum(PULSE, resolution="1e-300 Hz")
 
 
-def test_records_too_coarse_for_the_periods_asked_for_are_told_of():
+def test_record_too_coarse_for_periods_warns():
     samples = np.sin(0.3 * np.arange(200))
     record, fine = (
         rf.GroundMotion.from_arrays((samples, "m/s^2"), step) for step in ("0.02 s", "0.005 s")
@@ -169,4 +169,4 @@ def test_records_too_coarse_for_the_periods_asked_for_are_told_of():
         response_spectrum(record, ["0 s", "0.2 s", "1 s"])
         response_spectrum(record, ["0.05 s"], interpolation="band-limited")
         response_spectrum(rf.GroundMotion.sine_pulse(), ["0.01 s"])
-        response_spectrum(record)  # of periods that nobody asked for the manual tells
+        response_spectrum(record)  # default periods are documented in the manual

@@ -1,4 +1,4 @@
-"""The answers as datasets: names, units, meanings, files."""
+"""Datasets of results: names, units, descriptions, files."""
 
 import math
 from pathlib import Path
@@ -42,7 +42,7 @@ def answer(request, motion):
     return request.param, ANSWERS[request.param](motion)
 
 
-def test_every_variable_is_one_of_the_table(answer):
+def test_variables_follow_schema(answer):
     kind, dataset = answer
     for name, variable in dataset.data_vars.items():
         row = SCHEMA[name]
@@ -57,7 +57,7 @@ def test_every_variable_is_one_of_the_table(answer):
         assert axis.attrs["long_name"]
 
 
-def test_it_says_what_it_belongs_to(answer, motion):
+def test_attributes_name_motion_and_references(answer, motion):
     _, dataset = answer
     assert dataset.attrs["Conventions"] == "CF-1.11"
     assert dataset.attrs["motion"] == "noise"
@@ -67,22 +67,22 @@ def test_it_says_what_it_belongs_to(answer, motion):
     assert all(isinstance(value, str | int | float) for value in dataset.attrs.values())
 
 
-def test_it_is_written_and_read(answer, tmp_path):
+def test_dataset_survives_netcdf_round_trip(answer, tmp_path):
     _, dataset = answer
     dataset.to_netcdf(tmp_path / "answer.nc")
-    with xr.open_dataset(tmp_path / "answer.nc") as again:
-        xr.testing.assert_identical(again.load(), dataset)
+    with xr.open_dataset(tmp_path / "answer.nc") as stored:
+        xr.testing.assert_identical(stored.load(), dataset)
         for name in dataset.coords:
-            assert "_FillValue" not in again[name].encoding
+            assert "_FillValue" not in stored[name].encoding
 
 
-def test_answers_are_the_callers_own(motion):
+def test_changing_dataset_does_not_change_motion(motion):
     path = velocity_and_displacement(motion)
     path.ground_acceleration[:] = 0.0
     assert np.abs(motion.si.horizontal.samples).max() > 0.0
 
 
-def test_the_guide_tells_of_every_variable():
+def test_guide_documents_every_variable():
     text = GUIDE.read_text(encoding="utf-8")
     motion = rf.GroundMotion.sine_pulse().with_vertical(rf.GroundMotion.sine_pulse())
     for make in ANSWERS.values():
@@ -91,7 +91,7 @@ def test_the_guide_tells_of_every_variable():
             assert f"`{name}`" in text, name
 
 
-def test_measures_of_a_block_come_with_a_block_only(motion):
+def test_block_measures_require_block(motion):
     plain, with_block = intensity_measures(motion), intensity_measures(motion, block=BLOCK)
     assert set(plain.data_vars) < set(with_block.data_vars)
     assert "block" not in plain.attrs
@@ -100,7 +100,7 @@ def test_measures_of_a_block_come_with_a_block_only(motion):
     assert with_block.overturning_angle.item() == math.atan(0.25)
 
 
-def test_a_frame_stands_for_a_block(motion):
+def test_frame_is_accepted_as_block(motion):
     frame = rf.FrameEquivalent(width="4 m", height="18 m", mass="99 t", shape_factor=1.4)
     measures = intensity_measures(motion, block=frame)
     p = math.sqrt(1.4 / 2.4 * 9.80665 / math.hypot(2.0, 9.0))
@@ -109,9 +109,9 @@ def test_a_frame_stands_for_a_block(motion):
     )
 
 
-def test_ground_that_stands_still():
-    still = rf.GroundMotion.from_arrays((np.zeros(100), "m/s^2"), "0.01 s")
-    measures = intensity_measures(still, block=BLOCK)
+def test_measures_of_still_ground_are_zero_or_nan():
+    at_rest = rf.GroundMotion.from_arrays((np.zeros(100), "m/s^2"), "0.01 s")
+    measures = intensity_measures(at_rest, block=BLOCK)
     undefined = {"mean_period", "predominant_velocity_period", "relative_predominant_frequency"}
     of_the_block = {"overturning_angle", "uplift_acceleration"}
     for name, value in measures.data_vars.items():
@@ -119,20 +119,20 @@ def test_ground_that_stands_still():
             assert math.isnan(value.item()), name
         elif name not in of_the_block:
             assert value.item() == 0.0, name
-    assert (response_spectrum(still).spectral_displacement == 0.0).all()
-    assert (fourier_spectrum(still).fourier_amplitude == 0.0).all()
+    assert (response_spectrum(at_rest).spectral_displacement == 0.0).all()
+    assert (fourier_spectrum(at_rest).fourier_amplitude == 0.0).all()
 
 
 @pytest.mark.parametrize(("peak", "counts"), [(0.3, False), (0.5, True)])
-def test_a_second_may_be_strong_where_it_begins_between_two_samples(peak, counts):
-    """The second from 1 s on begins with two thirds of the peak at 0.9 s, and has no other."""
+def test_standardized_absolute_velocity_interpolates_start_of_second(peak, counts):
+    """The second from 1 s on begins with two thirds of the peak at 0.9 s, its largest value."""
     samples = [0.0, 0.0, 0.0, peak, 0.0, 0.0, 0.0]
     motion = rf.GroundMotion.from_arrays((samples, "m/s^2"), "0.3 s")
-    found = intensity_measures(motion, gravity="10 m/s^2")  # threshold 0.25 m/s^2
-    standard = found.standardized_cumulative_absolute_velocity.item()
-    whole = found.cumulative_absolute_velocity.item()
-    assert whole == pytest.approx(0.3 * peak)
-    assert (standard == pytest.approx(whole)) is counts
+    measures = intensity_measures(motion, gravity="10 m/s^2")  # threshold 0.25 m/s^2
+    standard = measures.standardized_cumulative_absolute_velocity.item()
+    total = measures.cumulative_absolute_velocity.item()
+    assert total == pytest.approx(0.3 * peak)
+    assert (standard == pytest.approx(total)) is counts
 
 
 def test_standardized_absolute_velocity_leaves_out_weak_seconds():

@@ -15,8 +15,8 @@ def test_a_motion_is_drawn_in_three_rows(tmp_path):
     labels = [axes.get_ylabel().split("\n")[0] for axes in figure.axes]
     assert labels == ["acceleration", "velocity", "displacement"]
     assert figure.axes[-1].get_xlabel() == "time [s]"
-    drawn = figure.axes[0].get_lines()[0].get_ydata()
-    np.testing.assert_array_equal(drawn, PULSE.si.horizontal.samples)
+    plotted = figure.axes[0].get_lines()[0].get_ydata()
+    np.testing.assert_array_equal(plotted, PULSE.si.horizontal.samples)
     assert figure.get_suptitle() == PULSE.name
     figure.savefig(tmp_path / "motion.png")
 
@@ -29,7 +29,7 @@ def test_a_vertical_component_is_drawn_too():
 
 
 @pytest.mark.parametrize("component", ["horizontal", "vertical"])
-def test_spectra_stand_below_the_history(component, tmp_path):
+def test_spectra_are_drawn_below_history(component, tmp_path):
     motion = PULSE.with_vertical(PULSE.scaled(0.5))
     periods = (["0", "0.1", "0.5", "1"], "s")
     figure = rf.plot.spectra(motion, periods, (0.02, 0.05), component=component).figure
@@ -43,7 +43,7 @@ def test_spectra_stand_below_the_history(component, tmp_path):
     figure.savefig(tmp_path / "spectra.png")
 
 
-def test_ground_that_stands_still_can_be_drawn(tmp_path):
+def test_still_ground_can_be_drawn(tmp_path):
     still = rf.GroundMotion.from_arrays((np.zeros(50), "m/s^2"), "0.01 s")
     rf.plot.motion(still).figure.savefig(tmp_path / "motion.png")
     rf.plot.spectra(still, (["0.1", "1"], "s")).figure.savefig(tmp_path / "spectra.png")

@@ -20,7 +20,7 @@ PERIODS = (np.geomspace(0.02, 5.0, 30), "s")
 STEP = 0.02
 SAMPLES = np.convolve(np.random.default_rng(11).normal(size=400), np.hanning(7), "same")
 
-# powers of the acceleration that the measures grow with
+# exponents of the acceleration in the measures
 POWERS = {
     "peak_ground_acceleration": 1,
     "peak_ground_velocity": 1,
@@ -42,22 +42,22 @@ def motion(samples=SAMPLES, unit="m/s^2", step=f"{STEP} s"):
     return rf.GroundMotion.from_arrays((samples, unit), step)
 
 
-def spectra(given):
-    return response_spectrum(given, PERIODS, (0.0, 0.05))
+def spectra(record):
+    return response_spectrum(record, PERIODS, (0.0, 0.05))
 
 
-def test_measures_grow_with_the_motion():
+def test_measures_scale_with_motion():
     one = intensity_measures(motion(), block=BLOCK)
     threefold = intensity_measures(motion().scaled(3.0), block=BLOCK)
     for name, power in POWERS.items():
         assert threefold[name].item() == pytest.approx(3.0**power * one[name].item(), rel=1e-12)
-    together = intensity_measures(motion().scaled(3.0), block=BLOCK, threshold="0.15 g_0")
-    assert together.bracketed_duration.item() == pytest.approx(
+    rescaled = intensity_measures(motion().scaled(3.0), block=BLOCK, threshold="0.15 g_0")
+    assert rescaled.bracketed_duration.item() == pytest.approx(
         one.bracketed_duration.item(), rel=1e-12
     )
 
 
-def test_spectra_grow_with_the_motion():
+def test_spectra_scale_with_motion():
     one, threefold = spectra(motion()), spectra(motion().scaled(3.0))
     for name in one.data_vars:
         np.testing.assert_allclose(threefold[name], 3.0 * one[name], rtol=1e-12)
@@ -67,22 +67,22 @@ def test_spectra_grow_with_the_motion():
     )
 
 
-def test_the_absolute_acceleration_is_never_below_the_pseudo_one():
-    found = spectra(motion())
-    pseudo, absolute = found.pseudo_spectral_acceleration, found.absolute_spectral_acceleration
+def test_absolute_acceleration_is_at_least_pseudo_acceleration():
+    result = spectra(motion())
+    pseudo, absolute = result.pseudo_spectral_acceleration, result.absolute_spectral_acceleration
     np.testing.assert_allclose(absolute[0], pseudo[0], rtol=1e-12)
     assert (absolute[1] >= pseudo[1] * (1.0 - 1e-6)).all()
 
 
-def test_a_mirrored_motion_measures_the_same():
+def test_mirrored_motion_has_equal_measures():
     mirrored = motion(-SAMPLES)
-    one, other = (intensity_measures(given, block=BLOCK) for given in (motion(), mirrored))
+    one, other = (intensity_measures(record, block=BLOCK) for record in (motion(), mirrored))
     for name in one.data_vars:
         assert one[name].item() == other[name].item(), name
     one, other = spectra(motion()), spectra(mirrored)
     for name in one.data_vars:
         np.testing.assert_array_equal(one[name].values, other[name].values)
-    one, other = (velocity_and_displacement(given) for given in (motion(), mirrored))
+    one, other = (velocity_and_displacement(record) for record in (motion(), mirrored))
     for name in one.data_vars:
         np.testing.assert_array_equal(one[name].values, -other[name].values)
 
@@ -91,8 +91,8 @@ def test_a_mirrored_motion_measures_the_same():
 def test_units_make_no_difference(unit, size):
     other = motion(SAMPLES / size, unit, f"{1000.0 * STEP} ms")
     one, same = (
-        intensity_measures(given, block=BLOCK, threshold=threshold)
-        for given, threshold in ((motion(), "0.5 m/s^2"), (other, "50 cm/s^2"))
+        intensity_measures(record, block=BLOCK, threshold=threshold)
+        for record, threshold in ((motion(), "0.5 m/s^2"), (other, "50 cm/s^2"))
     )
     for name in one.data_vars:
         assert same[name].item() == pytest.approx(one[name].item(), rel=1e-10), name
@@ -101,7 +101,7 @@ def test_units_make_no_difference(unit, size):
         np.testing.assert_allclose(same[name], one[name], rtol=1e-11)
 
 
-def test_a_slower_and_weaker_motion_is_the_same_to_a_larger_block():
+def test_relative_measures_are_invariant_to_time_and_size_scaling():
     """Same shape, time stretched by 2, block four times as large."""
     slow = motion(step=f"{2.0 * STEP} s")
     large = rf.Block(width="4 m", height="16 m", mass="1 t")
@@ -109,18 +109,18 @@ def test_a_slower_and_weaker_motion_is_the_same_to_a_larger_block():
     other = intensity_measures(slow, block=large)
     for name in ("relative_peak_ground_acceleration", "relative_peak_ground_velocity"):
         assert other[name].item() == pytest.approx(one[name].item(), rel=1e-12)
-    # the period is read from a grid
+    # the period is found on a grid
     assert other.relative_predominant_frequency.item() == pytest.approx(
         one.relative_predominant_frequency.item(), rel=2e-2
     )
 
 
-def test_the_same_straight_lines_in_finer_steps():
+def test_linear_refining_preserves_measures():
     coarse, fine = motion(), motion().resampled(f"{STEP / 7.0!r} s", interpolation="linear")
     one, other = spectra(coarse), spectra(fine)
     for name in one.data_vars:
         np.testing.assert_allclose(other[name], one[name], rtol=3e-6)
-    one, other = (intensity_measures(given, block=BLOCK) for given in (coarse, fine))
+    one, other = (intensity_measures(record, block=BLOCK) for record in (coarse, fine))
     for name in (
         "peak_ground_acceleration",
         "peak_ground_velocity",
@@ -131,14 +131,14 @@ def test_the_same_straight_lines_in_finer_steps():
         assert other[name].item() == pytest.approx(one[name].item(), rel=1e-9), name
 
 
-def test_zeros_before_a_motion_delay_it():
+def test_leading_zeros_do_not_change_spectra():
     late = motion(np.concatenate([np.zeros(100), SAMPLES]))
     one, other = spectra(motion(np.concatenate([[0.0], SAMPLES]))), spectra(late)
     for name in one.data_vars:
         np.testing.assert_allclose(other[name], one[name], rtol=1e-12)
 
 
-def test_longer_still_ground_changes_no_spectrum():
+def test_trailing_zeros_do_not_change_spectra():
     """The free vibration after the motion is part of the response."""
     ended = motion(np.append(SAMPLES, 0.0))
     longer = motion(np.concatenate([SAMPLES, np.zeros(500)]))

@@ -1,4 +1,4 @@
-"""Spectra with and without a compiler: the march differs, the numbers do not."""
+"""Spectra with and without compilation agree."""
 
 import os
 import subprocess
@@ -29,7 +29,7 @@ np.savez(sys.argv[1], **found)
 
 @pytest.mark.wide
 @pytest.mark.skipif(
-    os.environ.get("ROCKFRAME_COMPILE") == "0", reason="this run does without compilation"
+    os.environ.get("ROCKFRAME_COMPILE") == "0", reason="compilation is off in this run"
 )
 @pytest.mark.filterwarnings("ignore:response_spectrum. the record is sampled")
 def test_compiled_and_plain_agree(tmp_path, monkeypatch):
@@ -58,6 +58,8 @@ def test_a_long_motion_is_filtered_in_pieces(monkeypatch):
 
     pieces = np.random.default_rng(1).normal(size=(500, 2))
     periods = np.array([0.05, 0.3, 4.0])
-    whole = filtering.filter_all(pieces, 0.02, 0.05, periods)
+    expected = filtering.filter_all(pieces, 0.02, 0.05, periods)
     monkeypatch.setattr(filtering, "_STEPS_IN_PART", 64)
-    np.testing.assert_allclose(filtering.filter_all(pieces, 0.02, 0.05, periods), whole, rtol=1e-10)
+    np.testing.assert_allclose(
+        filtering.filter_all(pieces, 0.02, 0.05, periods), expected, rtol=1e-10
+    )

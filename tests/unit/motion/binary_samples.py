@@ -1,4 +1,4 @@
-"""Small made-up files of the formats that are not text, and StationXML to go with them."""
+"""Small synthetic files of the binary formats, and StationXML for them."""
 
 import itertools
 import json
@@ -72,7 +72,7 @@ def asdf(
     channels=(("HNE", "E"), ("HNN", "N"), ("HNZ", "U")),
     pieces: int = 1,
 ) -> bytes:
-    """The workspace of an event as gmprocess lays it out: groups and arrays of HDF5."""
+    """An HDF5 workspace of one event in the layout of gmprocess."""
     path = folder / "made.h5"
     with netCDF4.Dataset(path, "w") as file:
         file.setncatts({"file_format": "ASDF", "file_format_version": "1.0.3"})
@@ -85,10 +85,10 @@ def asdf(
         if xml is not None:
             _array(group, "StationXML", np.frombuffer(xml.encode(), np.int8))
         if unit is not None:
-            told = json.dumps({"standard": {"units": unit}}).encode()
+            supplement = json.dumps({"standard": {"units": unit}}).encode()
             statistics = file.createGroup("AuxiliaryData").createGroup("StreamSupplementalStats")
             name = f"XX.MADE.--.HN_{tag}"
-            _array(statistics.createGroup("XX.MADE"), name, np.frombuffer(told, np.uint8))
+            _array(statistics.createGroup("XX.MADE"), name, np.frombuffer(supplement, np.uint8))
     return path.read_bytes()
 
 
@@ -106,4 +106,4 @@ BINARY = {
     "sac": ("s.sac", lambda _: sac(), {"unit": "gal"}),
     "asdf": ("w.h5", asdf, {"component": ("N", "Z")}),
 }
-"""Of each format the name of a file, what makes its bytes in a folder, and what to ask for."""
+"""For each format: file name, function that makes its bytes in a folder, reading arguments."""

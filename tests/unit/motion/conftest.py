@@ -5,7 +5,7 @@ import pytest
 
 @pytest.fixture
 def write(tmp_path: Path):
-    """Write text or bytes to a file and give its path."""
+    """Write text or bytes to a file and return its path."""
 
     def _write(content: str | bytes, name: str = "record.AT2") -> Path:
         path = tmp_path / name

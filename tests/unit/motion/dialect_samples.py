@@ -1,4 +1,4 @@
-"""Small made-up files of the dialects of agencies, after their descriptions."""
+"""Small synthetic files in the dialects of agencies, from their format descriptions."""
 
 from __future__ import annotations
 
@@ -65,9 +65,12 @@ def usc(*, unit: str = "IN UNITS CM/SEC/SEC", stated: float | None = None) -> st
         f"PEAK ACCELERATION = {stated:10.5f}  CMS/SEC/SEC AT    4.580   SEC.",
     ]
     blocks = "".join(
-        f"{COUNT:6d} POINTS OF {kind} DATA EQUALLY SPACED AT   .010 SEC.  {said}\n"
+        f"{COUNT:6d} POINTS OF {kind} DATA EQUALLY SPACED AT   .010 SEC.  {unit_text}\n"
         + rows(data, 8, "{:10.3f}")
-        for kind, said, data in (("ACC", unit, values), ("VEL", "IN UNITS CM/SEC", VALUES["N"]))
+        for kind, unit_text, data in (
+            ("ACC", unit, values),
+            ("VEL", "IN UNITS CM/SEC", VALUES["N"]),
+        )
     )
     reals = rows([0.0] * 100, 8, "{:10.3f}")
     return "\n".join(head) + "\n" + rows([0] * 100, 16, "{:5d}") + reals + blocks
@@ -134,7 +137,7 @@ def itaca(**changed: str) -> str:
 
 
 def marked_at2(values, *, end: str = "*** End Data ***\n\n") -> str:
-    """An AT2 file with marks around header and data."""
+    """An AT2 file with markers around header and data."""
     return (
         "Made up\nThe units are (g)\n*** Begin data ***\n"
         f"NPTS= {len(values)}, DT= .01000 SEC\n" + rows(values, 8, "{:10.5f}") + end
@@ -218,7 +221,7 @@ def csmnc(*, kind: str = "UNCORRECTED ACCELERATION", unit: str = "CM/SEC/SEC") -
 
 
 def resorce(*, count: int = COUNT, unit: str = "m/s/s") -> str:
-    """A file of RESORCE, whose numbers run together."""
+    """A file of RESORCE, with adjoining numbers."""
     values = 0.01 * VALUES["N"]
     head = [
         "Event Date & Time             : 2009-04-06 01:32:39",
@@ -268,7 +271,7 @@ def unam(*, orientations: str = "/V/N90E/S00E", step: str = "0.01") -> str:
 
 
 def three_columns(separator: str = ",") -> str:
-    """A table of three components, in two units, beside a velocity."""
+    """A table of three components in two units and a velocity."""
     names = separator.join(("time (s)", "N (mm/s^2)", "E (cm/s^2)", "U (cm/s^2)", "vN (cm/s)"))
     lines = [
         separator.join(

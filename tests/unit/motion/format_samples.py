@@ -1,4 +1,4 @@
-"""A small made-up file of every text format, and what must be read from it."""
+"""A small synthetic file of every text format, and its expected contents."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ COUNTS = np.round(1e4 * numbers(COUNT)).astype(int) - 12085
 
 @dataclass(frozen=True)
 class Sample:
-    """A file and what must be read from it."""
+    """A file and its expected contents."""
 
     format: str
     name: str

@@ -17,7 +17,7 @@ def numbers(count: int) -> np.ndarray:
 
 
 def rows(values, per_line: int = 5, form: str = "{:15.7E}", end: str = "\n") -> str:
-    """Numbers in fixed width, some per line."""
+    """Numbers in fixed width, `per_line` to a line."""
     printed = [form.format(value) for value in values]
     lines = ["".join(printed[k : k + per_line]) for k in range(0, len(printed), per_line)]
     return end.join(lines) + end

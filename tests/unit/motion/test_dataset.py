@@ -1,4 +1,4 @@
-"""To a dataset and back, bit for bit, in memory and through a file."""
+"""Round trips through datasets, in memory and in files, preserve every bit."""
 
 import json
 
@@ -41,7 +41,7 @@ def test_in_memory(motion):
 
 
 @pytest.mark.parametrize("format_name", ["NETCDF4", "NETCDF3_64BIT"])
-def test_through_a_file(motion, tmp_path, format_name):
+def test_motion_survives_netcdf_round_trip(motion, tmp_path, format_name):
     path = tmp_path / "motion.nc"
     motion.to_dataset().to_netcdf(path, engine="netcdf4", format=format_name)
     with xr.open_dataset(path, engine="netcdf4") as stored:
@@ -50,7 +50,7 @@ def test_through_a_file(motion, tmp_path, format_name):
         assert stored["time"].dtype == np.float64
 
 
-def test_a_record_through_a_file(write, tmp_path):
+def test_record_survives_netcdf_round_trip(write, tmp_path):
     read = GroundMotion.read(write(at2("NPTS= 30, DT= .005 SEC", numbers(30))))
     path = tmp_path / "motion.nc"
     read.to_dataset().to_netcdf(path)
@@ -100,14 +100,14 @@ def test_changed_samples_are_noticed():
         GroundMotion.from_dataset(dataset)
 
 
-def test_samples_changed_on_purpose_lose_the_recipe():
+def test_samples_changed_without_digest_lose_constructor():
     dataset = pulse().to_dataset()
     dataset["acceleration_pieces"].values[:] = 0.0
     del dataset.attrs["motion_sha256"]
     assert GroundMotion.from_dataset(dataset).to_dict()["constructor"] is None
 
 
-def test_a_hand_made_dataset():
+def test_dataset_with_only_samples_and_time_is_accepted():
     acceleration = ("time", [0.0, 1.0, 2.0], {"units": "m s^-2"})
     dataset = xr.Dataset({"acceleration": acceleration}, coords={"time": [0.0, 0.02, 0.04]})
     motion = GroundMotion.from_dataset(dataset)
@@ -131,12 +131,12 @@ def test_a_hand_made_dataset():
         (lambda d: d.assign(acceleration_pieces=(("a", "b"), np.zeros((2, 2)))), "units None"),
     ],
 )
-def test_datasets_that_hold_no_motion(damage, words):
+def test_invalid_datasets_are_refused(damage, words):
     with pytest.raises(SchemaError, match=words):
         GroundMotion.from_dataset(damage(plain().to_dataset()))
 
 
-def test_an_uneven_time_axis():
+def test_uneven_time_axis_is_refused():
     acceleration = ("time", [0.0, 1.0, 2.0], {"units": "m s^-2"})
     dataset = xr.Dataset({"acceleration": acceleration}, coords={"time": [0.0, 0.02, 0.05]})
     with pytest.raises(SchemaError, match="uneven time axis"):

@@ -1,4 +1,4 @@
-"""What is wrong with a file before its format matters, and the choice of format."""
+"""Files that are invalid in any format, and the choice of format."""
 
 import os
 import sys
@@ -53,7 +53,7 @@ def test_directory(tmp_path):
 
 
 @pytest.mark.parametrize("path", ["bad\x00name", 3.5, None])
-def test_what_names_no_file(path):
+def test_invalid_path_is_refused(path):
     with pytest.raises(RecordError, match="names no file"):
         GroundMotion.read(path)
 
@@ -74,7 +74,7 @@ def test_pipe_is_refused_without_waiting(tmp_path):
         GroundMotion.read(path)
 
 
-def test_formats_are_listed_and_can_be_named(write):
+def test_format_can_be_specified_by_name(write):
     assert {"peer-at2", "text"} <= {entry.name for entry in formats()}
     motion = GroundMotion.read(write(AT2, "record.unknown"), format="peer-at2")
     assert motion == GroundMotion.read(write(AT2, "record.unknown"))
@@ -106,13 +106,13 @@ def test_source_is_recorded(write):
 
 @st.composite
 def damaged(draw):
-    """A record with some bytes changed, cut out or put in."""
+    """A record with some bytes changed, deleted or inserted."""
     name, text = draw(st.sampled_from([("r.AT2", AT2), ("r.csv", CSV)]))
     data = bytearray(text.encode())
     for _ in range(draw(st.integers(1, 4))):
         place = draw(st.integers(0, len(data)))
         kind = draw(st.sampled_from(["change", "cut", "insert", "end"]))
-        some = draw(
+        inserted = draw(
             st.binary(min_size=1, max_size=4)
             | st.sampled_from(
                 [
@@ -133,11 +133,11 @@ def damaged(draw):
             )
         )
         if kind == "change":
-            data[place : place + len(some)] = some
+            data[place : place + len(inserted)] = inserted
         elif kind == "cut":
             del data[place : place + draw(st.integers(1, 40))]
         elif kind == "insert":
-            data[place:place] = some
+            data[place:place] = inserted
         elif kind == "end":
             del data[max(place, 1) :]
     return name, bytes(data)

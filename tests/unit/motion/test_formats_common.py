@@ -1,4 +1,4 @@
-"""What must hold for a file of every format."""
+"""Properties required of every format."""
 
 import hashlib
 import re
@@ -21,7 +21,7 @@ def sample(request):
     return SAMPLES[request.param]
 
 
-def test_it_is_recognised_and_read(sample, tmp_path):
+def test_sample_file_is_recognised_and_read(sample, tmp_path):
     motion = GroundMotion.read(sample.write(tmp_path), component=sample.component)
     assert motion.metadata["format"] == sample.format
     assert motion.si.time_step == sample.time_step
@@ -30,13 +30,13 @@ def test_it_is_recognised_and_read(sample, tmp_path):
     assert motion.name == Path(sample.name).stem
 
 
-def test_it_is_recognised_whatever_its_name(sample, tmp_path):
+def test_format_is_recognised_regardless_of_file_name(sample, tmp_path):
     path = tmp_path / "record"
     path.write_bytes(sample.data)
     assert GroundMotion.read(path, component=sample.component).metadata["format"] == sample.format
 
 
-def test_it_says_where_it_comes_from(sample, tmp_path):
+def test_metadata_describe_source(sample, tmp_path):
     path = sample.write(tmp_path)
     motion = GroundMotion.read(path, component=sample.component)
     assert motion.metadata["source_file"] == sample.name
@@ -78,19 +78,19 @@ def test_any_other_format_is_refused(key, other, tmp_path):
             GroundMotion.read(path, format=other, component=sample.component)
 
 
-def test_a_component_that_it_has_not_is_refused(sample, tmp_path):
+def test_missing_component_is_refused(sample, tmp_path):
     with pytest.raises(RecordError, match="the component 'nowhere'"):
         GroundMotion.read(sample.write(tmp_path), component="nowhere")
 
 
-def test_another_time_step_than_asked_for_is_refused(sample, tmp_path):
+def test_contradicting_time_step_argument_is_refused(sample, tmp_path):
     path = sample.write(tmp_path)
     GroundMotion.read(path, component=sample.component, time_step=f"{sample.time_step} s")
     with pytest.raises(RecordError, match=r"expected the 0\.5 s asked for"):
         GroundMotion.read(path, component=sample.component, time_step="0.5 s")
 
 
-def test_another_unit_than_its_own_is_used_and_warned_about(sample, tmp_path):
+def test_unit_argument_overrides_file_unit_with_warning(sample, tmp_path):
     path = sample.write(tmp_path)
     own = GroundMotion.read(path, component=sample.component)
     words = r"(, line \d+)?: the unit of the file is '.*', but unit='mm/s\^2' was asked for"

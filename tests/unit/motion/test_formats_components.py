@@ -1,4 +1,4 @@
-"""Which component is read: names, directions, numbers, pairs."""
+"""Choice of components: names, directions, channel numbers, pairs."""
 
 import numpy as np
 import pytest
@@ -78,14 +78,14 @@ def test_directions_by_name(name, expected):
     assert orientation_of(name) == expected
 
 
-def test_north_is_0_and_360():
+def test_azimuths_0_and_360_match():
     assert level(0.0).matches(level(360.0))
     assert not level(0.0).matches(level(180.0))
     assert not UNKNOWN.matches(UNKNOWN)
 
 
 @pytest.mark.parametrize(
-    ("asked", "expected"),
+    ("component", "expected"),
     [
         ("N", NORTH),
         ("n-s", NORTH),
@@ -100,30 +100,30 @@ def test_north_is_0_and_360():
         ("V", UP),
     ],
 )
-def test_by_name_or_direction(write, asked, expected):
-    motion = GroundMotion.read(write(cwa(), "r.dat"), component=asked)
+def test_component_is_chosen_by_name_or_direction(write, component, expected):
+    motion = GroundMotion.read(write(cwa(), "r.dat"), component=component)
     assert motion.si.horizontal.samples.tolist() == pytest.approx(expected.tolist())
     assert motion.si.vertical is None
     assert "(of U, N, E)" in motion.history[1]
 
 
 @pytest.mark.parametrize(
-    ("asked", "expected"),
+    ("component", "expected"),
     [("channel 1", NORTH), ("chan 2", UP), ("Ch. 3", EAST), ("#3", EAST), ("3", EAST), ("2", UP)],
 )
-def test_by_number(write, asked, expected):
-    motion = GroundMotion.read(write(csmip(2), "r.V2"), component=asked)
+def test_component_is_chosen_by_channel_number(write, component, expected):
+    motion = GroundMotion.read(write(csmip(2), "r.V2"), component=component)
     assert motion.si.horizontal.samples.tolist() == pytest.approx(expected.tolist())
 
 
-def test_a_direction_goes_before_a_number(write):
+def test_direction_takes_precedence_over_channel_number(write):
     text = geonet_component(VALUES["N"], name="Up", azimuth=0)
     text += geonet_component(VALUES["E"], name="N02E", azimuth=2)
     motion = GroundMotion.read(write(text, "r.V2A"), component="2")
     assert motion.metadata["component"] == "N02E"
 
 
-def test_without_a_name_a_file_of_several_is_refused_and_listed(write):
+def test_unspecified_component_raises_and_lists_components(write):
     with pytest.raises(RecordError) as caught:
         GroundMotion.read(write(cwa(), "r.dat"))
     error = caught.value
@@ -132,7 +132,7 @@ def test_without_a_name_a_file_of_several_is_refused_and_listed(write):
     assert "component=('N', 'U')" in error.expected
 
 
-def test_a_name_that_is_not_there_is_refused_and_the_others_listed(write):
+def test_unknown_component_raises_and_lists_components(write):
     with pytest.raises(RecordError, match=r"'U' \(up\), 'N'.*expected the component 'S45E'"):
         GroundMotion.read(write(cwa(), "r.dat"), component="S45E")
 
@@ -148,7 +148,7 @@ def test_the_only_horizontal_component_needs_no_name(write):
     assert motion.history[1] == "component 360 Deg taken (of 360 Deg, Up)"
 
 
-def test_two_of_one_name_are_told_apart_by_their_numbers(write):
+def test_components_with_same_name_need_channel_number(write):
     text = cosmos_block("acceleration", VALUES["N"], chan="  4: 360 Deg")
     text += cosmos_block("acceleration", VALUES["E"], chan="  7: 360 Deg")
     path = write(text, "r.V2c")
@@ -162,23 +162,23 @@ def test_two_of_one_name_are_told_apart_by_their_numbers(write):
 
 
 class TestPairs:
-    @pytest.mark.parametrize("asked", [("E", "U"), ["090", "up"], ("E", "Z")])
-    def test_a_horizontal_and_the_vertical_component(self, write, asked):
-        motion = GroundMotion.read(write(cwa(), "r.dat"), component=asked)
+    @pytest.mark.parametrize("component", [("E", "U"), ["090", "up"], ("E", "Z")])
+    def test_a_horizontal_and_the_vertical_component(self, write, component):
+        motion = GroundMotion.read(write(cwa(), "r.dat"), component=component)
         assert motion.si.horizontal.samples.tolist() == pytest.approx(EAST.tolist())
         assert motion.si.vertical.samples.tolist() == pytest.approx(UP.tolist())
         assert motion.metadata["component"] == "E"
         assert motion.metadata["vertical_component"] == "U"
         assert "component E taken as horizontal, U as vertical" in motion.history
 
-    def test_it_is_what_with_vertical_makes_of_two(self, write):
+    def test_pair_equals_with_vertical(self, write):
         path = write(geonet(), "r.V2A")
         both = GroundMotion.read(path, component=("S16W", "Up"))
         across, upwards = (GroundMotion.read(path, component=name) for name in ("S16W", "Up"))
         assert both.sha256 == across.with_vertical(upwards).sha256
 
     @pytest.mark.parametrize(
-        ("asked", "words"),
+        ("component", "words"),
         [
             (("N", "E"), "'E' .* asked for as the vertical one; expected a vertical"),
             (("U", "N"), "'U' .* asked for as the horizontal one"),
@@ -186,9 +186,9 @@ class TestPairs:
             (("N", "T"), "expected the component 'T'"),
         ],
     )
-    def test_what_is_no_such_pair(self, write, asked, words):
+    def test_invalid_pairs_are_refused(self, write, component, words):
         with pytest.raises(RecordError, match=words):
-            GroundMotion.read(write(cwa(), "r.dat"), component=asked)
+            GroundMotion.read(write(cwa(), "r.dat"), component=component)
 
     def test_a_file_of_one_component_has_no_pair(self, write):
         with pytest.raises(RecordError, match=r"one component, '360'.*with_vertical"):
@@ -200,13 +200,13 @@ class TestPairs:
         assert motion.si.vertical.samples.tolist() == pytest.approx((-UP).tolist())
         assert "component -U turned over: positive upwards" in motion.history
 
-    def test_asked_for_upwards_it_is_turned_over_too(self, write):
+    def test_upward_direction_inverts_downward_component(self, write):
         path = write(cwa(sequence="Time U(-); N(+); E(+)"), "r.dat")
         turned = GroundMotion.read(path, component="up")
         assert turned.si.horizontal.samples.tolist() == pytest.approx((-UP).tolist())
         assert "turned over" in turned.history[-1]
-        as_it_is = GroundMotion.read(path, component="-U")
-        assert as_it_is.si.horizontal.samples.tolist() == pytest.approx(UP.tolist())
+        unchanged = GroundMotion.read(path, component="-U")
+        assert unchanged.si.horizontal.samples.tolist() == pytest.approx(UP.tolist())
 
     def test_a_component_of_unknown_sense_is_warned_about(self, write):
         text = cosmos_block("acceleration", VALUES["N"])
@@ -231,7 +231,7 @@ class TestPairs:
         motion = GroundMotion.read(write(text, "r.V2c"), component=("N", "U"))
         np.testing.assert_allclose(motion.si.vertical.samples, VALUES["U"] * 9.80665e-3, rtol=1e-12)
 
-    def test_time_steps_must_not(self, write):
+    def test_different_time_steps_of_pair_are_refused(self, write):
         text = cosmos_block("acceleration", VALUES["N"])
         text += cosmos_block(
             "acceleration", VALUES["U"], chan="  2: Up", azimuth=400, milliseconds=5.0
@@ -239,7 +239,7 @@ class TestPairs:
         with pytest.raises(RecordError, match=r"time steps of 0\.01 s and 0\.005 s"):
             GroundMotion.read(write(text, "r.V2c"), component=("N", "U"))
 
-    def test_nor_start_times(self, write):
+    def test_different_start_times_of_pair_are_refused(self, write):
         later = cosmos_block("acceleration", VALUES["U"], chan="  2: Up", azimuth=400)
         text = cosmos_block("acceleration", VALUES["N"]) + later.replace("17:29:39.", "17:29:40.")
         with pytest.raises(RecordError, match=r"start at .*39\.137 UTC and at .*40\.137 UTC"):
@@ -247,19 +247,19 @@ class TestPairs:
 
 
 class TestOnlyVertical:
-    def test_is_warned_about(self, write):
+    def test_default_component_warns(self, write):
         path = write(smc(name="UP", slope=0), "r.smc")
         with pytest.warns(RecordWarning, match=r"vertical, and is read as if.*with_vertical"):
             GroundMotion.read(path)
 
-    def test_not_if_it_was_asked_for(self, write):
+    def test_explicit_component_does_not_warn(self, write):
         GroundMotion.read(write(smc(name="UP", slope=0), "r.smc"), component="U")
 
 
 @pytest.mark.parametrize(
     "component", ["", "  ", 3, ("N",), ("N", "U", "E"), ("N", 3), ("N", ""), {"N": "U"}, object()]
 )
-def test_what_names_no_component(write, component):
+def test_invalid_component_arguments_are_refused(write, component):
     sample = SAMPLES["cwa"]
     with pytest.raises(ComponentError, match=r"component=\('N', 'U'\)"):
         GroundMotion.read(write(sample.data, sample.name), component=component)

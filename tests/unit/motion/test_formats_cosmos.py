@@ -1,4 +1,4 @@
-"""COSMOS v1.20: fixed width, milliseconds, marks for what is unknown, many channels."""
+"""COSMOS v1.20: fixed width, milliseconds, markers of unknown values, several channels."""
 
 import numpy as np
 import pytest
@@ -11,8 +11,8 @@ from rockframe.motion import GroundMotion
 NORTH = VALUES["N"]
 
 
-def read(write, text, **given):
-    return GroundMotion.read(write(text, "r.V2c"), **given)
+def read(write, text, **options):
+    return GroundMotion.read(write(text, "r.V2c"), **options)
 
 
 def expect(motion, values=NORTH, factor=0.01, step=0.01):
@@ -22,7 +22,7 @@ def expect(motion, values=NORTH, factor=0.01, step=0.01):
     )
 
 
-def test_what_is_recorded(write):
+def test_metadata_are_read_from_header(write):
     metadata = read(write, cosmos(), component="N").metadata
     assert metadata["event"] == "Made Up Earthquake of Fri Nov 30, 2018 17:29 UTC"
     assert metadata["event_time"] == "2018/11/30 17:29:29 UTC"
@@ -45,8 +45,8 @@ def test_the_length_may_be_one_step_less(write):
 
 
 @pytest.mark.parametrize("milliseconds", [0.01, 1000.0])
-def test_a_time_step_that_the_length_contradicts_is_refused(write, milliseconds):
-    # 0.01 is what a file would say that takes the header for seconds
+def test_time_step_that_contradicts_length_is_refused(write, milliseconds):
+    # 0.01 is written by programs that take the unit of the header for seconds
     text = cosmos_block("acceleration", NORTH, milliseconds=milliseconds, length=0.61)
     with pytest.raises(RecordError, match=r"real headers 62, 63.*in milliseconds") as caught:
         read(write, text)
@@ -60,7 +60,7 @@ def test_an_unknown_or_impossible_time_step_is_refused(write, milliseconds):
     assert caught.value.line == 38
 
 
-def test_another_mark_for_what_is_unknown(write):
+def test_missing_value_marker_is_taken_from_header(write):
     text = cosmos_block("acceleration", NORTH, milliseconds=-777.0)
     text = text.replace("-999, -999.00", "-777, -777.00").replace("    -999", "    -777")
     with pytest.raises(RecordError, match="no sample interval"):
@@ -84,7 +84,7 @@ def test_units(write, unit, code, factor):
     expect(read(write, cosmos_block("acceleration", values, unit=unit, code=code)), values, factor)
 
 
-def test_a_unit_that_its_code_contradicts_is_refused(write):
+def test_unit_that_contradicts_unit_code_is_refused(write):
     text = cosmos_block("acceleration", NORTH, unit="cm/sec2(02)")
     with pytest.raises(RecordError, match=r"'cm/sec2' with the code 2, which is g"):
         read(write, text)
@@ -124,7 +124,7 @@ def test_layouts(write, layout, form):
 
 
 @pytest.mark.filterwarnings("ignore:.*lie around an offset")
-def test_numbers_that_touch_are_told_apart_by_their_width(write):
+def test_adjoining_numbers_are_split_by_width(write):
     values = np.round(-100.0 - abs(NORTH), 3)
     text = cosmos_block("acceleration", values, layout="8F8.3", form="{:8.3f}")
     assert "-1" in text.split("Format=(8F8.3)\n")[1].split("\n")[0][8:10]
@@ -199,17 +199,17 @@ def test_absurd_numbers_of_samples_are_refused(write, count, words):
 
 
 @pytest.mark.parametrize(
-    ("found", "replaced"),
+    ("reported", "field"),
     [("*", "*" * 10), ("nan", "NaN".rjust(10)), ("", " " * 10), ("_", "1_0".rjust(10))],
 )
-def test_a_field_that_is_no_number_is_refused_at_its_line(write, found, replaced):
+def test_a_field_that_is_no_number_is_refused_at_its_line(write, reported, field):
     lines = cosmos_block("acceleration", NORTH).split("\n")
     assert lines[47].strip().startswith(f"{COUNT} acceleration")
-    lines[50] = lines[50][:20] + replaced + lines[50][30:]
+    lines[50] = lines[50][:20] + field + lines[50][30:]
     with pytest.raises(RecordError, match="expected a number") as caught:
         read(write, "\n".join(lines))
     assert caught.value.line == 51
-    assert found.strip("_") in caught.value.found.lower()
+    assert reported.strip("_") in caught.value.found.lower()
 
 
 def test_d_exponents(write):

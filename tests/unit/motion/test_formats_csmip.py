@@ -1,4 +1,4 @@
-"""CSMIP volumes 1 and 2: layouts, channels, what is skipped and what is refused."""
+"""CSMIP volumes 1 and 2: layouts, channels, skipped and refused data."""
 
 import numpy as np
 import pytest
@@ -10,11 +10,11 @@ from rockframe.errors import RecordError
 from rockframe.motion import GroundMotion
 
 
-def read(write, text, name="r.V2", **given):
-    return GroundMotion.read(write(text, name), **given)
+def read(write, text, name="r.V2", **options):
+    return GroundMotion.read(write(text, name), **options)
 
 
-def test_what_is_recorded(write):
+def test_metadata_are_read_from_header(write):
     metadata = read(write, csmip(2), component="E").metadata
     assert metadata["event"] == "MADE UP EARTHQUAKE"
     assert metadata["event_time"] == "15 OCT 1979 - 2317 UTC"
@@ -35,14 +35,14 @@ def test_volume_1_is_in_g_and_nine_wide(write):
     assert motion.metadata["description"] == "uncorrected"
 
 
-def test_a_layout_that_is_not_stated_is_seen_from_a_full_line(write):
+def test_unstated_layout_is_inferred_from_full_line(write):
     text = csmip(2).replace(" (8f10.3)", "").replace(", in cm/sec2.", ".  (UNITS: CM/SEC/SEC)")
     motion = read(write, text, component="N")
     np.testing.assert_allclose(motion.si.horizontal.samples, VALUES["N"] * 0.01, rtol=1e-13)
     assert motion.metadata["unit_as_read"] == "CM/SEC/SEC"
 
 
-def test_a_line_that_is_no_full_line_is_refused(write):
+def test_incomplete_line_of_unstated_layout_is_refused(write):
     text = csmip_channel(1, 1e-3 * VALUES["N"], channel=1, name="N")
     lines = text.split("\n")
     place = next(k for k, line in enumerate(lines) if "POINTS OF ACCEL" in line)
@@ -64,7 +64,7 @@ def test_spectra_are_refused(write):
 
 
 def test_a_file_of_time_and_acceleration_pairs_is_refused(write):
-    # the oldest volume 1: pairs at uneven times, no line that announces equal steps
+    # the oldest volume 1 has pairs at uneven times and no line that states equal steps
     text = "UNCORRECTED ACCELEROGRAM DATA\nMADE UP\n" + "  .0000  .0012  .0210 -.0021\n" * 9
     with pytest.raises(RecordError, match="no evenly sampled accelerations"):
         read(write, text, "r.V1")
@@ -92,7 +92,7 @@ def test_headers_that_are_refused(write, old, new, words):
     assert caught.value.line is not None
 
 
-def test_a_unit_in_tenths_of_g_can_be_named(write):
+def test_missing_unit_can_be_passed_as_argument(write):
     text = csmip(1).replace("(UNITS: G)", "")
     with pytest.raises(RecordError, match="no unit"):
         read(write, text, "r.V1", component="N")
@@ -105,7 +105,7 @@ def test_a_smc_file_is_not_taken_for_one(write):
 
 
 @pytest.mark.parametrize("channel", [1, 2, 3])
-def test_a_channel_whose_data_are_not_announced_is_not_passed_over(write, channel):
+def test_channel_without_data_announcement_is_not_skipped(write, channel):
     parts = csmip(1).split("UNCORRECTED")
     parts[channel] = parts[channel].replace("POINTS OF ACCEL", "POINTS")
     text = "UNCORRECTED".join(parts)
@@ -117,7 +117,7 @@ def test_a_channel_whose_data_are_not_announced_is_not_passed_over(write, channe
         read(write, text, "r.V1", component=f"channel {channel}")
 
 
-def test_a_channel_of_pairs_without_their_number_is_not_passed_over(write):
+def test_channel_of_pairs_without_count_is_not_skipped(write):
     text = pairs().replace("NO. OF POINTS =", "NO. OF", 1)
     with pytest.raises(RecordError, match="found 3 components"):
         read(write, text, "r.v1")
@@ -125,7 +125,7 @@ def test_a_channel_of_pairs_without_their_number_is_not_passed_over(write):
         read(write, text, "r.v1", component="channel 1")
 
 
-def test_more_channels_than_any_building_has(write):
+def test_too_many_channels_are_refused(write):
     text = csmip_channel(1, [0.01] * 8, channel=1, name="N")
     with pytest.raises(RecordError, match="at most 500 channels"):
         read(write, text * 501, "r.V1")

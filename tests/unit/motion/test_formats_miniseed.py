@@ -1,4 +1,4 @@
-"""miniSEED: refused with advice without ObsPy, read with the response if it is there."""
+"""miniSEED: advice if ObsPy is missing, instrument response, damaged files."""
 
 import importlib.util
 import io
@@ -33,11 +33,11 @@ def compressed(counts, channel: str) -> bytes:
 
 
 @pytest.mark.parametrize("name", ["r.mseed", "r.txt", "r"])
-@pytest.mark.parametrize("given", [{}, {"unit": "g"}, {"format": "miniseed"}])
-def test_without_obspy_the_extra_to_install_is_named(write, monkeypatch, name, given):
+@pytest.mark.parametrize("arguments", [{}, {"unit": "g"}, {"format": "miniseed"}])
+def test_missing_obspy_error_names_extra_to_install(write, monkeypatch, name, arguments):
     monkeypatch.setitem(sys.modules, "obspy", None)
     with pytest.raises(RecordError, match=r"no ObsPy.*pip install 'rockframe\[records\]'"):
-        GroundMotion.read(write(miniseed(), name), **given)
+        GroundMotion.read(write(miniseed(), name), **arguments)
 
 
 def test_text_is_no_miniseed(write):
@@ -58,7 +58,7 @@ def test_obspy_is_not_imported_for_other_formats(write):
 
 @needs_obspy
 class TestWithObspy:
-    def test_counts_become_accelerations_by_the_response_beside_the_file(self, write):
+    def test_counts_are_converted_with_neighbouring_response_file(self, write):
         write(station_xml(), "r.xml")
         motion = GroundMotion.read(write(miniseed(), "r.mseed"))
         expected = (COUNTS - COUNTS.mean()) / 4e5
@@ -74,16 +74,16 @@ class TestWithObspy:
         assert "divided by the sensitivity of 400000 counts per m/s^2 (r.xml)" in motion.history[1]
 
     @pytest.mark.parametrize("name", ["r.StationXML.xml", "XX.MADE.xml", "all-XX.MADE.2018.XML"])
-    def test_names_of_a_response_beside_the_file(self, write, name):
+    def test_response_file_is_found_by_name(self, write, name):
         write(station_xml(), name)
         assert len(GroundMotion.read(write(miniseed(), "r.mseed"))) == COUNT
 
-    def test_other_files_beside_it_are_left_alone(self, write):
+    def test_unrelated_neighbouring_files_are_ignored(self, write):
         write(station_xml(), "other.xml")
         with pytest.raises(RecordError, match="counts, and no response"):
             GroundMotion.read(write(miniseed(), "r.mseed"))
 
-    def test_two_responses_beside_the_file(self, write):
+    def test_ambiguous_response_files_are_refused(self, write):
         write(station_xml(), "r.xml")
         other = write(station_xml(sensitivity=1e5), "XX.MADE.xml")
         path = write(miniseed(), "r.mseed")
@@ -94,19 +94,19 @@ class TestWithObspy:
         motion = GroundMotion.read(path, response=other)
         assert motion.metadata["sensitivity"] == 1e5
 
-    def test_a_response_that_is_given(self, write, tmp_path):
+    def test_response_argument_is_read_and_checked(self, write, tmp_path):
         folder = tmp_path / "elsewhere"
         folder.mkdir()
-        given = folder / "anything"
-        given.write_text(station_xml(), encoding="utf-8")
+        response = folder / "anything"
+        response.write_text(station_xml(), encoding="utf-8")
         path = write(miniseed(), "r.mseed")
-        assert len(GroundMotion.read(path, response=given)) == COUNT
-        given.write_text("no xml", encoding="utf-8")
+        assert len(GroundMotion.read(path, response=response)) == COUNT
+        response.write_text("no xml", encoding="utf-8")
         with pytest.raises(RecordError, match="no StationXML that can be read"):
-            GroundMotion.read(path, response=given)
-        given.write_text(station_xml(channels=(("HNZ", 0, -90),)), encoding="utf-8")
+            GroundMotion.read(path, response=response)
+        response.write_text(station_xml(channels=(("HNZ", 0, -90),)), encoding="utf-8")
         with pytest.raises(RecordError, match=r"the response of XX\.MADE\.\.HNE"):
-            GroundMotion.read(path, response=given)
+            GroundMotion.read(path, response=response)
         with pytest.raises(RecordError, match="no such file"):
             GroundMotion.read(path, response=folder / "nothing")
 
@@ -115,7 +115,7 @@ class TestWithObspy:
             GroundMotion.read(write(miniseed(), "r.mseed"))
 
     @pytest.mark.filterwarnings("ignore:.*lie around an offset")
-    def test_samples_with_a_unit_are_taken_as_they_are(self, write):
+    def test_unit_argument_overrides_response_file(self, write):
         write(station_xml(), "r.xml")
         motion = GroundMotion.read(write(miniseed(COUNTS // 100), "r.mseed"), unit="gal")
         assert motion.si.horizontal.samples.tolist() == pytest.approx(
@@ -135,12 +135,12 @@ class TestWithObspy:
             (station_xml(sensitivity=0.0), "sensitivity of 0.0"),
         ],
     )
-    def test_responses_that_give_no_acceleration(self, write, xml, words):
+    def test_responses_without_acceleration_are_refused(self, write, xml, words):
         write(xml, "r.xml")
         with pytest.raises(RecordError, match=words):
             GroundMotion.read(write(miniseed(), "r.mseed"))
 
-    def test_a_seismometer_beside_the_accelerometer_is_of_no_matter(self, write):
+    def test_seismometer_channel_does_not_affect_accelerometer(self, write):
         channels = (("HNE", 90, 0), ("HHE", 90, 0))
         xml = station_xml(channels=channels)
         before, after = xml.split('code="HHE"')
@@ -151,12 +151,12 @@ class TestWithObspy:
         with pytest.raises(RecordError, match="input unit 'M/S'"):
             GroundMotion.read(path, component="HHE")
 
-    def test_a_response_of_another_time_is_none(self, write):
+    def test_response_from_other_epoch_is_ignored(self, write):
         write(station_xml().replace("2010-01-01", "2020-01-01"), "r.xml")
         with pytest.raises(RecordError, match="counts, and no response"):
             GroundMotion.read(write(miniseed(), "r.mseed"))
 
-    def test_entities_are_left_alone(self, write, tmp_path):
+    def test_external_xml_entities_are_not_resolved(self, write, tmp_path):
         secret = tmp_path / "secret"
         secret.write_text("7", encoding="ascii")
         head, body = station_xml().split("\n", 1)
@@ -165,10 +165,10 @@ class TestWithObspy:
         with pytest.raises(RecordError, match=r"with a sensitivity of +counts"):
             GroundMotion.read(write(miniseed(), "r.mseed"))
 
-    def test_responses_larger_than_any_station_are_refused(self, write):
-        given = write(station_xml().ljust(9 * 2**20), "given")
+    def test_oversized_response_is_refused(self, write):
+        response = write(station_xml().ljust(9 * 2**20), "given")
         with pytest.raises(RecordError, match="found 9 MiB; expected StationXML of at most 8 MiB"):
-            GroundMotion.read(write(miniseed(), "r.mseed"), response=given)
+            GroundMotion.read(write(miniseed(), "r.mseed"), response=response)
 
     def test_channels_of_one_file(self, write):
         channels = (("HNE", 90, 0), ("HNZ", 0, -90), ("HN1", 30, 0))
@@ -207,14 +207,14 @@ class TestWithObspy:
         with pytest.raises(RecordError):
             GroundMotion.read(write(miniseed()[:cut], "r.mseed"))
 
-    def test_more_channels_than_any_file_has_are_refused(self, write):
+    def test_too_many_channels_are_refused(self, write):
         letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
         codes = ["".join(code) for code in itertools.product(letters[:5], letters, letters)]
         data = b"".join(miniseed(channel=code) for code in codes[:1001])
         with pytest.raises(RecordError, match="more than 1000 channels"):
             GroundMotion.read(write(data, "r.mseed"), unit="gal")
 
-    def test_pieces_that_overlap_are_refused_from_their_headers(self, write):
+    def test_overlapping_pieces_are_refused_quickly(self, write):
         path = write(miniseed(COUNTS[:4]) * 70_000, "r.mseed")
 
         def refused():
@@ -229,7 +229,7 @@ class TestWithObspy:
             tracemalloc.stop()
 
     @pytest.mark.filterwarnings("ignore:.*lie around an offset")
-    def test_pieces_without_a_gap_are_no_more_than_one(self, write):
+    def test_many_contiguous_pieces_are_joined(self, write):
         counts = np.tile(COUNTS[:50], 2)
         pieces = b"".join(
             miniseed(counts[:50], start=k // 2, tenths=5000 * (k % 2)) for k in range(100)
@@ -237,8 +237,8 @@ class TestWithObspy:
         assert len(GroundMotion.read(write(pieces, "r.mseed"), unit="mgal")) == 5000
 
     @pytest.mark.wide
-    def test_nothing_of_what_obspy_says_comes_to_the_terminal(self, write):
-        # a length of 10^9 samples, and data that end early: errors in callbacks of the library
+    def test_obspy_output_does_not_reach_terminal(self, write):
+        # a length of 10^9 samples and truncated data cause errors in callbacks of the library
         code = (
             "import sys; from rockframe.motion import GroundMotion\n"
             "from rockframe.errors import RecordError\n"
@@ -263,14 +263,14 @@ class TestWithObspy:
         assert done.stdout == ""
 
     @pytest.mark.parametrize("output", ["None", "", "COUNTS", "counts"])
-    def test_an_output_unit_that_is_left_away_is_counts(self, write, output):
+    def test_missing_output_unit_means_counts(self, write, output):
         xml = station_xml(sensitivity=1e3).replace("COUNTS", output)
         path = write(miniseed(), "r.mseed")
         motion = GroundMotion.read(path, response=write(xml, "given.xml"))
         assert motion.metadata["sensitivity"] == 1e3
 
-    def test_compressed_samples_that_miss_the_value_at_their_end(self, write):
-        # a wrong difference shifts all samples behind it
+    def test_corrupt_steim_compression_is_refused(self, write):
+        # a wrong difference shifts all later samples
         data = bytearray(compressed(np.arange(400) // 3, "HNE") + compressed(np.arange(400), "HNN"))
         data[103] ^= 1
         path = write(bytes(data), "r.mseed")
@@ -280,7 +280,7 @@ class TestWithObspy:
         np.testing.assert_allclose(other.si.horizontal.samples, 1e-5 * np.arange(400))
 
     @pytest.mark.filterwarnings("ignore:.*lie around an offset")
-    def test_what_is_no_record_is_told(self, write):
+    def test_trailing_bytes_that_are_no_record_warn(self, write):
         data = miniseed() + b"?" * 512
         with pytest.warns(RecordWarning, match=r"\b512 bytes that are no miniSEED record are not"):
             GroundMotion.read(write(data, "r.mseed"), unit="mgal")

@@ -1,4 +1,4 @@
-"""Motions that this package stored: back as they were, or refused."""
+"""Motions stored by this package survive the round trip; damaged files are refused."""
 
 import json
 import pickle
@@ -38,7 +38,7 @@ def pulses(folder):
 
 @pytest.mark.parametrize("make", [record, arrays, pulse, pulses])
 @pytest.mark.parametrize("format_name", ["NETCDF4", "NETCDF3_64BIT", "NETCDF3_CLASSIC"])
-def test_a_stored_motion_comes_back_as_it_was(make, format_name, tmp_path):
+def test_motion_survives_netcdf_round_trip(make, format_name, tmp_path):
     motion = make(tmp_path)
     path = tmp_path / "stored.nc"
     motion.to_dataset().to_netcdf(path, engine="netcdf4", format=format_name)
@@ -53,7 +53,7 @@ def test_compression_makes_no_difference(tmp_path):
 
 
 @pytest.mark.parametrize("component", ["E", "090"])
-def test_a_component_is_compared_with_what_is_stored(component, tmp_path):
+def test_component_must_match_stored_one(component, tmp_path):
     path = tmp_path / "stored.nc"
     motion = record(tmp_path)
     motion.to_dataset().to_netcdf(path)
@@ -63,7 +63,7 @@ def test_a_component_is_compared_with_what_is_stored(component, tmp_path):
         GroundMotion.read(path, component="N")
 
 
-def test_so_are_unit_and_time_step(tmp_path):
+def test_unit_and_time_step_must_match_stored_ones(tmp_path):
     path = tmp_path / "stored.nc"
     motion = arrays(tmp_path)
     motion.to_dataset().to_netcdf(path)
@@ -98,14 +98,14 @@ def changed(**attributes):
         (changed(metadata='{"a": true}'), "metadata 'a' of the motion, True"),
     ],
 )
-def test_what_is_no_stored_motion_is_refused(change, words, tmp_path):
+def test_invalid_stored_motion_is_refused(change, words, tmp_path):
     path = tmp_path / "stored.nc"
     change(arrays(tmp_path).to_dataset()).to_netcdf(path)
     with pytest.raises(RecordError, match=words):
         GroundMotion.read(path)
 
 
-def test_a_result_is_told_from_a_motion(tmp_path):
+def test_simulation_result_is_refused_with_advice(tmp_path):
     block = rf.Block(width="2 m", height="8 m", mass="40 t")
     excitation = pulse(tmp_path)
     response = rf.System(block).simulate(excitation, duration="0.1 s")
@@ -120,13 +120,13 @@ def test_a_result_is_told_from_a_motion(tmp_path):
     assert rf.System.from_dataset(response).motion == excitation
 
 
-def test_what_is_found_is_said_once(tmp_path):
+def test_error_message_is_not_repeated_and_survives_pickling(tmp_path):
     path = tmp_path / "stored.nc"
     arrays(tmp_path).to_dataset().drop_vars("acceleration").to_netcdf(path)
     with pytest.raises(RecordError) as caught:
         GroundMotion.read(path)
-    told = str(caught.value).removeprefix(str(path))
-    assert told.count("found") == told.count("expected") == 1
+    message = str(caught.value).removeprefix(str(path))
+    assert message.count("found") == message.count("expected") == 1
     with pytest.raises(SchemaError) as plain:
         GroundMotion.from_dataset(xr.Dataset())
     assert str(pickle.loads(pickle.dumps(plain.value))) == str(plain.value)  # noqa: S301
@@ -178,7 +178,7 @@ def test_other_netcdf_files_are_refused(tmp_path):
         GroundMotion.read(path)
 
 
-def test_of_a_suite_it_is_told_what_reads_it(tmp_path):
+def test_suite_file_is_refused_with_advice(tmp_path):
     path = tmp_path / "suite.nc"
     suite = rf.MotionSuite({name: arrays(tmp_path) for name in ("one", "two")})
     suite.to_dataset().to_netcdf(path)

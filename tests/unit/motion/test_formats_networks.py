@@ -1,4 +1,4 @@
-"""ESM, K-NET and KiK-net, GeoNet and Taiwan's CWA: what each has of its own."""
+"""Features specific to ESM, K-NET and KiK-net, GeoNet and Taiwan's CWA."""
 
 import numpy as np
 import pytest
@@ -21,10 +21,10 @@ GAL_PER_COUNT = 3920.0 / 6182761.0
 
 
 class TestEsm:
-    def read(self, write, text, **given):
-        return GroundMotion.read(write(text, "r.ASC"), **given)
+    def read(self, write, text, **options):
+        return GroundMotion.read(write(text, "r.ASC"), **options)
 
-    def test_what_is_recorded(self, write):
+    def test_metadata_are_read_from_header(self, write):
         metadata = self.read(write, esm()).metadata
         assert metadata["event"] == "MADE UP"
         assert metadata["event_time"] == "20190728_160908"
@@ -34,9 +34,9 @@ class TestEsm:
         assert metadata["baseline_correction"] == "BASELINE REMOVED"
         assert (metadata["component"], metadata["azimuth"]) == ("HNE", 90.0)
 
-    @pytest.mark.parametrize("asked", ["HNE", "E", "90"])
-    def test_its_one_component_by_code_and_direction(self, write, asked):
-        assert len(self.read(write, esm(), component=asked)) == COUNT
+    @pytest.mark.parametrize("component", ["HNE", "E", "90"])
+    def test_component_is_chosen_by_code_or_direction(self, write, component):
+        assert len(self.read(write, esm(), component=component)) == COUNT
 
     @pytest.mark.parametrize("kind", ["VELOCITY", "DISPLACEMENT", "ACCELERATION RESPONSE SPECTRUM"])
     def test_other_quantities_are_refused(self, write, kind):
@@ -73,23 +73,23 @@ class TestEsm:
 
 
 class TestKnet:
-    def read(self, write, text, name="r.EW", **given):
-        return GroundMotion.read(write(text, name), **given)
+    def read(self, write, text, name="r.EW", **options):
+        return GroundMotion.read(write(text, name), **options)
 
-    def test_counts_become_accelerations_without_their_offset(self, write):
+    def test_counts_are_converted_and_offset_removed(self, write):
         motion = self.read(write, knet())
         expected = (COUNTS - COUNTS.mean()) * GAL_PER_COUNT * 0.01
         np.testing.assert_allclose(motion.si.horizontal.samples, expected, rtol=1e-12, atol=1e-15)
         assert abs(motion.si.horizontal.samples.mean()) < 1e-15
         assert motion.metadata["offset_removed"] == pytest.approx(COUNTS.mean())
         assert motion.metadata["gal_per_count"] == GAL_PER_COUNT
-        assert "scale_factor" not in motion.metadata  # that of motions that were scaled
+        assert "scale_factor" not in motion.metadata  # of scaled motions only
         sentence = motion.history[1]
         assert "scale factor 3920(gal)/6182761" in sentence
         assert f"less their mean of {COUNTS.mean():.9g} counts" in sentence
         assert "gal)" in sentence
 
-    def test_times_are_japanese_and_the_delay_is_taken_off(self, write):
+    def test_times_are_in_japan_time_without_trigger_delay(self, write):
         metadata = self.read(write, knet()).metadata
         assert (
             metadata["event_time"]
@@ -99,7 +99,7 @@ class TestKnet:
         assert metadata["station"] == "MADE01"
 
     @pytest.mark.parametrize(
-        ("direction", "name", "asked", "place"),
+        ("direction", "name", "component", "place"),
         [
             ("N-S", "N-S", "N", None),
             ("E-W", "E-W", "E", None),
@@ -112,8 +112,8 @@ class TestKnet:
             ("6", "UD2", "UD2", "surface"),
         ],
     )
-    def test_directions(self, write, direction, name, asked, place):
-        metadata = self.read(write, knet(**{"Dir.": direction}), component=asked).metadata
+    def test_directions(self, write, direction, name, component, place):
+        metadata = self.read(write, knet(**{"Dir.": direction}), component=component).metadata
         assert metadata["component"] == name
         assert metadata.get("sensor_location") == place
 
@@ -164,10 +164,10 @@ class TestKnet:
 
 
 class TestGeonet:
-    def read(self, write, text, name="r.V2A", **given):
-        return GroundMotion.read(write(text, name), **given)
+    def read(self, write, text, name="r.V2A", **options):
+        return GroundMotion.read(write(text, name), **options)
 
-    def test_what_is_recorded(self, write):
+    def test_metadata_are_read_from_header(self, write):
         metadata = self.read(write, geonet(), component="S74E").metadata
         assert metadata["event"] == "6 km south of Nowhere"
         assert metadata["event_time"] == "2018 February 12 21:15:54 UT"
@@ -177,9 +177,9 @@ class TestGeonet:
         assert metadata["unit_as_read"] == "mm/s^2"
 
     @pytest.mark.parametrize("corrected", [True, False])
-    @pytest.mark.parametrize(("asked", "key"), [("S16W", "N"), ("106", "E"), ("Up", "U")])
-    def test_every_component(self, write, corrected, asked, key):
-        motion = self.read(write, geonet(corrected=corrected), component=asked)
+    @pytest.mark.parametrize(("component", "key"), [("S16W", "N"), ("106", "E"), ("Up", "U")])
+    def test_every_component(self, write, corrected, component, key):
+        motion = self.read(write, geonet(corrected=corrected), component=component)
         expected = np.round(10.0 * VALUES[key], 1) * 1e-3
         np.testing.assert_allclose(motion.si.horizontal.samples, expected, rtol=1e-12)
 
@@ -205,7 +205,7 @@ class TestGeonet:
             self.read(write, text.replace(old, new, 1), format="geonet", component="S16W")
 
     @pytest.mark.parametrize("place", [4, 5])
-    def test_absurd_numbers_of_what_is_skipped(self, write, place):
+    def test_impossible_counts_of_skipped_values_are_refused(self, write, place):
         lines = geonet().split("\n")
         for number, words in ((99999999, "end of the file in component 1"), (-1, "none or more")):
             changed = list(lines)
@@ -216,31 +216,31 @@ class TestGeonet:
 
     @pytest.mark.parametrize("from_end", [4, 5])
     def test_a_line_that_is_missing_in_the_last_component(self, write, from_end):
-        # the velocities that follow would take the place of its last accelerations
+        # its last accelerations would be taken from the velocities that follow
         lines = geonet().rstrip("\n").split("\n")
         del lines[-from_end - 1]
         with pytest.raises(RecordError, match=r"found the end of the file in component 3"):
             self.read(write, "\n".join(lines) + "\n", component="Up")
 
-    def test_a_vertical_axis_of_another_name(self, write):
+    def test_vertical_axis_of_unknown_sense_warns(self, write):
         text = geonet().replace("Component Up    Some", "Component Vert. Vertical")
         with pytest.warns(RecordWarning, match="upwards or downwards; upwards is assumed"):
             motion = self.read(write, text, component=("S16W", "V"))
         assert motion.metadata["vertical_component"] == "Vert."
 
-    def test_what_follows_must_be_another_component(self, write):
+    def test_unknown_text_after_component_is_refused(self, write):
         text = geonet_component(VALUES["N"], name="S16W", azimuth=196) + "something else\n"
         with pytest.raises(RecordError, match="'something else'; expected 'Corrected"):
             self.read(write, text)
 
 
 class TestCwa:
-    def read(self, write, text, **given):
+    def read(self, write, text, **options):
         return GroundMotion.read(
-            write(text, "r.dat"), component=given.pop("component", "N"), **given
+            write(text, "r.dat"), component=options.pop("component", "N"), **options
         )
 
-    def test_what_is_recorded(self, write):
+    def test_metadata_are_read_from_header(self, write):
         metadata = self.read(write, cwa()).metadata
         assert metadata["event_time"] == "2018/02/06-23:50:42 (GMT+08)"
         assert metadata["record_time"] == "2018/02/06-23:50:29.000 (GMT+08)"
@@ -266,7 +266,7 @@ class TestCwa:
         np.testing.assert_allclose(motion.si.horizontal.samples, table[:, 3] * 0.01, rtol=1e-9)
 
     @pytest.mark.parametrize(
-        ("given", "words"),
+        ("options", "words"),
         [
             ({"rate": "100"}, r"the time 0\.02 s in row 2; expected 0\.01 s"),
             ({"rate": "0"}, "a sampling rate of 0.0 Hz"),
@@ -279,9 +279,9 @@ class TestCwa:
             ({"sequence": "Time U(+); N(+)"}, "the layout '4F10.3'; expected 3 columns"),
         ],
     )
-    def test_headers_that_are_refused(self, write, given, words):
+    def test_headers_that_are_refused(self, write, options, words):
         with pytest.raises(RecordError, match=words):
-            self.read(write, cwa(**given))
+            self.read(write, cwa(**options))
 
     def test_the_header_alone(self, write):
         with pytest.raises(RecordError, match="0 rows of numbers"):

@@ -1,4 +1,4 @@
-"""The list of formats, and readers of others in it."""
+"""The registry of formats, and readers registered by users."""
 
 import doctest
 from types import SimpleNamespace
@@ -34,14 +34,14 @@ def read(source, request):
 
 
 def reader(**changed):
-    given = {
+    attributes = {
         "NAME": "made-up",
         "TITLE": "file made up for a test",
         "SUFFIXES": (".mup",),
         "recognises": lambda source: source.lines[0] == "MADE UP FORMAT",
         "read": read,
     }
-    return SimpleNamespace(**{**given, **changed})
+    return SimpleNamespace(**{**attributes, **changed})
 
 
 @pytest.fixture
@@ -59,19 +59,20 @@ def registered():
 
 def test_formats_are_listed_with_name_title_and_suffixes():
     listed = formats()
-    assert all(one.holds and one.unit for one in listed if one.own)  # as the manual lists them
+    # as the manual lists them
+    assert all(entry.holds and entry.unit for entry in listed if entry.own)
     names = [entry.name for entry in listed]
     assert len(set(names)) == len(names)
-    assert names[-1] == "text"  # it takes every column of numbers
+    assert names[-1] == "text"  # it accepts every column of numbers
     for entry in listed:
         assert entry.title
         assert all(suffix.startswith(".") for suffix in entry.suffixes)
 
 
 def test_a_list_of_formats_can_be_printed():
-    shown = repr(formats()[0])
+    text = repr(formats()[0])
     expected = "name='peer-at2', title='PEER acceleration file (AT2)', suffixes=('.at2',)"
-    assert shown == f"Format({expected})"
+    assert text == f"Format({expected})"
 
 
 def test_the_example_runs():
@@ -79,13 +80,13 @@ def test_the_example_runs():
     assert not doctest.testmod(known_formats).failed
 
 
-def test_the_list_and_the_readers_are_found_by_both_names():
+def test_registry_functions_are_shared_by_both_modules():
     assert rockframe.motion.formats is rockframe.records.formats
     assert rockframe.motion.register is rockframe.records.register
     assert rockframe.motion.unregister is rockframe.records.unregister
 
 
-def test_the_place_where_readers_stood_before_tells_the_new_one():
+def test_former_module_of_readers_warns_and_redirects():
     with pytest.warns(FutureWarning, match=r"rockframe\.records: import Record from there"):
         from rockframe.motion.readers import Record as Before
     assert Before is Record
@@ -104,10 +105,10 @@ def test_an_unknown_format_is_refused_and_the_others_listed(write):
 
 
 @pytest.mark.parametrize("name", ["r.mup", "r.txt"])
-@pytest.mark.parametrize("given", [None, "made-up"])
-def test_an_added_format_is_recognised_and_read(write, registered, name, given):
+@pytest.mark.parametrize("format_name", [None, "made-up"])
+def test_an_added_format_is_recognised_and_read(write, registered, name, format_name):
     registered()
-    motion = GroundMotion.read(write(FILE, name), format=given, component="N")
+    motion = GroundMotion.read(write(FILE, name), format=format_name, component="N")
     assert motion.si.horizontal.samples.tolist() == pytest.approx(
         (0.01 * VALUES).tolist(), abs=1e-9
     )
@@ -126,7 +127,7 @@ def test_an_added_format_may_read_bytes(write, registered):
     assert motion.si.horizontal.samples.tolist() == [0.01, 0.025]
 
 
-def test_it_can_be_taken_away_again(write, registered):
+def test_unregister_removes_only_registered_formats(write, registered):
     register(reader())
     unregister("made-up")
     assert "made-up" not in {entry.name for entry in formats()}
@@ -150,7 +151,7 @@ def test_it_can_be_taken_away_again(write, registered):
         ({"NAME": "text"}, "the format 'text' exists already"),
     ],
 )
-def test_what_is_no_reader_is_refused(changed, words):
+def test_register_refuses_invalid_readers(changed, words):
     before = formats()
     with pytest.raises(ComponentError, match=words):
         register(reader(**changed))
@@ -199,13 +200,13 @@ def failing(source, request):
         ),
     ],
 )
-def test_what_an_added_reader_gets_wrong_becomes_a_record_error(write, registered, changed, words):
+def test_faults_of_registered_reader_raise_record_error(write, registered, changed, words):
     registered(**changed)
     with pytest.raises(RecordError, match=words):
         GroundMotion.read(write(FILE, "r.mup"))
 
 
-def test_what_an_added_reader_refuses_stays_as_it_is(write, registered):
+def test_refusal_by_registered_reader_is_passed_on(write, registered):
     def refusing(source, request):
         raise source.refuse(found="this", expected="that", line=2)
 
@@ -214,6 +215,6 @@ def test_what_an_added_reader_refuses_stays_as_it_is(write, registered):
         GroundMotion.read(write(FILE, "r.mup"))
 
 
-def test_a_response_goes_with_counts_only(write):
+def test_response_argument_needs_counts(write):
     with pytest.raises(RecordError, match="to which the argument response applies"):
         GroundMotion.read(write("0,1\n1,2\n", "r.csv"), unit="g", response="response.xml")

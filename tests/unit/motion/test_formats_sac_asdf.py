@@ -1,4 +1,4 @@
-"""SAC and ASDF: byte orders, units that must be given, orientations, what is checked."""
+"""SAC and ASDF: byte orders, missing units, orientations, checks."""
 
 import importlib.util
 import re
@@ -19,9 +19,11 @@ needs_lxml = pytest.mark.skipif(
 SINGLE = VALUES["E"].astype(np.float32).astype(np.float64)
 
 
-def read_sac(write, name="r.sac", *, unit="gal", **given):
-    asked = {key: given.pop(key) for key in ("component", "response") if key in given}
-    return GroundMotion.read(write(sac(**given), name), unit=unit, **asked)
+def read_sac(write, name="r.sac", *, unit="gal", **sample_options):
+    read_options = {
+        key: sample_options.pop(key) for key in ("component", "response") if key in sample_options
+    }
+    return GroundMotion.read(write(sac(**sample_options), name), unit=unit, **read_options)
 
 
 class TestSac:
@@ -38,7 +40,7 @@ class TestSac:
         assert (motion.metadata["component"], motion.metadata["azimuth"]) == ("HNE", 90.0)
         assert "event" not in motion.metadata
 
-    def test_the_unit_must_be_given(self, write):
+    def test_missing_unit_is_refused(self, write):
         for kind in (8, 5, -12345):
             with pytest.raises(RecordError, match=r"samples without a unit.*unit='m/s\^2'"):
                 read_sac(write, unit=None, kind=kind)
@@ -67,7 +69,7 @@ class TestSac:
         with pytest.raises(RecordError, match="announced"):
             read_sac(write, count=2**31 - 1)
 
-    def test_more_than_announced(self, write):
+    def test_bytes_after_last_sample_warn(self, write):
         own = read_sac(write)
         with pytest.warns(RecordWarning, match="8 bytes after the last sample are not read"):
             more = GroundMotion.read(write(sac() + bytes(8), "r.sac"), unit="gal")
@@ -75,7 +77,7 @@ class TestSac:
         GroundMotion.read(write(sac() + bytes(176), "r.sac"), unit="gal")
 
     @pytest.mark.parametrize(("incidence", "sign"), [(0.0, 1.0), (180.0, -1.0)])
-    def test_up_and_down(self, write, incidence, sign):
+    def test_incidence_sets_sign_of_vertical_component(self, write, incidence, sign):
         motion = read_sac(write, incidence=incidence, channel="HNZ", component="U")
         expected = sign * 0.01 * SINGLE
         np.testing.assert_allclose(motion.si.horizontal.samples, expected, rtol=1e-14)
@@ -92,7 +94,7 @@ class TestSac:
 
 
 class TestAsdf:
-    def test_the_unit_that_gmprocess_states(self, write, tmp_path):
+    def test_unit_of_gmprocess_is_read(self, write, tmp_path):
         path = write(asdf(tmp_path), "w.h5")
         motion = GroundMotion.read(path, component=("N", "U"))
         np.testing.assert_allclose(motion.si.horizontal.samples, 0.01 * VALUES["N"], rtol=1e-14)
@@ -141,7 +143,7 @@ class TestAsdf:
         with pytest.raises(RecordError, match=words):
             GroundMotion.read(write(asdf(tmp_path, rate=rate), "w.h5"), component="HNE")
 
-    def test_the_title_says_what_it_is(self, tmp_path, write):
+    def test_history_names_format_and_unit(self, tmp_path, write):
         history = GroundMotion.read(write(asdf(tmp_path), "w.h5"), component="HNE").history
         assert re.match(
             r"read w\.h5 \(ASDF file \(HDF5\), as of gmprocess, unit cm/s\^2\)", history[0]

@@ -1,4 +1,4 @@
-"""USGS SMC: only accelerograms that are evenly sampled."""
+"""USGS SMC: only evenly sampled accelerograms are read."""
 
 import numpy as np
 import pytest
@@ -10,11 +10,11 @@ from rockframe.motion import GroundMotion
 NORTH = VALUES["N"]
 
 
-def read(write, text, **given):
-    return GroundMotion.read(write(text, "r.smc"), **given)
+def read(write, text, **options):
+    return GroundMotion.read(write(text, "r.smc"), **options)
 
 
-def test_what_is_recorded(write):
+def test_metadata_are_read_from_header(write):
     metadata = read(write, smc()).metadata
     assert metadata["event"] == "Made Up, CA"
     assert metadata["event_time"] == "1989-10-18T00:04"
@@ -36,14 +36,14 @@ def test_accelerograms(write, kind, rate):
     "kind",
     ["3 VELOCITY", "4 DISPLACEMENT", "5 RESPONSE SPECTRA", "6 FOURIER AMPLITUDE"],
 )
-@pytest.mark.parametrize("given", [{}, {"unit": "g"}, {"format": "smc"}])
-def test_other_quantities_are_refused(write, kind, given):
+@pytest.mark.parametrize("arguments", [{}, {"unit": "g"}, {"format": "smc"}])
+def test_other_quantities_are_refused(write, kind, arguments):
     with pytest.raises(RecordError, match="no accelerogram; expected an acceleration") as caught:
-        read(write, smc(kind=kind), **given)
+        read(write, smc(kind=kind), **arguments)
     assert caught.value.line == 1
 
 
-def test_a_kind_that_the_file_does_not_tell_is_taken_for_an_accelerogram_with_a_warning(write):
+def test_unknown_quantity_is_read_as_accelerogram_with_warning(write):
     with pytest.warns(RecordWarning, match="line 1: the file does not state its quantity"):
         motion = read(write, smc(kind="0 UNKNOWN"))
     np.testing.assert_allclose(motion.si.horizontal.samples, NORTH * 0.01, rtol=1e-13)
@@ -51,7 +51,7 @@ def test_a_kind_that_the_file_does_not_tell_is_taken_for_an_accelerogram_with_a_
 
 @pytest.mark.filterwarnings("ignore:.*lie around an offset")
 def test_numbers_without_a_blank_between_them(write):
-    # as the files are: "-2.2223E+0-1.9234E+0"
+    # as in the files: "-2.2223E+0-1.9234E+0"
     printed = [
         f"{mantissa:7.4f}E+0" for mantissa in np.where(NORTH < 0.0, -9.5, -2.5) + 0.001 * NORTH
     ]
@@ -80,7 +80,7 @@ def test_absurd_sampling_rates_are_refused(write, rate):
     ("name", "slope", "azimuth", "component", "direction"),
     [
         ("045", 90, 45, "045", 45.0),
-        ("045", 0, 0, "045", 45.0),  # the text goes before the integers
+        ("045", 0, 0, "045", 45.0),  # the text takes precedence over the integers
         ("", 90, 225, "225", 225.0),
         ("T", 90, 225, "T", 225.0),
         ("T", -32768, -32768, "T", None),

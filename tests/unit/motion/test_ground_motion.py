@@ -1,4 +1,4 @@
-"""The value object: construction from arrays, immutability, equality, description."""
+"""Ground motions: construction from arrays, immutability, equality, description."""
 
 import copy
 import inspect
@@ -21,9 +21,9 @@ UREG = pint.get_application_registry()
 VALUES = [0.0, 1.5, -2.25, 0.5, 0.125]
 
 
-def motion(vertical=None, **given):
+def motion(vertical=None, **options):
     up = None if vertical is None else (vertical, "m/s^2")
-    return GroundMotion.from_arrays((VALUES, "m/s^2"), "0.01 s", up, **given)
+    return GroundMotion.from_arrays((VALUES, "m/s^2"), "0.01 s", up, **options)
 
 
 @pytest.mark.parametrize(
@@ -43,27 +43,27 @@ def motion(vertical=None, **given):
     ],
 )
 def test_accepted_arrays(acceleration):
-    made = GroundMotion.from_arrays(acceleration, "0.01 s")
-    assert made.si.horizontal.samples.tolist() == VALUES
-    assert made.si.time_step == 0.01
-    assert made == motion()
+    result = GroundMotion.from_arrays(acceleration, "0.01 s")
+    assert result.si.horizontal.samples.tolist() == VALUES
+    assert result.si.time_step == 0.01
+    assert result == motion()
 
 
 @pytest.mark.parametrize(
     ("unit", "factor"), [("g_0", G), ("cm/s^2", 0.01), ("Gal", 0.01), ("mm/s**2", 1e-3)]
 )
 def test_units_are_converted(unit, factor):
-    for given in ((VALUES, unit), UREG.Quantity(np.array(VALUES), unit)):
-        made = GroundMotion.from_arrays(given, "10 ms")
-        assert made.si.horizontal.samples == pytest.approx(np.array(VALUES) * factor, rel=1e-15)
+    for acceleration in ((VALUES, unit), UREG.Quantity(np.array(VALUES), unit)):
+        result = GroundMotion.from_arrays(acceleration, "10 ms")
+        assert result.si.horizontal.samples == pytest.approx(np.array(VALUES) * factor, rel=1e-15)
 
 
 @pytest.mark.parametrize("unit", ["g", "G", "g0"])
 def test_g_is_the_acceleration_of_gravity(unit):
     expected = np.array(VALUES) * G
-    for given in ((VALUES, unit), xr.DataArray(VALUES, dims="time", attrs={"units": unit})):
-        made = GroundMotion.from_arrays(given, "10 ms")
-        assert made.si.horizontal.samples == pytest.approx(expected, rel=1e-15)
+    for acceleration in ((VALUES, unit), xr.DataArray(VALUES, dims="time", attrs={"units": unit})):
+        result = GroundMotion.from_arrays(acceleration, "10 ms")
+        assert result.si.horizontal.samples == pytest.approx(expected, rel=1e-15)
 
 
 @pytest.mark.parametrize(
@@ -140,29 +140,29 @@ def test_a_time_axis_that_contradicts_the_time_step():
 
 
 def test_public_properties_are_quantities_of_the_application_registry():
-    made = motion(vertical=VALUES[::-1])
-    assert made.time_step == UREG.Quantity(0.01, "s")
-    assert made.duration == UREG.Quantity(0.04, "s")
-    assert made.peak_acceleration == UREG.Quantity(2.25, "m/s^2")
-    scaled = made.scaled(peak_velocity="0.3 m/s")
+    record = motion(vertical=VALUES[::-1])
+    assert record.time_step == UREG.Quantity(0.01, "s")
+    assert record.duration == UREG.Quantity(0.04, "s")
+    assert record.peak_acceleration == UREG.Quantity(2.25, "m/s^2")
+    scaled = record.scaled(peak_velocity="0.3 m/s")
     assert scaled.peak_velocity.m_as("m/s") == pytest.approx(0.3, rel=1e-12)
-    assert made.acceleration.m_as("cm/s^2") == pytest.approx(np.array(VALUES) * 100.0)
-    assert made.vertical_acceleration.m_as("m/s^2").tolist() == VALUES[::-1]
+    assert record.acceleration.m_as("cm/s^2") == pytest.approx(np.array(VALUES) * 100.0)
+    assert record.vertical_acceleration.m_as("m/s^2").tolist() == VALUES[::-1]
     assert motion().vertical_acceleration is None
-    assert len(made) == 5
+    assert len(record) == 5
 
 
 def test_arrays_are_own_read_only_contiguous_float64():
     source = np.array(VALUES)
-    made = GroundMotion.from_arrays((source, "m/s^2"), "0.01 s", (source, "m/s^2"))
+    record = GroundMotion.from_arrays((source, "m/s^2"), "0.01 s", (source, "m/s^2"))
     pulse = GroundMotion.sine_pulse()
     source[:] = 7.0
-    assert made.si.horizontal.samples.tolist() == VALUES
+    assert record.si.horizontal.samples.tolist() == VALUES
     for array in (
-        made.si.horizontal.samples,
-        made.si.vertical.samples,
+        record.si.horizontal.samples,
+        record.si.vertical.samples,
         pulse.si.horizontal.pieces,
-        made.si.horizontal.pieces,
+        record.si.horizontal.pieces,
     ):
         assert array.dtype == np.float64
         assert array.flags.c_contiguous
@@ -172,23 +172,23 @@ def test_arrays_are_own_read_only_contiguous_float64():
 
 
 def test_changing_a_quantity_leaves_the_motion_alone():
-    made = motion()
-    made.acceleration.magnitude[:] = 7.0
-    assert made == motion()
+    record = motion()
+    record.acceleration.magnitude[:] = 7.0
+    assert record == motion()
 
 
 def test_the_motion_cannot_be_changed():
-    made = motion()
+    record = motion()
     with pytest.raises(AttributeError, match="immutable"):
-        made.name = "other"
+        record.name = "other"
     with pytest.raises(AttributeError, match="immutable"):
-        made.anything = 1
+        record.anything = 1
     with pytest.raises(AttributeError, match="immutable"):
-        del made.si
+        del record.si
     with pytest.raises(TypeError):
-        made.metadata["event"] = "other"
+        record.metadata["event"] = "other"
     with pytest.raises(AttributeError):
-        made.si.time_step = 1.0
+        record.si.time_step = 1.0
 
 
 def test_equality_and_hash_go_by_content():
@@ -206,7 +206,7 @@ def test_equality_and_hash_go_by_content():
     assert len({motion(), motion(), *others}) == 6
 
 
-def test_digest_is_that_of_what_is_simulated():
+def test_digest_depends_only_on_simulated_motion():
     assert motion().sha256 == motion(name="other").sha256
     assert len(motion().sha256) == 64
     pulse = GroundMotion.sine_pulse()
@@ -226,16 +226,16 @@ def test_digest_does_not_depend_on_the_run():
     assert motion().sha256 == ("e232ee31eab2dfa149347365be71da80d71c66dbc14dae1317ce3a83174ff732")
 
 
-def _pickled(made):
-    return pickle.loads(pickle.dumps(made))  # noqa: S301
+def _pickled(original):
+    return pickle.loads(pickle.dumps(original))  # noqa: S301
 
 
 @pytest.mark.parametrize("twin", [copy.copy, copy.deepcopy, _pickled])
-@pytest.mark.parametrize("made", [motion(vertical=VALUES, name="x"), GroundMotion.sine_pulse()])
-def test_copies_are_equal_and_read_only(made, twin):
-    other = twin(made)
-    assert other == made
-    assert other.to_dict() == made.to_dict()
+@pytest.mark.parametrize("original", [motion(vertical=VALUES, name="x"), GroundMotion.sine_pulse()])
+def test_copies_are_equal_and_read_only(original, twin):
+    other = twin(original)
+    assert other == original
+    assert other.to_dict() == original.to_dict()
     assert not other.si.horizontal.samples.flags.writeable
     with pytest.raises(AttributeError, match="immutable"):
         other.name = "other"
@@ -274,9 +274,9 @@ def test_a_subclass_may_have_its_own_constructor():
         def __init__(self, si, station="", **given):
             super().__init__(si, **{"metadata": {"station": station}, **given})
 
-    made = Measured(motion().si, "A", name="own")
-    assert made.metadata["station"] == "A"
-    assert type(made.scaled(2)) is Measured
+    record = Measured(motion().si, "A", name="own")
+    assert record.metadata["station"] == "A"
+    assert type(record.scaled(2)) is Measured
     assert type(Measured.sine_pulse()) is Measured
     assert list(inspect.signature(Measured).parameters) == ["si", "station", "given"]
 
@@ -297,12 +297,12 @@ def test_a_subclass_may_have_its_own_constructor():
         (lambda: GroundMotion.sine_pulse().resampled(), "resampled() missing"),
     ],
 )
-def test_calls_that_do_not_fit_are_refused(call, words):
+def test_invalid_calls_raise_type_error(call, words):
     with pytest.raises(TypeError, match=re.escape(words)):
         call()
 
 
-def test_a_path_is_neither_motion_nor_dataset():
+def test_path_in_place_of_motion_or_dataset_raises():
     with pytest.raises(ComponentError, match=r"found 'x\.AT2'; write GroundMotion\.read\(path\)"):
         GroundMotion("x.AT2")
     words = r"GroundMotion\.from_dataset: found 'run\.nc'; .*xr\.open_dataset first"
@@ -315,7 +315,7 @@ def test_methods_survive_pickling():
         assert _pickled(method) == method
 
 
-def test_repr_says_what_it_is():
+def test_repr_summarises_motion():
     assert repr(motion(name="test")) == (
         "<GroundMotion 'test': 5 samples at 0.01 s, 0.04 s long, peak 2.25 m/s^2>"
     )
@@ -324,20 +324,20 @@ def test_repr_says_what_it_is():
 
 
 def test_names_and_history_stay_on_one_line():
-    made = GroundMotion(motion().si, name=" two\nlines\x00", history=("a\nb",))
-    assert made.name == "two lines"
-    assert made.history == ("a b",)
+    record = GroundMotion(motion().si, name=" two\nlines\x00", history=("a\nb",))
+    assert record.name == "two lines"
+    assert record.history == ("a b",)
     assert GroundMotion(motion().si, name="\n").name == "unnamed motion"
 
 
-def test_what_is_done_to_a_motion_takes_no_longer_for_its_long_history():
+def test_processing_time_does_not_grow_with_history():
     def least(history):
-        made = GroundMotion(motion().si, history=history)
+        record = GroundMotion(motion().si, history=history)
         times = []
         for _ in range(20):
             began = thread_time()
             for factor in range(50):
-                made.scaled(1.0 + factor)
+                record.scaled(1.0 + factor)
             times.append(thread_time() - began)
         return min(times)
 
@@ -365,7 +365,7 @@ def test_metadata_are_strings_and_numbers(value):
         ({"polynomials": np.zeros((5, 6)), "name": "vertical"}, "vertical_pieces needs the shape"),
     ],
 )
-def test_samples_that_do_not_fit_together(arguments, words):
+def test_inconsistent_signal_arguments_raise(arguments, words):
     with pytest.raises(ComponentError, match=words):
         Signal(**{"time_step": 0.01, "samples": np.array(VALUES), **arguments})
 
@@ -377,12 +377,12 @@ def test_samples_that_do_not_fit_together(arguments, words):
         (Signal(0.02, np.zeros(5)), "vertical needs the time step 0.01 s, got 0.02 s"),
     ],
 )
-def test_components_that_do_not_fit_together(vertical, words):
+def test_inconsistent_components_raise(vertical, words):
     with pytest.raises(ComponentError, match=words):
         Motion(Signal(0.01, np.array(VALUES)), vertical)
 
 
-def test_the_ground_is_linear_between_samples_and_still_outside():
+def test_acceleration_is_linear_between_samples_and_zero_outside():
     si = motion(vertical=VALUES[::-1]).si
     assert si.at([0.0, 0.005, 0.01, 0.0125, 0.04]) == pytest.approx(
         [0.0, 0.75, 1.5, 0.5625, 0.125], abs=1e-14
@@ -393,16 +393,16 @@ def test_the_ground_is_linear_between_samples_and_still_outside():
     assert si.vertical.peak == 2.25
 
 
-def test_description_of_a_record_asks_for_the_record():
-    made = motion(name="test")
-    description = json.loads(json.dumps(made.to_dict()))
+def test_description_without_samples_requires_record():
+    record = motion(name="test")
+    description = json.loads(json.dumps(record.to_dict()))
     assert description == {
         "type": "GroundMotion",
         "constructor": None,
         "name": "test",
-        "sha256": made.sha256,
+        "sha256": record.sha256,
     }
-    with pytest.raises(SchemaError, match=f"test.*{made.sha256}.*read the record"):
+    with pytest.raises(SchemaError, match=f"test.*{record.sha256}.*read the record"):
         GroundMotion.from_dict(description)
 
 
@@ -415,13 +415,13 @@ SAMPLED = [
 ]
 
 
-@pytest.mark.parametrize("made", SAMPLED)
-def test_a_record_described_with_its_samples_is_built_again(made):
-    description = json.loads(json.dumps(made.to_dict(samples=True), allow_nan=False))
-    again = GroundMotion.from_dict(description)
-    assert again == made
-    assert again.to_dict(samples=True) == made.to_dict(samples=True)
-    assert description.items() >= made.to_dict().items()
+@pytest.mark.parametrize("original", SAMPLED)
+def test_a_record_described_with_its_samples_is_built_again(original):
+    description = json.loads(json.dumps(original.to_dict(samples=True), allow_nan=False))
+    rebuilt = GroundMotion.from_dict(description)
+    assert rebuilt == original
+    assert rebuilt.to_dict(samples=True) == original.to_dict(samples=True)
+    assert description.items() >= original.to_dict().items()
     assert GroundMotion.sine_pulse().to_dict(samples=True) == GroundMotion.sine_pulse().to_dict()
 
 
@@ -444,7 +444,7 @@ def test_samples_that_were_damaged_are_refused(changes, words):
 
 
 @pytest.mark.parametrize(
-    "made",
+    "original",
     [
         GroundMotion.sine_pulse(),
         GroundMotion.sine_pulse("0.3 g_0", "0.7 Hz", 2.5),
@@ -452,9 +452,9 @@ def test_samples_that_were_damaged_are_refused(changes, words):
         GroundMotion.harmonic("10 cm/s^2", "0.3 Hz", "7.1 s", "30 deg"),
     ],
 )
-def test_description_of_a_pulse_builds_it_again(made):
-    description = json.loads(json.dumps(made.to_dict()))
-    assert GroundMotion.from_dict(description) == made
+def test_description_of_a_pulse_builds_it_again(original):
+    description = json.loads(json.dumps(original.to_dict()))
+    assert GroundMotion.from_dict(description) == original
 
 
 @pytest.mark.parametrize(
@@ -481,14 +481,14 @@ def test_description_of_a_pulse_builds_it_again(made):
         lambda m: m.with_vertical(m.scaled(0.3)).with_vertical(None).scaled(2),
     ],
 )
-def test_a_changed_pulse_is_described_with_what_was_done_to_it(changed):
+def test_description_rebuilds_processed_pulse(changed):
     motion = changed(GroundMotion.sine_pulse())
     description = json.loads(json.dumps(motion.to_dict()))
     assert GroundMotion.from_dict(description) == motion
     assert GroundMotion.from_dataset(motion.to_dataset()).to_dict() == motion.to_dict()
 
 
-def test_a_pulse_with_a_record_as_vertical_is_described_by_its_digest():
+def test_pulse_with_recorded_vertical_has_no_constructor():
     record = GroundMotion.from_arrays(([0.0, 1.0, 0.0], "m/s^2"), "0.0078125 s")
     motion = GroundMotion.sine_pulse().with_vertical(record)
     assert motion.to_dict()["constructor"] is None

@@ -1,4 +1,4 @@
-"""Motions matched to a target spectrum: what is reached, what stays, what is told."""
+"""Spectral matching: misfit, preserved character, reported changes."""
 
 import warnings
 
@@ -13,7 +13,7 @@ from rockframe.motion.matching.iteration import PEAKS, unusual_changes
 from rockframe.signals.integrals import ground_path
 from rockframe.signals.motion import knots_of
 
-# that other things change beside the spectrum is looked at in one test
+# test_matching_reports_changes_of_other_measures checks the warning of other changes
 pytestmark = pytest.mark.filterwarnings("ignore:(?s).*the wavelets have changed")
 
 EUROCODE = rf.TargetSpectrum.eurocode_8("0.3 g_0", "B")
@@ -31,11 +31,11 @@ def quickly_matched():
 
 
 def spectrum_over_target(motion, target, periods):
-    """By SciPy's first-order hold on the straight lines between samples, not by rockframe."""
+    """Ratios computed by SciPy's first-order hold, independently of rockframe."""
     samples, step = motion.si.horizontal.samples, motion.si.time_step
-    found = np.empty(periods.size)
+    peaks = np.empty(periods.size)
     for place, period in enumerate(periods):
-        parts = int(np.ceil(60.0 * step / period))  # peaks are seen to 0.14 %
+        parts = int(np.ceil(60.0 * step / period))  # peaks are resolved to 0.14 %
         fine = np.interp(
             np.arange((samples.size - 1) * parts + 1) / parts, np.arange(samples.size), samples
         )
@@ -49,10 +49,10 @@ def spectrum_over_target(motion, target, periods):
         )
         *discrete, _ = signal.cont2discrete(matrices, step / parts, "foh")
         numerator, denominator = signal.ss2tf(*discrete)
-        still = np.zeros(round(period * parts / step) + 1)
-        history = signal.lfilter(numerator[0], denominator, np.concatenate([fine, still]))
-        found[place] = np.abs(history).max()
-    return found / target.at((periods, "s"))
+        rest = np.zeros(round(period * parts / step) + 1)
+        history = signal.lfilter(numerator[0], denominator, np.concatenate([fine, rest]))
+        peaks[place] = np.abs(history).max()
+    return peaks / target.at((periods, "s"))
 
 
 def paths(motion):
@@ -68,20 +68,22 @@ FULL = [
 ]
 
 
-def reaches_and_stays(motion, matched, target, periods):
-    """Whether a motion has reached the spectrum of a target, and is still the one it was."""
-    low, high = (float(one.split()[0]) for one in periods)
-    checked = np.geomspace(low, high, 601)  # none but the ends are periods of the matching
+def assert_matched(motion, matched, target, periods):
+    """Check that a matched motion has the target spectrum and keeps its character."""
+    low, high = (float(period.split()[0]) for period in periods)
+    checked = np.geomspace(low, high, 601)  # only the ends are periods of the matching
     ratios = spectrum_over_target(matched, target, checked)
     assert np.abs(ratios - 1.0).max() < 0.0505
-    about = matched.metadata
-    assert about["target_reached"] == 1
-    stated = about["largest_spectral_misfit"]
-    assert stated - 0.008 < np.abs(ratios - 1.0).max() < stated + 0.004  # cusps between both
-    assert np.abs(ratios - 1.0).mean() == pytest.approx(about["mean_spectral_misfit"], abs=5e-4)
-    before = motion.scaled(about["scale_factor"])
+    metadata = matched.metadata
+    assert metadata["target_reached"] == 1
+    stated = metadata["largest_spectral_misfit"]
+    assert (
+        stated - 0.008 < np.abs(ratios - 1.0).max() < stated + 0.004
+    )  # cusps lie between the periods of both
+    assert np.abs(ratios - 1.0).mean() == pytest.approx(metadata["mean_spectral_misfit"], abs=5e-4)
+    before = motion.scaled(metadata["scale_factor"])
     assert len(matched) == len(motion)
-    build_ups = [np.cumsum(one.si.horizontal.samples**2) for one in (before, matched)]
+    build_ups = [np.cumsum(period.si.horizontal.samples**2) for period in (before, matched)]
     assert np.corrcoef(*build_ups)[0, 1] > 0.97
     for old, new in zip(paths(before), paths(matched), strict=True):  # velocity, displacement
         assert abs(new[-1] - old[-1]) < 1e-9 * np.abs(old).max()
@@ -89,76 +91,82 @@ def reaches_and_stays(motion, matched, target, periods):
     return True
 
 
-def test_a_record_reaches_the_spectrum_of_a_code_and_stays_itself(quickly_matched):
-    assert reaches_and_stays(example(), quickly_matched, EUROCODE, RANGE)
+def test_matched_record_reaches_code_spectrum_and_keeps_character(quickly_matched):
+    assert assert_matched(example(), quickly_matched, EUROCODE, RANGE)
 
 
 @pytest.mark.parametrize(
     ("name", "target", "periods"),
     [
         pytest.param(*FULL[0], marks=pytest.mark.wide),
-        *(pytest.param(*one, marks=pytest.mark.long) for one in FULL[1:]),
+        *(pytest.param(*case, marks=pytest.mark.long) for case in FULL[1:]),
     ],
-    ids=lambda one: str(one)[:20],
+    ids=lambda case: str(case)[:20],
 )
-def test_records_reach_the_spectra_of_codes_and_stay_themselves(name, target, periods):
+def test_matched_records_reach_code_spectra_and_keep_character(name, target, periods):
     motion = (
         rf.GroundMotion.read(record_path(name)) if "." in name else rf.GroundMotion.example(name)
     )
-    assert reaches_and_stays(motion, motion.matched(target, periods=periods), target, periods)
+    assert assert_matched(motion, motion.matched(target, periods=periods), target, periods)
 
 
-def test_another_library_sees_the_same_spectrum(quickly_matched):
+def test_matched_spectrum_agrees_with_eqsig(quickly_matched):
     pytest.importorskip("eqsig")
     from eqsig import sdof
 
     fine = quickly_matched.resampled("0.001 s", interpolation="linear").si.horizontal
     periods = np.geomspace(0.2, 0.6, 97)
     displacement = sdof.nigam_and_jennings_response(fine.samples, fine.time_step, periods, 0.05)[0]
-    found = (2.0 * np.pi / periods) ** 2 * np.abs(displacement).max(axis=1)
-    assert np.abs(found / EUROCODE.at((periods, "s")) - 1.0).max() < 0.0505
+    acceleration = (2.0 * np.pi / periods) ** 2 * np.abs(displacement).max(axis=1)
+    assert np.abs(acceleration / EUROCODE.at((periods, "s")) - 1.0).max() < 0.0505
 
 
-def test_it_is_told_what_was_done(quickly_matched):
-    about, said = quickly_matched.metadata, quickly_matched.history[-1]
-    assert about["target_spectrum"] == EUROCODE.name
-    assert about["matching_steps"] > 0
-    assert "tapered cosine wavelets" in said
-    assert "from 0.2 s to 0.6 s" in said
+def test_matching_is_documented_in_metadata_and_history(quickly_matched):
+    metadata, sentence = quickly_matched.metadata, quickly_matched.history[-1]
+    assert metadata["target_spectrum"] == EUROCODE.name
+    assert metadata["matching_steps"] > 0
+    assert "tapered cosine wavelets" in sentence
+    assert "from 0.2 s to 0.6 s" in sentence
     assert quickly_matched.name == example().name
     assert quickly_matched.to_dict()["constructor"] is None
     twice = example().scaled(2.0)
-    again = type(twice)(twice.si, metadata={"scale_factor": 2.0}).matched(EUROCODE, periods=RANGE)
-    assert again.metadata["scale_factor"] == pytest.approx(about["scale_factor"], rel=1e-9)
+    rematched = type(twice)(twice.si, metadata={"scale_factor": 2.0}).matched(
+        EUROCODE, periods=RANGE
+    )
+    assert rematched.metadata["scale_factor"] == pytest.approx(metadata["scale_factor"], rel=1e-9)
 
 
-def test_it_is_told_what_else_has_changed(quickly_matched):
+def test_matching_reports_changes_of_other_measures(quickly_matched):
     weak = example().resampled("0.02 s").filtered(low="1.5 Hz")
     target = rf.TargetSpectrum.eurocode_8("0.3 g_0", "D")
     with pytest.warns(RecordWarning, match=r"spectrum 4\.\d+ times at 2\.\d+ s, beyond the range"):
         grown = weak.matched(target, periods=("0.4 s", "2 s"))
     for motion, matched in ((example(), quickly_matched), (weak, grown)):
-        about = matched.metadata
-        for when, one in (
-            ("before", motion.scaled(about["scale_factor"])),
+        metadata = matched.metadata
+        for stage, record in (
+            ("before", motion.scaled(metadata["scale_factor"])),
             ("after", matched),
         ):
-            found = rf.intensity_measures(one).squeeze()
+            measures = rf.intensity_measures(record).squeeze()
             for name in ("acceleration", "velocity", "displacement"):
-                peak = float(found[f"peak_ground_{name}"])
-                assert about[f"peak_ground_{name}_{when}_matching"] == pytest.approx(peak, rel=1e-3)
-            indicator = one.velocity_pulse().indicator
-            assert about[f"pulse_indicator_{when}_matching"] == pytest.approx(indicator, rel=1e-6)
-        at = (about["period_of_spectral_growth"], "s")
+                peak = float(measures[f"peak_ground_{name}"])
+                assert metadata[f"peak_ground_{name}_{stage}_matching"] == pytest.approx(
+                    peak, rel=1e-3
+                )
+            indicator = record.velocity_pulse().indicator
+            assert metadata[f"pulse_indicator_{stage}_matching"] == pytest.approx(
+                indicator, rel=1e-6
+            )
+        period = (metadata["period_of_spectral_growth"], "s")
         before, after = (
-            float(rf.response_spectrum(one, at).pseudo_spectral_acceleration.squeeze())
-            for one in (motion.scaled(about["scale_factor"]), matched)
+            float(rf.response_spectrum(record, period).pseudo_spectral_acceleration.squeeze())
+            for record in (motion.scaled(metadata["scale_factor"]), matched)
         )
-        assert about["spectral_growth_beyond_range"] == pytest.approx(after / before, rel=1e-3)
+        assert metadata["spectral_growth_beyond_range"] == pytest.approx(after / before, rel=1e-3)
 
 
-def test_growth_beyond_half_as_much_again_is_unusual():
-    usual = {f"{name}_{when}_matching": 1.0 for name in PEAKS for when in ("before", "after")}
+def test_unusual_changes_reports_growth_above_50_percent():
+    usual = {f"{name}_{stage}_matching": 1.0 for name in PEAKS for stage in ("before", "after")}
     usual |= {
         "pulse_indicator_before_matching": 0.2,
         "pulse_indicator_after_matching": 0.84,
@@ -173,11 +181,11 @@ def test_growth_beyond_half_as_much_again_is_unusual():
         ("spectral_growth_beyond_range", 1.6, "spectrum 1.6 times at 3 s, beyond the range"),
         ("pulse_indicator_after_matching", 0.9, "a velocity pulse where none was"),
     ):
-        (found,) = unusual_changes({**usual, name: value})
-        assert words in found
+        (change,) = unusual_changes({**usual, name: value})
+        assert words in change
 
 
-def test_it_comes_back_from_where_it_is_kept(quickly_matched):
+def test_matched_motion_survives_serialization_round_trips(quickly_matched):
     assert rf.GroundMotion.from_dataset(quickly_matched.to_dataset()) == quickly_matched
     assert rf.GroundMotion.from_dict(quickly_matched.to_dict(samples=True)) == quickly_matched
     suite = rf.MotionSuite({"one": quickly_matched})
@@ -190,9 +198,9 @@ def test_it_comes_back_from_where_it_is_kept(quickly_matched):
 
 
 def test_a_motion_that_has_the_spectrum_is_not_changed(quickly_matched):
-    again = quickly_matched.matched(EUROCODE, periods=RANGE)
-    assert again.sha256 == quickly_matched.sha256
-    assert again.history[-1].startswith("not changed to match")
+    rematched = quickly_matched.matched(EUROCODE, periods=RANGE)
+    assert rematched.sha256 == quickly_matched.sha256
+    assert rematched.history[-1].startswith("not changed to match")
     periods = np.geomspace(0.2, 0.6, 200)
     own = rf.TargetSpectrum.from_spectrum(rf.response_spectrum(example(), (periods, "s")))
     same = example().matched(own, periods=RANGE)
@@ -201,11 +209,11 @@ def test_a_motion_that_has_the_spectrum_is_not_changed(quickly_matched):
     assert same.metadata["scale_factor"] == 1.0
     pulse = rf.GroundMotion.stochastic(6, "20 km", seed=1)
     own = rf.TargetSpectrum.from_spectrum(rf.response_spectrum(pulse, (periods, "s")))
-    kept = pulse.matched(own, periods=RANGE)
-    assert rf.GroundMotion.from_dict(kept.to_dict()).sha256 == pulse.sha256
+    unchanged = pulse.matched(own, periods=RANGE)
+    assert rf.GroundMotion.from_dict(unchanged.to_dict()).sha256 == pulse.sha256
 
 
-def test_the_vertical_component_is_left_as_it_is():
+def test_matching_does_not_change_vertical_component():
     up = rf.GroundMotion.stochastic(6, "20 km", seed=2).resampled("0.005 s")
     both = example().with_vertical(up)
     matched = both.matched(EUROCODE, periods=("0.3 s", "0.5 s"))
@@ -213,7 +221,7 @@ def test_the_vertical_component_is_left_as_it_is():
     assert not np.array_equal(matched.si.horizontal.samples, both.si.horizontal.samples)
 
 
-def test_between_the_samples_of_a_pulse_lines_take_the_place_of_its_polynomials():
+def test_matching_replaces_polynomials_of_pulse_by_lines():
     pulse = rf.GroundMotion.ricker_wavelet("3 m/s^2", "0.5 s")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RecordWarning)
@@ -223,26 +231,26 @@ def test_between_the_samples_of_a_pulse_lines_take_the_place_of_its_polynomials(
 
 
 @pytest.mark.long
-def test_what_cannot_be_reached_is_told():
-    """A spectrum with a jump: no oscillator of 5 % damping follows it."""
+def test_unreachable_target_spectrum_warns():
+    """The spectrum jumps, which no spectrum at 5 % damping can follow."""
     jump = rf.TargetSpectrum.from_table(
         (["0.1 s", "0.4 s", "0.401 s", "1 s"]), ([9, 9, 1, 1], "m/s^2")
     )
-    with pytest.warns(RecordWarning, match=r"5 % was not reached in \d+ steps") as said:
+    with pytest.warns(RecordWarning, match=r"5 % was not reached in \d+ steps") as caught:
         matched = example().matched(jump, periods=RANGE)
-    assert "from 'table' at 0.4" in str(said[0].message)
+    assert "from 'table' at 0.4" in str(caught[0].message)
     assert matched.metadata["target_reached"] == 0
     assert matched.metadata["largest_spectral_misfit"] > 0.05
     periods = np.geomspace(0.2, 0.6, 301)
     misfit, before = (
-        np.abs(spectrum_over_target(one, jump, periods) - 1.0).max()
-        for one in (matched, example().scaled(matched.metadata["scale_factor"]))
+        np.abs(spectrum_over_target(record, jump, periods) - 1.0).max()
+        for record in (matched, example().scaled(matched.metadata["scale_factor"]))
     )
     assert misfit < before
     assert misfit == pytest.approx(matched.metadata["largest_spectral_misfit"], rel=0.02)
 
 
-def test_a_coarse_record_is_warned_of():
+def test_coarse_time_step_warns():
     coarse = example().resampled("0.02 s")
     with pytest.warns(
         RecordWarning, match=r"coarse for periods from 0.15 s.*resampled\('0.01 s'\)"
@@ -276,13 +284,13 @@ def test_a_coarse_record_is_warned_of():
             "is known from 0.3 s to 1 s",
         ),
         (
-            {"target": rf.TargetSpectrum("dips", lambda at: np.maximum(at - 0.3, 0.0))},
+            {"target": rf.TargetSpectrum("dips", lambda period: np.maximum(period - 0.3, 0.0))},
             ComponentError,
             "'dips' must be above zero, which it is not at 0.2 s",
         ),
     ],
 )  # fmt: skip
-def test_nonsense_is_refused(arguments, error, words):
+def test_invalid_arguments_raise(arguments, error, words):
     with pytest.raises(error, match=words):
         example().matched(**{"target": EUROCODE, "periods": RANGE, **arguments})
 

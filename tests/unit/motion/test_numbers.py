@@ -1,4 +1,4 @@
-"""Numbers in text: in free format, in pieces of a long file, and in fixed widths."""
+"""Numbers in text: free format, fixed width, and long files read in pieces."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from rockframe.records import numbers
 from rockframe.records.numbers import FixedWidth, free_format
 from rockframe.records.reader import source_of
 
-# all negative: no blank is left between numbers that fill their width
+# negative numbers fill their width, so that no blank separates them
 FULL = -np.round(np.linspace(0.11, 0.99, 83) * 10.0 ** np.tile([-1, -4, -9], 28)[:83], 11)
 FORMS = {"exponent": "{:13.6E}", "D exponent": "{:13.6E}", "no exponent": "{:9.6f}"}
 
@@ -41,31 +41,31 @@ class TestNumbersThatTouch:
 
     def test_in_fixed_width(self, form, per_line):
         width = len(FORMS[form].format(-0.1))
-        given = source(text(form, per_line))
-        found = FixedWidth(width, per_line).read(given, 0, FULL.size)
-        assert found.tolist() == printed(form)
+        content = source(text(form, per_line))
+        numbers = FixedWidth(width, per_line).read(content, 0, FULL.size)
+        assert numbers.tolist() == printed(form)
 
     @pytest.mark.filterwarnings("ignore::rockframe.errors.RecordWarning")
     def test_of_an_at2_file(self, form, per_line, tmp_path):
         path = tmp_path / "r.AT2"
         body = at2(f"NPTS= {FULL.size}, DT= .01", FULL, per_line=per_line, form=FORMS[form])
         path.write_text(body.replace("E-", "D-") if form == "D exponent" else body)
-        found = GroundMotion.read(path).si.horizontal.samples
-        assert found.tolist() == (np.array(printed(form)) * 9.80665).tolist()
+        samples = GroundMotion.read(path).si.horizontal.samples
+        assert samples.tolist() == (np.array(printed(form)) * 9.80665).tolist()
 
 
-def test_numbers_of_a_fixed_width_need_no_sign_between_them():
+def test_fixed_width_numbers_need_no_separator():
     values = np.array([12.3456, 98.7654, 0.0001, 55.5555, 10.0])
-    given = source(
+    content = source(
         "head\n" + "".join(f"--{row}" for row in rows(values, 2, "{:7.4f}").splitlines(True))
     )
-    assert FixedWidth(7, 2, indent=2).read(given, 1, 5).tolist() == values.tolist()
+    assert FixedWidth(7, 2, indent=2).read(content, 1, 5).tolist() == values.tolist()
     with pytest.raises(RecordError, match="14: 2 numbers of 7 characters"):
         FixedWidth(7, 2).read(source("12.345698.7654\n12.34569.7654\n1.0\n"), 0, 5)
 
 
 @pytest.mark.parametrize("last", ["5", ".5"])
-def test_a_line_ends_a_number(last):
-    """Also where what stands on both sides of its end would be a number: 23, and 4E-15."""
-    found = free_format(source(f"1.5 2\n3 4E-1\n\n{last}\n"), 0).tolist()
-    assert found == [1.5, 2.0, 3.0, 0.4, float(last)]
+def test_line_end_separates_numbers(last):
+    """Even if the joined text would be a number: 23, and 4E-15."""
+    numbers = free_format(source(f"1.5 2\n3 4E-1\n\n{last}\n"), 0).tolist()
+    assert numbers == [1.5, 2.0, 3.0, 0.4, float(last)]

@@ -1,4 +1,4 @@
-"""The AT2 reader: every dialect, and every refusal with its line."""
+"""The AT2 reader: every dialect, and every error with its line number."""
 
 import numpy as np
 import pytest
@@ -39,14 +39,14 @@ def test_points_line(write, dialect):
     assert motion.metadata["date"] == "10/18/1989"
 
 
-def test_a_text_that_quotes_a_points_line_is_no_record(write):
+def test_text_quoting_points_line_is_not_recognised(write):
     text = "# Records\n\n| TCU128.AT2 | (`NPTS= 18000, DT= .00500 SEC`) | 0.17 g |\n"
     with pytest.raises(RecordError, match="which no format recognises"):
         GroundMotion.read(write(text, "INDEX.md"), unit="g")
 
 
 @pytest.mark.parametrize("step", ["10/2000", "5.25 MSEC", "5.0E-0 ms"])
-def test_a_time_step_that_is_written_in_another_way_is_not_read_in_part(write, step):
+def test_time_step_in_other_notation_is_refused(write, step):
     text = at2(f"NPTS= {COUNT}, DT= {step}", VALUES)
     with pytest.raises(RecordError, match="NPTS= <count>, DT= <seconds> SEC"):
         GroundMotion.read(write(text))
@@ -92,15 +92,15 @@ def test_numbers_run_together_without_exponents(write):
 
 
 @pytest.mark.parametrize(
-    "together",
+    "adjoining",
     ["123.45678123.45678", "1.0E-021.0E-02", "0.1234567-103", "1-2.5", "-.1E-02--.2E-02"],
 )
-def test_numbers_run_together_so_that_their_ends_are_guesses(write, together):
-    text = "\n".join([TITLE, EVENT, UNIT, "NPTS= 3, DT= .005 SEC", "0.1 0.1", together + "\n"])
+def test_ambiguous_adjoining_numbers_are_refused(write, adjoining):
+    text = "\n".join([TITLE, EVENT, UNIT, "NPTS= 3, DT= .005 SEC", "0.1 0.1", adjoining + "\n"])
     with pytest.raises(RecordError) as caught:
         GroundMotion.read(write(text))
     assert caught.value.line == 6
-    assert together in str(caught.value)
+    assert adjoining in str(caught.value)
 
 
 def test_eight_columns_and_a_unit_in_parentheses(write):
@@ -242,7 +242,7 @@ def test_no_unit(write):
         GroundMotion.read(path)
 
 
-def test_component_asked_of_a_file_that_names_none(write):
+def test_component_of_file_without_component_name_is_refused(write):
     path = write(at2(DIALECTS["SMD"], VALUES, title="MADE UP", event="NOTHING TO SAY"))
     with pytest.raises(RecordError, match="no name of the component; expected the component '67'"):
         GroundMotion.read(path, component="67")
@@ -271,7 +271,7 @@ def test_accelerations_that_overflow(write):
         (1.0, ".5", "time step is 0.5 s"),
     ],
 )
-def test_what_looks_like_a_wrong_unit_or_time_step_is_warned_about(write, scale, time_step, words):
+def test_implausible_peak_or_time_step_warns(write, scale, time_step, words):
     path = write(at2(f"NPTS= {COUNT}, DT= {time_step} SEC", VALUES * scale))
     with pytest.warns(RecordWarning, match=words) as caught:
         GroundMotion.read(path)
@@ -280,7 +280,7 @@ def test_what_looks_like_a_wrong_unit_or_time_step_is_warned_about(write, scale,
 
 
 @pytest.mark.parametrize(("end", "sense"), [("-UP", "up"), ("_dwn", "down"), ("-VERT", "vertical")])
-def test_a_vertical_component_told_by_the_name_of_the_file_alone(write, end, sense):
+def test_vertical_component_is_recognised_from_file_name(write, end, sense):
     path = write(at2("NPTS= 50, DT= .01", numbers(50), event="Made Up"), f"RSN6_MADE_S6{end}.AT2")
     with pytest.warns(RecordWarning, match="is vertical"):
         assert GroundMotion.read(path).metadata["positive"] == sense

@@ -1,4 +1,4 @@
-"""Processing steps: what each does to the function of time, and what it says of it."""
+"""Processing steps: their effect on the function of time, and their history entries."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ def motion(values=NOISE, vertical=None, step=STEP):
 
 
 def tone(frequency, step=STEP, count=4001):
-    """A tone that swells and fades, so that its ends do not matter."""
+    """A tone with a smooth envelope, so that end effects vanish."""
     time = np.arange(count) * step
     swell = np.sin(np.pi * time / time[-1]) ** 2
     return swell * np.sin(2.0 * np.pi * frequency * time)
@@ -85,7 +85,7 @@ def test_window_cuts_samples_and_restarts_time():
     assert part.history[-1] == "window from 1 s to 2.5 s"
 
 
-def test_window_snaps_to_samples_and_says_so():
+def test_window_snaps_to_samples_and_records_it_in_history():
     part = motion().window("1.004 s", "1506 ms")
     assert part.si.horizontal.samples.tolist() == NOISE[100:152].tolist()
     assert part.history[-1] == (
@@ -162,7 +162,7 @@ def test_tapers_that_are_refused(taper, error, words):
         motion().window(taper=taper)
 
 
-def test_tapers_fit_the_window_and_not_only_the_motion():
+def test_tapers_longer_than_window_raise():
     with pytest.raises(ComponentError, match="longer than the window, 1 s"):
         motion().window("1 s", "2 s", taper="0.6 s")
 
@@ -230,7 +230,7 @@ def test_a_higher_order_is_steeper():
     assert peaks[0] > 10.0 * peaks[-1]
 
 
-def test_a_causal_filter_moves_nothing_before_its_time():
+def test_causal_filter_does_not_precede_input():
     values = np.zeros(400)
     values[150] = 1.0
     causal = motion(values).filtered(high="10 Hz", causal=True).si.horizontal.samples
@@ -246,21 +246,21 @@ def test_a_causal_filter_has_the_amplitude_of_one_pass():
     assert "forwards only" in through.history[-1]
 
 
-def test_a_filter_has_four_poles_unless_told_otherwise():
+def test_default_filter_order_is_four():
     assert motion().filtered(high="5 Hz") == motion().filtered(high="5 Hz", order=4)
 
 
-def test_a_straight_line_is_the_usual_baseline():
+def test_default_baseline_order_is_one():
     assert motion().baseline_corrected() == motion().baseline_corrected(1)
 
 
-def test_filter_says_how_it_padded():
+def test_filter_records_padding_in_history():
     filtered = motion().filtered(low="0.1 Hz", order=4)
     assert len(filtered) == len(motion())
     assert "low corner 0.1 Hz, padded with 6000 zeros" in filtered.history[-1]
 
 
-def test_a_band_is_padded_for_its_lower_corner():
+def test_band_pass_padding_depends_on_lower_corner():
     band = motion().filtered(low="0.1 Hz", high="20 Hz")
     assert "padded with 6000 zeros" in band.history[-1]
     sos, rest = signal.butter(4, [0.1, 20.0], "bandpass", fs=100.0, output="sos"), np.zeros(6000)
@@ -280,37 +280,37 @@ def test_a_band_is_padded_for_its_lower_corner():
         ("highpass", {"low": 47.0}),
     ],
 )
-def test_a_narrow_band_is_padded_for_its_width(kind, corners, order):
-    """Such a filter decays slowly, as does one with a corner close to the Nyquist frequency."""
-    given = {name: f"{value} Hz" for name, value in corners.items()}
-    found = motion().filtered(**given, order=order).si.horizontal.samples
+def test_narrow_filter_padding_avoids_end_effects(kind, corners, order):
+    """Narrow filters decay slowly, as do filters with a corner close to the Nyquist frequency."""
+    options = {name: f"{value} Hz" for name, value in corners.items()}
+    filtered = motion().filtered(**options, order=order).si.horizontal.samples
     sos = signal.butter(order, np.squeeze([*corners.values()]), kind, fs=100.0, output="sos")
     rest = np.zeros(60_000)
     expected = signal.sosfiltfilt(sos, np.concatenate([rest, NOISE, rest]), padtype=None)
     expected = expected[rest.size : -rest.size]
-    assert np.abs(found - expected).max() < 1e-7 * np.abs(expected).max()
+    assert np.abs(filtered - expected).max() < 1e-7 * np.abs(expected).max()
 
 
 @pytest.mark.parametrize("causal", [False, True])
 @pytest.mark.parametrize("arguments", [{"low": "0.1 Hz"}, {"low": "0.2 Hz", "high": "25 Hz"}])
-def test_with_its_padding_a_filtered_motion_ends_at_rest(causal, arguments):
-    """The motion is pushed off and ends in full swing, so that it drifts."""
+def test_filtered_motion_with_padding_ends_at_rest(causal, arguments):
+    """The window begins and ends during strong shaking, so that the motion drifts."""
     record = GroundMotion.example("loma-prieta").window("5 s", "15 s")
     cut = record.filtered(**arguments, causal=causal)
-    kept = record.filtered(**arguments, causal=causal, keep_padding=True)
-    before = round((len(kept) - len(cut)) / 2) if not causal else 1
-    within = kept.si.horizontal.samples[before : before + len(cut)]
+    padded = record.filtered(**arguments, causal=causal, keep_padding=True)
+    before = round((len(padded) - len(cut)) / 2) if not causal else 1
+    within = padded.si.horizontal.samples[before : before + len(cut)]
     np.testing.assert_allclose(within, cut.si.horizontal.samples, rtol=0.0, atol=1e-15)
     ends = {}
-    for name, found in (("cut", cut), ("kept", kept)):
-        path = velocity_and_displacement(found)
+    for name, filtered in (("cut", cut), ("padded", padded)):
+        path = velocity_and_displacement(filtered)
         ends[name] = [
             abs(float(values[-1])) / float(np.abs(values).max())
             for values in (path.ground_velocity, path.ground_displacement)
         ]
     assert max(ends["cut"]) > (0.02 if causal else 0.5)
-    assert max(ends["kept"]) < 1e-4
-    assert "padding kept: " in kept.history[-1]
+    assert max(ends["padded"]) < 1e-4
+    assert "padding kept: " in padded.history[-1]
 
 
 @pytest.mark.parametrize(
@@ -362,17 +362,17 @@ def test_a_drift_of_the_velocity_is_removed(order):
     corrected = drifting.baseline_corrected(order, fit="velocity").si.horizontal.samples
     velocity = np.concatenate([[0.0], np.cumsum(corrected[1:] + corrected[:-1]) * 0.5 * STEP])
     assert np.abs(velocity).max() < 1e-12
-    again = drifting.baseline_corrected(order, fit="velocity")
-    assert again.history[-1].startswith("baseline corrected: slope of the polynomial of degree")
+    recorded = drifting.baseline_corrected(order, fit="velocity")
+    assert recorded.history[-1].startswith("baseline corrected: slope of the polynomial of degree")
 
 
-def test_a_drift_is_taken_from_what_is_there_besides():
+def test_velocity_fit_is_independent_of_added_drift():
     time = np.arange(401) * STEP
     clean = motion(np.sin(2.0 * np.pi * time))
     drifting = motion(np.sin(2.0 * np.pi * time) + 0.2 + 0.1 * time)
     one, other = (m.baseline_corrected(2, fit="velocity") for m in (clean, drifting))
     assert other.si.horizontal.samples == pytest.approx(one.si.horizontal.samples, abs=1e-12)
-    # fitting the acceleration instead leaves a velocity at the end
+    # a fit of the acceleration leaves a velocity at the end
     left = drifting.baseline_corrected(1).si.horizontal.samples
     assert one.si.peak > 0.9
     assert left != pytest.approx(one.si.horizontal.samples, abs=1e-3)
@@ -420,7 +420,7 @@ def test_with_vertical_of_another_step():
 
 @pytest.mark.parametrize(("off", "same"), [(1e-12, True), (1e-6, False)])
 def test_time_steps_are_the_same_up_to_rounding(off, same):
-    """Over a record of 100 s, a millionth would be a tenth of a millisecond."""
+    """An error of one millionth would be a tenth of a millisecond after 100 s."""
     other = motion(step=STEP * (1.0 + off))
     if same:
         assert motion().with_vertical(other).si.time_step == STEP
@@ -429,10 +429,10 @@ def test_time_steps_are_the_same_up_to_rounding(off, same):
             motion().with_vertical(other)
 
 
-def test_what_is_known_of_the_vertical_component_is_kept():
-    made = motion()
-    told = GroundMotion(made.si, name="up", metadata={"station": "A"}, history=made.history)
-    assert motion().with_vertical(told).metadata["vertical_station"] == "A"
+def test_with_vertical_preserves_metadata_of_vertical_component():
+    record = motion()
+    upwards = GroundMotion(record.si, name="up", metadata={"station": "A"}, history=record.history)
+    assert motion().with_vertical(upwards).metadata["vertical_station"] == "A"
 
 
 @pytest.mark.parametrize("other", [NOISE, 3, "vertical"])
@@ -441,7 +441,7 @@ def test_with_vertical_of_something_else(other):
         motion().with_vertical(other)
 
 
-def test_a_replaced_vertical_component_is_told():
+def test_replaced_vertical_component_is_recorded_in_history():
     both = motion(vertical=NOISE).with_vertical(motion(-NOISE))
     assert "replaced" in both.history[-1]
     assert both.si.vertical.samples.tolist() == (-NOISE).tolist()
@@ -461,7 +461,7 @@ def test_pieces_of_the_vertical_component_survive_scaling_and_windows():
     assert part.si.vertical.at(time) == pytest.approx(6.0 * np.cos(2.0 * np.pi * time), abs=6e-12)
 
 
-def test_a_record_above_an_analytic_pulse_is_refined_by_itself():
+def test_recorded_vertical_of_analytic_pulse_is_refined_linearly():
     pulse = GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
     count = len(pulse)
     both = pulse.with_vertical(motion(NOISE[:count], step=pulse.si.time_step))
@@ -492,13 +492,13 @@ def test_a_pulse_that_ends_abruptly_still_does_when_padded():
 @pytest.mark.parametrize(
     "step", ["refined", "coarsened", "tapered", "filtered", "causal", "baseline", "drift"]
 )
-def test_other_steps_replace_pieces_and_say_so(step):
+def test_other_steps_replace_pieces_and_record_it_in_history(step):
     changed = ALL_STEPS[step](GroundMotion.sine_pulse("1 m/s^2", "1 Hz", 3))
     assert not changed.si.horizontal.analytic
     assert "straight lines" in changed.history[-1]
 
 
-def test_the_pieces_of_the_vertical_component_are_spoken_of_too():
+def test_replaced_vertical_pieces_are_recorded_in_history():
     both = motion().with_vertical(GroundMotion.sine_pulse().resampled(f"{STEP} s"))
     assert "straight lines" not in both.baseline_corrected().history[-1]
     pulse = GroundMotion.sine_pulse()

@@ -12,67 +12,69 @@ from rockframe.motion import GroundMotion
 from rockframe.motion.constructors.analytic import PULSES
 from rockframe.motion.description import CONSTRUCTORS
 
-GIVEN = {
+VALUES = {
     "amplitude": "0.31 g_0", "velocity": "-73 cm/s", "frequency": "1.7 Hz", "period": "1.1 s",
     "duration": "1.37 s", "interval": "0.37 s", "pulse_duration": "0.011 s", "phase": "31 deg",
     "cycles": "190 %", "order": 3, "antisymmetric": True,
 }  # fmt: skip
-"""What every argument of a pulse is given."""
+"""A value for every argument of the constructors."""
 
 
-def made(constructor: str, *, whole: bool) -> GroundMotion:
-    """Make a pulse of all arguments, or of those alone without which there is none."""
+def build_pulse(constructor: str, *, all_arguments: bool) -> GroundMotion:
+    """Build a pulse with all arguments, or with the required ones only."""
     build = getattr(GroundMotion, constructor)
-    given = {
-        name: GIVEN[name]
-        for name, one in signature(build).parameters.items()
-        if whole or one.default is one.empty
+    arguments = {
+        name: VALUES[name]
+        for name, parameter in signature(build).parameters.items()
+        if all_arguments or parameter.default is parameter.empty
     }
-    return build(**given)
+    return build(**arguments)
 
 
-MOTIONS = {name: made(name, whole=True) for name in PULSES}
-DEFAULTS = [made(name, whole=False) for name in PULSES]
+MOTIONS = {name: build_pulse(name, all_arguments=True) for name in PULSES}
+DEFAULTS = [build_pulse(name, all_arguments=False) for name in PULSES]
 
 
-def test_every_constructor_may_stand_in_a_recipe():
+def test_every_constructor_is_allowed_in_descriptions():
     members = classify_class_attrs(GroundMotion)
-    built = {one.name for one in members if one.kind == "class method" and one.name[0] != "_"}
+    built = {
+        member.name for member in members if member.kind == "class method" and member.name[0] != "_"
+    }
     read = {"read", "example", *(name for name in built if name.startswith("from_"))}
     assert built - read == set(CONSTRUCTORS)
 
 
-def test_the_manual_has_a_row_of_each():
+def test_manual_lists_every_pulse():
     page, head = "theory/pulses.md", "| constructor of `GroundMotion` | $\\ddot x_g$ | length |"
     rows = table(page, f"{head} final velocity | final displacement |")
-    shown = [row[0].strip("`") for row in rows]
-    assert shown == PULSES, f"give docs/{page} a row for each pulse, in the order of the code"
+    listed = [row[0].strip("`") for row in rows]
+    assert listed == PULSES, f"give docs/{page} a row for each pulse, in the order of the code"
 
 
 @pytest.mark.parametrize("motion", [*MOTIONS.values(), *DEFAULTS])
 def test_a_description_builds_the_motion_again(motion):
     description = json.loads(json.dumps(motion.to_dict()))
-    again = GroundMotion.from_dict(description)
-    assert again == motion
-    assert again.to_dict() == motion.to_dict()
+    rebuilt = GroundMotion.from_dict(description)
+    assert rebuilt == motion
+    assert rebuilt.to_dict() == motion.to_dict()
 
 
 @pytest.mark.parametrize("motion", [*MOTIONS.values(), *DEFAULTS])
-def test_through_a_file_bit_for_bit(motion, tmp_path):
+def test_motion_survives_netcdf_round_trip(motion, tmp_path):
     import xarray as xr
 
     motion.to_dataset().to_netcdf(tmp_path / "motion.nc")
     with xr.open_dataset(tmp_path / "motion.nc") as stored:
-        again = GroundMotion.from_dataset(stored)
-    assert again == motion
-    assert GroundMotion.from_dict(again.to_dict()) == motion
+        rebuilt = GroundMotion.from_dataset(stored)
+    assert rebuilt == motion
+    assert GroundMotion.from_dict(rebuilt.to_dict()) == motion
 
 
 @pytest.mark.parametrize("constructor", PULSES)
-def test_what_was_done_to_a_motion_is_described_too(constructor):
+def test_description_rebuilds_processed_motion(constructor):
     motion = MOTIONS[constructor].scaled(peak="0.2 g_0").window("0.1 s", "0.3 s")
-    again = GroundMotion.from_dict(json.loads(json.dumps(motion.to_dict())))
-    assert again.sha256 == motion.sha256
+    rebuilt = GroundMotion.from_dict(json.loads(json.dumps(motion.to_dict())))
+    assert rebuilt.sha256 == motion.sha256
     assert motion.si.horizontal.analytic
 
 
@@ -90,13 +92,13 @@ NAMES = {
 
 
 @pytest.mark.parametrize(("name", "motion"), NAMES.items())
-def test_names(name, motion):
+def test_name_and_history_describe_pulse(name, motion):
     assert motion.name == name
     (sentence,) = motion.history
     assert sentence.startswith(name.split(",")[0] + ": ")
 
 
-def test_history_and_recipe_have_every_digit():
+def test_history_and_description_have_full_precision():
     motion = GroundMotion.type_a_pulse("0.1234567890123 m/s", "1.1 s")
     assert motion.history == ("type A pulse: 0.1234567890123 m/s, 1.1 s",)
     assert motion.to_dict() == {
@@ -110,7 +112,7 @@ def test_history_and_recipe_have_every_digit():
     assert plain.to_dict()["antisymmetric"] is False
 
 
-def test_a_subclass_builds_itself_and_signs_its_errors():
+def test_subclass_is_built_and_named_in_errors():
     class Recorded(GroundMotion):
         __slots__ = ()
 
@@ -119,7 +121,7 @@ def test_a_subclass_builds_itself_and_signs_its_errors():
         Recorded.type_b_pulse(1.0, "1 s")
 
 
-# one pulse under several names -------------------------------------------------------------------
+# equal pulses with different names ---------------------------------------------------------------
 
 
 @pytest.mark.parametrize("duration", [0.37, 0.5, 2.0])
@@ -137,12 +139,12 @@ def test_half_sine_is_half_a_cycle(duration):
 def test_type_a_is_one_sine_and_type_b_one_cosine(period):
     frequency = f"{1.0 / period!r} Hz"
     velocity = f"{period / math.pi!r} m/s"
-    for made, known, size in (
+    for build, build_known, size in (
         (GroundMotion.type_a_pulse, GroundMotion.sine_pulse, 1.0),
         (GroundMotion.type_b_pulse, GroundMotion.cosine_pulse, 2.0),
     ):
-        ours = made(velocity, f"{period!r} s").si
-        theirs = known(f"{size} m/s^2", frequency, 1).si
+        ours = build(velocity, f"{period!r} s").si
+        theirs = build_known(f"{size} m/s^2", frequency, 1).si
         assert ours.time_step == theirs.time_step
         samples, pieces = theirs.horizontal.samples, theirs.horizontal.pieces
         assert ours.horizontal.samples == pytest.approx(samples, abs=1e-15 * size)
@@ -167,17 +169,17 @@ def test_the_opposite_amplitude_is_the_opposite_motion(constructor):
     )
 
 
-# what is refused ---------------------------------------------------------------------------------
+# invalid arguments -------------------------------------------------------------------------------
 
 UNITS = {
     "amplitude": "1 m/s^2", "velocity": "1 m/s", "frequency": "1 Hz", "period": "1 s",
     "duration": "1 s", "interval": "1 s", "cycles": 2,
 }  # fmt: skip
-LEAST = {
+REQUIRED = {
     constructor: {
         name: UNITS[name]
-        for name, one in signature(getattr(GroundMotion, constructor)).parameters.items()
-        if one.default is one.empty
+        for name, parameter in signature(getattr(GroundMotion, constructor)).parameters.items()
+        if parameter.default is parameter.empty
     }
     for constructor in PULSES
 }
@@ -190,7 +192,9 @@ KINDS = {
     "interval": "a time",
     "cycles": "a pure ratio",
 }
-ARGUMENTS = [(constructor, name) for constructor, given in LEAST.items() for name in given]
+ARGUMENTS = [
+    (constructor, name) for constructor, arguments in REQUIRED.items() for name in arguments
+]
 
 
 @pytest.mark.parametrize(("constructor", "name"), ARGUMENTS)
@@ -198,14 +202,14 @@ ARGUMENTS = [(constructor, name) for constructor, given in LEAST.items() for nam
 def test_wrong_units(constructor, name, wrong):
     words = rf"^GroundMotion\.{constructor}: {name} needs {KINDS[name]}"
     with pytest.raises(UnitsError, match=words):
-        getattr(GroundMotion, constructor)(**{**LEAST[constructor], name: wrong})
+        getattr(GroundMotion, constructor)(**{**REQUIRED[constructor], name: wrong})
 
 
 @pytest.mark.parametrize(("constructor", "name"), ARGUMENTS)
 @pytest.mark.parametrize("number", ["nan", "inf", "-1", "0"])
 def test_numbers_out_of_range(constructor, name, number):
-    unit = LEAST[constructor][name].split(" ", 1)[1] if name != "cycles" else ""
-    arguments = {**LEAST[constructor], name: f"{number} {unit}".strip()}
+    unit = REQUIRED[constructor][name].split(" ", 1)[1] if name != "cycles" else ""
+    arguments = {**REQUIRED[constructor], name: f"{number} {unit}".strip()}
     if name in ("amplitude", "velocity") and number in ("-1", "0"):
         getattr(GroundMotion, constructor)(**arguments)
         return
@@ -236,12 +240,12 @@ def test_numbers_out_of_range(constructor, name, number):
         ("double_impulse", {"velocity": "1e308 m/s"}, "must be finite"),
     ],
 )
-def test_values_that_mean_nothing(constructor, arguments, words):
+def test_invalid_values_raise(constructor, arguments, words):
     with pytest.raises(ComponentError, match=words):
-        getattr(GroundMotion, constructor)(**{**LEAST[constructor], **arguments})
+        getattr(GroundMotion, constructor)(**{**REQUIRED[constructor], **arguments})
 
 
-def test_an_impulse_has_a_time_for_its_length():
+def test_duration_and_phase_without_units_raise():
     with pytest.raises(UnitsError, match="pulse_duration needs a time"):
         GroundMotion.double_impulse("1 m/s", "1 s", 0.01)
     with pytest.raises(UnitsError, match="phase needs an angle"):
@@ -254,7 +258,7 @@ def test_a_recipe_of_another_constructor_is_refused():
 
 
 @pytest.mark.parametrize("parts", [*range(1, 60), 333, 1000])
-def test_the_length_of_an_impulse_survives_its_own_rounding(parts):
-    made = GroundMotion.double_impulse("1 m/s", "0.37 s", f"{0.37 / parts!r} s")
-    assert len(made) == 16 * (parts + 1) + 1
-    assert GroundMotion.from_dict(made.to_dict()) == made
+def test_double_impulse_length_is_robust_to_rounding(parts):
+    impulse = GroundMotion.double_impulse("1 m/s", "0.37 s", f"{0.37 / parts!r} s")
+    assert len(impulse) == 16 * (parts + 1) + 1
+    assert GroundMotion.from_dict(impulse.to_dict()) == impulse

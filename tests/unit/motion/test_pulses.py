@@ -1,4 +1,4 @@
-"""Analytic motions against the functions that they stand for."""
+"""Analytic motions compared with their exact functions."""
 
 import math
 
@@ -9,7 +9,7 @@ from rockframe.errors import ComponentError, UnitsError
 from rockframe.motion import GroundMotion
 
 
-def test_defaults_are_equation_17():
+def test_default_sine_pulse_is_equation_17():
     pulse = GroundMotion.sine_pulse()
     assert pulse.si.duration == 1.0
     time = np.linspace(0.0, 1.0, 4001)
@@ -22,11 +22,11 @@ def test_defaults_are_equation_17():
 
 @pytest.mark.parametrize("frequency", [0.013, 1.0, 7.3])
 @pytest.mark.parametrize("cycles", [0.5, 1, 0.8, 3.7])
-def test_pieces_are_as_exact_as_promised(frequency, cycles):
+def test_pieces_have_documented_accuracy(frequency, cycles):
     pulse = GroundMotion.sine_pulse("2 m/s^2", f"{frequency} Hz", cycles)
     time = np.linspace(0.0, pulse.si.duration, 20011)
     exact = 2.0 * np.sin(2.0 * np.pi * frequency * time)
-    # (2 pi/128)^6/(64 * 720) of the amplitude, and the rounding of the argument
+    # bound: (2 pi/128)^6/(64 * 720) of the amplitude, and rounding of the argument
     assert np.max(np.abs(pulse.si.at(time) - exact)) < 2.0 * 3.2e-13 + 2e-14 * cycles
     assert pulse.si.duration == pytest.approx(cycles / frequency, rel=1e-14)
 

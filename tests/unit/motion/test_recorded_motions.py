@@ -1,4 +1,4 @@
-"""The readers against real records, as published."""
+"""Real records are read with their published properties."""
 
 import hashlib
 import sys
@@ -30,7 +30,7 @@ TCU128 = "PEERSMD_CHICHI_TCU128-N.AT2"
 TCU128_EAST = "SLAMMER_CHICHI_TCU128-090.txt"
 
 RECORDS = [
-    # name, what to ask for, format, time step [s], samples, peak [g], unit as read
+    # name, arguments, format, time step [s], samples, peak [g], unit as read
     (TCU128, {}, "peer-at2", 0.005, 18000, 0.17024, "G"),
     ("ElCentro1940_Peknold.AT2", {}, "peer-at2", 0.02, 1559, 0.31882, "g"),
     ("PEERSMD_IMPVALL_IELC180.AT2", {}, "peer-at2", 0.01, 4000, 0.31288, "G"),
@@ -39,12 +39,12 @@ RECORDS = [
     (TCU128_EAST, TEXT, "text", 0.005, 13125, 0.13933, "g"),
     (SMC, {}, "smc", 0.005, 6001, 0.10647, "cm/sec/sec"),
     (CSMIP, {"component": "UP"}, "csmip", 0.02, 1138, 0.17497, "CM/SEC/SEC"),
-    # not in the index: the peak is the one of the file's own header
+    # not in the index: the peak is that of the file header
     (COSMOS, {"component": "BNZ"}, "cosmos", 0.005, 42000, 6.851512 / 980.665, "cm/sec2"),
     (ESM, {}, "esm", 0.005, 19128, 0.300022 / 980.665, "cm/s^2"),
     (GEONET, {"component": "S74E"}, "geonet", 0.02, 5800, 0.01978, "mm/s^2"),
     (CWA, {"component": "N"}, "cwa", 0.02, 6000, 0.00231, "gal"),
-    # the peaks are those that the files state
+    # peaks as stated in the files
     (
         MORE + "AFAD_20170720223109_4801.txt",
         {"component": "E"},
@@ -71,12 +71,14 @@ RECORDS = [
 
 
 @pytest.mark.filterwarnings("ignore:.*(declares 17500 samples|lie around an offset)")
-@pytest.mark.parametrize(("name", "given", "kind", "time_step", "count", "peak", "unit"), RECORDS)
+@pytest.mark.parametrize(
+    ("name", "arguments", "kind", "time_step", "count", "peak", "unit"), RECORDS
+)
 def test_records_have_their_published_step_count_and_peak(
-    name, given, kind, time_step, count, peak, unit
+    name, arguments, kind, time_step, count, peak, unit
 ):
     path = record_path(name)
-    motion = GroundMotion.read(path, **given)
+    motion = GroundMotion.read(path, **arguments)
     assert motion.si.time_step == time_step
     assert len(motion) == count
     assert motion.si.peak / STANDARD_GRAVITY == pytest.approx(peak, abs=1e-5)
@@ -84,13 +86,13 @@ def test_records_have_their_published_step_count_and_peak(
     assert motion.metadata["unit_as_read"] == unit
     assert motion.metadata["source_file"] == path.name
     assert motion.metadata["source_sha256"] == hashlib.sha256(path.read_bytes()).hexdigest()
-    assert GroundMotion.read(path, format=kind, **given) == motion
+    assert GroundMotion.read(path, format=kind, **arguments) == motion
 
 
 @pytest.mark.parametrize(
     ("name", "component", "peak", "unit"),
     [
-        # peaks as the headers print them, to half of their last digit
+        # peaks as printed in the headers, to half of their last digit
         (GEONET, "S16W", 41.6, 1e-3),
         (GEONET, "S74E", 194.0, 1e-3),
         (GEONET, "Up", 27.3, 1e-3),
@@ -148,13 +150,13 @@ def test_component_number_may_have_leading_zeros():
 
 
 @pytest.mark.parametrize("name", [GEONET, CWA])
-def test_files_of_three_components_want_a_name(name):
+def test_files_of_three_components_need_component_argument(name):
     with pytest.raises(RecordError, match=r"3 components: .*the argument component"):
         GroundMotion.read(record_path(name))
 
 
 @pytest.mark.parametrize("name", [CSMIP, COSMOS])
-def test_files_of_a_vertical_component_say_so(name):
+def test_files_of_vertical_component_warn(name):
     with pytest.warns(RecordWarning, match="is vertical"):
         GroundMotion.read(record_path(name))
 
@@ -167,10 +169,10 @@ def test_a_horizontal_component_with_the_vertical_one(name, pair):
 
 
 def test_the_other_file_of_tcu128_holds_the_other_component():
-    """Its envelope fits 20.4 s into the record, where it starts; its samples fit nowhere.
+    """The envelopes agree at a lag of 20.4 s, its start; the samples agree at no lag.
 
     The text file, named 090, is the east component of the motion whose north
-    component is the AT2 file: neither a sign nor a scale nor a lag makes one the other.
+    component is the AT2 file: no sign, scale or lag turns one into the other.
     """
     north = GroundMotion.read(record_path(TCU128)).si.horizontal.samples
     east = GroundMotion.read(record_path(TCU128_EAST), **TEXT).si.horizontal.samples
@@ -186,7 +188,7 @@ def test_the_other_file_of_tcu128_holds_the_other_component():
     assert fit.max() > 0.85
     assert lags[int(fit.argmax())] * 0.005 == pytest.approx(20.35, abs=0.5)
     assert abs(correlation(north, east)).max() < 0.3
-    # the same motion in the same unit: energies of one size
+    # the same motion in the same unit: energies of similar size
     assert 0.5 < np.sum(east**2) / np.sum(north**2) < 1.0
 
 
@@ -227,7 +229,7 @@ def test_a_forced_wrong_format_is_refused(name, given_format):
         GroundMotion.read(record_path(name), format=given_format, **TEXT)
 
 
-def test_half_a_record_is_refused_and_says_how_much_is_there(tmp_path):
+def test_truncated_record_raises_with_expected_count(tmp_path):
     data = record_path(TCU128).read_bytes()
     path = tmp_path / "half.AT2"
     path.write_bytes(data[: len(data) // 2])
@@ -246,11 +248,11 @@ def test_a_record_cut_inside_its_last_number_is_refused(tmp_path, cut):
     assert caught.value.line == 3604
 
 
-@pytest.mark.parametrize(("name", "given"), [entry[:2] for entry in RECORDS])
-def test_a_record_that_is_stored_comes_back(name, given, tmp_path):
+@pytest.mark.parametrize(("name", "arguments"), [entry[:2] for entry in RECORDS])
+def test_record_survives_netcdf_round_trip(name, arguments, tmp_path):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RecordWarning)
-        motion = GroundMotion.read(record_path(name), **given)
+        motion = GroundMotion.read(record_path(name), **arguments)
     path = tmp_path / "motion.nc"
     motion.to_dataset().to_netcdf(path)
     assert GroundMotion.read(path) == motion

@@ -1,4 +1,4 @@
-"""Resampling: the same function, a band-limited one, or a smoothed one."""
+"""Resampling by straight lines or band-limited interpolation, and coarsening."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ def motion(values=NOISE, step=STEP):
 
 
 def tone(frequency, step=STEP, count=4001):
-    """A tone that swells and fades, so that its ends do not matter."""
+    """A tone with a smooth envelope, so that end effects vanish."""
     time = np.arange(count) * step
     swell = np.sin(np.pi * time / time[-1]) ** 2
     return swell * np.sin(2.0 * np.pi * frequency * time)
@@ -33,7 +33,7 @@ def test_refining_by_a_whole_number_keeps_the_function(times):
     assert fine.si.at(time) == pytest.approx(motion().si.at(time), abs=1e-12)
 
 
-def test_a_ratio_that_is_whole_but_for_rounding_is_whole():
+def test_step_ratio_is_rounded_to_integer():
     assert 0.15 / 0.05 < 3.0
     fine = motion(step=0.15).resampled("0.05 s")
     assert len(fine) == 399 * 3 + 1
@@ -49,17 +49,17 @@ def test_refining_by_another_number_reads_off_the_straight_lines(step):
     assert fine.si.horizontal.samples == pytest.approx(expected, abs=1e-12)
 
 
-def test_refining_says_what_it_took_the_motion_for():
+def test_refining_records_interpolation_in_history():
     pulse = GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
-    for made, how in (
+    for refined, description in (
         (motion().resampled("0.005 s"), "without anything beyond the old Nyquist frequency"),
         (motion().resampled("0.005 s", interpolation="linear"), "linear between samples"),
         (pulse.resampled("0.005 s"), "read off the analytic pieces"),
     ):
-        assert any(sentence.endswith(f"to 0.005 s, {how}") for sentence in made.history)
+        assert any(sentence.endswith(f"to 0.005 s, {description}") for sentence in refined.history)
 
 
-def test_refining_says_what_is_left_out():
+def test_refining_records_omitted_end_in_history():
     fine = motion().resampled("0.007 s")
     assert fine.si.duration == pytest.approx(570 * 0.007)
     assert motion().resampled("0.0071 s").history[-1] == (
@@ -86,8 +86,9 @@ def test_coarsening_keeps_slow_and_removes_fast_motion_without_delay(step):
 
 @pytest.mark.parametrize("step", [0.02, 0.025, 0.0333])
 def test_coarsening_cuts_close_to_the_new_nyquist_frequency(step):
-    kept, removed = tone(0.35 / step), tone(0.55 / step)  # 0.7 and 1.1 of it
-    coarse = motion(kept).resampled(f"{step} s")
+    # 0.7 and 1.1 of the new Nyquist frequency
+    passed, removed = tone(0.35 / step), tone(0.55 / step)
+    coarse = motion(passed).resampled(f"{step} s")
     time = np.arange(len(coarse)) * step
     exact = np.sin(np.pi * time / 40.0) ** 2 * np.sin(2.0 * np.pi * 0.35 / step * time)
     assert coarse.si.horizontal.samples == pytest.approx(exact, abs=0.03)
@@ -139,8 +140,8 @@ def test_band_limited_samples_keep_the_old_ones(times):
     "step", [0.005, 0.0071, *(pytest.param(s, marks=pytest.mark.long) for s in (0.001, 0.003))]
 )
 @pytest.mark.parametrize("frequency", [1.0, 20.0, 40.0])
-def test_band_limited_samples_are_those_of_the_tone(step, frequency):
-    """Up to 0.8 of the Nyquist frequency, where straight lines are far off."""
+def test_band_limited_refining_follows_tone(step, frequency):
+    """Up to 0.8 of the Nyquist frequency, where straight lines are inaccurate."""
     fine = motion(tone(frequency)).resampled(f"{step} s")
     time = np.arange(len(fine)) * step
     swell = np.sin(np.pi * time / 40.0) ** 2
@@ -189,7 +190,7 @@ def test_refining_never_changes_the_function(values, times):
     assert fine.si.peak == pytest.approx(coarse.si.peak, rel=1e-14, abs=1e-300)
 
 
-def test_a_step_for_which_the_filter_alone_would_fill_the_memory_is_refused():
+def test_time_step_that_needs_oversized_filter_is_refused():
     record = GroundMotion.from_arrays(([0.0, 1.0, -1.0], "m/s^2"), time_step="0.01 s")
     with pytest.raises(
         ComponentError, match=r"too short compared with that of the record, 0\.01 s"

@@ -13,9 +13,9 @@ STEP = 0.02
 
 def motion(values, name, azimuth=None, vertical=None, step=STEP):
     up = None if vertical is None else (vertical, "m/s^2")
-    made = GroundMotion.from_arrays((values, "m/s^2"), f"{step} s", up, name=name)
-    told = {} if azimuth is None else {"azimuth": azimuth, "component": name}
-    return GroundMotion(made.si, name=name, metadata=told, history=made.history)
+    record = GroundMotion.from_arrays((values, "m/s^2"), f"{step} s", up, name=name)
+    metadata = {} if azimuth is None else {"azimuth": azimuth, "component": name}
+    return GroundMotion(record.si, name=name, metadata=metadata, history=record.history)
 
 
 @pytest.mark.parametrize("degrees", [0.0, 30.0, 45.0, -120.0, 400.0])
@@ -60,11 +60,11 @@ def test_the_components_are_named():
     assert turned.metadata["azimuth"] == pytest.approx(330.0)
 
 
-@pytest.mark.parametrize(("theirs", "known"), [(91, True), (89, True), (92, False), (88, False)])
-def test_azimuths_are_at_a_right_angle_up_to_a_degree(theirs, known):
-    """Agencies round them to whole degrees."""
+@pytest.mark.parametrize(("theirs", "accepted"), [(91, True), (89, True), (92, False), (88, False)])
+def test_azimuths_may_deviate_one_degree_from_right_angle(theirs, accepted):
+    """Agencies round azimuths to whole degrees."""
     one, other = motion(ONE, "H1", 0), motion(OTHER, "H2", theirs)
-    if known:
+    if accepted:
         one.rotated(other, azimuth="30 deg")
     else:
         with pytest.raises(ComponentError, match="are not at a right angle"):
@@ -72,15 +72,15 @@ def test_azimuths_are_at_a_right_angle_up_to_a_degree(theirs, known):
 
 
 @pytest.mark.parametrize(("own", "theirs", "sign"), [(0, 90, 1), (90, 0, -1), (306, 36, 1)])
-def test_an_azimuth_needs_no_angle(own, theirs, sign):
-    """A component that points to `azimuth` is found from two that tell theirs."""
+def test_rotation_to_azimuth(own, theirs, sign):
+    """The component in direction `azimuth` follows from two with known azimuths."""
     one, other = motion(ONE, "H1", own), motion(OTHER, "H2", theirs)
     turned = one.rotated(other, azimuth="60 deg")
     angle = sign * np.radians(60.0 - own)
     expected = np.cos(angle) * ONE + np.sin(angle) * OTHER
     assert turned.si.horizontal.samples == pytest.approx(expected, abs=1e-14)
     assert turned.metadata["azimuth"] == pytest.approx(60.0)
-    # along its own direction each is itself
+    # a rotation to its own azimuth leaves a component unchanged
     assert one.rotated(other, azimuth=f"{own} deg").si.horizontal.samples.tolist() == ONE.tolist()
     assert (
         other.rotated(one, azimuth=f"{theirs} deg").si.horizontal.samples.tolist() == OTHER.tolist()
@@ -98,7 +98,7 @@ def test_pulses_stay_analytic():
     assert GroundMotion.from_dict(turned.to_dict()) == turned
 
 
-def test_a_pulse_and_a_record_share_their_pieces():
+def test_rotation_combines_pulse_with_record():
     pulse = GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
     lines = motion(RNG.normal(size=len(pulse)), "lines", step=pulse.si.time_step)
     time = np.linspace(0.0, 1.0, 333)
@@ -122,7 +122,7 @@ def test_rotations_that_are_refused(arguments, error, words):
         motion(ONE, "one").rotated(motion(OTHER, "other", 90.0), **arguments)
 
 
-def test_partners_that_are_refused():
+def test_invalid_second_component_raises():
     with pytest.raises(ComponentError, match="needs a GroundMotion"):
         motion(ONE, "one").rotated(OTHER, "30 deg")
     with pytest.raises(ComponentError, match=r"time steps differ"):

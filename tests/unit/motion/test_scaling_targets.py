@@ -14,16 +14,18 @@ def record(vertical=None):
     return rf.GroundMotion.from_arrays((NOISE, "m/s^2"), "0.01 s", up, name="noise")
 
 
-@pytest.mark.parametrize("made", [record(), rf.GroundMotion.sine_pulse("3 m/s^2", "0.7 Hz", 1.3)])
-def test_the_peak_velocity_is_reached(made):
-    scaled = made.scaled(peak_velocity="35 cm/s")
+@pytest.mark.parametrize(
+    "record_or_pulse", [record(), rf.GroundMotion.sine_pulse("3 m/s^2", "0.7 Hz", 1.3)]
+)
+def test_the_peak_velocity_is_reached(record_or_pulse):
+    scaled = record_or_pulse.scaled(peak_velocity="35 cm/s")
     assert float(rf.intensity_measures(scaled).peak_ground_velocity) == pytest.approx(
         0.35, rel=1e-12
     )
     assert "to a peak velocity of 0.35 m s^-1" in scaled.history[-1]
 
 
-def test_the_velocity_of_a_full_sine_is_known():
+def test_scaling_of_sine_to_peak_velocity_is_exact():
     """v = a/omega (1 - cos omega t), at most 2 a/omega."""
     pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz").scaled(peak_velocity="1 m/s")
     assert pulse.si.peak == pytest.approx(np.pi, rel=1e-12)
@@ -83,7 +85,7 @@ def test_still_ground_reaches_no_target(target):
         still.scaled(**target)
 
 
-def test_a_period_too_short_for_the_record_is_warned_of():
+def test_period_too_short_for_record_warns():
     with pytest.warns(
         RecordWarning, match=r"coarse for periods from 0.06 s.*resampled\('0.005 s'\)"
     ):

@@ -1,4 +1,4 @@
-"""Motions drawn from the stochastic model: arguments, recipe, reproducibility."""
+"""Motions of the stochastic model: arguments, recipe, reproducibility."""
 
 import json
 import pickle
@@ -27,7 +27,7 @@ def draw(magnitude=5.0, distance="20 km", seed=1, **others):
     return GroundMotion.stochastic(magnitude, distance, seed, **others)
 
 
-# the same again ------------------------------------------------------------------------------
+# reproducibility ---------------------------------------------------------------------------------
 
 
 def test_the_same_seed_gives_the_same_motion():
@@ -40,31 +40,31 @@ def test_another_seed_gives_another_motion():
     assert len(digests) == 5
 
 
-def test_random_numbers_are_those_of_every_version():
-    found = [normal_numbers(4, seed=1, stream=stream) for stream in (0, 1)]
+def test_random_numbers_are_reproducible_across_versions():
+    numbers = [normal_numbers(4, seed=1, stream=stream) for stream in (0, 1)]
     expected = [
         [0.52162579, -0.93717015, 0.37217449, -0.46713293],
         [-0.06078676, 0.25487041, -0.69003457, -0.75411062],
     ]
-    np.testing.assert_allclose(found, expected, atol=1e-8)
+    np.testing.assert_allclose(numbers, expected, atol=1e-8)
 
 
 @pytest.mark.parametrize("others", [{}, {"vertical": 0.5}, ALL])
-def test_recipe_builds_the_motion_again(others):
+def test_description_rebuilds_motion(others):
     motion = draw(**others)
     description = json.loads(json.dumps(motion.to_dict()))
     assert description["constructor"] == "stochastic"
-    again = GroundMotion.from_dict(description)
-    assert again == motion
-    assert again.to_dict() == motion.to_dict()
+    rebuilt = GroundMotion.from_dict(description)
+    assert rebuilt == motion
+    assert rebuilt.to_dict() == motion.to_dict()
 
 
-def test_recipe_knows_what_was_done_since():
+def test_description_rebuilds_processed_motion():
     motion = draw().scaled(peak="0.3 g_0").window("1 s", "9 s")
     assert GroundMotion.from_dict(motion.to_dict()) == motion
 
 
-def test_dataset_and_pickle_keep_the_motion():
+def test_motion_survives_dataset_and_pickle_round_trips():
     motion = draw(**ALL)
     stored = GroundMotion.from_dataset(motion.to_dataset())
     assert stored == motion
@@ -72,7 +72,7 @@ def test_dataset_and_pickle_keep_the_motion():
     assert pickle.loads(pickle.dumps(motion)) == motion  # noqa: S301
 
 
-def test_it_says_what_it_is():
+def test_name_metadata_and_history_describe_motion():
     motion = draw(6.5, "15 km", 3, vertical=0.6)
     assert motion.name == "stochastic motion, magnitude 6.5 at 15 km, rock 760, seed 3"
     assert motion.metadata["magnitude"] == 6.5
@@ -84,7 +84,7 @@ def test_it_says_what_it_is():
         assert words in sentence
 
 
-# arguments -----------------------------------------------------------------------------------
+# arguments ---------------------------------------------------------------------------------------
 
 
 def test_units_of_the_arguments_do_not_matter():
@@ -110,11 +110,11 @@ def test_defaults_are_as_documented():
 
 
 @pytest.mark.parametrize("site", list(Site))
-def test_site_is_an_option_or_its_string(site):
+def test_site_accepts_enum_or_string(site):
     assert draw(site=site) == draw(site=str(site))
 
 
-def test_time_step_is_kept():
+def test_time_step_argument_is_used():
     motion = draw(time_step="0.01 s")
     assert motion.si.time_step == 0.01
     assert motion.si.duration == pytest.approx(draw().si.duration, abs=0.03)
@@ -132,7 +132,7 @@ def test_vertical_component():
     assert not np.array_equal(double.si.vertical.samples, double.si.horizontal.samples)
 
 
-def test_a_seed_of_numpy():
+def test_seed_accepts_numpy_integer():
     motion = draw(seed=np.int64(7))
     assert motion == draw(seed=7)
     assert type(motion.metadata["seed"]) is int
@@ -197,15 +197,15 @@ def test_wrong_units(arguments, words):
         ({"distance": "300 km"}, "distance = 300 km is beyond 270 km"),
     ],
 )
-def test_beyond_the_calibration_a_warning(arguments, words):
+def test_arguments_beyond_calibration_warn(arguments, words):
     with pytest.warns(ModelWarning, match=words):
         draw(**arguments)
 
 
-# parts ---------------------------------------------------------------------------------------
+# parts -------------------------------------------------------------------------------------------
 
 
-def test_window_has_its_peak_and_its_end():
+def test_exponential_window_has_specified_peak_and_end():
     window = exponential_window(10.0, 0.001)
     assert window[0] == 0.0
     assert window.max() == pytest.approx(1.0, abs=1e-12)
@@ -230,7 +230,7 @@ def test_streams_are_independent():
     assert abs(np.mean(across[1:] * across[:-1])) < bound
 
 
-def test_fade_rises_and_falls_with_its_derivatives():
+def test_fade_window_matches_its_derivatives():
     step, slope, curvature = fade_window(2001, 400, 0.01)
     for values in (step, slope, curvature):
         assert values[0] == values[-1] == 0.0

@@ -1,4 +1,4 @@
-"""Floor motions: how a building is given, what is recorded, what is refused."""
+"""Floor motions: descriptions of buildings, history, invalid arguments."""
 
 import json
 import warnings
@@ -19,7 +19,7 @@ def motion(vertical=None):
     return rf.GroundMotion.from_arrays((NOISE, "m/s^2"), f"{STEP} s", up, name="noise")
 
 
-def test_what_is_done_is_told_and_can_be_repeated():
+def test_floor_motion_is_described_and_survives_round_trips():
     pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "2 Hz")
     buildings = (
         {"periods": ["0.5 s"], "damping_ratio": 0.05},
@@ -48,20 +48,20 @@ def test_what_is_done_is_told_and_can_be_repeated():
             description = json.loads(json.dumps(after.to_dict(samples=True)))
             assert rf.GroundMotion.from_dict(description) == after
             assert ("operations" in description) == (before.recipe is not None)
-    told = motion().through_storeys(**buildings[2]).history
-    assert told[1].startswith(
+    history = motion().through_storeys(**buildings[2]).history
+    assert history[1].startswith(
         "absolute acceleration of a floor, floor 17 of a shear building of equal storeys, "
         "40 in number, of 40 modes the first 12: period 1.3 s, damping ratio 0.05, "
     )
-    assert "; 2 further modes; participation " in told[1]
+    assert "; 2 further modes; participation " in history[1]
 
 
-def test_a_motion_from_rest_goes_on_after_the_ground_has_stopped():
+def test_floor_motion_includes_free_vibration():
     floor = motion().through_storeys(["0.5 s"], free_vibration="1.234 s")
     assert len(floor) == 300 + 124
     assert floor.history[2] == "with 1.24 s of free vibration after the ground motion"
     assert floor.acceleration[0].magnitude == 0.0
-    # 4.61/(2 pi 0.05) periods for a hundredth, and one more
+    # decay to one hundredth takes 4.61/(2 pi 0.05) periods; one more is added
     assert len(motion().through_storeys(["0.5 s"])) == 300 + 783
     softest = motion().through_storeys(
         ["0.5 s", "2 s", "9 s"], [0.05, 0.5, 0.05], floor_participations=[1, 0.3, 0]
@@ -75,7 +75,7 @@ def test_a_motion_from_rest_goes_on_after_the_ground_has_stopped():
     assert len(cut) == 300
 
 
-def test_the_vertical_component_is_that_of_the_ground():
+def test_vertical_component_of_floor_equals_ground():
     floor = motion(-NOISE).through_storeys(["0.5 s"], free_vibration="1 s")
     assert floor.si.vertical.samples.tolist() == [*(-NOISE), *np.zeros(100)]
     assert floor.history[-1] == "vertical component unchanged"
@@ -90,7 +90,7 @@ def test_the_vertical_component_is_that_of_the_ground():
     assert not both.si.horizontal.analytic
 
 
-def test_short_periods_bring_a_warning_with_a_time_step_that_suffices():
+def test_short_periods_warn_and_suggest_time_step():
     stiff = ["0.06 s"]
     tone = np.sin(2.0 * np.pi * np.arange(300) * STEP / 0.06)
     shaken = rf.GroundMotion.from_arrays((tone, "m/s^2"), f"{STEP} s")
@@ -110,7 +110,7 @@ def test_short_periods_bring_a_warning_with_a_time_step_that_suffices():
     )
 
 
-def test_values_are_taken_in_the_usual_forms():
+def test_arguments_accept_equivalent_forms():
     expected = motion().through_storeys(["500 ms"], 0.05)
     for periods in ("0.5 s", ([0.5], "s"), pint.Quantity([0.5], "s"), pint.Quantity(0.5, "s")):
         for damping in (0.05, "5 %", np.float64(0.05), [0.05], np.array([0.05]), ("5 %",)):
@@ -121,7 +121,7 @@ def test_values_are_taken_in_the_usual_forms():
     ) == motion().through_storeys(["0.5 s", "0.2 s"], floor_participations=[1.2, -0.2])
 
 
-def test_what_is_no_building_is_refused():
+def test_invalid_buildings_are_refused():
     uniform = {"storeys": 6, "floor": 4, "period": "0.6 s"}
     masses = {"masses": ([1, 2], "t"), "stiffnesses": ([3, 4], "MN/m"), "floor": 1}
     cases = (
@@ -160,10 +160,10 @@ def test_what_is_no_building_is_refused():
         ({**uniform, "vertical": "kept"}, "vertical must be 'unchanged' or 'omitted'"),
         ({"periods": ["1e-9 s"]}, "too short for the time step, 0.01 s; a rigid mode has"),
     )
-    for given, words in cases:
+    for arguments, words in cases:
         with pytest.raises(ComponentError, match=f"GroundMotion.through_storeys: .*{words}"):
-            motion().through_storeys(**given)
-    for given, words in (
+            motion().through_storeys(**arguments)
+    for arguments, words in (
         ({"periods": [0.5]}, "periods needs a time"),
         ({"periods": ["0.5 kg"]}, "periods needs a time"),
         ({**masses, "masses": ([1, 2], "kN")}, "masses needs a mass"),
@@ -171,15 +171,15 @@ def test_what_is_no_building_is_refused():
         ({**uniform, "free_vibration": 20}, "free_vibration needs a time"),
     ):
         with pytest.raises(UnitsError, match=words):
-            motion().through_storeys(**given)
+            motion().through_storeys(**arguments)
 
 
-def test_a_floor_that_feels_no_mode_has_the_motion_of_the_ground():
-    for given in (
+def test_floor_without_modal_response_moves_with_ground():
+    for arguments in (
         {"periods": ["0 s"]},
         {"periods": ["0.5 s"], "floor_participations": 0},
     ):
-        floor = motion().through_storeys(**given)
+        floor = motion().through_storeys(**arguments)
         assert floor.si.horizontal.samples.tolist() == NOISE.tolist()
     still = rf.GroundMotion.from_arrays(([0.0, 0.0], "m/s^2"), "0.01 s")
     assert still.through_storeys(["0.5 s"]).si.peak == 0.0

@@ -1,4 +1,4 @@
-"""Motions from uneven times, data frames and traces, and the times that an array carries."""
+"""Motions from uneven times, data frames and traces, and arrays with time axes."""
 
 import importlib.util
 from types import SimpleNamespace
@@ -21,7 +21,7 @@ DATES = pd.date_range("2020-01-01", periods=COUNT, freq="10ms")
 
 class TestTimesOfAnArray:
     @pytest.mark.parametrize("index", [TIMES, DATES, DATES - DATES[0], DATES.tz_localize("UTC")])
-    def test_an_index_of_times_must_be_that_of_the_time_step(self, index):
+    def test_time_index_must_match_time_step(self, index):
         series = pd.Series(VALUES, index=index)
         motion = GroundMotion.from_arrays((series, "m/s^2"), "0.01 s")
         assert motion.si.horizontal.samples.tolist() == VALUES.tolist()
@@ -30,7 +30,7 @@ class TestTimesOfAnArray:
         with pytest.raises(ComponentError, match="time axis of vertical"):
             GroundMotion.from_arrays((VALUES, "m/s^2"), "0.02 s", (series, "m/s^2"))
 
-    def test_an_index_that_counts_is_no_time(self):
+    def test_integer_index_is_not_read_as_times(self):
         for index in (None, np.arange(5, COUNT + 5)):
             series = pd.Series(VALUES, index=index)
             assert len(GroundMotion.from_arrays((series, "m/s^2"), "0.02 s")) == COUNT
@@ -53,10 +53,10 @@ class TestTimesOfAnArray:
     )
     def test_a_time_axis_of_any_kind(self, axis, attributes):
         array = xr.DataArray(VALUES, {"time": ("time", axis, attributes)}, attrs={"units": "m/s^2"})
-        for given in (array, (array, "m/s^2")):
-            assert len(GroundMotion.from_arrays(given, "0.01 s")) == COUNT
+        for acceleration in (array, (array, "m/s^2")):
+            assert len(GroundMotion.from_arrays(acceleration, "0.01 s")) == COUNT
             with pytest.raises(ComponentError, match=r"has the step 0\.01 s"):
-                GroundMotion.from_arrays(given, "0.02 s")
+                GroundMotion.from_arrays(acceleration, "0.02 s")
 
 
 class TestFromTimes:
@@ -72,7 +72,7 @@ class TestFromTimes:
         np.testing.assert_allclose(motion.si.horizontal.samples, expected, atol=1e-12)
         assert "0.007 s to 0.013 s apart, straight lines between them" in motion.history[0]
 
-    def test_a_cubic_through_a_cubic_is_that_cubic(self):
+    def test_cubic_interpolation_reproduces_cubic(self):
         cubic = 1.0 + UNEVEN - 3.0 * UNEVEN**2 + 0.5 * UNEVEN**3
         motion = GroundMotion.from_times(
             (UNEVEN, "s"), (cubic, "m/s^2"), "4 ms", interpolation="cubic"
@@ -81,7 +81,7 @@ class TestFromTimes:
         expected = 1.0 + t - 3.0 * t**2 + 0.5 * t**3
         np.testing.assert_allclose(motion.si.horizontal.samples, expected, atol=1e-10)
 
-    def test_even_times_of_the_same_step_change_nothing(self):
+    def test_even_times_preserve_samples(self):
         motion = GroundMotion.from_times(
             (TIMES, "s"), (VALUES, "cm/s^2"), "0.01 s", (-VALUES, "cm/s^2"), name="made up"
         )
@@ -93,7 +93,7 @@ class TestFromTimes:
         motion = GroundMotion.from_times(DATES, (VALUES, "m/s^2"), "0.01 s")
         np.testing.assert_allclose(motion.si.horizontal.samples, VALUES, atol=1e-6)
 
-    def test_a_longer_step_than_between_the_times_is_warned_about(self):
+    def test_time_step_longer_than_intervals_warns(self):
         with pytest.warns(RecordWarning, match="longer than the intervals"):
             GroundMotion.from_times((TIMES, "s"), (VALUES, "m/s^2"), "0.02 s")
 
@@ -109,11 +109,11 @@ class TestFromTimes:
             (TIMES, VALUES, "3 s", "must give 2 to"),
         ],
     )
-    def test_what_is_refused(self, times, values, step, words):
+    def test_invalid_times_and_samples_raise(self, times, values, step, words):
         with pytest.raises(ComponentError, match=words):
             GroundMotion.from_times((times, "s"), (values, "m/s^2"), step)
 
-    def test_units_are_needed(self):
+    def test_missing_units_and_unknown_interpolation_raise(self):
         with pytest.raises(UnitsError, match="needs an array of times with a unit"):
             GroundMotion.from_times(TIMES, (VALUES, "m/s^2"), "0.01 s")
         with pytest.raises(UnitsError, match=r"times needs a time .* got '1 m'"):
@@ -141,18 +141,18 @@ class TestFromFrame:
         with pytest.raises(ComponentError, match="column 't' must hold times"):
             GroundMotion.from_frame(frame, "gal", "N", time="t")
 
-    def test_one_that_points_down_is_turned_over(self):
+    def test_downward_vertical_column_is_inverted(self):
         motion = GroundMotion.from_frame(FRAME, "gal", "N", "DWN", time="t")
         np.testing.assert_allclose(motion.si.vertical.samples, -0.03 * VALUES, rtol=1e-14)
         assert motion.history[-1] == "component DWN turned over: positive upwards"
 
     @pytest.mark.parametrize("factor", [1e3, 1e-3])
-    def test_times_that_are_hardly_in_seconds_are_warned_about(self, factor):
+    def test_times_unlikely_to_be_in_seconds_warn(self, factor):
         frame = pd.DataFrame({"t": factor * TIMES, "acc": VALUES})
         with pytest.warns(RecordWarning, match=r"are they in seconds\?"):
             GroundMotion.from_frame(frame, "gal", "acc", time="t")
-        meant = f"{factor * STEP!r} s"
-        motion = GroundMotion.from_frame(frame, "gal", "acc", time="t", time_step=meant)
+        time_step = f"{factor * STEP!r} s"
+        motion = GroundMotion.from_frame(frame, "gal", "acc", time="t", time_step=time_step)
         assert motion.si.time_step == pytest.approx(factor * STEP)
 
     def test_times_in_the_index_or_a_time_step(self):
@@ -166,18 +166,18 @@ class TestFromFrame:
             GroundMotion.from_frame(only, "g", time_step="0.02 s")
 
     @pytest.mark.parametrize(
-        ("given", "words"),
+        ("arguments", "words"),
         [
             ({}, "component must name one of the columns 'N', 'E', 'DWN'"),
             ({"component": "U"}, "component 'U' is none of the columns"),
             ({"component": "N", "vertical": "Z"}, "vertical 'Z' is none of the columns"),
         ],
     )
-    def test_columns_that_are_not_there(self, given, words):
+    def test_columns_that_are_not_there(self, arguments, words):
         with pytest.raises(ComponentError, match=words):
-            GroundMotion.from_frame(FRAME, "g", time="t", **given)
+            GroundMotion.from_frame(FRAME, "g", time="t", **arguments)
 
-    def test_what_else_is_refused(self):
+    def test_other_invalid_arguments_raise(self):
         with pytest.raises(ComponentError, match="needs a pandas DataFrame"):
             GroundMotion.from_frame(VALUES, "g")
         with pytest.raises(UnitsError, match="unit of an acceleration, got 's'"):
@@ -191,11 +191,11 @@ class TestFromFrame:
 
 
 def trace(channel="HNE", values=VALUES, *, start=0.0, rate=100.0, **more):
-    """What a trace of ObsPy looks like from outside."""
+    """An object with the attributes of an ObsPy trace."""
     stats = {"delta": 1.0 / rate, "sampling_rate": rate, "starttime": start, **more}
-    held = SimpleNamespace(**stats)
-    held.get = stats.get
-    return SimpleNamespace(id=f"XX.MADE..{channel}", data=np.asarray(values), stats=held)
+    header = SimpleNamespace(**stats)
+    header.get = stats.get
+    return SimpleNamespace(id=f"XX.MADE..{channel}", data=np.asarray(values), stats=header)
 
 
 def stream(*traces):
@@ -211,11 +211,11 @@ class TestFromTrace:
         assert motion.metadata["unit_as_read"] == "gal"
 
     def test_a_pair_of_a_stream(self):
-        held = stream(trace("HNN"), trace("HNE"), trace("HNZ", 2.0 * VALUES))
-        motion = GroundMotion.from_trace(held, "gal", ("N", "Z"))
+        traces = stream(trace("HNN"), trace("HNE"), trace("HNZ", 2.0 * VALUES))
+        motion = GroundMotion.from_trace(traces, "gal", ("N", "Z"))
         np.testing.assert_allclose(motion.si.vertical.samples, 0.02 * VALUES, rtol=1e-14)
         with pytest.raises(RecordError, match="3 components"):
-            GroundMotion.from_trace(held, "gal")
+            GroundMotion.from_trace(traces, "gal")
 
     def test_pieces_of_a_channel_are_joined_unless_there_is_a_gap(self):
         whole = GroundMotion.from_trace(trace(), "gal")
@@ -225,12 +225,12 @@ class TestFromTrace:
         with pytest.raises(RecordError, match=r"a gap of 0\.05 s"):
             GroundMotion.from_trace(pieces, "gal")
         masked = np.ma.masked_array(VALUES, VALUES > 1.0)
-        held = trace()
-        held.data = masked
+        gappy = trace()
+        gappy.data = masked
         with pytest.raises(RecordError, match="masked samples"):
-            GroundMotion.from_trace(held, "gal")
+            GroundMotion.from_trace(gappy, "gal")
 
-    def test_the_unit_is_given_or_stated(self):
+    def test_unit_comes_from_argument_or_trace(self):
         with pytest.raises(RecordError, match="no unit of the samples"):
             GroundMotion.from_trace(trace())
         stated = trace(standard={"units": "cm/s^2"})
@@ -238,19 +238,19 @@ class TestFromTrace:
         with pytest.warns(RecordWarning, match=r"peak acceleration is .* g"):
             GroundMotion.from_trace(trace(), "g")
 
-    @pytest.mark.parametrize("given", [3, "path", VALUES, stream(), None])
-    def test_what_is_no_trace(self, given):
+    @pytest.mark.parametrize("argument", [3, "path", VALUES, stream(), None])
+    def test_invalid_traces_raise(self, argument):
         with pytest.raises(ComponentError, match="needs an ObsPy Trace, or a Stream"):
-            GroundMotion.from_trace(given, "gal")
+            GroundMotion.from_trace(argument, "gal")
 
     @pytest.mark.skipif(importlib.util.find_spec("obspy") is None, reason="ObsPy is not installed")
     @pytest.mark.filterwarnings("ignore::DeprecationWarning")
-    def test_obspy_itself(self):
+    def test_obspy_trace_and_stream_are_accepted(self):
         import obspy
 
         own = obspy.Trace(VALUES, {"network": "XX", "station": "MADE", "channel": "HNE"})
         own.stats.sampling_rate = 100.0
-        for given in (own, obspy.Stream([own])):
-            motion = GroundMotion.from_trace(given, "gal")
+        for traces in (own, obspy.Stream([own])):
+            motion = GroundMotion.from_trace(traces, "gal")
             assert motion.sha256 == GroundMotion.from_trace(trace(), "gal").sha256
             assert motion.metadata["record_time"] == "1970-01-01T00:00:00.000000Z"

@@ -1,4 +1,4 @@
-"""The reader of one or two columns: separators, headers, units, uneven times."""
+"""Text of one or two columns: separators, headers, units, uneven times."""
 
 import numpy as np
 import pytest
@@ -32,7 +32,7 @@ def test_two_columns(write, separator, header):
 
 
 @pytest.mark.parametrize("separator", [";", "\t", "  "])
-def test_decimal_commas_that_can_be_told_from_separators(write, separator):
+def test_unambiguous_decimal_commas_are_read(write, separator):
     path = write(table(separator, decimal=","), "r.csv")
     expect(GroundMotion.read(path, unit="g"))
 
@@ -42,11 +42,11 @@ def test_decimal_commas_in_one_column_of_a_semicolon_file(write):
     expect(GroundMotion.read(write(text, "r.csv"), unit="g", time_step="0.005 s"))
 
 
-@pytest.mark.parametrize("given", [{}, {"time_step": "0.005 s"}])
-def test_decimal_commas_that_may_be_separators_are_refused(write, given):
+@pytest.mark.parametrize("arguments", [{}, {"time_step": "0.005 s"}])
+def test_ambiguous_decimal_commas_are_refused(write, arguments):
     text = "".join(f"{value:.7f}\n".replace(".", ",") for value in VALUES)
     with pytest.raises(RecordError, match="comma may be a decimal sign or a separator") as caught:
-        GroundMotion.read(write(text, "r.csv"), unit="g", **given)
+        GroundMotion.read(write(text, "r.csv"), unit="g", **arguments)
     assert caught.value.line == 1
 
 
@@ -105,7 +105,7 @@ def test_unknown_unit_of_the_header(write):
 
 
 @pytest.mark.parametrize("unit", ["V", "counts", "mm/s^9"])
-def test_unknown_unit_beside_a_known_one(write, unit):
+def test_unknown_unit_is_refused_despite_known_one_in_header(write, unit):
     path = write(table(header=f"# made from (gal)\ntime [s],acceleration [{unit}]\n"), "r.csv")
     with pytest.raises(RecordError, match="the unknown unit") as caught:
         GroundMotion.read(path)
@@ -161,14 +161,14 @@ def test_argument_units(write, unit, factor):
         ("time (min),acceleration (g)\n", "'min' of the times"),
     ],
 )
-def test_columns_of_something_else(write, header, words):
+def test_columns_of_other_quantities_are_refused(write, header, words):
     with pytest.raises(RecordError, match=words) as caught:
         GroundMotion.read(write(table(header=header), "r.csv"), unit="g")
     assert caught.value.line == 1
 
 
 @pytest.mark.parametrize(("unit", "words"), [("cm/s", "a velocity"), ("cm", "a displacement")])
-def test_the_unit_of_a_remark_is_not_that_of_another_quantity(write, unit, words):
+def test_unit_in_comment_is_not_applied_to_other_quantity(write, unit, words):
     path = write(table(header=f"# peak of 0.3 (g)\ntime (s),x ({unit})\n"), "r.csv")
     with pytest.raises(RecordError, match=f"{words} in {unit}"):
         GroundMotion.read(path)
@@ -301,7 +301,7 @@ def test_a_field_that_is_no_finite_number_is_refused_at_its_line(write, field, r
     lines[row] = lines[row].split(",")[0] + "," + field
     with pytest.raises(RecordError) as caught:
         GroundMotion.read(write("\n".join(lines), "r.csv"), unit="g")
-    # an empty field in the first row makes the second row the odd one
+    # after an empty field in the first row, the second row is the exception
     assert caught.value.line in ({1, 2} if (field, row) == ("", 0) else {row + 1})
 
 
@@ -321,26 +321,26 @@ def test_rows_of_different_length(write):
     assert caught.value.line == 9
 
 
-def test_more_columns_than_any_file_has(write):
+def test_too_many_columns_are_refused(write):
     text = "".join(f"{k * STEP:.3f}" + ",0.1" * 12 + "\n" for k in range(COUNT))
     with pytest.raises(RecordError, match=r"13 columns; expected at most 12") as caught:
         GroundMotion.read(write(text, "r.csv"), unit="g")
     assert caught.value.line == 1
 
 
-def test_words_below_the_numbers(write):
+def test_text_after_numbers_is_refused(write):
     with pytest.raises(RecordError) as caught:
         GroundMotion.read(write(table() + "the end\n", "r.csv"), unit="g")
     assert caught.value.line == COUNT + 1
 
 
-def test_too_long_a_header(write):
+def test_too_long_header_is_refused(write):
     text = "word\n" * 21 + table()
     with pytest.raises(RecordError, match="at most 20 header lines"):
         GroundMotion.read(write(text, "r.csv"), unit="g", format="text")
 
 
-def test_one_row(write):
+def test_single_row_is_refused(write):
     with pytest.raises(RecordError, match="at least two samples"):
         GroundMotion.read(write("0.0,0.1\n", "r.csv"), unit="g")
 
@@ -351,7 +351,7 @@ def test_cut_inside_the_last_number(write):
     assert caught.value.line == COUNT
 
 
-def test_component_of_a_file_that_names_none(write):
+def test_component_of_file_without_component_name_is_refused(write):
     with pytest.raises(RecordError, match="no name of the component"):
         GroundMotion.read(write(table(), "r.csv"), unit="g", component="N")
 

@@ -12,8 +12,8 @@ COUNT = 64
 VALUES = numbers(COUNT)
 
 
-def read(write, text, name="r.txt", **given):
-    return GroundMotion.read(write(text, name), **given)
+def read(write, text, name="r.txt", **options):
+    return GroundMotion.read(write(text, name), **options)
 
 
 def column(head: str = "", values=VALUES) -> str:
@@ -46,9 +46,9 @@ class TestSpectra:
     @pytest.mark.parametrize("separator", [",", " "])
     def test_a_table_of_a_spectrum_at_even_periods_is_refused(self, write, head, separator):
         text = table(head.replace(",", separator), [np.abs(VALUES)], separator)
-        for given in ({}, {"unit": "g"}, {"format": "text", "unit": "g"}):
+        for options in ({}, {"unit": "g"}, {"format": "text", "unit": "g"}):
             with pytest.raises(RecordError, match="a spectrum") as caught:
-                read(write, text, **given)
+                read(write, text, **options)
             assert caught.value.line == 1
 
     @pytest.mark.parametrize(
@@ -78,18 +78,18 @@ class TestStatedSteps:
             ("# Sampling Frequency (Hz) = 128\n# unit: g\n", 1.0 / 128.0),
         ],
     )
-    def test_of_the_header_it_counts(self, write, head, step):
+    def test_time_step_of_header_is_used(self, write, head, step):
         assert read(write, column(head)).si.time_step == step
         assert read(write, column(head), time_step=f"{step!r} s").si.time_step == step
         with pytest.raises(RecordError, match=r"line \d: .*expected the 0\.03 s asked for"):
             read(write, column(head), time_step="0.03 s")
 
     @pytest.mark.parametrize("head", ["# dt = 10/2000 s\n", "# sampling rate = 0.25 kHz\n"])
-    def test_that_is_written_in_another_way_is_not_read_in_part(self, write, head):
+    def test_time_step_in_other_notation_is_ignored(self, write, head):
         with pytest.raises(RecordError, match="no times"):
             read(write, column(head), unit="g")
 
-    def test_times_that_differ_from_it_are_used_with_a_warning(self, write):
+    def test_times_override_header_time_step_with_warning(self, write):
         text = table("# dt = 0.005 s\ntime (s),acc (g)\n", [VALUES])
         with pytest.warns(RecordWarning, match=r"line 1: .* 0\.005 s, but the times are 0\.01 s"):
             assert read(write, text).si.time_step == 0.01
@@ -97,13 +97,13 @@ class TestStatedSteps:
 
 class TestNames:
     @pytest.mark.parametrize("head", [",time (s),acc (g)\n", "No,t (s),acc (g)\n"])
-    def test_times_behind_another_column_are_no_accelerations(self, write, head):
+    def test_times_after_first_column_are_refused(self, write, head):
         text = head + "".join(f"{k},{0.01 * k:.2f},{a:.7f}\n" for k, a in enumerate(VALUES))
-        for given in ({}, {"time_step": "0.02 s"}, {"time_step": "0.01 s", "component": "acc"}):
+        for options in ({}, {"time_step": "0.02 s"}, {"time_step": "0.01 s", "component": "acc"}):
             with pytest.raises(RecordError, match=r"line 1: found the times 't.* after"):
-                read(write, text, **given)
+                read(write, text, **options)
 
-    def test_velocity_and_displacement_by_their_letters_are_not_vertical(self, write):
+    def test_columns_v_and_d_are_not_read_as_vertical(self, write):
         path = write(table("t,a,v,d\n", [VALUES, 2.0 * VALUES, 3.0 * VALUES]), "r.csv")
         suite = rf.read_suite(path, unit="g")
         assert (list(suite), len(suite.verticals)) == (["r"], 0)
@@ -112,7 +112,7 @@ class TestNames:
         assert read(write, table("t,h,v\n", [VALUES] * 2), unit="g", component="v").si.peak > 0.0
 
     @pytest.mark.parametrize("unit", ["V", "mm/s^9", "cm//s^2"])
-    def test_an_unknown_unit_is_not_that_of_another_column(self, write, unit):
+    def test_unknown_unit_is_not_replaced_by_that_of_other_column(self, write, unit):
         path = write(table(f"time (s),N ({unit}),E (g)\n", [VALUES, VALUES]), "r.csv")
         with pytest.raises(RecordError, match="the unknown unit"):
             GroundMotion.read(path, component="N")
@@ -120,7 +120,7 @@ class TestNames:
         assert GroundMotion.read(path, component="N", unit="gal").metadata["unit_as_read"] == "gal"
 
     @pytest.mark.parametrize("head", ["time (s),N (g)\n", "t,N,E,vN (cm/s)\n", "time,N,E,U,\n"])
-    def test_as_many_as_there_are_columns(self, write, head):
+    def test_number_of_names_must_match_columns(self, write, head):
         path = write(table(head, [VALUES, VALUES]), "r.csv")
         with pytest.raises(RecordError, match=r"line 1: found \d names .* expected 3, as there"):
             rf.read_suite(path, unit="g")
@@ -130,19 +130,19 @@ class TestNames:
 class TestBreaks:
     @pytest.mark.parametrize("between", ["# a second record\n", "\n", "\n\n# more\n"])
     @pytest.mark.parametrize("columns", [1, 2])
-    def test_lines_that_part_samples_without_times_are_told(self, write, between, columns):
+    def test_interrupting_lines_among_samples_warn(self, write, between, columns):
         row = "".join(f"{value:.7f} " * columns + "\n" for value in VALUES)
         names = "# dt = 0.01 s\n" + "NS EW\n" * (columns == 2)
-        given = {"unit": "g", "component": "NS" if columns == 2 else None}
-        assert len(read(write, names + row, **given)) == COUNT
+        options = {"unit": "g", "component": "NS" if columns == 2 else None}
+        assert len(read(write, names + row, **options)) == COUNT
         first = names.count("\n") + COUNT + 1
         with pytest.warns(RecordWarning, match=rf"line {first}: .* among the numbers, in 1 places"):
-            assert len(read(write, names + row + between + row, **given)) == 2 * COUNT
+            assert len(read(write, names + row + between + row, **options)) == 2 * COUNT
 
-    def test_lines_that_are_all_two_apart_are_one_record(self, write):
+    def test_double_spaced_lines_are_one_record(self, write):
         assert len(read(write, column().replace("\n", "\n\n"), unit="g", time_step="0.02 s"))
 
-    def test_times_tell_where_a_record_ends(self, write):
+    def test_second_record_with_restarting_times_is_refused(self, write):
         text = table("time (s),acc (g)\n", [VALUES])
         assert len(read(write, text.replace("0.30,", "# here\n0.30,"))) == COUNT
         with pytest.raises(RecordError, match=r"the time 0\.00 after 0\.63"):
@@ -151,19 +151,19 @@ class TestBreaks:
 
 class TestFirstLines:
     @pytest.mark.parametrize("first", ["0.01\n", ".0050\n", "0.02\n", "1e-2\n"])
-    def test_a_time_step_on_top_of_a_column_is_no_sample(self, write, first):
+    def test_time_step_above_column_is_not_read_as_sample(self, write, first):
         text = first + column()
-        tidy = "e" not in first
-        if tidy:
+        ambiguous = "e" not in first
+        if ambiguous:
             with pytest.raises(RecordError, match="looks like a time step"):
                 read(write, text, unit="g")
             with pytest.raises(RecordError, match="above the samples"):
                 read(write, text, unit="g", time_step="0.5 s")
         with pytest.warns(RecordWarning, match="the time step"):
             motion = read(write, text, unit="g", time_step=f"{float(first)} s")
-        assert len(motion) == COUNT + (not tidy)
+        assert len(motion) == COUNT + (not ambiguous)
 
-    def test_a_first_sample_printed_like_the_others_stays_one(self, write):
+    def test_small_first_sample_is_not_mistaken_for_time_step(self, write):
         motion = read(write, column(values=[0.005, *VALUES]), unit="g", time_step="0.01 s")
         assert len(motion) == COUNT + 1
 
@@ -180,7 +180,7 @@ class TestFirstLines:
         with pytest.raises(RecordError, match=r"expected the 0\.02 s asked for"):
             read(write, f"{head.format(n=COUNT)}{body}\n", unit="g", time_step="0.02 s")
 
-    def test_a_count_that_is_not_that_of_the_numbers(self, write):
+    def test_wrong_leading_count_warns_or_is_refused(self, write):
         rows = "\n".join(" ".join(f"{v:.7f}" for v in VALUES[k : k + 8]) for k in range(0, 64, 8))
         with pytest.warns(RecordWarning, match="declares 66 samples, but the file holds 64"):
             read(write, f"66 0.01\n{rows}\n", unit="g")
@@ -200,13 +200,13 @@ class TestColumns:
         with pytest.raises(RecordError, match=r"3 components: 'N' .*, 'E' .*, 'DWN'"):
             read(write, text)
 
-    def test_names_of_other_kinds(self, write):
+    def test_component_names_of_other_styles_are_recognised(self, write):
         text = table("Time,acc_x,HNE,Acc_Z\ns,m/s2,m/s2,m/s2\n", self.COLUMNS)
         assert read(write, text, component="acc_x").si.horizontal.samples[3] == VALUES[3]
         assert read(write, text, component="E").metadata["component"] == "HNE"
         assert read(write, text, component="U").metadata["component"] == "Acc_Z"
 
-    def test_without_times(self, write):
+    def test_columns_without_times_need_time_step(self, write):
         rows = "".join(f"{a:.7f} {b:.7f} {c:.7f}\n" for a, b, c in zip(*self.COLUMNS, strict=True))
         named = "N  E  Z\n" + rows
         motion = read(write, named, component="E", unit="g", time_step="0.02 s")
@@ -216,13 +216,13 @@ class TestColumns:
         with pytest.raises(RecordError, match="no times"):
             read(write, named, component="E", unit="g")
 
-    def test_without_names_a_column_that_rises_holds_the_times(self, write):
+    def test_rising_unnamed_column_is_read_as_times(self, write):
         text = table("", self.COLUMNS)
         motion = read(write, text, component="column 3", unit="g")
         assert motion.si.time_step == 0.01
         np.testing.assert_allclose(motion.si.horizontal.samples, 0.5 * VALUES * G, atol=1e-6)
 
-    def test_velocities_and_displacements_beside_an_acceleration_are_left_out(self, write):
+    def test_velocity_and_displacement_columns_are_ignored(self, write):
         head = "Time (s),Acceleration (g),Velocity (cm/s),Displacement (cm)\n"
         motion = read(write, table(head, self.COLUMNS))
         assert motion.si.horizontal.samples.tolist() == (VALUES * G).tolist()
@@ -230,7 +230,7 @@ class TestColumns:
             read(write, table("time (s),vx (cm/s),vy (cm/s),vz (cm/s)\n", self.COLUMNS))
 
 
-def test_a_zero_printed_short_at_the_end_of_its_field_is_no_cut_number(write):
+def test_short_final_zero_is_not_mistaken_for_cut_number(write):
     rows = [f"{0.02 * k:20.15f}{value:20.15f}" for k, value in enumerate(VALUES)]
     text = "\n".join(rows[:-1]) + f"\n{0.02 * (COUNT - 1):20.15f}{'0':>20}"
     motion = read(write, text, unit="g")

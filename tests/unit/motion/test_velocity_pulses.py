@@ -1,4 +1,4 @@
-"""Velocity pulses: the wavelet, what is found, what is extracted, and what it is called."""
+"""Velocity pulses: wavelet, detection, extraction, classification."""
 
 import math
 
@@ -17,12 +17,12 @@ from rockframe.motion.processing.velocity_pulses import (
 )
 
 STEP = 0.01
-# printed by PyWavelets 1.9, Wavelet("db4").rec_lo and .wavefun(level=14)
-FILTER = [
+# from PyWavelets 1.9, Wavelet("db4").rec_lo and .wavefun(level=14)
+FILTER_VALUES = [
     *(0.2303778133088965, 0.7148465705529157, 0.6308807679298589, -0.027983769416859854),
     *(-0.18703481171909309, 0.030841381835560764, 0.0328830116668852, -0.010597401785069032),
 ]
-VALUES = {
+WAVELET_VALUES = {
     **{0.5: -0.015094, 1.0: -0.04633, 1.75: 0.1358, 2.5: -0.046517, 3.0: -0.887239},
     **{3.25: -0.432252, 3.5: 1.043654, 4.0: -0.397541, 4.625: 0.238892, 5.5: 0.002605},
 }
@@ -34,11 +34,11 @@ PUBLISHED = {
     "RRS228.AT2": ({}, 1.2),
     "SYL360.AT2": ({}, 3.1),
 }
-WITHOUT = {"NIS090.AT2": 0.01, "PEERSMD_IMPVALL_IELC180.AT2": 0.15}
+LARGEST_INDICATORS = {"NIS090.AT2": 0.01, "PEERSMD_IMPVALL_IELC180.AT2": 0.15}
 
 
 def with_velocity(velocity, step=STEP, name="made"):
-    """A motion whose velocity at the samples is nearly the one given; it begins softly."""
+    """A motion with nearly the given velocity at the samples, with a gradual start."""
     start = np.minimum(np.arange(velocity.size) * step / 0.3, 1.0) ** 3
     samples = np.gradient(start * velocity, step)
     samples[0] = 0.0
@@ -46,7 +46,7 @@ def with_velocity(velocity, step=STEP, name="made"):
 
 
 def noise(count, size, seed=3):
-    """Velocity of little swings, longest about half a second, that fade at both ends."""
+    """Velocity of short fluctuations, up to about half a second, that fade at both ends."""
     raw = np.convolve(np.random.default_rng(seed).normal(size=count), np.hanning(21), "same")
     raw -= np.convolve(raw, np.ones(51) / 51.0, "same")
     return size * raw / np.abs(raw).max() * np.sin(np.pi * np.arange(count) / (count - 1))
@@ -57,10 +57,10 @@ def wavelet(time, period, middle):
     return mother_wavelet((time - middle) * 1.4 / period + 3.5) / 1.3592
 
 
-def test_the_wavelet_is_that_of_an_independent_library():
-    np.testing.assert_allclose(scaling_filter(), FILTER, rtol=1e-13)
-    found = mother_wavelet(np.array(list(VALUES)))
-    np.testing.assert_allclose(found, list(VALUES.values()), atol=4e-6)
+def test_wavelet_agrees_with_independent_library():
+    np.testing.assert_allclose(scaling_filter(), FILTER_VALUES, rtol=1e-13)
+    values = mother_wavelet(np.array(list(WAVELET_VALUES)))
+    np.testing.assert_allclose(values, list(WAVELET_VALUES.values()), atol=4e-6)
     x = np.linspace(-1.0, 8.0, 9 * 4096 + 1)
     psi = mother_wavelet(x)
     assert not psi[(x < 0.0) | (x > 7.0)].any()
@@ -75,25 +75,25 @@ def test_the_wavelet_is_that_of_an_independent_library():
 def test_a_pulse_under_noise_is_found(period):
     time = np.arange(6001) * STEP
     pulse = 0.8 * wavelet(time, period, 12.0)
-    found = with_velocity(pulse + noise(time.size, 0.1)).velocity_pulse()
-    assert found.period.m_as("s") == pytest.approx(period, rel=0.02)
-    assert found.time.m_as("s") == pytest.approx(12.0, abs=0.02 * period)
-    assert found.pulse_like
-    assert found.unmet == ()
-    assert found.peak_ratio < 0.25
-    assert found.indicator > 0.99
-    assert "pulse-like" in str(found)
+    result = with_velocity(pulse + noise(time.size, 0.1)).velocity_pulse()
+    assert result.period.m_as("s") == pytest.approx(period, rel=0.02)
+    assert result.time.m_as("s") == pytest.approx(12.0, abs=0.02 * period)
+    assert result.pulse_like
+    assert result.unmet == ()
+    assert result.peak_ratio < 0.25
+    assert result.indicator > 0.99
+    assert "pulse-like" in str(result)
 
 
-def test_the_greatest_coefficient_of_all_is_taken():
-    """By the integral, at all periods and places, written out."""
+def test_pulse_has_largest_wavelet_coefficient():
+    """Direct evaluation of the integral at all periods and times."""
     step, count = 0.02, 500
     time = np.arange(count) * step
     velocity = noise(count, 0.5, seed=8) + 0.3 * np.sin(time) * np.exp(-0.5 * (time - 5.0) ** 2)
     motion = with_velocity(velocity, step)
     velocity = rf.measures.velocity_and_displacement(motion).ground_velocity.values
     periods = np.geomspace(0.4, 4.0, 60)
-    later = time - time[:, np.newaxis]  # than each place
+    later = time - time[:, np.newaxis]  # than each sample
     best = max(
         (
             np.abs(np.trapezoid(velocity * mother_wavelet(later / a + 3.5), time)).max()
@@ -103,48 +103,48 @@ def test_the_greatest_coefficient_of_all_is_taken():
         for T in periods.tolist()
         for a in (T / 1.4,)
     )
-    found = motion.velocity_pulse(shortest_period="0.4 s", longest_period="4 s")
-    assert found.period.m_as("s") == pytest.approx(best[1], rel=0.03)
+    result = motion.velocity_pulse(shortest_period="0.4 s", longest_period="4 s")
+    assert result.period.m_as("s") == pytest.approx(best[1], rel=0.03)
 
 
-def test_extracted_pulse_and_residual_are_the_motion_and_do_not_drift():
-    # the pulse begins before the record, which drifts a little
+def test_pulse_and_residual_sum_to_motion_without_drift():
+    # the pulse begins before the record, which drifts slightly
     time = np.arange(2001) * STEP
     motion = with_velocity(wavelet(time, 2.0, 1.5) + noise(2001, 0.2) + 1e-3 * time)
     upwards = motion.scaled(0.5)
-    found = motion.with_vertical(upwards).velocity_pulse()
-    lead = round(found.lead.m_as("s") / STEP)
+    result = motion.with_vertical(upwards).velocity_pulse()
+    lead = round(result.lead.m_as("s") / STEP)
     assert lead > 0
-    together = found.extracted.si.horizontal.samples + found.residual.si.horizontal.samples
+    total = result.extracted.si.horizontal.samples + result.residual.si.horizontal.samples
     own = motion.si.horizontal.samples
-    np.testing.assert_allclose(together[lead : lead + own.size], own, atol=1e-14)
-    assert not np.delete(together, np.s_[lead : lead + own.size]).round(12).any()
-    up = found.residual.si.vertical.samples
+    np.testing.assert_allclose(total[lead : lead + own.size], own, atol=1e-14)
+    assert not np.delete(total, np.s_[lead : lead + own.size]).round(12).any()
+    up = result.residual.si.vertical.samples
     np.testing.assert_array_equal(up[lead : lead + own.size], 0.5 * own)
-    assert found.extracted.si.vertical is None
-    path = rf.measures.velocity_and_displacement(found.extracted)
+    assert result.extracted.si.vertical is None
+    path = rf.measures.velocity_and_displacement(result.extracted)
     highest = float(np.abs(path.ground_displacement).max())
     assert abs(float(path.ground_velocity[-1])) < 1e-12
     assert abs(float(path.ground_displacement[-1])) < 1e-5 * highest
     whole = rf.measures.velocity_and_displacement(motion)
-    left = rf.measures.velocity_and_displacement(found.residual)
+    left = rf.measures.velocity_and_displacement(result.residual)
     assert float(left.ground_velocity[-1]) == pytest.approx(float(whole.ground_velocity[-1]))
-    assert any("pulse taken out" in step for step in found.residual.history)
+    assert any("pulse taken out" in step for step in result.residual.history)
 
 
-def test_the_criteria_are_those_published():
-    """By hand, for a velocity of ones from which a pulse takes a part."""
+def test_criteria_follow_publication():
+    """By hand, for a constant velocity of one from which a pulse is extracted."""
     velocity = np.ones(100)
     pulse = np.where(np.arange(100) < 40, 0.5, 0.0)
-    found = pulse_measures(velocity, pulse, 0.5)
+    result = pulse_measures(velocity, pulse, 0.5)
     energy = (40 * 0.25 + 60) / 100
-    assert (found.peak_ratio, found.energy_ratio) == pytest.approx((1.0, energy))
+    assert (result.peak_ratio, result.energy_ratio) == pytest.approx((1.0, energy))
     exact = 1.0 / (1.0 + math.exp(-23.3 + 14.6 + 20.5 * energy))
-    assert found.indicator == pytest.approx(exact, rel=1e-12)
-    assert (found.pulse_start, found.motion_start) == pytest.approx((0.5 * 3, 0.5 * 19))
+    assert result.indicator == pytest.approx(exact, rel=1e-12)
+    assert (result.pulse_start, result.motion_start) == pytest.approx((0.5 * 3, 0.5 * 19))
 
 
-def test_what_is_not_met_is_said():
+def test_unmet_criteria_are_listed():
     time = np.arange(4001) * STEP
     pulse = 0.8 * wavelet(time, 2.0, 30.0)
     weak = with_velocity(0.1 * pulse).velocity_pulse()
@@ -160,7 +160,7 @@ def test_what_is_not_met_is_said():
 
 
 @pytest.mark.parametrize(
-    "angle", [20.0, *(pytest.param(one, marks=pytest.mark.long) for one in (90.0, 155.0))]
+    "angle", [20.0, *(pytest.param(angle, marks=pytest.mark.long) for angle in (90.0, 155.0))]
 )
 def test_the_direction_of_a_pulse_is_found(angle):
     time = np.arange(4001) * STEP
@@ -169,11 +169,11 @@ def test_the_direction_of_a_pulse_is_found(angle):
         with_velocity(math.cos(turned) * pulse + noise(4001, 0.05, seed=1)),
         with_velocity(math.sin(turned) * pulse + noise(4001, 0.05, seed=2)),
     )
-    found = pair.velocity_pulse()
-    assert found.angle.m_as("deg") == pytest.approx(angle, abs=2.0)
-    assert found.period.m_as("s") == pytest.approx(2.5, rel=0.02)
-    assert found.peak_velocity.m_as("m/s") == pytest.approx(1.0, rel=0.1)
-    assert found.pulse_like
+    result = pair.velocity_pulse()
+    assert result.angle.m_as("deg") == pytest.approx(angle, abs=2.0)
+    assert result.period.m_as("s") == pytest.approx(2.5, rel=0.02)
+    assert result.peak_velocity.m_as("m/s") == pytest.approx(1.0, rel=0.1)
+    assert result.pulse_like
 
 
 def test_arguments_are_checked():
@@ -194,38 +194,38 @@ def test_arguments_are_checked():
 @pytest.mark.parametrize("name", PUBLISHED)
 def test_published_periods(name):
     arguments, period = PUBLISHED[name]
-    found = GroundMotion.read(record_path(name), **arguments).velocity_pulse()
-    assert found.period.m_as("s") == pytest.approx(period, rel=0.1)
-    assert found.pulse_like
+    result = GroundMotion.read(record_path(name), **arguments).velocity_pulse()
+    assert result.period.m_as("s") == pytest.approx(period, rel=0.1)
+    assert result.pulse_like
 
 
-@pytest.mark.parametrize("name", WITHOUT)
+@pytest.mark.parametrize("name", LARGEST_INDICATORS)
 def test_published_records_without_a_pulse(name):
-    found = GroundMotion.read(record_path(name)).velocity_pulse()
-    assert found.indicator < WITHOUT[name]
-    assert not found.pulse_like
+    result = GroundMotion.read(record_path(name)).velocity_pulse()
+    assert result.indicator < LARGEST_INDICATORS[name]
+    assert not result.pulse_like
 
 
-def test_the_embedded_record_has_none():
+def test_embedded_record_has_no_pulse():
     assert not GroundMotion.example("loma-prieta").velocity_pulse().pulse_like
 
 
 def test_the_figure_shows_the_three_velocities():
     time = np.arange(2001) * STEP
     motion = with_velocity(wavelet(time, 2.0, 1.5) + noise(2001, 0.2))
-    found = motion.velocity_pulse()
-    above, below = rf.plot.velocity_pulse(found)
-    whole, pulse = above.get_lines()[:2]
+    result = motion.velocity_pulse()
+    above, below = rf.plot.velocity_pulse(result)
+    velocity, pulse = above.get_lines()[:2]
     own = rf.measures.velocity_and_displacement(motion).ground_velocity.values
-    drawn = np.interp(time, whole.get_xdata(), whole.get_ydata())
-    np.testing.assert_allclose(drawn, own, atol=1e-12)
+    plotted = np.interp(time, velocity.get_xdata(), velocity.get_ydata())
+    np.testing.assert_allclose(plotted, own, atol=1e-12)
     left = below.get_lines()[0].get_ydata()
-    np.testing.assert_allclose(pulse.get_ydata() + left, whole.get_ydata(), atol=1e-12)
+    np.testing.assert_allclose(pulse.get_ydata() + left, velocity.get_ydata(), atol=1e-12)
     assert below.get_xlabel() == "time [s]"
     figure = mpl.figure.Figure()
-    given = figure.subplots(2, 1)
-    assert rf.plot.velocity_pulse(found, ax=given) == tuple(given)
+    panels = figure.subplots(2, 1)
+    assert rf.plot.velocity_pulse(result, ax=panels) == tuple(panels)
     with pytest.raises(ComponentError, match=r"ax must be 2 Axes, .* got 1 Axes"):
-        rf.plot.velocity_pulse(found, ax=[given[0]])
+        rf.plot.velocity_pulse(result, ax=[panels[0]])
     with pytest.raises(ComponentError, match="needs a VelocityPulse"):
         rf.plot.velocity_pulse(motion)

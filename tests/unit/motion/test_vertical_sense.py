@@ -1,4 +1,4 @@
-"""A vertical component is positive upwards in a motion, whatever its file calls it."""
+"""Vertical components of motions are positive upwards, whatever the sign in the file."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ POINTS = f"NPTS= {COUNT}, DT= .01 SEC"
 
 
 def pair(write, name: str):
-    """A level component of one file, and a vertical one of another, by the name it has there."""
+    """A horizontal component of one file with the named vertical component of another."""
     values = numbers(COUNT)
     level = GroundMotion.read(write(at2(POINTS, values), "h.AT2"))
     event = EVENT.replace(", 67", f", {name}")
@@ -29,7 +29,7 @@ def pair(write, name: str):
         *((name, 1.0) for name in ("UP", "U")),
     ],
 )
-def test_the_name_tells(write, name, sign):
+def test_component_name_sets_sign_of_vertical_component(write, name, sign):
     level, vertical, values = pair(write, name)
     motion = level.with_vertical(vertical)
     np.testing.assert_allclose(motion.si.vertical.samples, sign * values, rtol=1e-6)
@@ -40,7 +40,7 @@ def test_the_name_tells(write, name, sign):
 
 
 @pytest.mark.parametrize("name", ["V", "VERT", "VER"])
-def test_a_name_that_does_not_tell_is_warned_about(write, name):
+def test_component_name_without_sense_warns(write, name):
     level, vertical, values = pair(write, name)
     with pytest.warns(RecordWarning, match="does not say whether it is positive upwards"):
         motion = level.with_vertical(vertical)
@@ -56,7 +56,7 @@ def test_a_name_that_does_not_tell_is_warned_about(write, name):
     ],
     ids=["cwa", "csmip", "smc"],
 )
-def test_headers_of_other_formats_tell_too(write, text, name, component):
+def test_file_header_sets_sign_of_vertical_component(write, text, name, component):
     path = write(text, name)
     vertical = GroundMotion.read(path, component=component)
     assert vertical.metadata["positive"] == "down"
@@ -64,11 +64,11 @@ def test_headers_of_other_formats_tell_too(write, text, name, component):
     assert upwards.metadata["positive"] == "up"
     np.testing.assert_array_equal(upwards.si.horizontal.samples, -vertical.si.horizontal.samples)
     level = GroundMotion.from_arrays((VALUES["N"], "m/s^2"), f"{vertical.si.time_step!r} s")
-    both = [level.with_vertical(one).si.vertical.samples for one in (vertical, upwards)]
+    both = [level.with_vertical(motion).si.vertical.samples for motion in (vertical, upwards)]
     np.testing.assert_array_equal(both[0], both[1])
 
 
-def test_a_component_that_was_mirrored_points_the_other_way(write):
+def test_vertical_sign_is_independent_of_mirroring(write):
     path = write(sac(VALUES["U"], incidence=180.0, channel="HNZ"), "r.sac")
     down = GroundMotion.read(path, component="HNZ", unit="gal")
     level = GroundMotion.from_arrays((VALUES["N"], "m/s^2"), "0.01 s")
@@ -78,14 +78,14 @@ def test_a_component_that_was_mirrored_points_the_other_way(write):
         np.testing.assert_allclose(vertical, expected, rtol=1e-14)
 
 
-def test_an_analytic_motion_has_no_sense_and_keeps_its_sign():
+def test_analytic_vertical_component_keeps_its_sign():
     pulse = GroundMotion.sine_pulse()
     both = pulse.with_vertical(pulse.scaled(-0.5))
     assert both.si.vertical.samples.min() == pytest.approx(-0.5 * pulse.si.horizontal.samples.max())
     assert "vertical_positive" not in both.metadata
 
 
-def test_the_vertical_component_can_be_left_out():
+def test_vertical_component_can_be_removed():
     both = GroundMotion.example("waipukurau", component=("S74E", "Up"))
     alone = both.with_vertical(None)
     assert alone.si.vertical is None

@@ -1,4 +1,4 @@
-"""AT2 files that are written: what other programs find there, and what comes back."""
+"""Written AT2 files have the layout of PEER and survive the round trip."""
 
 import numpy as np
 import pytest
@@ -10,28 +10,28 @@ VALUES = np.random.default_rng(7).standard_normal(203) * np.geomspace(1e-9, 3.0,
 METADATA = {"event": "Somewhere, Some Day", "station": "Gilroy, Gavilan", "component": "067"}
 
 
-def made(step="0.005 s"):
+def record(step="0.005 s"):
     motion = GroundMotion.from_arrays((VALUES, "m/s^2"), step, (-2.0 * VALUES, "m/s^2"))
     return GroundMotion(motion.si, name="made up", metadata=METADATA)
 
 
 @pytest.mark.parametrize("component", ["horizontal", "vertical"])
 @pytest.mark.parametrize("step", ["0.005 s", "0.00390625 s", "0.02 s", "0.0033333333333333335 s"])
-def test_what_is_written_is_read_again(tmp_path, component, step):
-    motion = made(step)
+def test_motion_survives_at2_round_trip(tmp_path, component, step):
+    motion = record(step)
     path = tmp_path / "w.AT2"
     motion.to_at2(path, component)
-    again = GroundMotion.read(path, component="067" if component == "horizontal" else "UP")
+    reread = GroundMotion.read(path, component="067" if component == "horizontal" else "UP")
     own = motion.si.horizontal if component == "horizontal" else motion.si.vertical
-    np.testing.assert_allclose(again.si.horizontal.samples, own.samples, rtol=5.1e-8)
-    assert again.si.time_step == motion.si.time_step
-    assert again.metadata["event"] == "Somewhere Some Day"
-    assert again.metadata["station"] == "Gilroy Gavilan"
+    np.testing.assert_allclose(reread.si.horizontal.samples, own.samples, rtol=5.1e-8)
+    assert reread.si.time_step == motion.si.time_step
+    assert reread.metadata["event"] == "Somewhere Some Day"
+    assert reread.metadata["station"] == "Gilroy Gavilan"
 
 
 def test_the_layout_is_that_of_peer(tmp_path):
     path = tmp_path / "w.AT2"
-    made().to_at2(path)
+    record().to_at2(path)
     text = path.read_bytes()
     assert b"\r" not in text
     lines = text.decode("ascii").split("\n")
@@ -44,13 +44,13 @@ def test_the_layout_is_that_of_peer(tmp_path):
     assert len(fields) == 203
 
 
-def test_letters_that_not_every_program_reads(tmp_path):
-    motion = GroundMotion(made().si, metadata={"event": "İzmir", "station": "Muğla"})
+def test_non_ascii_letters_are_replaced(tmp_path):
+    motion = GroundMotion(record().si, metadata={"event": "İzmir", "station": "Muğla"})
     motion.to_at2(tmp_path / "w.AT2")
     assert GroundMotion.read(tmp_path / "w.AT2").metadata["station"] == "Mu?la"
 
 
-def test_what_cannot_be_written(tmp_path):
+def test_invalid_at2_output_is_refused(tmp_path):
     level = GroundMotion.from_arrays((VALUES, "m/s^2"), "0.01 s")
     with pytest.raises(ComponentError, match="no vertical component"):
         level.to_at2(tmp_path / "w.AT2", "vertical")
@@ -60,9 +60,9 @@ def test_what_cannot_be_written(tmp_path):
         level.to_at2(tmp_path / "nowhere" / "w.AT2")
 
 
-def test_an_analytic_motion_is_written_by_its_samples(tmp_path):
+def test_samples_of_analytic_motion_are_written(tmp_path):
     pulse = GroundMotion.sine_pulse()
     pulse.to_at2(tmp_path / "w.AT2")
-    again = GroundMotion.read(tmp_path / "w.AT2")
+    reread = GroundMotion.read(tmp_path / "w.AT2")
     samples = pulse.si.horizontal.samples
-    np.testing.assert_allclose(again.si.horizontal.samples, samples, rtol=5.1e-8, atol=1e-15)
+    np.testing.assert_allclose(reread.si.horizontal.samples, samples, rtol=5.1e-8, atol=1e-15)

@@ -1,4 +1,4 @@
-"""Names in letters that matplotlib's usual font lacks."""
+"""Names with letters that the default font of matplotlib lacks."""
 
 import warnings
 from io import BytesIO
@@ -27,15 +27,15 @@ def run():
 
 @pytest.fixture
 def installed(tmp_path, monkeypatch):
-    """A font with the letters of the names alone, with other fonts as they are."""
+    """Install a font with only the letters of the names besides the existing fonts."""
     pen = TTGlyphPen(None)
     for k, place in enumerate([(0, 0), (0, 700), (700, 700), (700, 0)]):
         pen.lineTo(place) if k else pen.moveTo(place)
     pen.closePath()
-    names = [".notdef", *(f"u{ord(one):X}" for one in LETTERS)]
+    names = [".notdef", *(f"u{ord(letter):X}" for letter in LETTERS)]
     font = FontBuilder(1000, isTTF=True)
     font.setupGlyphOrder(names)
-    font.setupCharacterMap({ord(one): f"u{ord(one):X}" for one in LETTERS})
+    font.setupCharacterMap({ord(letter): f"u{ord(letter):X}" for letter in LETTERS})
     font.setupGlyf(dict.fromkeys(names, pen.glyph()))
     font.setupHorizontalMetrics(dict.fromkeys(names, (800, 0)))
     font.setupHorizontalHeader(ascent=800, descent=-200)
@@ -62,48 +62,48 @@ SOME_DRAWN = [
 ]
 
 
-def drawn(name, run):
-    """Draw a figure to a file; give its texts and the warnings."""
+def draw_to_file(name, run):
+    """Save a figure; return its texts and the warnings."""
     with warnings.catch_warnings(record=True) as issued:
         warnings.simplefilter("always")
-        made = DRAWN[name](run)
-        figure = made.figure
+        axes = DRAWN[name](run)
+        figure = axes.figure
         figure.savefig(BytesIO(), format="png")
-    return list(_fonts._non_ascii_texts([figure])), [one.message for one in issued]
+    return list(_fonts._non_ascii_texts([figure])), [warning.message for warning in issued]
 
 
 @pytest.mark.parametrize("name", SOME_DRAWN)
-def test_letters_that_no_font_has_are_told_once(name, run, monkeypatch):
-    fonts = [one for one in font_manager.fontManager.ttflist if one.name == "DejaVu Sans"]
+def test_missing_glyphs_warn_once(name, run, monkeypatch):
+    fonts = [font for font in font_manager.fontManager.ttflist if font.name == "DejaVu Sans"]
     monkeypatch.setattr(font_manager.fontManager, "ttflist", fonts)
-    _, issued = drawn(name, run)
-    assert [type(one) for one in issued] == [RockframeWarning]
+    _, issued = draw_to_file(name, run)
+    assert [type(warning) for warning in issued] == [RockframeWarning]
     assert "no installed font has " in str(issued[0])
     assert "install a font with these letters, such as Noto Sans CJK" in str(issued[0])
 
 
-def test_a_report_with_several_figures_tells_them_once(run, monkeypatch, tmp_path):
-    fonts = [one for one in font_manager.fontManager.ttflist if one.name == "DejaVu Sans"]
+def test_report_warns_once_of_missing_glyphs(run, monkeypatch, tmp_path):
+    fonts = [font for font in font_manager.fontManager.ttflist if font.name == "DejaVu Sans"]
     monkeypatch.setattr(font_manager.fontManager, "ttflist", fonts)
     with pytest.warns(RockframeWarning, match="no installed font has") as issued:
         rf.report(run, tmp_path / "report.html", motion=PULSE, certify=False)
-    assert [str(one.message).partition(";")[0] for one in issued] == [
+    assert [str(warning.message).partition(";")[0] for warning in issued] == [
         "no installed font has 神 戸 地 震, written as '?' in the figures"
     ]
     assert issued[0].filename == __file__
 
 
 @pytest.mark.parametrize("name", SOME_DRAWN)
-def test_letters_are_written_in_a_font_that_has_them(name, run, installed):
-    texts, issued = drawn(name, run)
+def test_text_uses_a_font_with_its_glyphs(name, run, installed):
+    texts, issued = draw_to_file(name, run)
     assert issued == []
-    foreign = [one for one in texts if set(one.get_text()) & set(LETTERS)]
+    foreign = [text for text in texts if set(text.get_text()) & set(LETTERS)]
     assert foreign
-    assert all(one.get_fontfamily()[-1] == installed for one in foreign)
+    assert all(text.get_fontfamily()[-1] == installed for text in foreign)
 
 
-def test_fonts_that_the_user_has_chosen_come_first(run, installed):
+def test_user_selected_fonts_take_precedence(run, installed):
     with rc_context({"font.family": [installed, "DejaVu Sans"]}):
-        texts, issued = drawn("response", run)
+        texts, issued = draw_to_file("response", run)
     assert issued == []
-    assert {tuple(one.get_fontfamily()) for one in texts} == {(installed, "DejaVu Sans")}
+    assert {tuple(text.get_fontfamily()) for text in texts} == {(installed, "DejaVu Sans")}

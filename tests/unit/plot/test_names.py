@@ -1,4 +1,4 @@
-"""Names of data in figures: written letter by letter, all of them, in the room that there is."""
+"""Names of data in figures are shown verbatim and fit into the available space."""
 
 import numpy as np
 import pytest
@@ -25,36 +25,38 @@ def swept():
 
 
 @pytest.fixture(scope="module")
-def counted():
-    """A fragility whose limit states have the names of the rest."""
+def fragility():
+    """A fragility whose limit states have the same unusual names."""
     counts = {"intensity": ([2, 4, 8], "m/s^2"), "exceeded": [1, 6, 19], "trials": 20}
-    one = rf.fragility(counts, "PGA")
+    result = rf.fragility(counts, "PGA")
     return (
-        one.expand_dims("limit_state").isel(limit_state=[0] * 3).assign_coords(limit_state=[*NAMES])
+        result.expand_dims("limit_state")
+        .isel(limit_state=[0] * 3)
+        .assign_coords(limit_state=[*NAMES])
     )
 
 
-def written(figure):
+def legend_texts(figure):
     """Return the texts of all legends."""
     legends = [axes.get_legend() for axes in figure.axes] + figure.legends
-    return [text.get_text() for one in legends if one for text in one.get_texts()]
+    return [text.get_text() for legend in legends if legend for text in legend.get_texts()]
 
 
-DRAWN = {
-    "response": lambda runs, swept, counted: rf.plot.response(runs, panels="rotation"),
-    "phase": lambda runs, swept, counted: rf.plot.phase(runs),
-    "motion": lambda runs, swept, counted: rf.plot.motion(MOTIONS),
-    "spectra": lambda runs, swept, counted: rf.plot.spectra(MOTIONS),
-    "suite": lambda runs, swept, counted: rf.plot.suite(MOTIONS),
-    "sweep": lambda runs, swept, counted: rf.plot.sweep(swept),
-    "fragility": lambda runs, swept, counted: rf.plot.fragility(counted),
+PLOTS = {
+    "response": lambda runs, swept, fragility: rf.plot.response(runs, panels="rotation"),
+    "phase": lambda runs, swept, fragility: rf.plot.phase(runs),
+    "motion": lambda runs, swept, fragility: rf.plot.motion(MOTIONS),
+    "spectra": lambda runs, swept, fragility: rf.plot.spectra(MOTIONS),
+    "suite": lambda runs, swept, fragility: rf.plot.suite(MOTIONS),
+    "sweep": lambda runs, swept, fragility: rf.plot.sweep(swept),
+    "fragility": lambda runs, swept, fragility: rf.plot.fragility(fragility),
 }
 
 
-@pytest.mark.parametrize("name", DRAWN)
-def test_names_are_in_the_legend_letter_by_letter(runs, swept, counted, name):
-    figure = DRAWN[name](runs, swept, counted).figure
-    texts = [text for text in written(figure) if text not in ("median", "mean", "overturned")]
+@pytest.mark.parametrize("name", PLOTS)
+def test_legend_shows_names_verbatim(runs, swept, fragility, name):
+    figure = PLOTS[name](runs, swept, fragility).figure
+    texts = [text for text in legend_texts(figure) if text not in ("median", "mean", "overturned")]
     assert len(texts) == len(NAMES)
     assert not any(cbook.is_math_text(text) for text in texts)
     assert r"cost \$5 and \$6" in texts
@@ -63,9 +65,9 @@ def test_names_are_in_the_legend_letter_by_letter(runs, swept, counted, name):
     pyplot.close(figure)
 
 
-@pytest.mark.parametrize("name", DRAWN)
-def test_long_names_leave_the_room_of_what_is_drawn(runs, swept, counted, name):
-    figure = DRAWN[name](runs, swept, counted).figure
+@pytest.mark.parametrize("name", PLOTS)
+def test_long_names_do_not_shrink_the_axes(runs, swept, fragility, name):
+    figure = PLOTS[name](runs, swept, fragility).figure
     figure.canvas.draw()
     inside = figure.bbox.get_points()
     widest = max(axes.get_window_extent().width for axes in figure.axes)
@@ -78,30 +80,30 @@ def test_long_names_leave_the_room_of_what_is_drawn(runs, swept, counted, name):
     pyplot.close(figure)
 
 
-def test_strips_of_contact_and_ticks_keep_long_names_short(runs, swept):
-    for drawn in (rf.plot.response(runs), rf.plot.sweep(swept.isel(scale=0))):
-        figure = drawn.figure
+def test_contact_strips_and_ticks_shorten_long_names(runs, swept):
+    for axes_or_figure in (rf.plot.response(runs), rf.plot.sweep(swept.isel(scale=0))):
+        figure = axes_or_figure.figure
         figure.canvas.draw()
         assert all(axes.get_window_extent().width > 0.6 * figure.bbox.width for axes in figure.axes)
         pyplot.close(figure)
 
 
-def test_names_that_are_short_alike_are_told_apart(runs):
-    one = next(iter(runs.values()))
+def test_shortened_names_remain_distinct(runs):
+    run = next(iter(runs.values()))
     names = [f"{'a' * 60}{k}{'b' * 60}" for k in (1, 2)]
-    axes = rf.plot.phase(dict.fromkeys(names, one))
-    first, second = written(axes.figure)
+    axes = rf.plot.phase(dict.fromkeys(names, run))
+    first, second = legend_texts(axes.figure)
     assert first != second
     pyplot.close(axes.figure)
 
 
-def test_a_point_and_a_title_are_written_letter_by_letter():
+def test_point_labels_and_titles_are_verbatim():
     motion = rf.GroundMotion.from_arrays(
         (np.sin(np.arange(99.0)), "m/s^2"), "0.01 s", name=NAMES[0]
     )
     run = SYSTEM.simulate(motion, points={"$x$": ("0 m", "2 m")}, accuracy="fast")
     axes = rf.plot.state(run)
     panels = rf.plot.motion(motion)
-    shown = [text.get_text() for text in axes.texts] + [panels.figure.get_suptitle()]
-    assert shown == [r"\$x\$", r"cost \$5 and \$6"]
+    texts = [text.get_text() for text in axes.texts] + [panels.figure.get_suptitle()]
+    assert texts == [r"\$x\$", r"cost \$5 and \$6"]
     pyplot.close("all")

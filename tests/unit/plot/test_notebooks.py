@@ -1,4 +1,4 @@
-"""What notebooks show, and what datasets say of themselves."""
+"""Notebook cards, and summaries and plots of datasets."""
 
 import re
 from html.parser import HTMLParser
@@ -20,7 +20,7 @@ NASTY = rf.GroundMotion.from_arrays(([0.0, 1.0, -3.0], "m/s^2"), "0.5 s", name="
 
 
 class Balanced(HTMLParser):
-    """Fails where elements do not close one another in turn."""
+    """Fails if elements are not closed in order."""
 
     def __init__(self):
         super().__init__()
@@ -36,8 +36,8 @@ class Balanced(HTMLParser):
         self.text.append(data)
 
 
-def shown(thing):
-    """Text of a card, which is whole and says nothing about colours of text or page."""
+def card_of(thing):
+    """Text and HTML of a card; check that it is complete and sets no colours of text or page."""
     html = thing._repr_html_()
     page = Balanced()
     page.feed(html)
@@ -47,42 +47,42 @@ def shown(thing):
     return " ".join(page.text), html
 
 
-def test_cards_hold_the_numbers():
-    text, html = shown(rf.System(BLOCK, PADS, CAP, SOIL))
+def test_notebook_cards_show_parameters():
+    text, html = card_of(rf.System(BLOCK, PADS, CAP, SOIL))
     for words in ("coupled", "width 0.8 m", "mass 2 t", "frequency ratio 20", "stiffness 9 MPa",
                   "to the left", "uplift angle"):  # fmt: skip
         assert words in text
     assert html.count("<polygon") == 5  # soil, cap, two pads, block
-    text, html = shown(BLOCK)
+    text, html = card_of(BLOCK)
     assert "eccentricity" in text
     assert html.count("<polygon") == html.count("<circle") == 1
-    assert shown(SOIL)[1].count("<svg") == 0
-    text, _ = shown(PULSE)
+    assert card_of(SOIL)[1].count("<svg") == 0
+    text, _ = card_of(PULSE)
     assert "2 m/s² (0.204 g)" in text
 
 
-def test_cards_tell_all_restrainers_and_the_bodies_of_a_stack():
+def test_notebook_cards_list_restrainers_and_bodies():
     ties = [
         rf.Restrainer(on=("-0.4 m", "3 m"), to=("-1 m", "3 m"), stiffness=f"{k} MN/m", name=name)
         for k, name in ((2, "upper"), (3, "other"))
     ]
     block = rf.Block(width="0.8 m", height="4 m", mass="2 t")
-    text, _ = shown(rf.System(block, *ties))
+    text, _ = card_of(rf.System(block, *ties))
     assert "name upper" in text
     assert "name other" in text
     joint = rf.TwoSpringSupport(stiffness="20 MN/m", damping_ratio=0.1)
     plinth = rf.Block(width="1.5 m", height="1 m", mass="3 t")
     stack = rf.Stack(block, plinth, interfaces=[joint], offsets=["3 cm"])
-    text, _ = shown(rf.System(stack, rf.RigidGround(friction=0.3)))
+    text, _ = card_of(rf.System(stack, rf.RigidGround(friction=0.3)))
     for words in ("width 1.5 m", "height 4 m", "stiffness 20 MN", "offsets 0.03 m", "friction 0.3"):
         assert words in text
     frame = rf.RockingFrame(block, columns=2, beam_mass="10 t")
-    text, _ = shown(rf.System(frame))
+    text, _ = card_of(rf.System(frame))
     assert "height 4 m" in text
 
 
-def test_a_drawing_is_to_scale_and_stands_on_its_base():
-    _, html = shown(BLOCK)
+def test_block_drawing_is_to_scale():
+    _, html = card_of(BLOCK)
     corners = re.search(r'<polygon points="([^"]*)"', html)[1].split()
     places = np.array([[float(part) for part in pair.split(",")] for pair in corners])
     width, height = np.ptp(places, axis=0)
@@ -92,33 +92,33 @@ def test_a_drawing_is_to_scale_and_stands_on_its_base():
     assert across == pytest.approx(0.5 + 0.1 / 0.8, abs=0.01)
 
 
-def test_what_users_name_is_escaped():
+def test_user_names_are_escaped_in_html():
     for thing in (NASTY, rf.MotionSuite({"<i>": NASTY})):
-        text, html = shown(thing)
+        text, html = card_of(thing)
         assert "<b>" not in html.replace("<div><b>", "").replace("</b></div>", "")
         assert "<i>" not in html
         assert "3 m/s²" in text
 
 
 def test_a_suite_shows_its_first_motions_and_counts_the_others():
-    text, html = shown(rf.MotionSuite({f"m{k}": PULSE for k in range(11)}))
+    text, html = card_of(rf.MotionSuite({f"m{k}": PULSE for k in range(11)}))
     assert html.count("<svg") == 8
     assert "and 3 more" in text
 
 
-def test_a_curve_keeps_its_extremes_and_few_points():
+def test_sparkline_preserves_extremes_with_few_points():
     values = np.zeros(100_000)
     values[54_321] = 1.0
     values[54_322] = -0.5
-    drawn = sparkline(values.tolist(), width=200.0, height=100.0)
-    points = re.search(r'points="([^"]*)"', drawn)[1].split()
+    svg = sparkline(values.tolist(), width=200.0, height=100.0)
+    points = re.search(r'points="([^"]*)"', svg)[1].split()
     heights = [float(point.split(",")[1]) for point in points]
     assert len(points) <= 600
     assert min(heights) == pytest.approx(2.0)
     assert max(heights) == pytest.approx(74.0)
 
 
-def test_numbers_are_written_as_people_do():
+def test_numbers_use_readable_units():
     cases = {(99e3, "kg"): "99 t", (250.0, "kg"): "250 kg", (9e6, "Pa"): "9 MPa",
              (2.5e5, "N m^-1"): "250 kN m^-1", (4.0, "m"): "4 m", (0.5, "s"): "0.5 s"}  # fmt: skip
     for (size, unit), words in cases.items():
@@ -126,7 +126,7 @@ def test_numbers_are_written_as_people_do():
     assert readable_arguments({"type": "x", "shape_factor": 2.92}) == {"shape factor": "2.92"}
 
 
-def test_only_public_names_are_completed():
+def test_dir_lists_only_public_names():
     run = rf.System(BLOCK).simulate(PULSE)
     for thing in (rf.System(BLOCK), BLOCK, PULSE, rf.MotionSuite({"a": PULSE}), run.rockframe):
         assert not [name for name in dir(thing) if name.startswith("_")]
@@ -139,26 +139,26 @@ def test_a_dataset_read_back_plots_and_tabulates_itself(tmp_path):
     run = system.simulate(PULSE, free_vibration="1 s")
     run.to_netcdf(tmp_path / "run.nc")
     with xr.open_dataset(tmp_path / "run.nc") as stored:
-        drawn = stored.rockframe.plot(panels="rotation", rotation="rad")[0].get_lines()[0]
-        np.testing.assert_array_equal(drawn.get_ydata(), run.rotation)
+        line = stored.rockframe.plot(panels="rotation", rotation="rad")[0].get_lines()[0]
+        np.testing.assert_array_equal(line.get_ydata(), run.rotation)
         xr.testing.assert_identical(
             stored.rockframe.table("events").to_xarray(), rf.table(run, "events").to_xarray()
         )
-        again = stored.rockframe.system
-        assert (again.parts.block, again.parts.pads) == (BLOCK, PADS)
+        restored = stored.rockframe.system
+        assert (restored.parts.block, restored.parts.pads) == (BLOCK, PADS)
         summary = stored.rockframe.summary
     assert run.attrs["verdict"] in summary
     assert f"peak_rotation: {run.peak_rotation.item():.4g} rad" in summary
 
 
-def test_what_has_not_occurred_has_no_line_in_a_summary():
+def test_summary_omits_missing_values():
     still = rf.System(BLOCK).simulate(PULSE.scaled(0.01))
     assert np.isnan(still.overturning_time)
     assert "nan" not in repr(still.rockframe)
     assert "impact_count: 0" in repr(still.rockframe)
 
 
-def test_each_kind_of_dataset_finds_what_draws_it():
+def test_accessor_plot_selects_the_plot_function():
     rocking = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
     options = {"free_vibration": "2 s", "progress": False}
     runs = rf.sweep(rocking, {"pulse": PULSE}, scale=[0.5, 1.0, 1.5], **options)
@@ -169,10 +169,10 @@ def test_each_kind_of_dataset_finds_what_draws_it():
         line.get_ydata(), runs.peak_relative_rotation.transpose("motion", "scale")[0]
     )
     assert axes.get_xlabel() == "scale [-]"
-    found = rf.critical_scale(rocking, PULSE, free_vibration="2 s")
-    axes = found.rockframe.plot()
+    result = rf.critical_scale(rocking, PULSE, free_vibration="2 s")
+    axes = result.rockframe.plot()
     (line,) = [line for line in axes.get_lines() if line.get_linestyle() == ":"]
-    assert line.get_xdata()[0] == found.critical_scale.item()
+    assert line.get_xdata()[0] == result.critical_scale.item()
     with pytest.raises(SchemaError, match=r"rf\.plot\.spectra draws them from the motion itself"):
         rf.response_spectrum(PULSE, (["0.1", "1"], "s")).rockframe.plot()
     with pytest.raises(
@@ -205,24 +205,24 @@ def test_a_suite_is_drawn_with_its_median_and_target():
         rf.plot.suite(suite, periods, average="middle")
 
 
-def test_a_fitted_test_is_drawn_beside_its_measurement():
+def test_free_decay_fit_is_plotted_with_its_measurement():
     system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
     run = system.simulate(
         duration="8 s", initial=rf.InitialState(rotation="0.1 rad"), output_step="0.02 s"
     )
-    found = rf.fit_free_decay(system, run.rotation)
-    above, below = found.rockframe.plot(rotation="rad")
+    fit = rf.fit_free_decay(system, run.rotation)
+    above, below = fit.rockframe.plot(rotation="rad")
     measured, fitted = above.get_lines()[:2]
-    np.testing.assert_array_equal(measured.get_ydata(), found.measured_rotation)
-    np.testing.assert_array_equal(fitted.get_ydata(), found.fitted_rotation)
-    np.testing.assert_array_equal(below.get_lines()[0].get_ydata(), found.rotation_residual)
-    value = found.attrs["verdict"].split(" (95 %)")[0]  # "Restitution 0.96 +- ..."
+    np.testing.assert_array_equal(measured.get_ydata(), fit.measured_rotation)
+    np.testing.assert_array_equal(fitted.get_ydata(), fit.fitted_rotation)
+    np.testing.assert_array_equal(below.get_lines()[0].get_ydata(), fit.rotation_residual)
+    value = fit.attrs["verdict"].split(" (95 %)")[0]  # "Restitution 0.96 +- ..."
     assert above.figure.get_suptitle().startswith(value)
 
 
-def test_a_run_is_a_card_with_its_verdict_on_top():
+def test_run_card_begins_with_its_verdict():
     run = rf.System(BLOCK, PADS).simulate(PULSE, free_vibration="1 s")
-    text, html = shown(run.rockframe)
+    text, html = card_of(run.rockframe)
     assert run.attrs["verdict"] in " ".join(text.split())
     assert html.index(run.attrs["verdict"][:30]) < html.index("<table")
     assert f"{np.degrees(run.peak_rotation.item()):.4g}°" in text
@@ -230,12 +230,12 @@ def test_a_run_is_a_card_with_its_verdict_on_top():
     assert "nan" not in text
     assert html.count("<polygon") == 4  # ground, two pads, block
     bare = rf.System(BLOCK, PADS).simulate(PULSE, outputs=None)
-    assert "<polyline" not in shown(bare.rockframe)[1]
+    assert "<polyline" not in card_of(bare.rockframe)[1]
     alone = run.copy()
     del alone.attrs["system_json"]
-    assert "<polygon" not in shown(alone.rockframe)[1]
+    assert "<polygon" not in card_of(alone.rockframe)[1]
     runs = rf.sweep(rf.System(BLOCK), {"p": PULSE}, scale=[0.5, 1.0], progress=False)
-    assert runs.attrs["verdict"][:20] in shown(runs.rockframe)[0]
-    assert shown(xr.Dataset().rockframe)[0].split()[0] == "Dataset"
+    assert runs.attrs["verdict"][:20] in card_of(runs.rockframe)[0]
+    assert card_of(xr.Dataset().rockframe)[0].split()[0] == "Dataset"
     named = rf.System(BLOCK).simulate(NASTY)
-    assert "<b>&" not in shown(named.rockframe)[1]
+    assert "<b>&" not in card_of(named.rockframe)[1]

@@ -1,4 +1,4 @@
-"""Where figures are drawn, in which units, and what part of a run; several runs in one figure."""
+"""Axes, units and windows of figures; several runs in one figure."""
 
 import re
 from pathlib import Path
@@ -38,7 +38,7 @@ def lines(axes, least=3):
     return [line for line in axes.get_lines() if len(line.get_xdata()) >= least]
 
 
-def test_new_figures_are_those_of_pyplot_and_given_axes_make_none(runs):
+def test_passing_axes_creates_no_new_figure(runs):
     before = plt.get_fignums()
     panels = rf.plot.response(runs["whole"])
     assert panels.figure.number in plt.get_fignums()
@@ -46,22 +46,22 @@ def test_new_figures_are_those_of_pyplot_and_given_axes_make_none(runs):
     assert repr(panels).startswith("<4 panels: 'ground [m s$^{-2}$]', 'rotation ")
     figure, (left, right) = plt.subplots(1, 2)
     open_now = plt.get_fignums()
-    given = rf.plot.response(runs["whole"], panels="rotation", ax=left)
-    assert given[0] is left
+    returned = rf.plot.response(runs["whole"], panels="rotation", ax=left)
+    assert returned[0] is left
     assert rf.plot.phase(runs["whole"], ax=right) is right
-    again = rf.plot.response(runs["less"], ax=panels, title="both")
-    assert list(again) == list(panels)
+    returned_again = rf.plot.response(runs["less"], ax=panels, title="both")
+    assert list(returned_again) == list(panels)
     assert panels[0].get_title() == "both"
     assert plt.get_fignums() == open_now
-    assert given.figure is figure
+    assert returned.figure is figure
     assert len(before) + 2 == len(open_now)
 
 
-def test_axes_that_do_not_fit_are_refused_before_anything_is_drawn(runs):
+def test_invalid_plot_arguments_are_refused_without_a_figure(runs):
     figure, axes = plt.subplots(2, 1)
     count = len(plt.get_fignums())
-    wanted = r"ax must be 4 Axes, for ground, rotation, vertical, contact, got 2 Axes"
-    with pytest.raises(ComponentError, match=wanted):
+    message = r"ax must be 4 Axes, for ground, rotation, vertical, contact, got 2 Axes"
+    with pytest.raises(ComponentError, match=message):
         rf.plot.response(runs["whole"], ax=axes)
     with pytest.raises(ComponentError, match="ax must be one Axes, got"):
         rf.plot.phase(runs["whole"], ax=figure)
@@ -78,7 +78,7 @@ def test_axes_that_do_not_fit_are_refused_before_anything_is_drawn(runs):
     assert len(plt.get_fignums()) == count
 
 
-def test_units_and_windows_change_what_is_drawn_and_how_it_is_labelled(runs):
+def test_units_and_windows_apply_to_data_and_labels(runs):
     run = runs["whole"]
     ground, rotation, vertical, _ = rf.plot.response(
         run, rotation="deg", vertical="mm", acceleration="g_0", window=("0.5 s", "2 s")
@@ -90,15 +90,15 @@ def test_units_and_windows_change_what_is_drawn_and_how_it_is_labelled(runs):
         (vertical, 1e3 * inside.vertical_displacement, "[mm]"),
     )
     for axes, values, words in expected:
-        drawn = lines(axes)[0]
-        np.testing.assert_allclose(drawn.get_ydata(), values, rtol=1e-12)
-        np.testing.assert_array_equal(drawn.get_xdata(), inside.time)
+        plotted = lines(axes)[0]
+        np.testing.assert_allclose(plotted.get_ydata(), values, rtol=1e-12)
+        np.testing.assert_array_equal(plotted.get_xdata(), inside.time)
         assert words in axes.get_ylabel()
         assert axes.get_xlim() == (inside.time[0], inside.time[-1])
 
 
-def test_degrees_and_millimetres_stand_beside_what_is_relative(runs):
-    """The body leans more easily to the right, so that a share is fewer degrees there."""
+def test_secondary_axes_show_degrees_and_millimetres(runs):
+    """The body overturns at a smaller angle to the right."""
     run = runs["whole"]
     panels = rf.plot.response(run)
     panels.figure.canvas.draw()
@@ -109,23 +109,25 @@ def test_degrees_and_millimetres_stand_beside_what_is_relative(runs):
     ends = np.degrees([low * left, high * right])
     np.testing.assert_allclose(share.get_ylim(), ends, rtol=1e-9)
     settlement = 1e3 * SYSTEM.equilibrium().pad_settlement.item()
-    drawn = np.array(panels[2].get_ylim()) * settlement
-    np.testing.assert_allclose(millimetres.get_ylim(), drawn, rtol=1e-9)
+    converted = np.array(panels[2].get_ylim()) * settlement
+    np.testing.assert_allclose(millimetres.get_ylim(), converted, rtol=1e-9)
 
 
 def test_several_runs_have_a_line_a_label_and_a_strip_each(runs):
     panels = rf.plot.response(runs)
     assert len(panels) == 3 + 2
-    drawn = {line.get_label(): line for line in lines(panels[1])}
+    lines_by_label = {line.get_label(): line for line in lines(panels[1])}
     for name, run in runs.items():
-        np.testing.assert_array_equal(drawn[name].get_ydata(), run.relative_rotation)
-    styles = {(drawn[name].get_color(), drawn[name].get_linestyle()) for name in runs}
+        np.testing.assert_array_equal(lines_by_label[name].get_ydata(), run.relative_rotation)
+    styles = {
+        (lines_by_label[name].get_color(), lines_by_label[name].get_linestyle()) for name in runs
+    }
     assert len(styles) == 2
     assert len({style for _, style in styles}) == 2
     assert [axes.get_ylabel() for axes in panels[3:]] == list(runs)
-    listed = rf.plot.phase(list(runs.values()))
-    # a scaled motion keeps its name, so that runs are numbered
-    words = [text.get_text() for text in listed.get_legend().get_texts()]
+    phase_axes = rf.plot.phase(list(runs.values()))
+    # scaled motions have equal names, so runs are numbered
+    words = [text.get_text() for text in phase_axes.get_legend().get_texts()]
     assert words == ["run 1", "run 2"]
     other = SYSTEM.simulate(rf.GroundMotion.sine_pulse("1 m/s^2", "2 Hz"))
     words = rf.plot.phase([runs["whole"], other]).get_legend().get_texts()
@@ -136,7 +138,7 @@ def test_several_runs_have_a_line_a_label_and_a_strip_each(runs):
         rf.plot.response([runs["whole"], 3])
 
 
-def test_events_stand_where_they_happened(runs):
+def test_event_markers_are_at_event_times(runs):
     run = runs["whole"]
     axes = rf.plot.response(run, panels="rotation", rotation="deg", events=True)[0]
     marks = {line.get_label(): line for line in axes.get_lines() if line.get_marker() != "None"}
@@ -144,17 +146,17 @@ def test_events_stand_where_they_happened(runs):
     impacts = kinds == 2
     assert impacts.any()
     np.testing.assert_array_equal(marks["impact"].get_xdata(), run.event_time[impacts])
-    drawn = marks["impact"].get_ydata()
-    np.testing.assert_allclose(drawn, np.degrees(run.event_rotation[impacts]), rtol=1e-12)
+    plotted = marks["impact"].get_ydata()
+    np.testing.assert_allclose(plotted, np.degrees(run.event_rotation[impacts]), rtol=1e-12)
     assert "pivot change" not in marks
 
 
-def test_motions_are_drawn_in_their_units_and_compared():
+def test_motions_and_spectra_are_plotted_in_requested_units():
     panels = rf.plot.motion(PULSE, acceleration="g_0", displacement="cm", window=(None, "0.5 s"))
-    drawn = lines(panels[0])[0]
+    plotted = lines(panels[0])[0]
     inside = PULSE.si.horizontal.times <= 0.5
     np.testing.assert_allclose(
-        drawn.get_ydata(), PULSE.si.horizontal.samples[inside] / 9.80665, rtol=1e-12
+        plotted.get_ydata(), PULSE.si.horizontal.samples[inside] / 9.80665, rtol=1e-12
     )
     assert panels[2].get_ylabel() == "displacement\n[cm]"
     both = rf.plot.motion([PULSE, PULSE.scaled(0.5)])
@@ -174,10 +176,10 @@ def test_a_scaled_motion_is_shown_with_its_factor():
     assert rf.plot.motion(PULSE)[0].figure.get_suptitle() == PULSE.name
     assert f"-1 times {PULSE.name}" in PULSE.scaled(-1.0)._repr_html_()
     (legend,) = rf.plot.motion([PULSE, twice])[0].figure.legends
-    assert [one.get_text() for one in legend.get_texts()] == [PULSE.name, f"2 times {PULSE.name}"]
+    assert [text.get_text() for text in legend.get_texts()] == [PULSE.name, f"2 times {PULSE.name}"]
 
 
-def test_energies_fill_up_to_what_was_put_in(runs):
+def test_stacked_energies_sum_to_input_energy(runs):
     run = runs["whole"]
     axes = rf.plot.energies(run, energy="J")
     tops = np.zeros(run.time.size)
@@ -195,19 +197,19 @@ def test_energies_fill_up_to_what_was_put_in(runs):
         rf.plot.energies(run.drop_vars("kinetic_energy"))
 
 
-def test_moments_and_phases_are_those_of_system_and_run(runs):
+def test_moment_rotation_and_phase_plots_match_the_run(runs):
     run = runs["whole"]
     axes = rf.plot.moment_rotation(SYSTEM, moment="N*m", rotation="rad")
-    held = SYSTEM.moment_rotation(([0.05], "rad"))
+    static = SYSTEM.moment_rotation(([0.05], "rad"))
     (line,) = [line for line in lines(axes) if line.get_label() == "of the base"]
-    found = np.interp(0.05, line.get_xdata(), line.get_ydata())
-    assert found == pytest.approx(held.base_moment.item(), rel=1e-4)
+    interpolated = np.interp(0.05, line.get_xdata(), line.get_ydata())
+    assert interpolated == pytest.approx(static.base_moment.item(), rel=1e-4)
     curve = SYSTEM.moment_rotation(([0.0, 0.02, 0.04, 0.06], "rad"))
     line = lines(rf.plot.moment_rotation(curve, moment="N*m"))[0]
     np.testing.assert_allclose(line.get_ydata(), curve.base_moment)
     axes = rf.plot.moment_rotation(run)
-    drawn = lines(axes)[1]
-    np.testing.assert_allclose(drawn.get_ydata(), 1e-3 * run.base_overturning_moment, rtol=1e-12)
+    plotted = lines(axes)[1]
+    np.testing.assert_allclose(plotted.get_ydata(), 1e-3 * run.base_overturning_moment, rtol=1e-12)
     assert axes.get_ylabel() == "moment of the base [kN m]"
     phase = rf.plot.phase(run, rotation="deg")
     np.testing.assert_allclose(
@@ -217,47 +219,47 @@ def test_moments_and_phases_are_those_of_system_and_run(runs):
 
 
 @pytest.mark.wide
-def test_moments_of_the_highest_body_stand_over_its_rotation_on_the_one_below():
+def test_stack_moments_are_plotted_over_relative_rotation():
     stack = rf.Stack(BLOCK, rf.Block(width="1 m", height="0.8 m", mass="2 t"), interfaces=[PADS])
     run = rf.System(stack, PADS).simulate(PULSE, outputs=("base_overturning_moment",))
-    (drawn,) = lines(rf.plot.moment_rotation(run, rotation="rad", moment="N*m"))
-    np.testing.assert_array_equal(drawn.get_xdata(), run.body_rotation_on_base.isel(body=0))
-    np.testing.assert_array_equal(drawn.get_ydata(), run.base_overturning_moment)
+    (plotted,) = lines(rf.plot.moment_rotation(run, rotation="rad", moment="N*m"))
+    np.testing.assert_array_equal(plotted.get_xdata(), run.body_rotation_on_base.isel(body=0))
+    np.testing.assert_array_equal(plotted.get_ydata(), run.base_overturning_moment)
 
 
-def test_counted_shares_reach_to_their_own_bounds():
-    found = rf.fragility(
+def test_error_bars_show_bounds_of_stripe_fractions():
+    result = rf.fragility(
         {"intensity": ([0.2, 0.4, 0.8], "m/s"), "exceeded": [1, 6, 19], "trials": 20}, "PGV"
     )
-    axes = rf.plot.fragility(found)
+    axes = rf.plot.fragility(result)
     (bars,) = axes.containers
     reach = np.array([segment[:, 1] for segment in bars.lines[2][0].get_segments()])
-    np.testing.assert_allclose(reach[:, 0], found.stripe_fraction_lower_bound.squeeze())
-    np.testing.assert_allclose(reach[:, 1], found.stripe_fraction_upper_bound.squeeze())
+    np.testing.assert_allclose(reach[:, 0], result.stripe_fraction_lower_bound.squeeze())
+    np.testing.assert_allclose(reach[:, 1], result.stripe_fraction_upper_bound.squeeze())
 
 
-def test_peaks_beyond_overturning_are_drawn_alike():
+def test_peaks_beyond_overturning_are_clipped():
     system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
     motions = {"weak": rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")}
-    found = rf.incremental_dynamic_analysis(
+    result = rf.incremental_dynamic_analysis(
         system, motions, scale=[1.0, 2.0, 4.0], free_vibration="3 s", progress=False
     )
-    far = found.assign(peak_relative_rotation=3.0 * found.peak_relative_rotation)
-    drawn = [line.get_xdata() for line in rf.plot.dynamic_analysis(far)[0].get_lines()]
-    assert max(np.nanmax(np.append(one, 0.0)) for one in drawn) == 1.0
+    far = result.assign(peak_relative_rotation=3.0 * result.peak_relative_rotation)
+    plotted = [line.get_xdata() for line in rf.plot.dynamic_analysis(far)[0].get_lines()]
+    assert max(np.nanmax(np.append(peaks, 0.0)) for peaks in plotted) == 1.0
     assert float(far.peak_relative_rotation.max()) > 1.0
 
 
-def test_a_dynamic_analysis_has_the_measure_upwards_and_fractiles_of_the_motions():
+def test_dynamic_analysis_plot_shows_runs_and_fractiles():
     system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
     motions = {
         f"{k}": rf.GroundMotion.sine_pulse(f"{2.6 + 0.2 * k} m/s^2", "1 Hz") for k in range(7)
     }
-    found = rf.incremental_dynamic_analysis(
+    result = rf.incremental_dynamic_analysis(
         system, motions, scale=[0.5, 1.0, 1.5, 2.0, 3.0], intensity="PGA", free_vibration="3 s",
         progress=False,
     )  # fmt: skip
-    panels = rf.plot.dynamic_analysis(found)
+    panels = rf.plot.dynamic_analysis(result)
     assert [axes.get_ylabel()[:24] for axes in panels] == ["peak ground acceleration", ""]
     named = {line.get_label(): line for line in panels[0].get_lines()}
     runs = [line for line in lines(panels[0]) if line.get_color() == GREY]
@@ -265,16 +267,18 @@ def test_a_dynamic_analysis_has_the_measure_upwards_and_fractiles_of_the_motions
     up = named["50 %"].get_ydata()
     peaks = np.sort([np.interp(up, line.get_ydata(), line.get_xdata()) for line in runs], axis=0)
     for label, place in (("16 %", 0.96), ("50 %", 3.0), ("84 %", 5.04)):
-        drawn = named[label].get_xdata()
+        plotted = named[label].get_xdata()
         below, above = peaks[int(place)], peaks[int(np.ceil(place))]
         between = below + (place - int(place)) * (above - below)
-        np.testing.assert_allclose(drawn, np.where(above < 1.0, between, 1.0), atol=1e-12)
+        np.testing.assert_allclose(plotted, np.where(above < 1.0, between, 1.0), atol=1e-12)
     np.testing.assert_allclose(named["50 %"].get_xdata(), peaks[3], rtol=1e-12)
-    # half of the motions overturn where the line of the half turns level
+    # half of the motions overturn where the median line becomes horizontal
     level = up[np.argmax(named["50 %"].get_xdata() >= 1.0)]
-    capacity = np.sort(found.capacity_scale.squeeze() * found.peak_ground_acceleration.sel(scale=1))
+    capacity = np.sort(
+        result.capacity_scale.squeeze() * result.peak_ground_acceleration.sel(scale=1)
+    )
     assert level == pytest.approx(capacity[3], abs=2.0 * (up[1] - up[0]))
-    few = rf.plot.dynamic_analysis(found.isel(motion=slice(0, 3)))
+    few = rf.plot.dynamic_analysis(result.isel(motion=slice(0, 3)))
     named = [line.get_label() for line in lines(few[0])]
     assert named == ["0", "1", "2"]
 
@@ -283,34 +287,34 @@ def test_a_dynamic_analysis_has_the_measure_upwards_and_fractiles_of_the_motions
 def test_one_panel_of_a_dynamic_analysis_fits_into_a_column():
     system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
     motions = {f"{a}": rf.GroundMotion.sine_pulse(f"{a} m/s^2", "1 Hz") for a in (2.6, 3.0)}
-    found = rf.incremental_dynamic_analysis(
+    result = rf.incremental_dynamic_analysis(
         system, motions, scale=[0.5, 1.0, 3.0], intensity="PGA", progress=False
     )
-    both = rf.plot.dynamic_analysis(found)
-    for name, whole in zip(("peaks", "shares"), both, strict=True):
+    both = rf.plot.dynamic_analysis(result)
+    for name, panel in zip(("peaks", "shares"), both, strict=True):
         figure, axes = plt.subplots(figsize=(8.5 / 2.54, 7.0 / 2.54), layout="constrained")
-        assert list(rf.plot.dynamic_analysis(found, panels=name, ax=axes)) == [axes]
-        assert axes.get_xlabel() == whole.get_xlabel()
+        assert list(rf.plot.dynamic_analysis(result, panels=name, ax=axes)) == [axes]
+        assert axes.get_xlabel() == panel.get_xlabel()
         assert axes.get_ylabel() == both[0].get_ylabel()
-        drawn = [line.get_xydata() for line in axes.get_lines()]
-        for one, other in zip(drawn, whole.get_lines(), strict=True):
-            np.testing.assert_array_equal(one, other.get_xydata())
+        plotted = [line.get_xydata() for line in axes.get_lines()]
+        for points, other in zip(plotted, panel.get_lines(), strict=True):
+            np.testing.assert_array_equal(points, other.get_xydata())
         figure.canvas.draw()
         out = (axes.get_tightbbox().extents - figure.bbox.extents) * np.array([-1, -1, 1, 1])
         assert (out <= 2.0).all()  # pixels
-        # the legend stands above what is seen, not above what is beyond the end of the axis
+        # the legend is above the visible curves, not those beyond the end of the axis
         assert axes.get_ylim()[1] < 2.0 * both[0].get_ylim()[1]
-    swapped = rf.plot.dynamic_analysis(found, panels=("shares", "peaks"))
+    swapped = rf.plot.dynamic_analysis(result, panels=("shares", "peaks"))
     assert swapped[0].get_xlabel() == both[1].get_xlabel()
     with pytest.raises(ComponentError, match=r"2 Axes.*got 1 Axes; panels='peaks' draws one"):
-        rf.plot.dynamic_analysis(found, ax=axes)
+        rf.plot.dynamic_analysis(result, ax=axes)
     for wrong in ("peak", (), ("peaks", "peaks"), 3):
         with pytest.raises(ComponentError, match="panels are one or more of 'peaks', 'shares'"):
-            rf.plot.dynamic_analysis(found, panels=wrong)
+            rf.plot.dynamic_analysis(result, panels=wrong)
 
 
 def luminance(colour):
-    """Lightness of the CIE, from 0 to 100."""
+    """CIE lightness, from 0 to 100."""
     rgb = np.array(to_rgb(colour))
     linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
     return 116.0 * (linear @ [0.2126, 0.7152, 0.0722]) ** (1.0 / 3.0) - 16.0
@@ -319,18 +323,18 @@ def luminance(colour):
 @pytest.mark.parametrize(
     ("colours", "apart"), [(COLOURS, 7.5), (CONTACT_COLOURS.values(), 11.0), (MAP_COLOURS, 7.5)]
 )
-def test_colours_are_told_apart_without_colours(colours, apart):
+def test_colours_differ_in_lightness(colours, apart):
     shades = np.sort([luminance(colour) for colour in colours])
     assert np.diff(shades).min() > apart
-    assert shades.min() > 30.0  # on black
+    assert shades.min() > 30.0  # on a black page
     assert luminance(CONTACT_COLOURS["right"]) - luminance(CONTACT_COLOURS["left"]) > 15.0
 
 
 def test_all_figures_take_their_colours_from_the_palette():
     written = {
-        (path.name, found)
+        (path.name, colour)
         for path in Path(rf.plot.__file__).parent.glob("*.py")
-        for found in re.findall(r"\"(#[0-9a-f]{6})\"", path.read_text())
+        for colour in re.findall(r"\"(#[0-9a-f]{6})\"", path.read_text())
         if path.name != "_axes.py"
     }
     known = {*CONTACT_COLOURS.values(), SOIL_COLOUR}
@@ -338,7 +342,7 @@ def test_all_figures_take_their_colours_from_the_palette():
 
 
 @pytest.mark.parametrize("size", [pytest.param((8.0, 6.0), marks=pytest.mark.long), (4.0, 5.0)])
-def test_legends_stand_off_the_curves(runs, size):
+def test_legends_do_not_cover_curves(runs, size):
     figure = plt.figure(figsize=size, layout="constrained")
     rf.plot.response(runs["whole"], units={"force": "kN"}, events=True, ax=figure,
                      panels=("rotation", "left_reaction", "contact"))  # fmt: skip
@@ -346,16 +350,16 @@ def test_legends_stand_off_the_curves(runs, size):
     rf.plot.phase(runs, ax=axes)
     third, (_, axes) = plt.subplots(1, 2, figsize=size)
     rf.plot.energies(runs["whole"], ax=axes)
-    for drawn in (figure, single, third):
-        drawn.canvas.draw()
-        for panel in drawn.axes:
+    for figure_drawn in (figure, single, third):
+        figure_drawn.canvas.draw()
+        for panel in figure_drawn.axes:
             if panel.get_legend() is None:
                 continue
             box = panel.get_legend().get_window_extent()
             for line in lines(panel, 1):
                 places = panel.transData.transform(np.column_stack(line.get_data()))
-                held = line.get_transform() == panel.transData
-                assert not held or not any(box.contains(*place) for place in places)
+                in_data_units = line.get_transform() == panel.transData
+                assert not in_data_units or not any(box.contains(*place) for place in places)
 
 
 @pytest.mark.wide
@@ -367,7 +371,7 @@ def test_any_history_of_a_run_has_a_panel():
     run = slide.simulate(PULSE, free_vibration="1 s", outputs=outputs, points=points)
     assert {"slip", "horizontal_reaction", "horizontal_acceleration"} <= set(run.data_vars)
     units = {"force": "kN", "length": "mm", "acceleration": "g", "angle": "mrad"}
-    shown = rf.table(run, "histories", units=units)
+    histories = rf.table(run, "histories", units=units)
     for name in history_names(run):
         _, axes = plt.subplots()
         rf.plot.response(run, panels=name, units=units, ax=axes)
@@ -383,16 +387,16 @@ def test_any_history_of_a_run_has_a_panel():
         if name != "rotation":
             np.testing.assert_allclose(rows[0].get_ydata(), unit.of(first), rtol=1e-12)
         plt.close(axes.figure)
-    assert "slip [mm]" in shown
+    assert "slip [mm]" in histories
 
 
-def test_where_the_fractiles_of_a_dynamic_analysis_end_is_told():
-    """Two motions are too weak to overturn: above their largest intensity there are fewer lines."""
+def test_end_of_dynamic_analysis_fractiles_is_labelled():
+    """Two motions do not overturn: there are fewer curves above their largest intensity."""
     system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
     motions = {
         f"{a}": rf.GroundMotion.sine_pulse(f"{a} m/s^2", "1 Hz") for a in (0.3, 0.4, 3, 4, 5)
     }
-    found = rf.incremental_dynamic_analysis(
+    result = rf.incremental_dynamic_analysis(
         system,
         motions,
         scale=[0.5, 1.0, 2.0, 4.0],
@@ -400,10 +404,10 @@ def test_where_the_fractiles_of_a_dynamic_analysis_end_is_told():
         free_vibration="3 s",
         progress=False,
     )
-    panel = rf.plot.dynamic_analysis(found)[0]
+    panel = rf.plot.dynamic_analysis(result)[0]
     named = {line.get_label(): line for line in panel.get_lines()}
     (end,) = np.unique(named["all were run up to here"].get_ydata())
     assert end == pytest.approx(1.2, rel=1e-3)  # four times the weakest motion
     assert all(named[f"{share} %"].get_ydata()[-1] == end for share in (16, 50, 84))
-    strong = rf.plot.dynamic_analysis(found.isel(motion=[2, 3, 3, 4]))[0]  # all overturn
+    strong = rf.plot.dynamic_analysis(result.isel(motion=[2, 3, 3, 4]))[0]  # all overturn
     assert "all were run up to here" not in [line.get_label() for line in strong.get_lines()]

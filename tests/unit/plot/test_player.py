@@ -1,4 +1,4 @@
-"""Pages that play a run: their numbers are those of the run, and browsers draw them."""
+"""Player pages contain the numbers of the run, and browsers draw them."""
 
 import base64
 import json
@@ -41,7 +41,7 @@ def run_of(scene, **options):
 
 
 def read(page):
-    """Read a page's numbers, as its script does."""
+    """Read the numbers of a page as its script does."""
     data = json.loads(re.search(r"^const run = (.*);$", page, re.MULTILINE)[1])
     packed = zlib.decompress(base64.b64decode(data["numbers"]))
     low, high = np.frombuffer(packed, np.uint8).reshape(2, -1).astype(int)
@@ -50,34 +50,34 @@ def read(page):
 
 
 def points_of(data, numbers, name):
-    """Return where a layer is at all instants [m]."""
-    drawn, instants = data["layers"], len(data["times"])
-    (layer,) = [one for one in drawn["list"] if one["name"] == name]
+    """Return the points of a layer at all instants [m]."""
+    layers, instants = data["layers"], len(data["times"])
+    (layer,) = [layer for layer in layers["list"] if layer["name"] == name]
     size = 2 * layer["points"] * instants
     columns = numbers[layer["first"] : layer["first"] + size].reshape(-1, 2, instants)
-    step = max(drawn["width"], drawn["height"]) / data["levels"]
+    step = max(layers["width"], layers["height"]) / data["levels"]
     places = np.where(columns == data["nowhere"], np.nan, step * columns).transpose(2, 0, 1)
-    return places + np.array([drawn["left"], drawn["bottom"]]), step
+    return places + np.array([layers["left"], layers["bottom"]]), step
 
 
 @pytest.mark.parametrize(
     "scene", [pytest.param(name, marks=[pytest.mark.long] * (name == "stack")) for name in SCENES]
 )
-def test_the_numbers_of_a_page_are_where_the_parts_are(scene):
+def test_player_coordinates_match_the_scene(scene):
     run = run_of(scene, points={"top": ("0 m", "4 m")} if scene == "pads" else None)
     data, numbers = read(rf.plot.player(run).to_html())
     moving = SceneHistory(run, "player", 1.0)
     times = run.time.to_numpy()
     assert (data["times"][0], data["times"][-1]) == pytest.approx(times[[0, -1]])
-    names = {one["name"] for one in data["layers"]["list"]}
+    names = {layer["name"] for layer in data["layers"]["list"]}
     assert {"block", "centre of mass", "contact"} <= names
     block, step = points_of(data, numbers, "block")
     cross, _ = points_of(data, numbers, "centre of mass")
-    for place, when in list(enumerate(data["times"]))[::7]:
-        there = moving.builder.layout_at(moving.placement_at(int(np.argmin(abs(times - when)))))
-        np.testing.assert_allclose(block[place], there.block, atol=0.51 * step)
-        np.testing.assert_allclose(cross[place], there.centres, atol=0.51 * step)
-    rest = [one for one in data["layers"]["list"] if one["name"] == "at rest"]
+    for place, time in list(enumerate(data["times"]))[::7]:
+        layout = moving.builder.layout_at(moving.placement_at(int(np.argmin(abs(times - time)))))
+        np.testing.assert_allclose(block[place], layout.block, atol=0.51 * step)
+        np.testing.assert_allclose(cross[place], layout.centres, atol=0.51 * step)
+    rest = [layer for layer in data["layers"]["list"] if layer["name"] == "at rest"]
     assert len(rest) == (2 if scene in ("stack", "pads, cap and soil") else 1)
     box = data["layers"]
     assert (np.nanmin(block, axis=(0, 1)) >= (box["left"], box["bottom"])).all()
@@ -86,7 +86,7 @@ def test_the_numbers_of_a_page_are_where_the_parts_are(scene):
         np.testing.assert_allclose(top[:, 0], block[:, 2:].mean(axis=1), atol=2.0 * step)
 
 
-def test_traces_and_strips_are_those_of_the_run():
+def test_player_traces_and_strips_match_the_run():
     run = run_of("pads")
     data, numbers = read(rf.plot.player(run, rotation="mrad").to_html())
     rotation, ground = data["traces"]
@@ -104,16 +104,16 @@ def test_traces_and_strips_are_those_of_the_run():
     changes = int((np.diff(run.contact_state.to_numpy()) != 0).sum())
     assert len(strip["times"]) == len(strip["states"]) == 1 + changes
     assert {"left", "right"} <= set(strip["states"])
-    slid = run.assign(slip=run.vertical_displacement)
-    label = read(rf.plot.player(slid, units={"length": "mm"}).to_html())[0]["traces"][1]["label"]
+    sliding = run.assign(slip=run.vertical_displacement)
+    label = read(rf.plot.player(sliding, units={"length": "mm"}).to_html())[0]["traces"][1]["label"]
     assert label == "slip [mm]"
-    panels = rf.plot.response(slid)
-    assert [one.get_ylabel() for one in panels][3:] == ["slip\n[m]", "contact"]
+    panels = rf.plot.response(sliding)
+    assert [panel.get_ylabel() for panel in panels][3:] == ["slip\n[m]", "contact"]
     plt.close(panels.figure)
 
 
 @pytest.mark.wide
-def test_the_slips_of_all_bodies_that_slide_are_traced():
+def test_slip_is_traced_for_every_sliding_body():
     stone = rf.RigidGround(friction=0.2)
     stack = rf.Stack(
         rf.Block(width="0.8 m", height="1 m", mass="1 t"),
@@ -121,14 +121,14 @@ def test_the_slips_of_all_bodies_that_slide_are_traced():
     )  # fmt: skip
     pulse = rf.GroundMotion.sine_pulse("4 m/s^2", "1 Hz")
     run = rf.System(stack, stone.replace(friction=0.3)).simulate(pulse, free_vibration="0.5 s")
-    labels = [one["label"] for one in read(rf.plot.player(run).to_html())[0]["traces"]]
+    labels = [trace["label"] for trace in read(rf.plot.player(run).to_html())[0]["traces"]]
     assert labels[1:-1] == ["slip of body 1 [m]", "slip of body 2 [m]"]
     still = run.assign(body_slip=run.body_slip.where(run.body == 2, 0.0))
-    labels = [one["label"] for one in read(rf.plot.player(still).to_html())[0]["traces"]]
+    labels = [trace["label"] for trace in read(rf.plot.player(still).to_html())[0]["traces"]]
     assert labels[1:-1] == ["slip of body 2 [m]"]
 
 
-def test_pages_are_small_whole_and_ask_for_nothing(tmp_path):
+def test_player_pages_are_small_and_self_contained(tmp_path):
     run = run_of("pads")
     page = rf.plot.player(run)
     text = page.to_html()
@@ -136,7 +136,7 @@ def test_pages_are_small_whole_and_ask_for_nothing(tmp_path):
     assert len(text) < 40_000
     length = float(run.time[-1])
     assert repr(page) == f"<player of {length:.1f} s, {len(text) / 1e3:.0f} kB; save('run.html')>"
-    # words are text, whatever they hold
+    # titles are escaped
     odd = rf.plot.player(run.assign_attrs(motion="</script><b>5"), title="a</script>").to_html()
     assert odd.count("</script>") == 1
     assert "<b>" not in odd
@@ -148,7 +148,7 @@ def test_pages_are_small_whole_and_ask_for_nothing(tmp_path):
     assert written.read_text().startswith("<!doctype html>")
 
 
-def test_what_cannot_be_played_is_refused():
+def test_invalid_player_arguments_are_refused():
     run = run_of("rigid ground")
     with pytest.raises(ComponentError, match=r"rf\.plot\.player: magnify must be greater than"):
         rf.plot.player(run, magnify=0)
@@ -164,7 +164,7 @@ def test_a_browser_draws_it(tmp_path):
     page = rf.plot.player(run_of("pads, cap and soil"))
     path = page.save(tmp_path / "run.html")
     usual = ["--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=5000"]
-    seen = subprocess.run(
+    output = subprocess.run(
         [browser, *usual, f"--user-data-dir={tmp_path}/profile", "--dump-dom", path.as_uri()],
         capture_output=True, text=True, timeout=120, check=True,
     ).stdout  # fmt: skip
@@ -175,35 +175,35 @@ def test_a_browser_draws_it(tmp_path):
     assert sorted(re.findall(r"</i>([^<]+)</span>", seen)) == sorted(states)
 
 
-def written_by_a_browser(page, tmp_path, height=640, canvas="traces"):
-    """Return what a page writes on a canvas, with its place [pixels]."""
+def texts_in_browser(page, tmp_path, height=640, canvas="traces"):
+    """Return the texts that a page writes on a canvas, with their places [pixels]."""
     browser = which("chromium") or which("google-chrome")
     if browser is None:
         pytest.skip("neither chromium nor google-chrome is installed")
     listens = """<script>
-    const plain = CanvasRenderingContext2D.prototype.fillText, told = [];
+    const plain = CanvasRenderingContext2D.prototype.fillText, texts = [];
     CanvasRenderingContext2D.prototype.fillText = function (words, x, y) {
-      if (this.canvas.id === "CANVAS") told.push(words + "@" + x + "@" + y);
-      document.body.dataset.told = told.join("|");
+      if (this.canvas.id === "CANVAS") texts.push(words + "@" + x + "@" + y);
+      document.body.dataset.texts = texts.join("|");
       plain.call(this, words, x, y);
     };</script><script>"""
     path = tmp_path / "run.html"
     path.write_text(page.to_html().replace("<script>", listens.replace("CANVAS", canvas), 1))
     usual = ["--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=5000"]
-    seen = subprocess.run(
+    output = subprocess.run(
         [browser, *usual, f"--window-size=800,{height}", f"--user-data-dir={tmp_path}/profile",
          "--dump-dom", path.as_uri()],
         capture_output=True, text=True, timeout=120, check=True,
     ).stdout  # fmt: skip
-    told = re.search(r'data-told="([^"]*)"', seen)[1].split("|")
-    return [(words, float(x), float(y)) for words, x, y in (one.split("@") for one in told)]
+    texts = re.search(r'data-texts="([^"]*)"', output)[1].split("|")
+    return [(words, float(x), float(y)) for words, x, y in (text.split("@") for text in texts)]
 
 
 @pytest.mark.parametrize("longer", [1.0, 1e-3, 2000.0])
-def test_times_below_the_traces_do_not_run_into_one_another(tmp_path, longer):
+def test_time_labels_do_not_overlap(tmp_path, longer):
     run = run_of("rigid ground")
     stretched = run.assign_coords(time=run.time * longer)
-    written = written_by_a_browser(rf.plot.player(stretched), tmp_path)
+    written = texts_in_browser(rf.plot.player(stretched), tmp_path)
     places = sorted({x for words, x, _ in written if words.endswith(" s")})
     assert 4 <= len(places) <= 11
     assert np.diff(places).min() > 40.0
@@ -215,7 +215,7 @@ def test_times_below_the_traces_do_not_run_into_one_another(tmp_path, longer):
 def test_the_scale_bar_has_the_unit_of_lengths(tmp_path, unit, bar):
     units = None if unit is None else {"length": unit}
     page = rf.plot.player(run_of("rigid ground"), units=units)
-    written = written_by_a_browser(page, tmp_path, canvas="scene")
+    written = texts_in_browser(page, tmp_path, canvas="scene")
     assert {words for words, _, _ in written} == {bar}
 
 

@@ -1,4 +1,4 @@
-"""The figure of a run: strips of contact, title and labels."""
+"""The figure of a run: contact strips, title and labels."""
 
 import numpy as np
 import pytest
@@ -24,7 +24,7 @@ def strip(times, states):
 
 
 def pixels(figure, axes, start, end):
-    """Colours drawn from one time to another, halfway up a panel."""
+    """Colours between two times, at half the height of a panel."""
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     image = np.asarray(canvas.buffer_rgba())[::-1, :, :3] / 255.0
@@ -33,7 +33,7 @@ def pixels(figure, axes, start, end):
     return image[height, left + 2 : right - 1]
 
 
-def test_a_part_of_the_time_has_the_mean_colour_of_its_states():
+def test_contact_strip_averages_colours_over_time():
     state = strip([0.0, 1.0, 1.5, 3.0, 4.0], [0, 1, 2, 1, 2])
     expected = [FULL, 0.5 * LEFT + 0.5 * RIGHT, RIGHT, LEFT]
     np.testing.assert_allclose(mean_colours(state, 4), expected, atol=1e-12)
@@ -42,7 +42,7 @@ def test_a_part_of_the_time_has_the_mean_colour_of_its_states():
 
 @pytest.mark.wide
 @pytest.mark.parametrize("dpi", [60, 100, 300])
-def test_what_is_narrower_than_a_pixel_is_mixed(dpi):
+def test_contact_states_narrower_than_a_pixel_are_blended(dpi):
     run = rf.System(BLOCK).simulate(PULSE, duration="40 s", output_step="1 ms")
     time = run["time"].values
     chatter = np.where(np.arange(time.size) % 2 == 0, 1, 2)
@@ -52,19 +52,19 @@ def test_what_is_narrower_than_a_pixel_is_mixed(dpi):
     ).figure
     figure.set_dpi(dpi)
     for start, colour in ((0, FULL), (10, LEFT), (20, 0.5 * (LEFT + RIGHT)), (30, RIGHT)):
-        drawn = pixels(figure, figure.axes[-1], start + 0.5, start + 9.5)
-        np.testing.assert_allclose(drawn, np.tile(colour, (len(drawn), 1)), atol=0.02)
+        colours = pixels(figure, figure.axes[-1], start + 0.5, start + 9.5)
+        np.testing.assert_allclose(colours, np.tile(colour, (len(colours), 1)), atol=0.02)
 
 
-def test_a_block_that_chatters_is_not_drawn_as_leaning_to_one_side():
+def test_chattering_block_has_a_blended_contact_strip():
     motion = rf.GroundMotion.read(record_path("NIS090.AT2"))
     run = rf.System(BLOCK).simulate(motion, free_vibration="5 s")
     rocking = run["contact_state"].sel(time=slice(24.6, 26.9)).values
     assert np.mean(rocking == 1) == pytest.approx(0.5, abs=0.03)
     assert np.mean(rocking == 2) == pytest.approx(0.5, abs=0.03)
     figure = rf.plot.response(run).figure
-    drawn = pixels(figure, figure.axes[-1], 24.6, 26.9)
-    np.testing.assert_allclose(drawn.mean(axis=0), 0.5 * (LEFT + RIGHT), atol=0.03)
+    colours = pixels(figure, figure.axes[-1], 24.6, 26.9)
+    np.testing.assert_allclose(colours.mean(axis=0), 0.5 * (LEFT + RIGHT), atol=0.03)
 
 
 LONGEST = (
@@ -85,7 +85,7 @@ LONGEST = (
         (" ".join(["word"] * 30), [" ".join(["word"] * 19), " ".join(["word"] * 11)]),
     ],
 )
-def test_a_title_is_broken_and_keeps_a_margin(words, lines):
+def test_long_title_is_wrapped_within_margins(words, lines):
     run = rf.System(BLOCK).simulate(PULSE, free_vibration="1 s")
     run.attrs["verdict"] = words
     figure = rf.plot.response(run).figure
@@ -109,7 +109,7 @@ def test_the_verdict_of_a_run_that_was_not_finished_fits():
 
 
 @pytest.mark.parametrize("coupling", ["coupled", pytest.param("cascade", marks=pytest.mark.long)])
-def test_of_two_settlements_the_label_names_the_one(coupling):
+def test_settlement_label_names_the_pads_on_soil(coupling):
     block = rf.Block(width="2 m", height="8 m", mass="50 t")
     pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
     cap = rf.CushionCap(height="0.4 m", mass="20 t", width="2.5 m")
@@ -122,11 +122,11 @@ def test_of_two_settlements_the_label_names_the_one(coupling):
     assert "of the pads" not in rf.plot.response(alone).figure.axes[2].get_ylabel()
 
 
-def test_a_history_is_drawn_of_those_runs_that_hold_it():
+def test_slip_panel_shows_only_runs_with_slip():
     slides = rf.System(BLOCK, rf.RigidGround(friction=0.15)).simulate(PULSE)
     runs = {"held": rf.System(BLOCK).simulate(PULSE), "slides": slides}
     assert "slip" not in runs["held"]
-    *_, slip, _, _ = rf.plot.response(runs)  # beneath it a strip of contact for each run
+    *_, slip, _, _ = rf.plot.response(runs)  # a contact strip for each run below
     assert slip.get_ylabel() == "slip\n[m]"
     assert [line.get_label() for line in slip.get_lines()][:1] == ["slides"]
     with pytest.raises(ComponentError, match=r"They hold .*'slip'"):
@@ -138,7 +138,7 @@ def words_of(axes):
     return [] if legend is None else [text.get_text() for text in legend.get_texts()]
 
 
-def test_of_a_stack_events_are_said_to_be_of_all_bodies_and_no_uplift_line_is_drawn(monkeypatch):
+def test_stack_response_labels_bodies_and_omits_uplift_line(monkeypatch):
     block = rf.Block(width="1 m", height="1.5 m", mass="1 t")
     joint = rf.TwoSpringSupport(stiffness="20 MN/m", damping_ratio=0.1)
     system = rf.System(rf.Stack(block, block, interfaces=[joint]), joint)
@@ -147,7 +147,7 @@ def test_of_a_stack_events_are_said_to_be_of_all_bodies_and_no_uplift_line_is_dr
     rotation, *strips = rf.plot.response(run, panels=("rotation", "contact"), events=True)
     assert words_of(rotation)[0] == "body 1"
     assert rotation.get_legend().get_title().get_text() == "events of all bodies"
-    # uplift is at a rotation on the base, what is drawn is that from the upright
+    # uplift occurs at a rotation on the base; the rotation from upright is drawn
     assert "uplift" not in [line.get_label() for line in rotation.get_lines()]
     assert [strip.get_ylabel() for strip in strips] == ["body 1", "body 2"]
     first, _ = rf.plot.response([run, run], panels="contact")
@@ -161,7 +161,7 @@ def test_of_a_stack_events_are_said_to_be_of_all_bodies_and_no_uplift_line_is_dr
     assert "rotation of body 1 [" in rf.plot.player(run).to_html()
 
 
-def test_the_vertical_ground_is_drawn_of_those_runs_that_have_one():
+def test_vertical_ground_motion_is_drawn_only_where_present():
     system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
     across = rf.GroundMotion.sine_pulse("2 m/s^2", "1 Hz")
     runs = {
@@ -176,7 +176,7 @@ def test_the_vertical_ground_is_drawn_of_those_runs_that_have_one():
     assert upwards[0].get_color() != upwards[1].get_color()
 
 
-def test_small_rotations_are_seen_beside_limits_that_are_far():
+def test_axis_limits_follow_small_rotations():
     block = rf.Block(width="0.8 m", height="4 m", mass="2 t")
     system = rf.System(block, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1))
     small = system.simulate(rf.GroundMotion.sine_pulse("1e-5 m/s^2", "1 Hz"))
@@ -190,7 +190,7 @@ def test_small_rotations_are_seen_beside_limits_that_are_far():
     assert rf.plot.phase(large).get_xlim()[1] > 1.0
 
 
-def test_a_block_before_a_wall_is_held_to_the_other_side():
+def test_moment_rotation_before_a_wall_covers_only_the_free_side():
     block = rf.Block(width="0.8 m", height="4 m", mass="2 t")
     for side, sign in (("left", 1.0), ("right", -1.0)):
         axes = rf.plot.moment_rotation(rf.System(block, rf.RearWall(side=side)))

@@ -1,4 +1,4 @@
-"""Scenes to scale: places of corners, pads, soil and cap against closed forms."""
+"""Scenes to scale: positions of corners, pads, soil and cap agree with closed forms."""
 
 from shutil import which
 
@@ -23,86 +23,88 @@ SOIL = rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.2)
 PULSE = rf.GroundMotion.sine_pulse("2.2 m/s^2", "1 Hz")
 
 
-def drawn(system, run, place):
+def placement_and_layout(system, run, place):
     moving = SceneHistory(run, "state", 1.0)
     return moving.placement_at(place), moving.builder.layout_at(moving.placement_at(place))
 
 
-def turned(point, about, angle):
-    """Turn a point clockwise."""
+def rotated(point, about, angle):
+    """Rotate a point clockwise."""
     across, up = np.array(point) - about
     sine, cosine = np.sin(angle), np.cos(angle)
     moved = np.array([across * cosine + up * sine, up * cosine - across * sine])
     return np.array(about) + moved
 
 
-def test_on_rigid_ground_a_block_turns_about_the_corner_that_bears():
+def test_block_on_rigid_ground_pivots_about_the_bearing_corner():
     run = rf.System(BLOCK).simulate(PULSE, free_vibration="2 s")
-    seen = set()
+    corners = set()
     for place in range(0, run.sizes["time"], 7):
         angle = run.rotation[place].item()
         corner = 0.4 if angle > 0.0 else -0.4
-        expected = [turned(point, (corner, 0.0), angle) for point in
+        expected = [rotated(point, (corner, 0.0), angle) for point in
                     ((-0.4, 0.0), (0.4, 0.0), (0.4, 4.0), (-0.4, 4.0))]  # fmt: skip
-        _, found = drawn(None, run, place)
-        np.testing.assert_allclose(found.block, expected, atol=1e-9)
+        _, layout = placement_and_layout(None, run, place)
+        np.testing.assert_allclose(layout.block, expected, atol=1e-9)
         np.testing.assert_allclose(
-            found.centres, [turned((0.1, 1.8), (corner, 0.0), angle)], atol=1e-9
+            layout.centres, [rotated((0.1, 1.8), (corner, 0.0), angle)], atol=1e-9
         )
-        (touching,) = found.contacts
+        (touching,) = layout.contacts
         if int(run.contact_state[place]) != 0:
             np.testing.assert_allclose(touching, [(corner, 0.0)], atol=1e-9)
-            seen.add(corner)
-    assert seen == {-0.4, 0.4}
+            corners.add(corner)
+    assert corners == {-0.4, 0.4}
 
 
 @pytest.mark.parametrize("parts", [(), (PADS,), (SOIL,), (CAP, SOIL), (PADS, CAP, SOIL)])
-def test_a_point_of_the_body_is_drawn_where_the_run_says_it_is(parts):
+def test_drawn_points_match_point_displacements(parts):
     system = rf.System(EVEN, *parts)
     point = {"top": ("1 m", "7 m")}
     run = system.simulate(PULSE, free_vibration="1 s", points=point)
     moving = SceneHistory(run, "state", 1.0)
-    below = 0.4 if len(parts) == 3 else 0.0  # points count from the base of the body of the run
+    below = 0.4 if len(parts) == 3 else 0.0  # points are measured from the base of the body
     lift = moving.builder.pad_thickness if len(parts) == 3 else 0.0
     for place in range(0, run.sizes["time"], 40):
-        at = moving.placement_at(place)
-        (found,) = moving.builder.points_at(at, np.array([(1.0, 7.0)]))
+        placement = moving.placement_at(place)
+        (drawn_point,) = moving.builder.points_at(placement, np.array([(1.0, 7.0)]))
         moved = [
             run[f"point_{name}_displacement"][0, place].item()
             for name in ("horizontal", "vertical")
         ]
-        raised = lift * np.array([np.sin(at.cap_rotation), np.cos(at.cap_rotation)])
-        np.testing.assert_allclose(found, np.array([1.0, 7.0 + below]) + moved + raised, atol=1e-12)
+        raised = lift * np.array([np.sin(placement.cap_rotation), np.cos(placement.cap_rotation)])
+        np.testing.assert_allclose(
+            drawn_point, np.array([1.0, 7.0 + below]) + moved + raised, atol=1e-12
+        )
 
 
-def test_soil_touches_as_far_as_the_run_says():
+def test_drawn_soil_contact_matches_contact_length():
     run = rf.System(EVEN, SOIL).simulate(PULSE, free_vibration="2 s")
     lengths = run.contact_length.to_numpy()
     assert lengths.min() < 1.5
     for place in range(0, run.sizes["time"], 25):
-        _, found = drawn(None, run, place)
-        length = sum(np.hypot(*(one[-1] - one[0])) for one in found.contacts)
+        _, layout = placement_and_layout(None, run, place)
+        length = sum(np.hypot(*(segment[-1] - segment[0])) for segment in layout.contacts)
         assert length == pytest.approx(lengths[place], abs=2.0 / 80 + 1e-9)
 
 
-def test_pads_are_as_high_as_the_block_lets_them_be():
+def test_drawn_pad_height_follows_block_corners():
     system = rf.System(EVEN, PADS)
     run = system.simulate(PULSE, free_vibration="2 s")
     free = system.equilibrium().pad_settlement.item()
     for place in range(0, run.sizes["time"], 25):
-        at, found = drawn(system, run, place)
-        corners = at.block(np.array([(-1.0, 0.0), (1.0, 0.0)]))
-        bearing = np.where(np.array(found.pads_in_contact)[:, None], corners, np.nan)
-        np.testing.assert_allclose(np.reshape(found.contacts, (-1, 2)), bearing, atol=1e-12)
-        for pad, corner, bears in zip(found.pads, corners, found.pads_in_contact, strict=True):
+        placement, layout = placement_and_layout(system, run, place)
+        corners = placement.block(np.array([(-1.0, 0.0), (1.0, 0.0)]))
+        bearing = np.where(np.array(layout.pads_in_contact)[:, None], corners, np.nan)
+        np.testing.assert_allclose(np.reshape(layout.contacts, (-1, 2)), bearing, atol=1e-12)
+        for pad, corner, bears in zip(layout.pads, corners, layout.pads_in_contact, strict=True):
             assert pad[3, 1] == pytest.approx(min(corner[1], free), abs=1e-9)
-            # a dashpot may hold back a pad whose end has not come up to its free level yet
+            # a dashpot may hold a pad below its free level
             assert not bears or corner[1] <= free + 1e-9
             assert bears or corner[1] > -0.5 * free
 
 
 @pytest.mark.parametrize("soil", [None, SOIL])
-def test_each_body_of_a_stack_has_its_contact_its_centre_and_its_outline_at_rest(soil):
+def test_stack_bodies_are_drawn_with_contact_centre_and_outline(soil):
     low = rf.Block(width="2 m", height="3 m", mass="15 t")
     stone = rf.RigidGround()
     stack = rf.Stack(BLOCK, low, interfaces=[stone])
@@ -112,31 +114,31 @@ def test_each_body_of_a_stack_has_its_contact_its_centre_and_its_outline_at_rest
     states = run.body_contact_state.to_numpy()
     assert len({*map(tuple, states.T)}) > 2
     for place in range(0, run.sizes["time"], 5):
-        _, found = drawn(None, run, place)
-        *_, upper = found.contacts
+        _, layout = placement_and_layout(None, run, place)
+        *_, upper = layout.contacts
         if soil is None:
-            upper, lower = found.contacts
+            upper, lower = layout.contacts
             ends = {
-                0: found.lower_bodies[0][:2],
-                1: found.lower_bodies[0][:1],
-                2: found.lower_bodies[0][1:2],
+                0: layout.lower_bodies[0][:2],
+                1: layout.lower_bodies[0][:1],
+                2: layout.lower_bodies[0][1:2],
             }
             expected = ends.get(states[1, place], np.full((1, 2), np.nan))
             np.testing.assert_array_equal(lower, expected)
         else:
-            assert np.isnan(found.contacts[0]).any() == (states[1, place] == 3)
-        ends = {0: found.block[:2], 1: found.block[:1], 2: found.block[1:2]}
+            assert np.isnan(layout.contacts[0]).any() == (states[1, place] == 3)
+        ends = {0: layout.block[:2], 1: layout.block[:1], 2: layout.block[1:2]}
         np.testing.assert_array_equal(upper, ends.get(states[0, place], np.full((1, 2), np.nan)))
         moves = run.isel(time=place)
         rest = np.array([(0.1, 3.0 + 1.8), (0.0, 1.5)])
         across, up = moves.body_horizontal_displacement, moves.body_vertical_displacement
-        np.testing.assert_allclose(found.centres, rest + np.column_stack([across, up]), atol=1e-9)
+        np.testing.assert_allclose(layout.centres, rest + np.column_stack([across, up]), atol=1e-9)
     axes = rf.plot.state(run)
-    dashed = [one.get_xy()[:4] for one in axes.patches if one.get_linestyle() == "--"]
+    dashed = [patch.get_xy()[:4] for patch in axes.patches if patch.get_linestyle() == "--"]
     upright = SceneHistory(run, "state", 1.0).upright
     rest = SceneHistory(run, "state", 1.0).builder.layout_at(upright)
     np.testing.assert_allclose(dashed, [rest.block, rest.lower_bodies[0]])
-    labels = [one.get_ylabel() for one in rf.plot.response(run, panels=("contact",))]
+    labels = [axes.get_ylabel() for axes in rf.plot.response(run, panels=("contact",))]
     assert labels == ["body 1", "body 2"]
 
 
@@ -146,33 +148,33 @@ def test_a_cap_that_moves_apart_has_its_centre():
     assert moving.builder.layout_at(moving.upright).centres[1] == pytest.approx([0.0, 0.2])
 
 
-def test_a_cap_under_pads_turns_about_the_end_that_the_soil_holds():
+def test_cap_under_pads_pivots_about_the_held_soil_end():
     geometry = geometry_of(rf.System(EVEN, PADS, CAP, SOIL).assembly)
     values = {
         "rotation": 0.0, "horizontal_displacement": 0.0, "vertical_displacement": 0.0,
         "contact_state": 0.0, "cap_rotation": 0.1, "soil_contact_state": 2.0,
     }  # fmt: skip
-    held = (1.25, 0.0)
+    bearing_end = (1.25, 0.0)
     outline = geometry.cap_outline
-    for rule, moved in ((Restraint.CONTACT_STATE, held), (Restraint.CENTRE, (0.0, 0.0))):
-        at = Placement(geometry, values, rule)
-        across = [turned(point, moved, 0.1)[0] for point in outline]
-        np.testing.assert_allclose(at.cap(outline)[:, 0], across, atol=1e-12)
-    # and it rises by what the run says of its centre
-    (middle,) = at.cap(np.array([(0.0, 0.2)]))
+    for rule, moved in ((Restraint.CONTACT_STATE, bearing_end), (Restraint.CENTRE, (0.0, 0.0))):
+        placement = Placement(geometry, values, rule)
+        across = [rotated(point, moved, 0.1)[0] for point in outline]
+        np.testing.assert_allclose(placement.cap(outline)[:, 0], across, atol=1e-12)
+    # its rise equals that of its centre in the run
+    (middle,) = placement.cap(np.array([(0.0, 0.2)]))
     assert middle[1] == pytest.approx(0.2)
 
 
-def test_block_and_cap_stay_together_on_their_pads():
-    """The cap's place along the base is not in the results; the gap shows how well it is met."""
+def test_drawn_block_and_cap_remain_joined_on_pads():
+    """The position of the cap along the base is not in the results; the gap shows its error."""
     run = rf.System(EVEN, PADS, CAP, SOIL).simulate(PULSE, free_vibration="2 s")
     rocked = float(np.abs(run.cap_rotation).max())
     for place in range(0, run.sizes["time"], 25):
-        at, _ = drawn(None, run, place)
+        placement, _ = placement_and_layout(None, run, place)
         if int(run.contact_state[place]) != 0:
             continue
-        (base,) = at.block(np.array([(0.0, 0.4)]))
-        (top,) = at.cap(np.array([(0.0, 0.4)]))
+        (base,) = placement.block(np.array([(0.0, 0.4)]))
+        (top,) = placement.cap(np.array([(0.0, 0.4)]))
         assert abs(base[0] - top[0]) < 1.3 * 1.25 * rocked**2 + 1e-3
 
 
@@ -181,10 +183,10 @@ def test_an_inclined_base_turns_the_drawing():
     slope = LayoutBuilder(geometry_of(rf.System(EVEN, PADS, inclination="5 deg").assembly))
     values = dict(UPRIGHT)
     flat = level.layout_at(Placement(level.geometry, values, Restraint.CONTACT_STATE))
-    found = slope.layout_at(Placement(slope.geometry, values, Restraint.CONTACT_STATE))
-    expected = [turned(point, (0.0, 0.0), -np.radians(5.0)) for point in flat.block]
-    np.testing.assert_allclose(found.block, expected, atol=1e-12)
-    assert found.ground[1, 1] > found.ground[0, 1]
+    layout = slope.layout_at(Placement(slope.geometry, values, Restraint.CONTACT_STATE))
+    expected = [rotated(point, (0.0, 0.0), -np.radians(5.0)) for point in flat.block]
+    np.testing.assert_allclose(layout.block, expected, atol=1e-12)
+    assert layout.ground[1, 1] > layout.ground[0, 1]
 
 
 def test_displacements_are_magnified_about_the_place_at_rest():
@@ -203,11 +205,11 @@ def test_displacements_are_magnified_about_the_place_at_rest():
         rf.plot.state(run, magnify=0)
 
 
-def test_what_is_drawn_of_a_state_is_the_layout_of_its_sample():
+def test_state_plot_shows_the_nearest_sample():
     run = rf.System(EVEN, PADS).simulate(PULSE, free_vibration="1 s")
     axes = rf.plot.state(run, "0.75 s")
     place = int(np.argmin(np.abs(run.time.to_numpy() - 0.75)))
-    _, expected = drawn(None, run, place)
+    _, expected = placement_and_layout(None, run, place)
     patches = [patch.get_xy()[:-1] for patch in axes.patches if isinstance(patch, Polygon)]
     assert any(np.allclose(corners, expected.block) for corners in patches if len(corners) == 4)
     assert f"{run.time[place].item():.3f} s" in axes.figure.get_suptitle()
@@ -227,7 +229,7 @@ def test_a_scene_names_its_parts_and_its_points():
         rf.plot.scene(3.0)
 
 
-def test_an_animation_moves_from_sample_to_sample_and_is_written(tmp_path):
+def test_animation_frames_are_evenly_spaced_and_saved(tmp_path):
     from PIL import Image
 
     run = rf.System(EVEN, PADS).simulate(PULSE, free_vibration="1 s")
@@ -242,7 +244,7 @@ def test_an_animation_moves_from_sample_to_sample_and_is_written(tmp_path):
     assert rf.plot.animation(run, speed=2.0).times.size == 21
 
 
-def test_a_film_needs_ffmpeg_and_is_known_again(tmp_path, monkeypatch):
+def test_mp4_animation_requires_ffmpeg(tmp_path, monkeypatch):
     moving = rf.plot.animation(rf.System(EVEN, PADS).simulate(PULSE), frames_per_second=4)
     film = tmp_path / "run.mp4"
     with monkeypatch.context() as without:
@@ -279,9 +281,9 @@ def test_a_restrainer_is_drawn_until_it_breaks():
     for place in range(0, run.sizes["time"], 9):
         (tie,) = moving.builder.layout_at(moving.placement_at(place)).restrainers
         assert np.isnan(tie).all() == (run.time[place].item() >= broke)
-    # it stays broken in a window that begins later
-    (drawn,) = read_runs(run, "animation", (f"{broke + 0.1} s", None))
-    later = SceneHistory(drawn.dataset, "animation", 1.0)
+    # it is shown broken in a window that begins later
+    (shown,) = read_runs(run, "animation", (f"{broke + 0.1} s", None))
+    later = SceneHistory(shown.dataset, "animation", 1.0)
     assert np.isnan(later.builder.layout_at(later.placement_at(0)).restrainers[0]).all()
     rf.plot.player(run, window=(f"{broke - 0.1} s", None))
 
@@ -295,7 +297,7 @@ def test_a_restrainer_stays_broken_in_a_run_that_continues_another():
         assert np.isnan(later.builder.layout_at(later.placement_at(place)).restrainers[0]).all()
 
 
-def test_a_case_of_a_sweep_is_not_drawn_with_a_restrainer_that_broke():
+def test_sweep_case_with_a_broken_restrainer_is_refused():
     runs = rf.sweep(rf.System(SLIM, TIE), PULSE, scale=[0.1, 1.0], outputs=[], progress=False)
     rf.plot.state(runs.isel(scale=0, motion=0))
     broke = runs.isel(scale=1, motion=0)
@@ -307,7 +309,9 @@ def test_a_case_of_a_sweep_is_not_drawn_with_a_restrainer_that_broke():
 def test_a_restrainer_without_a_length_is_seen():
     anchor = rf.Restrainer(on=("0.4 m", "0 m"), to=("0.4 m", "0 m"), stiffness="1 MN/m")
     axes = rf.plot.scene(rf.System(SLIM, anchor))
-    (line,) = [one for one in axes.lines if len(one.get_xdata()) == 2 and one.get_marker() == "."]
+    (line,) = [
+        line for line in axes.lines if len(line.get_xdata()) == 2 and line.get_marker() == "."
+    ]
     np.testing.assert_allclose(line.get_xydata(), [(0.4, 0.0), (0.4, 0.0)], atol=1e-12)
 
 
@@ -325,8 +329,8 @@ def test_walls_points_and_the_block_at_rest_are_within_the_drawing():
     assert lies.figure.get_suptitle().endswith(f"90°, {9000 / 11.3099:.3g} % of overturning")
 
 
-def test_the_legend_tells_bases_loads_and_restrainers_with_their_numbers():
-    def told(*parts, **options):
+def test_scene_legend_lists_bases_loads_and_restrainers():
+    def legend_words(*parts, **options):
         axes = rf.plot.scene(rf.System(*parts), **options)
         figure = axes.figure
         figure.canvas.draw()
@@ -337,23 +341,27 @@ def test_the_legend_tells_bases_loads_and_restrainers_with_their_numbers():
         return "\n".join(text.get_text() for text in axes.get_legend().get_texts())
 
     load = rf.Load(at=("0.2 m", "4 m"), vertical="5 kN", name="floor")
-    words = told(SLIM, TIE, load)
-    for one in (r"\$tie\$", "stiffness 2 MN m⁻¹", "strength 2 kN", "floor, at (0.2, 4.0) m"):
-        assert one in words
-    assert "friction 0.3" in told(SLIM, rf.RigidGround(friction=0.3))
+    words = legend_words(SLIM, TIE, load)
+    for entry in (r"\$tie\$", "stiffness 2 MN m⁻¹", "strength 2 kN", "floor, at (0.2, 4.0) m"):
+        assert entry in words
+    assert "friction 0.3" in legend_words(SLIM, rf.RigidGround(friction=0.3))
     joint = rf.TwoSpringSupport(stiffness="20 MN/m", damping_ratio=0.1)
-    words = told(rf.Stack(SLIM, SLIM, interfaces=[rf.RigidGround(friction=0.4)]), joint)
+    words = legend_words(rf.Stack(SLIM, SLIM, interfaces=[rf.RigidGround(friction=0.4)]), joint)
     assert "rigid ground" not in words
-    for one in ("body 2: Block", "on RigidGround, friction 0.4", "TwoSpringSupport\n   stiffness"):
-        assert one in words
+    for entry in (
+        "body 2: Block",
+        "on RigidGround, friction 0.4",
+        "TwoSpringSupport\n   stiffness",
+    ):
+        assert entry in words
     drums = rf.Stack(*[SLIM] * 6, interfaces=rf.RigidGround(friction=0.4))
     tendons = [rf.Tendon(stiffness="1 MN/m", on_body=k, depth="1 m") for k in range(1, 7)]
-    told(drums, rf.RigidGround(friction=0.4), *tendons)
-    in_units = told(SLIM, units={"length": "cm", "mass": "kg"})
+    legend_words(drums, rf.RigidGround(friction=0.4), *tendons)
+    in_units = legend_words(SLIM, units={"length": "cm", "mass": "kg"})
     assert "width 80 cm\n   height 400 cm\n   mass 2000 kg" in in_units
 
 
-def test_the_title_of_a_state_has_no_sign_on_its_share_and_no_zero_for_what_is_small():
+def test_state_title_shows_small_unsigned_share():
     small = rf.System(SLIM, PADS).simulate(rf.GroundMotion.sine_pulse("1e-5 m/s^2", "1 Hz"))
     words = rf.plot.state(small).figure.get_suptitle()
     angle, share = np.degrees(small.peak_rotation.item()), small.peak_relative_rotation.item()

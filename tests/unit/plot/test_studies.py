@@ -1,4 +1,4 @@
-"""Figures of studies: what overturned, what is missing, and axes that can be read."""
+"""Figures of studies: overturned cases, missing values, readable axes."""
 
 import numpy as np
 import pytest
@@ -15,14 +15,14 @@ QUIET = {"accuracy": "fast", "progress": False}
 COUNTS = {"intensity": ([2, 4, 8], "m/s^2"), "trials": 20}
 
 
-def crosses(axes):
-    """Return the places that are marked as overturned."""
-    found = [line for line in axes.get_lines() if line.get_label() == "overturned"]
-    return {tuple(place) for line in found for place in line.get_xydata().round(9).tolist()}
+def overturned_places(axes):
+    """Return the points marked as overturned."""
+    lines = [line for line in axes.get_lines() if line.get_label() == "overturned"]
+    return {tuple(place) for line in lines for place in line.get_xydata().round(9).tolist()}
 
 
 @pytest.mark.parametrize("widths", [3, 13])  # lines, and a map
-def test_crosses_stand_where_runs_overturned_and_the_legend_says_so(widths):
+def test_overturned_runs_are_marked_with_crosses(widths):
     scales, sizes = np.linspace(0.5, 3.0, 13).round(6), np.linspace(0.2, 0.4, widths).round(6)
     runs = rf.sweep(SYSTEM, PULSE, scale=scales.tolist(), width=(sizes, "m"), **QUIET)
     axes = rf.plot.sweep(runs, "peak_rotation")
@@ -35,11 +35,11 @@ def test_crosses_stand_where_runs_overturned_and_the_legend_says_so(widths):
     }
     if widths > 12 and axes.get_xlabel().startswith("scale"):
         expected = {(up, across) for across, up in expected}
-    assert crosses(axes) == {(float(x), float(y)) for x, y in expected}
+    assert overturned_places(axes) == {(float(x), float(y)) for x, y in expected}
     assert "overturned" in [text.get_text() for text in axes.get_legend().get_texts()]
 
 
-def test_a_sweep_says_what_has_no_result():
+def test_sweep_title_counts_cases_without_a_result():
     runs = rf.sweep(SYSTEM, PULSE, scale=[0.5, 0.6, 0.7], **QUIET)
     failed = runs.copy(deep=True)
     failed["status"][{"scale": 1}] = int(RunStatus.STEP_LIMIT)
@@ -48,7 +48,7 @@ def test_a_sweep_says_what_has_no_result():
     assert rf.plot.sweep(runs).figure.get_suptitle() == runs.attrs["verdict"]
 
 
-def test_motions_are_not_joined_by_a_line_and_a_sequence_is_named_once():
+def test_sweep_over_motions_draws_no_connecting_line():
     motions = dict.fromkeys(("a", "b", "c"), PULSE)
     axes = rf.plot.sweep(rf.sweep(SYSTEM, motions, **QUIET))
     assert axes.get_lines()[0].get_linestyle() == "None"
@@ -56,18 +56,18 @@ def test_motions_are_not_joined_by_a_line_and_a_sequence_is_named_once():
     assert axes.get_legend().get_texts()[0].get_text() == "sequence 1"
 
 
-def test_rates_without_a_fragility_are_a_figure_that_says_so():
-    none = rf.fragility({**COUNTS, "exceeded": [0, 0, 0]}, "PGA")
+def test_annual_rate_without_a_fragility_is_plotted_with_a_note():
+    undefined = rf.fragility({**COUNTS, "exceeded": [0, 0, 0]}, "PGA")
     hazard = {"intensity": ([0.1, 1.0, 10.0], "m/s^2"), "rate": [1.0, 1e-2, 1e-5]}
-    axes = rf.plot.annual_rate(rf.annual_rate(none, hazard))
+    axes = rf.plot.annual_rate(rf.annual_rate(undefined, hazard))
     assert axes.figure.get_suptitle().startswith("There is no fragility")
 
 
-def test_verdicts_that_are_alike_have_no_indices_and_the_figure_says_so():
+def test_equal_verdicts_are_plotted_without_sensitivity_indices():
     spread = {"width": ("uniform", "0.24 m", "0.26 m"), "mass": ("uniform", "90 kg", "110 kg")}
     small = {"a": PULSE.scaled(0.1), "b": PULSE.scaled(0.2)}
-    found = rf.probability_of_overturning(SYSTEM, small, spread=spread, cases=20, progress=False)
-    left, _ = rf.plot.probability(found)
+    result = rf.probability_of_overturning(SYSTEM, small, spread=spread, cases=20, progress=False)
+    left, _ = rf.plot.probability(result)
     left.figure.canvas.draw()
     low, high = left.get_ylim()
     names = {
@@ -83,29 +83,33 @@ def test_logarithmic_axes_have_three_numbers_at_least(ends):
     axes.set(xscale="log", xlim=ends)
     label_log_ticks(axes, "x")
     axes.figure.canvas.draw()
-    places = np.array([one for one in axes.get_xticks() if ends[0] <= one <= ends[1]])
+    places = np.array([tick for tick in axes.get_xticks() if ends[0] <= tick <= ends[1]])
     assert len(places) >= 3
     assert len({text.get_text() for text in axes.get_xticklabels() if text.get_text()}) >= 3
     pyplot.close(axes.figure)
 
 
-def test_the_bands_of_an_ensemble_are_named():
+def test_ensemble_legend_names_the_bands():
     motions = {f"{k}": PULSE.scaled(0.5 + 0.1 * k) for k in range(6)}
-    found = rf.ensemble_statistics(rf.sweep(SYSTEM, motions, **QUIET), "peak_rotation")
-    (legend,) = rf.plot.ensemble(found).figure.legends
+    statistics = rf.ensemble_statistics(rf.sweep(SYSTEM, motions, **QUIET), "peak_rotation")
+    (legend,) = rf.plot.ensemble(statistics).figure.legends
     words = ["bounds everywhere at once", "bounds at each value"]
     assert [text.get_text() for text in legend.get_texts()] == words
-    bare = found.isel(confidence_level=0) if "confidence_level" in found.dims else found
-    none = bare.assign({name: one * np.nan for name, one in bare.items() if name.endswith("bound")})
-    assert rf.plot.ensemble(none).figure.legends == []
+    bare = (
+        statistics.isel(confidence_level=0) if "confidence_level" in statistics.dims else statistics
+    )
+    unbounded = bare.assign(
+        {name: bound * np.nan for name, bound in bare.items() if name.endswith("bound")}
+    )
+    assert rf.plot.ensemble(unbounded).figure.legends == []
 
 
-def test_a_spectrum_of_blocks_that_never_overturn_is_drawn():
-    found = rf.overturning_spectrum(
+def test_spectrum_without_overturning_is_plotted():
+    result = rf.overturning_spectrum(
         SYSTEM, PULSE, periods=([8.0, 20.0], "s"), scale=[0.5, 1.0], free_vibration="2 s", **QUIET
     )
-    assert np.isinf(found.capacity_intensity).all()
-    (axes,) = rf.plot.overturning_spectrum(found)
+    assert np.isinf(result.capacity_intensity).all()
+    (axes,) = rf.plot.overturning_spectrum(result)
     axes.figure.canvas.draw()
     assert axes.get_ylim() == (1.0, 10.0)
     pyplot.close(axes.figure)

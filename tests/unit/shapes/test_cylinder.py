@@ -1,4 +1,4 @@
-"""Cylinders that rock on their rim: closed forms, brute force, and what is refused."""
+"""Cylinders rocking on their rim: closed forms, numerical integration, invalid arguments."""
 
 import math
 
@@ -23,8 +23,8 @@ def test_a_solid_cylinder():
     assert rf.Block.cylinder(**SIZE, mass=drum.mass).si == drum.si
 
 
-def test_a_cylinder_is_a_body_of_discs_or_of_sticks():
-    # seen from the side it is thin at its edges: chords of 2 sqrt(r^2 - x^2)
+def test_cylinder_inertia_agrees_with_sum_over_chords():
+    # in side view the depth is the chord 2 sqrt(r^2 - x^2)
     cells = 4000
     x = 0.5 * ((np.arange(cells) + 0.5) / cells * 2.0 - 1.0)
     chord = np.sqrt(0.25 - x * x)
@@ -32,14 +32,14 @@ def test_a_cylinder_is_a_body_of_discs_or_of_sticks():
     up = 9.0 / 12.0
     drum = rf.Block.cylinder(**SIZE, mass="1 t")
     assert drum.si.inertia == pytest.approx(1e3 * (across + up), rel=1e-6)
-    # less spread than the rectangle that it is seen as
+    # less than that of the rectangle of its side view
     assert drum.shape_factor > 3.0
 
 
-def test_a_tube_is_what_is_left_of_a_solid_one():
-    given = {"height": "3 m", "density": "2700 kg/m^3"}
-    outer, inner = (rf.Block.cylinder(diameter=d, **given).si for d in ("1 m", "0.8 m"))
-    tube = rf.Block.cylinder(diameter="1 m", wall_thickness="10 cm", **given).si
+def test_tube_equals_difference_of_solid_cylinders():
+    properties = {"height": "3 m", "density": "2700 kg/m^3"}
+    outer, inner = (rf.Block.cylinder(diameter=d, **properties).si for d in ("1 m", "0.8 m"))
+    tube = rf.Block.cylinder(diameter="1 m", wall_thickness="10 cm", **properties).si
     assert tube.mass == pytest.approx(outer.mass - inner.mass, rel=1e-14)
     assert tube.inertia == pytest.approx(outer.inertia - inner.inertia, rel=1e-13)
     # a thin wall tends to m r^2/2 + m h^2/12

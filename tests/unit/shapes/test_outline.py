@@ -1,4 +1,4 @@
-"""Bodies from their outline: closed forms, brute force, symmetries, and what is refused."""
+"""Bodies from outlines: closed forms, numerical integration, symmetries, invalid arguments."""
 
 import json
 import math
@@ -19,7 +19,7 @@ pytestmark = pytest.mark.unit
 
 RECTANGLE = [(0.0, 0.0), (2.0, 0.0), (2.0, 8.0), (0.0, 8.0)]
 L_SHAPE = [(0.0, 0.0), (1.0, 0.0), (1.0, 3.0), (0.4, 3.0), (0.4, 4.0), (0.0, 4.0)]
-# two legs, the left one wider, and a crossbeam that reaches over both
+# two legs, the left one wider, and a crossbeam over both
 PORTAL = [
     (0.0, 0.0), (0.5, 0.0), (0.5, 2.0), (1.1, 2.0), (1.1, 0.0), (1.4, 0.0),
     (1.4, 2.0), (1.5, 2.0), (1.5, 3.0), (-0.1, 3.0), (-0.1, 2.0), (0.0, 2.0),
@@ -38,18 +38,18 @@ def numbers(block):
     return [si.width, si.height, si.mass, si.centre_height, si.eccentricity, si.inertia]
 
 
-# what an outline comes to ---------------------------------------------------------------------
+# closed forms ---------------------------------------------------------------------------------
 
 
 def test_a_rectangle_is_the_block_of_its_size():
     block = rf.Block(width="2 m", height="8 m", mass="40 t")
     for by_mass in (True, False):
-        given = {"mass": "40 t"} if by_mass else {"density": "2500 kg/m^3", "depth": "1 m"}
-        made = rf.Block.from_outline((RECTANGLE, "m"), **given)
-        assert numbers(made) == pytest.approx(numbers(block), rel=4e-16, abs=0.0)
-        assert made.shape_factor == pytest.approx(3.0, rel=1e-15)
-        assert made.si.eccentricity == 0.0
-        assert made.overturning_angle == block.overturning_angle
+        properties = {"mass": "40 t"} if by_mass else {"density": "2500 kg/m^3", "depth": "1 m"}
+        rectangle = rf.Block.from_outline((RECTANGLE, "m"), **properties)
+        assert numbers(rectangle) == pytest.approx(numbers(block), rel=4e-16, abs=0.0)
+        assert rectangle.shape_factor == pytest.approx(3.0, rel=1e-15)
+        assert rectangle.si.eccentricity == 0.0
+        assert rectangle.overturning_angle == block.overturning_angle
 
 
 def test_a_triangle():
@@ -93,10 +93,10 @@ def test_a_body_on_two_feet_stands_on_their_outer_ends():
     assert block.si.centre_height == pytest.approx(middle[1], rel=1e-14)
 
 
-def test_a_disc_of_many_corners_on_a_plinth_tends_to_the_closed_form():
-    # the polygon's own closed form: m R^2/6 (2 + cos(2 pi/n)); its limit is m R^2/2
+def test_polygonal_disc_converges_to_closed_form():
+    # closed form of the polygon: m R^2/6 (2 + cos(2 pi/n)); its limit is m R^2/2
     for count in (16, 64, 1024):
-        turn = 2.0 * math.pi * (np.arange(count) + 0.5) / count  # its lowest edge is level
+        turn = 2.0 * math.pi * (np.arange(count) + 0.5) / count  # its lowest edge is horizontal
         points = np.column_stack([np.sin(turn), -np.cos(turn)])
         disc = {"outline": (points, "m"), "mass": "1 kg", "at": ("0 m", "1 m")}
         body = rf.Block.from_parts({"disc": disc}, base=("-0.9 m", "0.9 m"))
@@ -107,7 +107,7 @@ def test_a_disc_of_many_corners_on_a_plinth_tends_to_the_closed_form():
 
 @st.composite
 def stars(draw):
-    """Draw a simple polygon on a level base: corners in the order of their directions."""
+    """Draw a simple polygon on a horizontal base, with corners in the order of their directions."""
     count = draw(st.integers(3, 12))
     width = draw(st.floats(0.5, 3.0))
     reach = draw(st.lists(st.floats(0.5, 2.0), min_size=count, max_size=count))
@@ -118,7 +118,7 @@ def stars(draw):
 
 
 def by_brute_force(points, cells=400):
-    """Return the centroid and mean square distance from it, summed over a grid of points."""
+    """Return the centroid and the mean square distance from it, by sums over a grid of points."""
     low, high = points.min(axis=0), points.max(axis=0)
     x, y = (low[k] + (high[k] - low[k]) * (np.arange(cells) + 0.5) / cells for k in (0, 1))
     x, y = np.meshgrid(x, y)
@@ -132,12 +132,12 @@ def by_brute_force(points, cells=400):
     return area, x.mean(), y.mean(), x.var() + y.var()
 
 
-def made_of(points, **given):
-    """Make a body, or give None for one that is refused because it would fall."""
+def block_or_none(points, **properties):
+    """Make a body, or return None if it is refused because it would fall."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)
         try:
-            return rf.Block.from_outline((points, "m"), **given)
+            return rf.Block.from_outline((points, "m"), **properties)
         except ComponentError as error:
             if "fall on its own" in str(error):
                 return None
@@ -146,8 +146,8 @@ def made_of(points, **given):
 
 @given(stars())
 @settings(max_examples=60, deadline=None)
-def test_any_outline_beside_a_sum_over_points(points):
-    block = made_of(points, density="1000 kg/m^3", depth="1 m")
+def test_random_outlines_agree_with_brute_force(points):
+    block = block_or_none(points, density="1000 kg/m^3", depth="1 m")
     assume(block is not None)
     area, x, y, square = by_brute_force(points)
     size = np.ptp(points, axis=0).max()
@@ -161,7 +161,7 @@ def test_any_outline_beside_a_sum_over_points(points):
 def test_brute_force_tends_to_the_exact_inertia():
     points = np.array(L_SHAPE)
     exact = outline(L_SHAPE).si
-    # of which the edges fall between the cells
+    # edges fall between the cells
     _, _, _, square = by_brute_force(points, cells=1000)
     assert exact.inertia / exact.mass == pytest.approx(square, rel=1e-5)
 
@@ -171,21 +171,21 @@ def test_brute_force_tends_to_the_exact_inertia():
 
 @given(stars(), st.integers(0, 20))
 @settings(max_examples=100, deadline=None)
-def test_where_and_which_way_the_outline_begins_changes_nothing(points, start):
-    block = made_of(points, mass="1 t")
+def test_starting_point_and_direction_do_not_matter(points, start):
+    block = block_or_none(points, mass="1 t")
     assume(block is not None)
     for other in (np.roll(points, start, axis=0), np.roll(points, start, axis=0)[::-1]):
-        assert made_of(other, mass="1 t") == block  # to the last bit
+        assert block_or_none(other, mass="1 t") == block  # to the last bit
     closed = np.vstack([points, points[:1]])
-    assert made_of(closed, mass="1 t") == block
+    assert block_or_none(closed, mass="1 t") == block
     doubled = np.repeat(points, 2, axis=0)
-    assert made_of(doubled, mass="1 t") == block
+    assert block_or_none(doubled, mass="1 t") == block
 
 
 @given(stars())
 @settings(max_examples=100, deadline=None)
 def test_the_mirror_image_has_its_centre_of_mass_on_the_other_side(points):
-    block, mirror = (made_of(points * [sign, 1.0], mass="1 t") for sign in (1.0, -1.0))
+    block, mirror = (block_or_none(points * [sign, 1.0], mass="1 t") for sign in (1.0, -1.0))
     assert (block is None) == (mirror is None)
     assume(block is not None)
     assert mirror.si.eccentricity == pytest.approx(-block.si.eccentricity, rel=1e-12, abs=1e-13)
@@ -202,9 +202,9 @@ def test_origin_and_unit_do_not_matter():
     assert numbers(small) == pytest.approx(numbers(block), rel=1e-14)
 
 
-def test_all_ways_to_give_points_are_the_same():
+def test_points_accept_equivalent_forms():
     written = [(f"{x} m", f"{y} m") for x, y in L_SHAPE]
-    ways = [
+    forms = [
         written,
         tuple(written),
         (pair for pair in written),
@@ -214,19 +214,19 @@ def test_all_ways_to_give_points_are_the_same():
         (np.array(L_SHAPE), "m"),
         (L_SHAPE, "m"),
     ]
-    for points in ways:
+    for points in forms:
         assert rf.Block.from_outline(points, mass="1 t") == outline(L_SHAPE)
 
 
 # an ordinary block ----------------------------------------------------------------------------
 
 
-def test_it_is_an_ordinary_block():
+def test_outline_gives_ordinary_block():
     block = outline(L_SHAPE)
     assert type(block) is rf.Block
-    again = component_from_dict(json.loads(json.dumps(block.to_dict())))
-    assert again == block
-    assert again.si == block.si
+    rebuilt = component_from_dict(json.loads(json.dumps(block.to_dict())))
+    assert rebuilt == block
+    assert rebuilt.si == block.si
     assert eval(repr(block), {"Block": rf.Block}) == block  # noqa: S307
     heavier = block.replace(mass="2 t", inertia=2 * block.inertia)
     assert heavier.shape_factor == pytest.approx(block.shape_factor, rel=1e-15)
@@ -240,7 +240,7 @@ def test_a_class_derived_from_block_builds_its_own():
     assert type(Statue.from_outline((RECTANGLE, "m"), mass="1 t")) is Statue
 
 
-# what else touches the ground -----------------------------------------------------------------
+# overhanging parts ----------------------------------------------------------------------------
 
 
 def overhanging(height, reach=0.5):
@@ -250,7 +250,7 @@ def overhanging(height, reach=0.5):
     return points
 
 
-def test_a_corner_that_touches_before_the_body_overturns_is_warned_about():
+def test_corner_that_touches_before_overturning_warns():
     with pytest.warns(ModelWarning, match=r"leaning to the right, points\[3\], at \(1.5 m, 0.1"):
         block = outline(overhanging(0.1))
     with pytest.warns(ModelWarning, match=r"at 0\.1974 rad, .* 0\.24\d* rad") as caught:
@@ -258,18 +258,18 @@ def test_a_corner_that_touches_before_the_body_overturns_is_warned_about():
     assert len(caught) == 1
     assert caught[0].filename == __file__
     assert math.atan2(0.1, 0.5) == pytest.approx(0.1974, abs=5e-5)
-    assert component_from_dict(block.to_dict()) == block  # silent
+    assert component_from_dict(block.to_dict()) == block  # no warning
     mirrored = np.array(overhanging(0.1)) * [-1.0, 1.0]
     with pytest.warns(ModelWarning, match=r"leaning to the left, points\[3\], at \(-1.5 m"):
         outline(mirrored)
-    # the limit: the shelf's angle is that of overturning
+    # at the limit, the shelf touches the ground at the overturning angle
     limit = math.tan(math.atan2(block.si.right, block.si.centre_height)) * 0.5
     outline(overhanging(1.02 * limit))
     with pytest.warns(ModelWarning, match="touches"):
         outline(overhanging(0.98 * limit))
 
 
-# what is refused ------------------------------------------------------------------------------
+# invalid arguments ----------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -313,18 +313,18 @@ def test_a_corner_that_touches_before_the_body_overturns_is_warned_about():
         ([("a", "b")], "pairs of lengths"),
     ],
 )
-def test_what_is_no_outline_is_refused(points, words):
+def test_invalid_outlines_are_refused(points, words):
     with pytest.raises(ComponentError, match=words) as caught:
         outline(points)
     assert str(caught.value).startswith("Block")
 
 
-def test_a_single_lowest_point_between_two_others_has_no_inclined_edge():
+def test_single_lowest_point_is_not_reported_as_inclined_edge():
     with pytest.raises(ComponentError, match=r"one height$"):
         outline([(0, 0), (1, 2), (0.6, 1), (0.9, 0.1), (2, 3), (-1, 3)])
 
 
-def test_heights_that_differ_by_rounding_are_one():
+def test_heights_are_compared_up_to_rounding():
     for rise, refused in ((1e-10, False), (1e-7, True)):
         points = [(0.0, rise), (2.0, 0.0), (2.0, 8.0), (0.0, 8.0)]
         if refused:
@@ -351,13 +351,13 @@ def test_points_need_units_of_length(points, words):
 
 
 @pytest.mark.parametrize("points", ["0 m", 3, None, {"x": "1 m"}, ["0 m", "1 m"], [("0 m",)]])
-def test_what_is_no_list_of_pairs_is_refused(points):
+def test_points_must_be_pairs(points):
     with pytest.raises(ComponentError, match=r"points(\[0\])? needs"):
         rf.Block.from_outline(points, mass="1 t")
 
 
 @pytest.mark.parametrize(
-    ("given", "words"),
+    ("arguments", "words"),
     [
         ({}, "give mass or density; neither was given"),
         ({"mass": "1 t", "density": "2 t/m^3", "depth": "1 m"}, "both were given"),
@@ -369,13 +369,13 @@ def test_what_is_no_list_of_pairs_is_refused(points):
         ({"density": "1e300 kg/m^3", "depth": "1e300 m"}, "a mass of inf"),
     ],
 )
-def test_an_outline_needs_its_mass_once(given, words):
+def test_outline_needs_either_mass_or_density(arguments, words):
     with pytest.raises(ComponentError, match=words) as caught:
-        rf.Block.from_outline((RECTANGLE, "m"), **given)
+        rf.Block.from_outline((RECTANGLE, "m"), **arguments)
     assert str(caught.value).startswith("Block.from_outline")
 
 
-def test_points_that_have_a_unit_of_their_own_have_no_other():
+def test_contradicting_units_of_points_are_refused():
     points = xr.DataArray(np.array([[0, 0], [500, 0], [500, 2000], [0, 2000.0]]))
     points.attrs["units"] = "mm"
     assert rf.Block.from_outline(points, unit="mm", mass="1 t").si.width == pytest.approx(0.5)

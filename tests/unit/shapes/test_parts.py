@@ -1,4 +1,4 @@
-"""Bodies put together from parts: the parallel-axis theorem, the base, and what is refused."""
+"""Bodies composed of parts: parallel-axis theorem, base, invalid arguments."""
 
 import json
 
@@ -23,7 +23,7 @@ def numbers(block):
 
 
 def summed(masses):
-    """Return mass, centre and inertia of many (mass, x, y, inertia), by integrals about zero."""
+    """Return mass, centre and inertia of several (mass, x, y, inertia), by moments about zero."""
     m, x, y, own = np.array(masses).T
     total = m.sum()
     centre = (m @ x / total, m @ y / total)
@@ -39,15 +39,17 @@ def test_a_bookcase_by_the_parallel_axis_theorem():
         (5.0, -0.3, 1.9, 0.0),
     ])  # fmt: skip
     assert numbers(block) == pytest.approx([0.8, 1.9, mass, y, x, inertia], rel=1e-14)
-    again = component_from_dict(json.loads(json.dumps(block.to_dict())))
-    assert again == block
-    assert again.si == block.si
+    rebuilt = component_from_dict(json.loads(json.dumps(block.to_dict())))
+    assert rebuilt == block
+    assert rebuilt.si == block.si
 
 
 def test_one_part_is_the_body_itself():
-    given = {"width": "2 m", "height": "8 m", "mass": "40 t"}
-    block = rf.Block(**given)
-    assert numbers(rf.Block.from_parts({"all": given})) == pytest.approx(numbers(block), rel=4e-16)
+    properties = {"width": "2 m", "height": "8 m", "mass": "40 t"}
+    block = rf.Block(**properties)
+    assert numbers(rf.Block.from_parts({"all": properties})) == pytest.approx(
+        numbers(block), rel=4e-16
+    )
     body = rf.Block.from_parts({"all": {"body": block}})
     assert numbers(body) == pytest.approx(numbers(block), rel=4e-16)
     outline = rf.Block.from_outline((L_SHAPE, "m"), mass="1 t")
@@ -60,14 +62,14 @@ def test_one_part_is_the_body_itself():
 
 def test_an_outline_is_the_sum_of_its_rectangles():
     density = {"density": "2000 kg/m^3", "depth": "0.5 m"}
-    whole = rf.Block.from_outline((L_SHAPE, "m"), **density)
+    body = rf.Block.from_outline((L_SHAPE, "m"), **density)
     parts = rf.Block.from_parts(
         {
             "lower": {"width": "1 m", "height": "3 m", "at": ("0.5 m", "0 m"), **density},
             "upper": {"width": "0.4 m", "height": "1 m", "at": ("0.2 m", "3 m"), **density},
         }
     )
-    assert numbers(parts) == pytest.approx(numbers(whole), rel=1e-14)
+    assert numbers(parts) == pytest.approx(numbers(body), rel=1e-14)
 
 
 def test_a_statue_on_its_pedestal():
@@ -87,13 +89,13 @@ def test_a_statue_on_its_pedestal():
         ]
     )
     assert numbers(block) == pytest.approx([1.6, 5.0, mass, y, x, inertia], rel=1e-13)
-    # the outline itself, whose origin is the lower left corner of the statue
+    # the origin of the outline is the lower left corner of the statue
     placed = {"outline": (L_SHAPE, "m"), "mass": "1 t", "at": ("-0.4 m", "1 m")}
     same = rf.Block.from_parts({"pedestal": pedestal, "statue": placed})
     assert numbers(same) == pytest.approx(numbers(block), rel=1e-13)
 
 
-def test_points_of_equal_mass_and_one_with_an_inertia():
+def test_point_masses_and_part_with_inertia_are_summed():
     table = {
         "left": {"mass": "1 kg", "at": ("-0.2 m", "1 m")},
         "right": {"mass": "1 kg", "at": ("0.2 m", "1 m")},
@@ -105,7 +107,7 @@ def test_points_of_equal_mass_and_one_with_an_inertia():
     )
 
 
-def test_order_and_mirror():
+def test_order_does_not_matter_and_mirroring_flips_eccentricity():
     parts = {"case": CASE, "books": BOOKS, "clock": CLOCK}
     block = rf.Block.from_parts(parts)
     turned = rf.Block.from_parts(dict(reversed(parts.items())))
@@ -121,7 +123,7 @@ def test_order_and_mirror():
     assert numbers(other) == expected
 
 
-def test_the_base_is_that_of_the_parts_on_the_ground():
+def test_base_spans_parts_on_ground():
     leg = {"width": "0.1 m", "height": "1 m", "mass": "2 kg"}
     legs = {
         "left leg": {**leg, "at": ("-0.4 m", "0 m")},
@@ -131,15 +133,15 @@ def test_the_base_is_that_of_the_parts_on_the_ground():
     block = rf.Block.from_parts({**legs, "top": top})
     assert block.si.width == pytest.approx(0.8, rel=1e-15)
     assert block.si.eccentricity == pytest.approx(-0.2 / 24.0 + 0.05, rel=1e-13)
-    told = rf.Block.from_parts({"top": top}, base=("-0.45 m", "0.35 m"))
-    assert told.si.width == pytest.approx(0.8, rel=1e-15)
-    assert told.si.centre_height == 1.2
-    # feet wider than what stands on them
+    explicit = rf.Block.from_parts({"top": top}, base=("-0.45 m", "0.35 m"))
+    assert explicit.si.width == pytest.approx(0.8, rel=1e-15)
+    assert explicit.si.centre_height == 1.2
+    # feet wider than the body above them
     wide = rf.Block.from_parts({"case": CASE}, base=("-0.5 m", "0.5 m"))
     assert (wide.si.width, wide.si.eccentricity) == (1.0, 0.0)
 
 
-def test_a_part_that_reaches_out_low_is_warned_about():
+def test_low_overhanging_part_warns():
     def drawer(height):
         return {"width": "1.2 m", "height": "0.1 m", "mass": "1 kg", "at": ("0.3 m", height)}
 
@@ -185,7 +187,7 @@ def test_a_part_that_reaches_out_low_is_warned_about():
         ({"case": CASE, "books": {**BOOKS, "at": ("2 m", "1 m")}}, "would fall on its own"),
     ],
 )
-def test_parts_that_make_no_body_are_refused(parts, words):
+def test_invalid_parts_are_refused(parts, words):
     with pytest.raises(ComponentError, match=words):
         rf.Block.from_parts(parts)
 
@@ -218,7 +220,7 @@ def test_parts_need_units():
             rf.Block.from_parts({"case": part})
 
 
-def test_a_body_that_reaches_out_beside_its_base_may_have_more_inertia_than_its_rectangle():
+def test_overhanging_body_may_exceed_rectangle_inertia():
     mushroom = rf.Block.from_parts(
         {"cap": {"width": "3 m", "height": "0.1 m", "mass": "50 kg", "at": ("0 m", "1 m")}},
         base=("-0.3 m", "0.3 m"),

@@ -1,4 +1,4 @@
-"""Motions in numbers: one function of time per component, and its value anywhere."""
+"""Signals: one function of time per component, evaluated at any time."""
 
 import copy
 import pickle
@@ -18,7 +18,7 @@ RECORD = Signal(STEP, VALUES)
 ANALYTIC = Signal(STEP, np.append(QUINTICS[:, 0], 0.75), QUINTICS)
 
 
-def test_lines_through_the_samples_of_a_record():
+def test_record_has_linear_pieces():
     assert not RECORD.analytic
     assert RECORD.polynomials is None
     assert RECORD.pieces.tolist() == [[0.0, 1.5], [1.5, -3.75], [-2.25, 2.75], [0.5, -0.375]]
@@ -39,13 +39,13 @@ def test_arrays_are_read_only_and_contiguous(signal):
 
 
 @pytest.mark.parametrize("signal", [RECORD, ANALYTIC])
-def test_samples_at_samples(signal):
+def test_values_at_sample_times_equal_samples(signal):
     assert signal.at(signal.times).tolist() == signal.samples.tolist()
     late, early = signal.times * (1.0 + 1e-15), signal.times * (1.0 - 1e-15)
     assert signal.at(late).tolist() == signal.at(early).tolist() == signal.samples.tolist()
 
 
-def test_where_polynomials_jump_the_sample_counts_and_the_later_one_begins():
+def test_jump_between_pieces_gives_sample_or_later_piece():
     steps = np.zeros((2, 6))
     steps[:, 0] = [1.0, 3.0]
     jumping = Signal(STEP, [1.0, 2.0, 3.0], steps)
@@ -105,9 +105,9 @@ def test_both_components_are_changed_alike():
 )
 def test_copies_are_equal_and_read_only(twin):
     motion = Motion(ANALYTIC, RECORD)
-    again = twin(motion)
-    assert again.digest == motion.digest
-    for signal in (again.horizontal, again.vertical):
+    copied = twin(motion)
+    assert copied.digest == motion.digest
+    for signal in (copied.horizontal, copied.vertical):
         assert not signal.samples.flags.writeable
         assert not signal.pieces.flags.writeable
 

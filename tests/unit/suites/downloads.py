@@ -1,4 +1,4 @@
-"""Made-up downloads: records of several stations, with the table that PEER adds."""
+"""Synthetic downloads: records of several stations, with the table that PEER adds."""
 
 import io
 import zipfile
@@ -103,8 +103,8 @@ def download(stations=STATIONS) -> dict[str, bytes]:
 
 def packed(files: dict[str, bytes]) -> bytes:
     """Files as a zip archive."""
-    held = io.BytesIO()
-    with zipfile.ZipFile(held, "w", zipfile.ZIP_DEFLATED) as archive:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, data in files.items():
             archive.writestr(name, data)
-    return held.getvalue()
+    return buffer.getvalue()

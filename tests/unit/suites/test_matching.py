@@ -22,12 +22,12 @@ def suite(**verticals):
     )
 
 
-def test_all_motions_have_the_spectrum_of_the_target():
+def test_all_motions_match_target_spectrum():
     upwards = {"up": rf.GroundMotion.stochastic(6.5, "20 km", seed=3)}
     matched = suite(verticals=upwards).matched(TARGET, periods=RANGE)
     periods = np.geomspace(0.3, 0.6, 80)
-    found = matched.response_spectrum((periods, "s")).pseudo_spectral_acceleration.squeeze()
-    assert np.abs(found.to_numpy() / TARGET.at((periods, "s")) - 1.0).max() < 0.051
+    spectra = matched.response_spectrum((periods, "s")).pseudo_spectral_acceleration.squeeze()
+    assert np.abs(spectra.to_numpy() / TARGET.at((periods, "s")) - 1.0).max() < 0.051
     assert list(matched) == ["motion 1", "motion 2"]
     assert not matched.verticals
     assert (matched.unread, matched.remarks) == ({"readme.txt": "no record"}, ("look",))
@@ -36,24 +36,26 @@ def test_all_motions_have_the_spectrum_of_the_target():
     assert (table["mean_spectral_misfit"] < table["largest_spectral_misfit"]).all()
     assert (table["scale_factor"] > 0.0).all()
     assert table["target_reached"].tolist() == [1, 1]
-    kept = matched.to_dataset()
-    assert kept["largest_spectral_misfit"].attrs["units"] == "1"
-    assert kept["peak_ground_velocity_after_matching"].attrs["units"] == "m s^-1"
+    dataset = matched.to_dataset()
+    assert dataset["largest_spectral_misfit"].attrs["units"] == "1"
+    assert dataset["peak_ground_velocity_after_matching"].attrs["units"] == "m s^-1"
     assert "pulse_indicator_before_matching" in table
-    back = rf.MotionSuite.from_dataset(kept)
-    assert [back[label].sha256 for label in back] == [one.sha256 for one in matched.values()]
-    assert back["motion 1"].metadata == matched["motion 1"].metadata
+    restored = rf.MotionSuite.from_dataset(dataset)
+    assert [restored[label].sha256 for label in restored] == [
+        motion.sha256 for motion in matched.values()
+    ]
+    assert restored["motion 1"].metadata == matched["motion 1"].metadata
     axes = rf.plot.suite(matched, target=TARGET)
     assert "target" in axes.get_legend_handles_labels()[1]
 
 
 @pytest.mark.long
-def test_what_was_not_reached_is_told_once_for_all():
+def test_unreached_target_warns_once_for_all_motions():
     jump = rf.TargetSpectrum.from_table(
         (["0.1 s", "0.4 s", "0.401 s", "1 s"]), ([9, 9, 1, 1], "m/s^2")
     )
-    with pytest.warns(RecordWarning) as said:
+    with pytest.warns(RecordWarning) as caught:
         suite().matched(jump, periods=RANGE)
-    assert len(said) == 1
+    assert len(caught) == 1
     for label in ("motion 1", "motion 2"):
-        assert f"{label!r}: GroundMotion.matched" in str(said[0].message)
+        assert f"{label!r}: GroundMotion.matched" in str(caught[0].message)

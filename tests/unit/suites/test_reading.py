@@ -1,4 +1,4 @@
-"""Suites from folders, archives and lists: nothing is lost in silence."""
+"""Suites from folders, archives and lists: whatever is not read causes a warning."""
 
 import io
 import os
@@ -33,13 +33,13 @@ def check_download(suite) -> None:
             motion = suite[name[:-4]]
             samples = motion.si.horizontal.samples
             np.testing.assert_allclose(samples, 9.80665 * noise(10 * station.number + place))
-            about = motion.metadata
-            assert about["record"] == f"RSN{station.number}"
-            assert about["axis"] == ("H1", "H2")[place]
-            assert about["magnitude"] == station.magnitude
-            assert about["joyner_boore_distance"] == pytest.approx(1e3 * station.distance)
-            assert about.get("shear_wave_velocity_30", -999) == station.velocity
-            assert about["station"] == f"Station {station.number}"
+            metadata = motion.metadata
+            assert metadata["record"] == f"RSN{station.number}"
+            assert metadata["axis"] == ("H1", "H2")[place]
+            assert metadata["magnitude"] == station.magnitude
+            assert metadata["joyner_boore_distance"] == pytest.approx(1e3 * station.distance)
+            assert metadata.get("shear_wave_velocity_30", -999) == station.velocity
+            assert metadata["station"] == f"Station {station.number}"
     assert suite["RSN14_MADE_S14000"].metadata["stated_pulse_period"] == 4.4
     assert set(suite.pairs) == {"RSN6", "RSN14", "RSN78"}
     assert suite.pairs["RSN78"].vertical is None
@@ -50,7 +50,7 @@ def check_download(suite) -> None:
     assert "a velocity" in left["RSN6_MADE_S6000.VT2"]
 
 
-def test_a_peer_download_in_every_wrapping(folder, tmp_path_factory):
+def test_peer_download_is_read_from_folders_archives_and_lists(folder, tmp_path_factory):
     place = tmp_path_factory.mktemp("packed")
     (place / "download.zip").write_bytes(packed(FILES))
     with tarfile.open(place / "download.tar.gz", "w:gz") as archive:
@@ -60,7 +60,7 @@ def test_a_peer_download_in_every_wrapping(folder, tmp_path_factory):
     below.mkdir(parents=True)
     (below / "download.zip").write_bytes(packed(FILES))
     (below / ".hidden.AT2").write_bytes(b"hidden")
-    given = [
+    sources = [
         folder,
         str(folder),
         place / "download.zip",
@@ -71,13 +71,13 @@ def test_a_peer_download_in_every_wrapping(folder, tmp_path_factory):
         sorted(folder.iterdir()),
         [below],
     ]
-    for one in given:
-        check_download(rf.read_suite(one))
+    for source in sources:
+        check_download(rf.read_suite(source))
     with (place / "download.zip").open("rb") as file:
         check_download(rf.read_suite(file))
 
 
-def test_files_that_the_table_names_are_missed(folder):
+def test_missing_files_of_table_warn(folder):
     (folder / "RSN6_MADE_S6090.AT2").unlink()
     with pytest.warns(RecordWarning, match=r"1 file not read \(.*RSN6_MADE_S6090.AT2: found no"):
         suite = rf.read_suite(folder)
@@ -86,7 +86,7 @@ def test_files_that_the_table_names_are_missed(folder):
     assert any("S6090" in path for path in suite.unread)
 
 
-def test_without_the_table_numbers_in_names_tell(folder):
+def test_record_numbers_in_file_names_replace_missing_table(folder):
     (folder / "_SearchResults.csv").unlink()
     suite = rf.read_suite(folder)
     assert set(suite.pairs) == {"RSN6", "RSN14", "RSN78"}
@@ -95,7 +95,7 @@ def test_without_the_table_numbers_in_names_tell(folder):
     assert suite["RSN6_MADE_S6090"].metadata["event"] == "Valley-02"
 
 
-def test_components_of_one_station_and_earthquake_belong_together(tmp_path):
+def test_components_of_same_station_and_event_form_pair(tmp_path):
     for name, data in FILES.items():
         if name.startswith("RSN") and name.endswith("AT2"):
             (tmp_path / name.split("_", 1)[1]).write_bytes(data)
@@ -107,7 +107,7 @@ def test_components_of_one_station_and_earthquake_belong_together(tmp_path):
     }
 
 
-def test_every_component_of_a_file_with_three(tmp_path):
+def test_three_component_file_is_read_completely(tmp_path):
     sample = SAMPLES["cwa"] if "cwa" in SAMPLES else SAMPLES["cwa pair"]
     suite = rf.read_suite(sample.write(tmp_path))
     stem = sample.name.rsplit(".", 1)[0]
@@ -120,11 +120,11 @@ def test_every_component_of_a_file_with_three(tmp_path):
     assert both.second.sha256 == pair.second.sha256
     upright = suite.with_verticals()
     assert all(motion.si.vertical is not None for motion in upright.values())
-    asked = rf.GroundMotion.read(tmp_path / sample.name, component=("N", "U"))
-    assert upright[f"{stem} N"].sha256 == asked.sha256
+    expected = rf.GroundMotion.read(tmp_path / sample.name, component=("N", "U"))
+    assert upright[f"{stem} N"].sha256 == expected.sha256
 
 
-def test_every_sample_of_every_format(tmp_path):
+def test_every_sample_file_is_read_or_listed_as_unread(tmp_path):
     for sample in SAMPLES.values():
         sample.write(tmp_path)
     with pytest.warns(RecordWarning):
@@ -140,14 +140,14 @@ def test_every_sample_of_every_format(tmp_path):
 TEXT = "time (s),acc (g)\n0,0\n0.01,{}\n0.02,0\n"
 
 
-def test_files_of_one_name_are_told_apart(tmp_path):
-    # of two earthquakes, as the folders tell, and so no pair
+def test_files_with_same_name_get_distinct_labels(tmp_path):
+    # the folders show two earthquakes, so the components form no pair
     for place, peak in (("a", 0.1), ("b", 0.2)):
         (tmp_path / place).mkdir()
         (tmp_path / place / "x.csv").write_text(TEXT.format(peak))
     suite = rf.read_suite(tmp_path)
     assert list(suite) == ["x", "x (2)"]
-    assert [one.metadata["record"] for one in suite.values()] == ["x.csv", "x.csv (2)"]
+    assert [motion.metadata["record"] for motion in suite.values()] == ["x.csv", "x.csv (2)"]
     assert suite.pairs == {}
 
 
@@ -160,15 +160,15 @@ def test_bytes_without_a_name_are_no_pair():
 def test_copies_of_a_file_are_read_once(tmp_path):
     for name in ("x.csv", "x (1).csv"):
         (tmp_path / name).write_text(TEXT.format(0.1))
-    for given in (tmp_path, [tmp_path / "x.csv"] * 2, [TEXT.format(0.1).encode()] * 2):
+    for source in (tmp_path, [tmp_path / "x.csv"] * 2, [TEXT.format(0.1).encode()] * 2):
         with pytest.warns(RecordWarning, match="1 file not read .*a copy of "):
-            suite = rf.read_suite(given)
+            suite = rf.read_suite(source)
         assert len(suite) == 1
         (reason,) = suite.unread.values()
         assert "expected each record once" in reason
 
 
-def test_what_does_not_make_a_pair_is_told(tmp_path):
+def test_components_that_form_no_pair_warn(tmp_path):
     from unit.motion.motion_files import at2
 
     for name in ("10", "90"):
@@ -186,7 +186,7 @@ def test_what_does_not_make_a_pair_is_told(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("given", "words"),
+    ("source", "words"),
     [
         ("nowhere", "no such file or folder"),
         ([], "no horizontal component in 0 files"),
@@ -197,10 +197,10 @@ def test_what_does_not_make_a_pair_is_told(tmp_path):
         (table(), "no horizontal component"),
     ],
 )
-def test_what_is_no_suite(given, words, tmp_path, monkeypatch):
+def test_input_without_motions_is_refused(source, words, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(RecordError, match=words):
-        rf.read_suite(given)
+        rf.read_suite(source)
 
 
 def test_arguments_are_checked(folder):
@@ -213,27 +213,27 @@ def test_arguments_are_checked(folder):
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs a pipe")
-def test_pipes_and_broken_links_are_not_waited_for(folder):
+def test_pipes_and_broken_links_are_skipped(folder):
     os.mkfifo(folder / "pipe.AT2")
     (folder / "link.AT2").symlink_to(folder / "nowhere.AT2")
     check_download(rf.read_suite(folder))
 
 
-def test_a_table_that_is_damaged(folder):
-    good = table().decode()
-    row = next(line for line in good.splitlines() if line.startswith("6,"))
+def test_damaged_table_warns(folder):
+    intact = table().decode()
+    row = next(line for line in intact.splitlines() if line.startswith("6,"))
     for changed, words in {
-        good.replace("Result ID", "Result"): "no line that begins with 'Result ID'",
-        good.replace(row, row[:60]): r"line 9: found \d+ fields",
-        good.replace(row, row.replace('"Station 6"', "Station 6, A")): "line 9: found 23 fields",
-        good.replace("6.95", "strong"): "'strong' in the column 'magnitude'",
-        good.replace("Filename", "File"): "no column with the names of files",
+        intact.replace("Result ID", "Result"): "no line that begins with 'Result ID'",
+        intact.replace(row, row[:60]): r"line 9: found \d+ fields",
+        intact.replace(row, row.replace('"Station 6"', "Station 6, A")): "line 9: found 23 fields",
+        intact.replace("6.95", "strong"): "'strong' in the column 'magnitude'",
+        intact.replace("Filename", "File"): "no column with the names of files",
     }.items():
         (folder / "_SearchResults.csv").write_text(changed)
         with pytest.warns(RecordWarning, match="_SearchResults.csv"):
             suite = rf.read_suite(folder)
         assert len(suite) == len(HORIZONTAL)
-        (reason,) = [why for path, why in suite.unread.items() if path.endswith(".csv")]
+        (reason,) = [message for path, message in suite.unread.items() if path.endswith(".csv")]
         import re
 
         assert re.search(words, reason)
@@ -248,16 +248,18 @@ def test_the_published_records():
     for pair in suite.pairs.values():
         assert pair.vertical is not None
     names = {path.rsplit("/", 1)[-1] for path in suite.unread}
-    read = {one.metadata["source_file"] for one in (*suite.values(), *suite.verticals.values())}
+    read = {
+        motion.metadata["source_file"] for motion in (*suite.values(), *suite.verticals.values())
+    }
     assert read | names == {path.name for path in records_folder().glob("*.*")}
 
 
 def test_the_published_table():
     path = record_path("more/PEER_SearchResults.csv")
-    known = peer_table(read_source(path))
-    assert known is not None
-    assert len(known) == 3 * 30 - 1  # one record has no vertical component
-    first = known["RSN6_IMPVALL.I_I-ELC180.AT2"]
+    entries = peer_table(read_source(path))
+    assert entries is not None
+    assert len(entries) == 3 * 30 - 1  # one record has no vertical component
+    first = entries["RSN6_IMPVALL.I_I-ELC180.AT2"]
     assert first == {
         "axis": "H1",
         "event": "Imperial Valley-02",
@@ -271,4 +273,4 @@ def test_the_published_table():
         "station": "El Centro Array #9",
         "year": 1940,
     }
-    assert known["RSN138_TABAS_BOS-V1.AT2"]["axis"] == "V"
+    assert entries["RSN138_TABAS_BOS-V1.AT2"]["axis"] == "V"

@@ -1,4 +1,4 @@
-"""A suite: a mapping of motions with a table, chosen among, changed, kept."""
+"""Suites: mapping of motions, table, selection, operations, storage."""
 
 import copy
 import pickle
@@ -27,7 +27,7 @@ def labels(number: int) -> list[str]:
 
 
 def test_it_is_a_mapping_in_order():
-    assert list(SUITE) == [name for one in STATIONS for name in labels(one.number)]
+    assert list(SUITE) == [name for station in STATIONS for name in labels(station.number)]
     assert len(SUITE) == 6
     assert SUITE[labels(6)[0]] is next(iter(SUITE.values()))
     assert "RSN6_MADE_S6-UP" not in SUITE
@@ -38,18 +38,18 @@ def test_it_is_a_mapping_in_order():
     assert copy.deepcopy(SUITE) == SUITE
 
 
-def test_motions_at_hand():
+def test_suite_is_built_from_valid_motions_only():
     suite = rf.MotionSuite(PULSES)
     assert [motion.name for motion in suite.values()] == list(suite)
     assert "1 motion:" in repr(suite.only([PULSES[0].name]))
-    for given, words in {
+    for motions, words in {
         "record.AT2": "motions must be several motions, got 'record.AT2'; rf.read_suite",
         (): "found no motions",
         (PULSES[0], PULSES[0]): "two motions are called",
         (PULSES[0], 3.0): "needs a GroundMotion, got 3.0",
     }.items():
         with pytest.raises(ComponentError, match=words):
-            rf.MotionSuite(given)
+            rf.MotionSuite(motions)
     with pytest.raises(ComponentError, match="must be several motions"):
         rf.MotionSuite(PULSES[0])
     with pytest.raises(ComponentError, match="names a motion and a vertical component"):
@@ -84,12 +84,12 @@ def test_selecting():
     }
     for numbers, criteria in chosen.items():
         expected = {name for number in numbers for name in labels(number)}
-        found = SUITE.select(**criteria)
-        assert set(found) == expected, criteria
-        assert {one.metadata["record"] for one in found.verticals.values()} <= {
+        selected = SUITE.select(**criteria)
+        assert set(selected) == expected, criteria
+        assert {motion.metadata["record"] for motion in selected.verticals.values()} <= {
             f"RSN{number}" for number in numbers
         }
-        assert found.unread == SUITE.unread
+        assert selected.unread == SUITE.unread
     east = SUITE.select(azimuth="90 deg")
     assert list(east) == [labels(station.number)[1] for station in STATIONS]
     assert set(SUITE.select(axis="H2")) == set(east)
@@ -106,7 +106,7 @@ def test_selecting():
 
 def test_sorting_and_picking():
     by_size = SUITE.sort("magnitude")
-    assert [one.metadata["magnitude"] for one in by_size.values()] == [
+    assert [motion.metadata["magnitude"] for motion in by_size.values()] == [
         5.6,
         5.6,
         6.95,
@@ -115,7 +115,11 @@ def test_sorting_and_picking():
         7.36,
     ]
     falling = SUITE.sort("shear_wave_velocity_30", descending=True)
-    assert [one.metadata["record"] for one in falling.values()][::2] == ["RSN14", "RSN6", "RSN78"]
+    assert [motion.metadata["record"] for motion in falling.values()][::2] == [
+        "RSN14",
+        "RSN6",
+        "RSN78",
+    ]
     assert next(iter(SUITE.sort("event"))) in labels(14)
     assert list(SUITE.only(labels(14)[::-1])) == labels(14)[::-1]
     with pytest.raises(ComponentError, match="no motion 'x'"):
@@ -124,7 +128,7 @@ def test_sorting_and_picking():
         SUITE.sort("size")
 
 
-def test_changing_all():
+def test_changed_applies_to_all_motions():
     doubled = SUITE.changed(lambda motion: motion.scaled(2))
     for before, after in ((SUITE, doubled), (SUITE.verticals, doubled.verticals)):
         for label in before:
@@ -143,18 +147,18 @@ def test_measures_of_a_suite_are_those_of_its_motions():
         (rf.response_spectrum, {"periods": periods, "damping_ratios": (0.02, 0.05)}),
         (rf.average_spectral_acceleration, {"periods": periods}),
     ):
-        together = getattr(SUITE, function.__name__)(**arguments)
+        measures = getattr(SUITE, function.__name__)(**arguments)
         xr.testing.assert_identical(
-            together.drop_attrs(), function(dict(SUITE), **arguments).drop_attrs()
+            measures.drop_attrs(), function(dict(SUITE), **arguments).drop_attrs()
         )
-        assert together["motion"].to_numpy().tolist() == list(SUITE)
+        assert measures["motion"].to_numpy().tolist() == list(SUITE)
         for label, motion in SUITE.items():
             alone = function(motion, **arguments)
-            mine = together.sel(motion=label)
+            row = measures.sel(motion=label)
             for name in alone.data_vars:
-                assert mine[name].dims == alone[name].dims
-                np.testing.assert_array_equal(mine[name], alone[name])
-                assert mine[name].attrs == alone[name].attrs
+                assert row[name].dims == alone[name].dims
+                np.testing.assert_array_equal(row[name], alone[name])
+                assert row[name].attrs == alone[name].attrs
     rotated = SUITE.rotated_spectrum(periods)
     assert rotated["motion"].to_numpy().tolist() == list(SUITE.pairs)
     alone = rf.rotated_spectrum(SUITE.pairs["RSN14"], periods)
@@ -169,7 +173,7 @@ def test_a_table_of_measures():
     assert list(table.index) == list(SUITE)
 
 
-def test_to_a_file_and_back(tmp_path):
+def test_suite_survives_netcdf_round_trip(tmp_path):
     floor = rf.GroundMotion.stochastic(6, "20 km", seed=1, vertical=0.6)
     mixed = rf.MotionSuite(
         {
@@ -186,25 +190,32 @@ def test_to_a_file_and_back(tmp_path):
         path = tmp_path / "suite.nc"
         suite.to_dataset().to_netcdf(path)
         with xr.open_dataset(path) as stored:
-            same = rf.MotionSuite.from_dataset(stored.load())
-        for other in (same, rf.read_suite(path), rf.MotionSuite.from_dataset(suite.to_dataset())):
+            reopened = rf.MotionSuite.from_dataset(stored.load())
+        for other in (
+            reopened,
+            rf.read_suite(path),
+            rf.MotionSuite.from_dataset(suite.to_dataset()),
+        ):
             assert list(other) == list(suite)
-            for mine, yours in ((suite, other), (suite.verticals, other.verticals)):
-                for label, motion in mine.items():
-                    again = yours[label]
-                    assert again == motion
-                    assert again.sha256 == motion.sha256
-                    assert dict(again.metadata) == dict(motion.metadata)
-                    assert again.history == motion.history
-                    assert again.recipe == motion.recipe
+            for originals, restored_motions in ((suite, other), (suite.verticals, other.verticals)):
+                for label, motion in originals.items():
+                    restored = restored_motions[label]
+                    assert restored == motion
+                    assert restored.sha256 == motion.sha256
+                    assert dict(restored.metadata) == dict(motion.metadata)
+                    assert restored.history == motion.history
+                    assert restored.recipe == motion.recipe
             assert dict(other.unread) == dict(suite.unread)
             assert other.remarks == suite.remarks
         path.unlink()
 
 
-def test_motions_without_names_of_their_own_are_called_by_their_labels():
+def test_unnamed_motions_take_labels_as_names():
     former = PULSE_SUITE.to_dataset().drop_vars("motion_name")
-    assert [one.name for one in rf.MotionSuite.from_dataset(former).values()] == ["slow", "fast"]
+    assert [motion.name for motion in rf.MotionSuite.from_dataset(former).values()] == [
+        "slow",
+        "fast",
+    ]
 
 
 def test_a_dataset_that_was_changed_is_refused(tmp_path):
@@ -227,7 +238,7 @@ def test_a_dataset_that_was_changed_is_refused(tmp_path):
 
 
 def test_runs_over_a_suite():
-    """Whatever takes a mapping of motions takes a suite."""
+    """Functions of mappings of motions accept a suite."""
     system = rf.System(rf.Block(width="0.4 m", height="2 m", mass="100 kg"))
     runs = rf.concat(
         [system.simulate(motion, outputs=None) for motion in SUITE.values()], "motion", list(SUITE)
@@ -235,7 +246,7 @@ def test_runs_over_a_suite():
     assert runs.sizes["motion"] == len(SUITE)
 
 
-def test_a_suite_without_vertical_components_says_that_nothing_shakes_vertically():
+def test_missing_vertical_components_warn():
     target = rf.TargetSpectrum.eurocode_8("0.2 g_0")
     scaled = SUITE.scaled_to(target, bounds=None)
     with pytest.warns(RecordWarning, match="no motion has a vertical component; set them beside"):
@@ -245,20 +256,20 @@ def test_a_suite_without_vertical_components_says_that_nothing_shakes_vertically
     assert before.with_verticals()[labels(6)[0]] == before[labels(6)[0]]
 
 
-def test_a_stored_suite_keeps_its_target():
-    wanted = rf.TargetSpectrum.eurocode_8("0.2 g_0", "B", damping_ratio=0.03)
+def test_target_survives_dataset_round_trip():
+    target = rf.TargetSpectrum.eurocode_8("0.2 g_0", "B", damping_ratio=0.03)
     periods = (np.geomspace(0.2, 3.0, 12), "s")
-    scaled = SUITE.scaled_to(wanted.with_deviation(0.3), bounds=None, periods=periods)
-    formula = rf.MotionSuite(PULSES, target=wanted)
+    scaled = SUITE.scaled_to(target.with_deviation(0.3), bounds=None, periods=periods)
+    formula = rf.MotionSuite(PULSES, target=target)
     for suite in (scaled, formula):
-        again = rf.MotionSuite.from_dataset(suite.to_dataset()).target
-        assert (again.name, again.damping_ratio) == (suite.target.name, 0.03)
-        assert again.at(periods) == pytest.approx(suite.target.at(periods), rel=1e-3)
+        restored = rf.MotionSuite.from_dataset(suite.to_dataset()).target
+        assert (restored.name, restored.damping_ratio) == (suite.target.name, 0.03)
+        assert restored.at(periods) == pytest.approx(suite.target.at(periods), rel=1e-3)
         assert (
-            again.deviations_at(periods[0]).tolist()
+            restored.deviations_at(periods[0]).tolist()
             == suite.target.deviations_at(periods[0]).tolist()
         )
-    again = rf.MotionSuite.from_dataset(scaled.to_dataset()).target
-    assert again.limits == pytest.approx((0.2, 3.0))
-    assert again.at(periods) == pytest.approx(scaled.target.at(periods), rel=1e-14)
+    restored = rf.MotionSuite.from_dataset(scaled.to_dataset()).target
+    assert restored.limits == pytest.approx((0.2, 3.0))
+    assert restored.at(periods) == pytest.approx(scaled.target.at(periods), rel=1e-14)
     assert rf.MotionSuite.from_dataset(SUITE.to_dataset()).target is None

@@ -1,4 +1,4 @@
-"""Target spectra: tables and codes, by their printed equations."""
+"""Target spectra from tables and codes agree with the printed equations."""
 
 import copy
 import pickle
@@ -12,7 +12,7 @@ from rockframe.errors import ComponentError, RecordWarning, SchemaError, UnitsEr
 G = 9.80665
 
 
-def test_a_table_is_straight_in_logarithms():
+def test_table_is_interpolated_in_logarithms():
     periods, values = np.array([0.1, 0.5, 2.0]), np.array([4.0, 3.0, 0.5])
     target = rf.TargetSpectrum.from_table(
         (periods, "s"), (values, "m/s^2"), standard_deviations=[0.4, 0.6, 0.8], name="site"
@@ -128,12 +128,12 @@ def test_the_median_of_motions():
         ),
     ],
 )
-def test_what_is_refused(make, error, words):
+def test_invalid_targets_are_refused(make, error, words):
     with pytest.raises(error, match=words):
         make()
 
 
-def test_periods_too_short_for_a_record_are_warned_of_where_they_are_asked_for():
+def test_explicit_periods_too_short_for_record_warn():
     coarse = rf.GroundMotion.stochastic(6, "20 km", seed=1).resampled("0.02 s")
     suite = rf.MotionSuite([rf.GroundMotion.from_arrays(coarse.acceleration, "0.02 s")])
     target = rf.TargetSpectrum.eurocode_8("0.1 g_0")
@@ -160,14 +160,14 @@ EQUAL = {
 
 
 @pytest.mark.parametrize("name", EQUAL)
-def test_a_target_is_a_value(name):
+def test_equal_targets_compare_and_hash_equal(name):
     target, periods = EQUAL[name](), np.array([0.1, 0.3, 1.0])
-    kept = pickle.loads(pickle.dumps(target))  # noqa: S301
-    for again in (EQUAL[name](), kept, copy.deepcopy(target)):
-        assert again == target
-        assert hash(again) == hash(target)
-        assert again.at((periods, "s")).tolist() == target.at((periods, "s")).tolist()
-        assert again.deviations_at(periods).tolist() == target.deviations_at(periods).tolist()
+    pickled = pickle.loads(pickle.dumps(target))  # noqa: S301
+    for copied in (EQUAL[name](), pickled, copy.deepcopy(target)):
+        assert copied == target
+        assert hash(copied) == hash(target)
+        assert copied.at((periods, "s")).tolist() == target.at((periods, "s")).tolist()
+        assert copied.deviations_at(periods).tolist() == target.deviations_at(periods).tolist()
     assert len({*(make() for make in EQUAL.values()), target}) == len(EQUAL)
     assert target != target.scaled(1.5)
     assert target != target.with_deviation(0.1)

@@ -1,4 +1,4 @@
-"""What the metadata of a motion tell holds after each operation: azimuth, start, misfit."""
+"""Metadata of a motion stay true after each operation: azimuth, start time, misfit."""
 
 import numpy as np
 import pytest
@@ -15,32 +15,34 @@ START = "2020-02-03T04:05:06"
 
 
 def motion(values, name="one", **metadata):
-    made = GroundMotion.from_arrays((values, "m/s^2"), f"{STEP} s")
-    return GroundMotion(made.si, name=name, metadata=metadata)
+    record = GroundMotion.from_arrays((values, "m/s^2"), f"{STEP} s")
+    return GroundMotion(record.si, name=name, metadata=metadata)
 
 
 @pytest.mark.parametrize(("own", "theirs", "sign"), [(0, 90, 1), (90, 0, -1), (360, 270, -1)])
-def test_the_azimuth_of_a_turned_component(own, theirs, sign):
+def test_rotation_updates_azimuth(own, theirs, sign):
     one, other = motion(NORTH, azimuth=own), motion(EAST, azimuth=theirs)
     turned = one.rotated(other, "30 deg")
     assert turned.metadata["azimuth"] == pytest.approx((own + sign * 30.0) % 360.0)
     axes = rf.HorizontalPair(one, other).in_axes("30 deg")
-    found = [each.metadata["azimuth"] for each in (axes.first, axes.second)]
-    assert found == pytest.approx([(each + sign * 30.0) % 360.0 for each in (own, theirs)])
+    azimuths = [component.metadata["azimuth"] for component in (axes.first, axes.second)]
+    assert azimuths == pytest.approx(
+        [(component + sign * 30.0) % 360.0 for component in (own, theirs)]
+    )
     back = axes.rotated(azimuth=f"{own} deg").si.horizontal.samples
     assert back == pytest.approx(NORTH, abs=1e-13)
 
 
-def test_an_azimuth_that_cannot_be_known_is_left_out():
+def test_rotation_drops_unknown_azimuth():
     assert "azimuth" not in motion(NORTH, azimuth=0).rotated(motion(EAST), "30 deg").metadata
 
 
-def test_components_that_are_not_at_a_right_angle_are_not_turned_by_an_angle_either():
+def test_rotation_of_non_orthogonal_components_by_angle_is_refused():
     with pytest.raises(ComponentError, match="are not at a right angle"):
         motion(NORTH, azimuth=0).rotated(motion(EAST, azimuth=45), "30 deg")
 
 
-def test_a_mirrored_component_points_the_other_way():
+def test_negative_scaling_reverses_azimuth():
     southwards = motion(NORTH, azimuth=0).scaled(-2)
     assert southwards.metadata["azimuth"] == 180.0
     pair = rf.HorizontalPair(southwards, motion(EAST, azimuth=90))
@@ -66,7 +68,7 @@ def test_a_window_starts_later(start, later):
     assert whole.window(None, "3 s").metadata["record_time"] == start
 
 
-def test_a_window_and_the_whole_make_no_pair():
+def test_pair_with_different_start_times_is_refused():
     one, other = motion(NORTH, record_time=START), motion(EAST, record_time=START)
     with pytest.raises(ComponentError, match="first starts at 2020-02-03T04:05:08, second at"):
         rf.HorizontalPair(one.window("2 s"), other)
@@ -74,7 +76,7 @@ def test_a_window_and_the_whole_make_no_pair():
 
 
 @pytest.mark.parametrize("start", ["2020/02/03 04:05:06 (GMT+08)", "4 h 5 min"])
-def test_starts_in_any_words_are_compared_after_windows(start):
+def test_start_times_in_any_format_are_compared_after_windows(start):
     one, other = motion(NORTH, record_time=start), motion(EAST, record_time=start)
     twice = one.window("0.3 s").window("1.7 s")
     assert twice.metadata["record_time"] == f"{start}, plus 2 s"
@@ -85,13 +87,13 @@ def test_starts_in_any_words_are_compared_after_windows(start):
     assert cut.metadata["record_time"] == start
 
 
-def test_a_start_on_the_time_axis_of_the_file_moves_with_a_window():
+def test_window_shifts_start_on_file_time_axis():
     whole = motion(NORTH, start_time=0.05, vertical_start_time=0.05)
     part = whole.window("1.5 s").metadata
     assert part["start_time"] == part["vertical_start_time"] == pytest.approx(1.55)
 
 
-def test_padding_that_is_kept_starts_earlier():
+def test_filter_padding_shifts_start_time_back():
     filtered = motion(NORTH, record_time=START).filtered(low="2 Hz", keep_padding=True)
     assert len(filtered) == 400 + 2 * 300
     assert filtered.metadata["record_time"] == "2020-02-03T04:05:03"
@@ -99,25 +101,25 @@ def test_padding_that_is_kept_starts_earlier():
     assert cut.metadata["record_time"] == START
 
 
-def test_the_motions_of_a_velocity_pulse_start_as_much_earlier_as_they_are_longer():
+def test_velocity_pulse_motions_start_earlier_by_lead():
     pulse = GroundMotion.mavroeidis_papageorgiou_pulse("80 cm/s", "0.5 Hz", 2.2, "0 deg")
     record = GroundMotion(pulse.si, metadata={"record_time": START})
-    found = record.velocity_pulse()
-    lead = np.timedelta64(round(float(found.lead.m_as("us"))), "us")
+    result = record.velocity_pulse()
+    lead = np.timedelta64(round(float(result.lead.m_as("us"))), "us")
     assert lead > np.timedelta64(0, "us")
-    for each in (found.extracted, found.residual):
-        assert np.datetime64(START) - np.datetime64(each.metadata["record_time"]) == lead
+    for part in (result.extracted, result.residual):
+        assert np.datetime64(START) - np.datetime64(part.metadata["record_time"]) == lead
 
 
-def test_other_starts_are_warned_about():
+def test_joining_motions_with_different_start_times_warns():
     one, other = motion(NORTH, "a", record_time=START), motion(EAST, "b", record_time=START)
-    for joined in (one.with_vertical, lambda late: one.rotated(late, "10 deg")):
-        joined(other)
+    for join in (one.with_vertical, lambda late: one.rotated(late, "10 deg")):
+        join(other)
         with pytest.warns(RecordWarning, match=r"a starts at .*:06, b at .*:07; their first"):
-            joined(other.window("1 s"))
+            join(other.window("1 s"))
 
 
-def test_every_scaling_counts():
+def test_scale_factors_accumulate():
     once = motion(NORTH).scaled(2.0)
     assert once.metadata["scale_factor"] == 2.0
     assert once.scaled(peak="1 g_0").scaled(-3.0).metadata["scale_factor"] == pytest.approx(
@@ -129,7 +131,7 @@ def test_every_scaling_counts():
     assert scaled.si.horizontal.samples == pytest.approx(factor * NORTH)
 
 
-def test_what_is_known_of_a_vertical_component_goes_with_it():
+def test_metadata_of_vertical_component_are_replaced_with_it():
     first = motion(EAST, station="first", component="U")
     both = motion(NORTH, station="here").with_vertical(first)
     assert both.metadata["vertical_station"] == "first"
@@ -145,20 +147,23 @@ def test_what_is_known_of_a_vertical_component_goes_with_it():
     assert both.velocity_pulse().residual.metadata["vertical_station"] == "first"
 
 
-def test_components_of_different_factors_have_none_together():
+def test_rotating_differently_scaled_components_drops_scale_factor():
     once, twice = motion(NORTH).scaled(2.0), motion(EAST).scaled(4.0)
     assert "scale_factor" not in once.rotated(twice, "30 deg").metadata
     assert "scale_factor" not in once.rotated(motion(EAST), "30 deg").metadata
     # a sign is that of the component
     assert once.rotated(motion(EAST).scaled(-2), "30 deg").metadata["scale_factor"] == 2.0
     axes = rf.HorizontalPair(once, motion(EAST).scaled(2.0)).in_axes("30 deg")
-    assert [one.metadata["scale_factor"] for one in (axes.first, axes.second)] == [2.0, 2.0]
+    assert [component.metadata["scale_factor"] for component in (axes.first, axes.second)] == [
+        2.0,
+        2.0,
+    ]
     plain = rf.HorizontalPair(motion(NORTH), motion(EAST)).in_axes("30 deg")
     assert "scale_factor" not in plain.second.metadata
 
 
 @pytest.mark.parametrize(
-    ("joined", "across", "upwards"),
+    ("join", "across", "upwards"),
     [
         (lambda one, other: one.scaled(2).with_vertical(other), 2.0, None),
         (lambda one, other: one.with_vertical(other).scaled(2), 2.0, 2.0),
@@ -171,14 +176,14 @@ def test_components_of_different_factors_have_none_together():
         (lambda one, other: one.with_vertical(other.with_vertical(one.scaled(7))), None, None),
     ],
 )
-def test_every_scaling_of_each_component_counts(joined, across, upwards):
-    made = joined(motion(NORTH), motion(EAST))
-    assert made.metadata.get("scale_factor") == across
-    assert made.si.horizontal.samples == pytest.approx((across or 1.0) * NORTH)
-    assert made.metadata.get("vertical_scale_factor") == upwards
-    if made.si.vertical is not None:
-        assert made.si.vertical.samples == pytest.approx((upwards or 1.0) * EAST)
-    assert not any(name.startswith("vertical_vertical") for name in made.metadata)
+def test_scale_factors_accumulate_per_component(join, across, upwards):
+    result = join(motion(NORTH), motion(EAST))
+    assert result.metadata.get("scale_factor") == across
+    assert result.si.horizontal.samples == pytest.approx((across or 1.0) * NORTH)
+    assert result.metadata.get("vertical_scale_factor") == upwards
+    if result.si.vertical is not None:
+        assert result.si.vertical.samples == pytest.approx((upwards or 1.0) * EAST)
+    assert not any(name.startswith("vertical_vertical") for name in result.metadata)
 
 
 def test_the_misfit_of_a_scaled_vertical_component_is_dropped():
@@ -189,10 +194,10 @@ def test_the_misfit_of_a_scaled_vertical_component_is_dropped():
 
 
 @pytest.mark.parametrize(
-    ("component", "known"), [("N", {"azimuth": 0.0}), ("DWN", {"positive": "down"})]
+    ("component", "metadata"), [("N", {"azimuth": 0.0}), ("DWN", {"positive": "down"})]
 )
-def test_a_mirrored_component_is_not_read_as_the_one_before(tmp_path, component, known):
-    before = motion(NORTH, component=component, **known)
+def test_mirrored_component_is_not_read_as_original(tmp_path, component, metadata):
+    before = motion(NORTH, component=component, **metadata)
     mirrored = before.scaled(-1)
     assert mirrored.metadata["component"] == f"-{component}"
     assert mirrored.scaled(-2).metadata["component"] == component
@@ -203,7 +208,7 @@ def test_a_mirrored_component_is_not_read_as_the_one_before(tmp_path, component,
     assert read.metadata.get("positive") != "down"
 
 
-def test_scaling_and_misfit():
+def test_only_steps_that_change_spectrum_drop_misfit():
     target = rf.TargetSpectrum.eurocode_8("0.2 g_0")
     scaled = rf.MotionSuite({"a": motion(NORTH)}).scaled_to(target, bounds=None)["a"]
     factor = scaled.metadata["scale_factor"]
@@ -227,25 +232,25 @@ def test_scaling_and_misfit():
 @pytest.mark.parametrize(
     ("process", "name"),
     [
-        (lambda one: one, "one"),
-        (lambda one: one.scaled(0.5), "0.5 times one"),
-        (lambda one: one.filtered(low="1 Hz").scaled(0.5), "0.5 times one, filtered"),
-        (lambda one: one.window("1 s", taper="0.1 s").window("0.5 s"), "one, cut, tapered"),
-        (lambda one: one.resampled("0.005 s").baseline_corrected(),
+        (lambda m: m, "one"),
+        (lambda m: m.scaled(0.5), "0.5 times one"),
+        (lambda m: m.filtered(low="1 Hz").scaled(0.5), "0.5 times one, filtered"),
+        (lambda m: m.window("1 s", taper="0.1 s").window("0.5 s"), "one, cut, tapered"),
+        (lambda m: m.resampled("0.005 s").baseline_corrected(),
          "one, resampled, baseline corrected"),
-        (lambda one: one.resampled("0.01 s"), "one"),
-        (lambda one: one.rotated(motion(EAST), "30 deg"), "one, rotated"),
-        (lambda one: one.with_vertical(one), "one"),
-        (lambda one: one.through_storeys(periods=["0.5 s"], time_step="0.01 s"), "one, at a floor"),
-        (lambda one: one.through_storeys(storeys=3, floor=2, period="0.5 s", time_step="0.01 s"),
+        (lambda m: m.resampled("0.01 s"), "one"),
+        (lambda m: m.rotated(motion(EAST), "30 deg"), "one, rotated"),
+        (lambda m: m.with_vertical(m), "one"),
+        (lambda m: m.through_storeys(periods=["0.5 s"], time_step="0.01 s"), "one, at a floor"),
+        (lambda m: m.through_storeys(storeys=3, floor=2, period="0.5 s", time_step="0.01 s"),
          "one, at floor 2"),
-        (lambda one: one.matched(rf.TargetSpectrum.eurocode_8("0.2 g_0"),
+        (lambda m: m.matched(rf.TargetSpectrum.eurocode_8("0.2 g_0"),
                                  periods=("0.1 s", "0.5 s"), tolerance=0.3), "one, matched"),
     ],
 )  # fmt: skip
-def test_the_name_in_titles_and_labels_tells_how_a_motion_was_processed(process, name):
-    made = process(motion(NORTH))
+def test_title_and_labels_name_processing_steps(process, name):
+    processed = process(motion(NORTH))
     system = rf.System(rf.Block(width="2 m", height="4 m", mass="2 t"))
-    run = system.simulate(made, duration="0.1 s", outputs=None)
+    run = system.simulate(processed, duration="0.1 s", outputs=None)
     assert motion_words(run.attrs) == name
-    assert rf.plot.motion(made).figure.get_suptitle() == name
+    assert rf.plot.motion(processed).figure.get_suptitle() == name

@@ -1,4 +1,4 @@
-"""Which components are a record: told by station, sensor and time, or why they are none."""
+"""Components are grouped into records by station, sensor and time, or a warning says why not."""
 
 from contextlib import nullcontext
 
@@ -19,29 +19,29 @@ CHANNELS = ("HNE", "HNN", "HNZ")
 
 @pytest.fixture
 def station(tmp_path):
-    """Write miniSEED files of one station, and read what they are together."""
+    """Write miniSEED files of one station, and read them as a suite."""
 
-    def read(*files, said=None):
-        for number, (channel, given) in enumerate(files):
-            data = miniseed(SWAYS, channel=channel, **given)
+    def read(*files, warning=None):
+        for number, (channel, options) in enumerate(files):
+            data = miniseed(SWAYS, channel=channel, **options)
             (tmp_path / f"{number}.{channel}.mseed").write_bytes(data)
-        with pytest.warns(RecordWarning, match=said) if said else nullcontext():
+        with pytest.warns(RecordWarning, match=warning) if warning else nullcontext():
             return rf.read_suite(tmp_path, unit="gal")
 
     return read
 
 
-def of(channels=CHANNELS, **given):
-    return [(channel, given) for channel in channels]
+def channel_files(channels=CHANNELS, **options):
+    return [(channel, options) for channel in channels]
 
 
 def axes(suite):
-    return [one.metadata.get("axis") for one in (*suite.values(), *suite.verticals.values())]
+    return [motion.metadata.get("axis") for motion in (*suite.values(), *suite.verticals.values())]
 
 
 class TestMiniseed:
-    def test_a_location_of_two_hyphens_is_none(self, station, tmp_path):
-        suite = station(*of(location="--"))
+    def test_location_of_two_hyphens_is_empty(self, station, tmp_path):
+        suite = station(*channel_files(location="--"))
         (pair,) = suite.pairs.values()
         assert pair.vertical is not None
         assert "sensor_location" not in pair.first.metadata
@@ -49,41 +49,43 @@ class TestMiniseed:
         assert rf.GroundMotion.read(tmp_path / "0.HNE.mseed").metadata["component"] == "HNE"
 
     def test_two_sensors_of_a_station_are_two_records(self, station):
-        suite = station(*of(location="D0"), *of(location="D1"))
+        suite = station(*channel_files(location="D0"), *channel_files(location="D1"))
         assert sorted(axes(suite)) == ["H1", "H1", "H2", "H2", "V", "V"]
-        found = {pair.first.metadata["sensor_location"] for pair in suite.pairs.values()}
-        assert found == {"D0", "D1"}
+        locations = {pair.first.metadata["sensor_location"] for pair in suite.pairs.values()}
+        assert locations == {"D0", "D1"}
 
-    def test_starts_less_than_a_tenth_of_a_step_apart_are_one(self, station):
+    def test_starts_within_tenth_of_time_step_form_pair(self, station):
         suite = station(("HNE", {}), ("HNN", {"tenths": 1}), ("HNZ", {"tenths": 10}))
         assert axes(suite) == ["H1", "H2", "V"]
         assert len(suite.pairs) == 1
 
-    def test_starts_further_apart_are_told(self, station):
-        suite = station(("HNE", {}), ("HNN", {"tenths": 11}), said="first starts at .*, second at")
+    def test_starts_further_apart_warn(self, station):
+        suite = station(
+            ("HNE", {}), ("HNN", {"tenths": 11}), warning="first starts at .*, second at"
+        )
         assert not suite.pairs
         assert axes(suite) == [None, None]
 
-    def test_a_vertical_component_that_starts_later_is_left_out_and_told(self, station):
+    def test_later_vertical_component_is_omitted_with_warning(self, station):
         files = (("HNE", {}), ("HNN", {}), ("HNZ", {"tenths": 50}))
-        suite = station(*files, said="without its vertical component: .*vertical at")
+        suite = station(*files, warning="without its vertical component: .*vertical at")
         (pair,) = suite.pairs.values()
         assert pair.vertical is None
         with pytest.warns(RecordWarning, match="no motion has a vertical component"):
-            assert all(one.si.vertical is None for one in suite.with_verticals().values())
+            assert all(motion.si.vertical is None for motion in suite.with_verticals().values())
 
     def test_two_earthquakes_at_one_station_are_two_records(self, station):
-        suite = station(*of(), *of(start=40))
+        suite = station(*channel_files(), *channel_files(start=40))
         assert len(suite.pairs) == 2
         assert all(pair.vertical is not None for pair in suite.pairs.values())
 
-    def test_sensors_of_one_component_each_are_told(self, station):
+    def test_single_component_sensors_are_not_paired(self, station):
         files = (("HNE", {"location": "00"}), ("HNN", {"location": "10"}))
-        suite = station(*files, said="not put together .sensor locations '00', '10'")
+        suite = station(*files, warning="not put together .sensor locations '00', '10'")
         assert not suite.pairs
 
-    def test_instruments_of_one_location_are_told_apart(self, station):
-        suite = station(*of(), *of(("BNE", "BNN", "BNZ")))
+    def test_instruments_at_same_location_are_separate_records(self, station):
+        suite = station(*channel_files(), *channel_files(("BNE", "BNN", "BNZ")))
         assert len(suite.pairs) == 2
         assert {p.first.metadata["component"][:2] for p in suite.pairs.values()} == {"HN", "BN"}
 
@@ -108,9 +110,10 @@ class TestAsDownloaded:
     def test_nanometres_per_second_squared(self):
         name = "kogs/SL.KOGS..HN{}__20200322T052358Z__20200322T052533Z.mseed"
         suite = rf.read_suite([record_path(f"more2/{name.format(k)}") for k in "ENZ"])
-        (remark,) = suite.remarks  # 0.12 s from one another
+        (remark,) = suite.remarks  # the starts differ by 0.12 s
         assert "first starts at 2020-03-22T05:23:57.204538Z" in remark
-        assert 1e-3 < max(float(one.peak_acceleration.m_as("g_0")) for one in suite.values()) < 0.1
+        peak = max(float(motion.peak_acceleration.m_as("g_0")) for motion in suite.values())
+        assert 1e-3 < peak < 0.1
 
     def test_a_zip_of_zips(self):
         suite = rf.read_suite(record_path("more2/cesmd_test.zip"))
@@ -123,7 +126,7 @@ class TestWorkspace:
     def channels(self):
         return (("HHE", "E"), ("HNE", "E"), ("HNN", "N"), ("HNZ", "U"))
 
-    def test_every_channel_that_can_be_read(self, tmp_path, channels):
+    def test_readable_channels_are_read_and_others_reported(self, tmp_path, channels):
         (tmp_path / "w.h5").write_bytes(asdf(tmp_path, channels=channels))
         (tmp_path / "made.h5").unlink()
         (tmp_path / "a.csv").write_text("time (s),acc (g)\n0,0\n0.01,0.1\n0.02,0\n")
@@ -135,7 +138,7 @@ class TestWorkspace:
         assert list(suite) == ["a", "w HNE", "w HNN"]
         assert len(suite.pairs) == 1
 
-    def test_a_pair(self, tmp_path, channels):
+    def test_pair_is_read_from_workspace(self, tmp_path, channels):
         path = tmp_path / "w.h5"
         path.write_bytes(asdf(tmp_path, channels=channels[1:]))
         pair = rf.HorizontalPair.read(path)
@@ -144,16 +147,16 @@ class TestWorkspace:
         with pytest.raises(RecordError, match=r"'HHE'.*no unit"):
             rf.HorizontalPair.read(path)
 
-    def test_pieces_of_a_channel_are_no_motions(self, tmp_path, channels):
+    def test_pieces_of_channel_are_refused_as_motions(self, tmp_path, channels):
         path = tmp_path / "w.h5"
         path.write_bytes(asdf(tmp_path, channels=channels[1:], pieces=2))
         with pytest.raises(RecordError, match=r"2 pieces of XX\.MADE\.--\.HNE made_default"):
             rf.read_suite(path)
-        whole = "XX.MADE.--.HNE__2018-01-24T10:51:00__2018-01-24T10:51:02__made_default"
-        assert len(rf.GroundMotion.read(path, component=whole)) == 61
+        component = "XX.MADE.--.HNE__2018-01-24T10:51:00__2018-01-24T10:51:02__made_default"
+        assert len(rf.GroundMotion.read(path, component=component)) == 61
 
     @pytest.mark.filterwarnings(UNUSUAL)
-    def test_as_downloaded(self):
+    def test_downloaded_workspace_is_read(self):
         path = record_path("more2/workspace.h5")
         with pytest.warns(RecordWarning, match="6 files not read .*input unit 'M/S'"):
             suite = rf.read_suite(path)
@@ -170,7 +173,7 @@ class TestOneBadFile:
         "fault", [RuntimeError("NetCDF: Not a valid ID"), KeyError("x"), MemoryError()]
     )
     @pytest.mark.parametrize("where", ["read", "recognises"])
-    def test_takes_no_folder_down(self, tmp_path, monkeypatch, fault, where):
+    def test_does_not_stop_reading_of_folder(self, tmp_path, monkeypatch, fault, where):
         (tmp_path / "good.AT2").write_text(self.GOOD)
         (tmp_path / "bad.txt").write_text("0.0\n1.0\n")
 

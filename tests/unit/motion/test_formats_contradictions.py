@@ -1,10 +1,10 @@
-"""What a file says of itself is held against its data, and what looks wrong is said."""
+"""Metadata of a file are compared with its data; contradictions warn."""
 
 import re
 
 import numpy as np
 import pytest
-from unit.motion import dialect_samples as made
+from unit.motion import dialect_samples as dialects
 from unit.motion import format_samples as formats
 from unit.motion.dialect_samples import VALUES, peak
 
@@ -34,13 +34,13 @@ def geonet(stated: float) -> str:
     return formats.geonet_component(values, name="S74E", azimuth=106, peak=10.0 * stated)
 
 
-# of every format that states a peak: a file with that peak, and how to ask for its component
+# for every format that states a peak: a file with that peak, and reading arguments
 STATED = {
     "cosmos": (cosmos, {}),
-    "csmip": (lambda stated: made.usc(stated=stated), {}),
+    "csmip": (lambda stated: dialects.usc(stated=stated), {}),
     "smc": (smc, {}),
     "esm": (lambda stated: formats.esm(**{"PGA_CM/S^2": f"{-stated:.6f}"}), {}),
-    "itaca": (lambda stated: made.itaca(**{"PGA_CM/S^2": f"{stated:.6f}"}), {}),
+    "itaca": (lambda stated: dialects.itaca(**{"PGA_CM/S^2": f"{stated:.6f}"}), {}),
     "geonet": (geonet, {}),
     "cwa": (
         lambda stated: formats.cwa().replace(
@@ -49,15 +49,17 @@ STATED = {
         {"component": "E"},
     ),
     "afad": (
-        lambda stated: made.afad(**{"RAW PGA VALUES (gal)": f"(E-W) {stated:.6f}"}),
+        lambda stated: dialects.afad(**{"RAW PGA VALUES (gal)": f"(E-W) {stated:.6f}"}),
         {"component": "E"},
     ),
     "csmnc": (
-        lambda stated: re.sub(r"PEAK VALUE: *\S+", f"PEAK VALUE: {stated:.3f}", made.csmnc()),
+        lambda stated: re.sub(r"PEAK VALUE: *\S+", f"PEAK VALUE: {stated:.3f}", dialects.csmnc()),
         {},
     ),
     "unam": (
-        lambda stated: re.sub(r"(Gal\), C1-C6 *: /.*?/).*?/", rf"\g<1>{-stated:.3f}/", made.unam()),
+        lambda stated: re.sub(
+            r"(Gal\), C1-C6 *: /.*?/).*?/", rf"\g<1>{-stated:.3f}/", dialects.unam()
+        ),
         {"component": "E"},
     ),
     "text": (
@@ -71,15 +73,15 @@ STATED = {
 
 
 @pytest.mark.parametrize("key", STATED)
-def test_a_stated_peak_must_be_that_of_the_samples(key, write):
-    text, given = STATED[key]
+def test_contradicting_stated_peak_warns(key, write):
+    text, arguments = STATED[key]
     truth = peak(VALUES["E"])
     for share in (1.0, 1.005, 0.995):
-        GroundMotion.read(write(text(share * truth), "record"), **given)
+        GroundMotion.read(write(text(share * truth), "record"), **arguments)
     for share in (1.05, 0.95, 0.1, 9.81):
         path = write(text(share * truth), "record")
         with pytest.warns(RecordWarning, match=r"line \d+: the header states a peak of") as caught:
-            motion = GroundMotion.read(path, **given)
+            motion = GroundMotion.read(path, **arguments)
         assert len(caught) == 1
         line = int(re.search(r"line (\d+)", str(caught[0].message)).group(1))
         stated = re.search(r"a peak of (\S+)", str(caught[0].message)).group(1)
@@ -88,53 +90,55 @@ def test_a_stated_peak_must_be_that_of_the_samples(key, write):
         assert motion.si.peak == pytest.approx(0.01 * truth, rel=1e-3)
 
 
-def test_a_peak_that_is_zero_or_no_number_is_not_known(write):
+def test_zero_or_non_numeric_stated_peak_is_ignored(write):
     for printed in ("0.0", "", "unknown", "1e999"):
         GroundMotion.read(write(formats.esm(**{"PGA_CM/S^2": printed}), "r.ASC"))
 
 
 @pytest.mark.parametrize(
-    ("text", "given"),
+    ("text", "arguments"),
     [
         (formats.esm(DURATION_S="1.2"), {}),
-        (made.pairs().replace("RECORD LENGTH =  0.600", "RECORD LENGTH =  1.200"), {}),
-        (made.csmnc().replace("DURATION:  0.61", "DURATION:  1.2"), {}),
-        (made.unam().replace("/0.61/0.61/0.61", "/1.2/1.2/1.2"), {"component": "E"}),
+        (dialects.pairs().replace("RECORD LENGTH =  0.600", "RECORD LENGTH =  1.200"), {}),
+        (dialects.csmnc().replace("DURATION:  0.61", "DURATION:  1.2"), {}),
+        (dialects.unam().replace("/0.61/0.61/0.61", "/1.2/1.2/1.2"), {"component": "E"}),
         (formats.geonet().replace("Duration 1.2 sec", "Duration 2.4 sec"), {"component": "S74E"}),
     ],
     ids=["esm", "csmip", "csmnc", "unam", "geonet"],
 )
-def test_a_stated_length_must_be_that_of_the_samples(text, given, write):
-    asked = {"component": "EW"} if "RENADIC" in text or "G/10" in text else given
+def test_contradicting_stated_length_warns(text, arguments, write):
+    component_arguments = {"component": "EW"} if "RENADIC" in text or "G/10" in text else arguments
     with pytest.warns(RecordWarning, match=r"line \d+: the header states a length of"):
-        GroundMotion.read(write(text, "record"), **asked)
+        GroundMotion.read(write(text, "record"), **component_arguments)
 
 
 @pytest.mark.parametrize(
-    ("text", "mark", "given"),
+    ("text", "mark", "arguments"),
     [
-        (made.cgs(), "/&", {"component": "360"}),
+        (dialects.cgs(), "/&", {"component": "360"}),
         (COSMOS, "End-of-data", {}),
         (formats.smc(), None, {}),
-        (made.pairs(), "/&", {"component": "EW"}),
-        (made.bhrc(), "/&", {"component": "L1"}),
-        (made.resorce(), None, {}),
+        (dialects.pairs(), "/&", {"component": "EW"}),
+        (dialects.bhrc(), "/&", {"component": "L1"}),
+        (dialects.resorce(), None, {}),
     ],
     ids=["csmip", "cosmos", "smc", "pairs", "bhrc", "resorce"],
 )
-def test_rows_behind_the_announced_samples_are_said_to_be_left_out(text, mark, given, write):
-    own = GroundMotion.read(write(text, "record"), **given)
+def test_rows_after_announced_samples_are_ignored_with_warning(text, mark, arguments, write):
+    own = GroundMotion.read(write(text, "record"), **arguments)
     lines = text.rstrip("\n").split("\n")
     end = next((k for k, line in enumerate(lines) if mark and line.startswith(mark)), len(lines))
     # the last full row of the samples, once more and twice
     extra = [lines[end - 2]] * 2
     path = write("\n".join([*lines[:end], *extra, *lines[end:]]) + "\n", "record")
     with pytest.warns(RecordWarning, match=rf"line {end + 1}: 2 rows of numbers after"):
-        assert GroundMotion.read(path, **given).sha256 == own.sha256
+        assert GroundMotion.read(path, **arguments).sha256 == own.sha256
 
 
-@pytest.mark.parametrize("text", [formats.smc() * 2, made.resorce() * 2], ids=["smc", "resorce"])
-def test_a_second_record_behind_the_first_is_said_to_be_left_out(text, write):
+@pytest.mark.parametrize(
+    "text", [formats.smc() * 2, dialects.resorce() * 2], ids=["smc", "resorce"]
+)
+def test_second_record_in_file_is_ignored_with_warning(text, write):
     with pytest.warns(RecordWarning, match="rows of numbers after the last sample"):
         GroundMotion.read(write(text, "record"))
 
@@ -143,21 +147,21 @@ def test_a_second_record_behind_the_first_is_said_to_be_left_out(text, write):
     ("text", "mark", "words"),
     [
         (formats.cosmos(), "(Format v", "acceleration pts.*the second in this block"),
-        (made.bhrc(), "* VOL", "'COMP T3', the second below one first line"),
+        (dialects.bhrc(), "* VOL", "'COMP T3', the second below one first line"),
     ],
     ids=["cosmos", "bhrc"],
 )
-def test_a_component_whose_first_line_is_damaged_is_not_passed_over(text, mark, words, write):
-    before, _, behind = text.rpartition(mark)
+def test_component_with_damaged_first_line_is_not_skipped(text, mark, words, write):
+    before, _, after = text.rpartition(mark)
     with pytest.raises(RecordError, match=words):
-        GroundMotion.read(write(before + behind, "record"))
+        GroundMotion.read(write(before + after, "record"))
 
 
 @pytest.mark.parametrize(
     ("text", "rows"),
     [(formats.cosmos(), -1), (formats.cosmos(), 5), (formats.csmip(2), 0), (formats.csmip(2), 5)],
 )
-def test_a_file_that_ends_inside_a_velocity_is_told(text, rows, write):
+def test_file_truncated_inside_velocities_warns(text, rows, write):
     lines = text.split("\n")
     announced = [k for k, line in enumerate(lines) if "velocity pts" in line or "of vel" in line]
     path = write("\n".join([*lines[: announced[0] + 1 + rows], ""]), "record")
@@ -182,7 +186,7 @@ def test_marks_of_missing_samples_are_refused(write, mark, places):
         GroundMotion.read(write(column(values), "r.txt"))
 
 
-def test_a_sample_like_a_mark_among_samples_as_large_is_a_sample(write):
+def test_missing_sample_marker_among_similar_values_is_accepted(write):
     values = 900.0 * np.sin(0.3 * np.arange(500))
     values[100:103] = (990.0, 999.0, 980.0)
     GroundMotion.read(write(column(values), "r.txt"))
@@ -193,13 +197,13 @@ def test_a_constant_offset_is_mentioned(write, offset):
     path = write(column(SHAKING / 980.665 + offset, "g"), "r.txt")
     with pytest.warns(RecordWarning, match="lie around an offset of") as caught:
         motion = GroundMotion.read(path)
-    said = float(re.search(r"offset of (\S+) g", str(caught[0].message)).group(1))
-    assert said == pytest.approx(offset, abs=0.01)
+    reported = float(re.search(r"offset of (\S+) g", str(caught[0].message)).group(1))
+    assert reported == pytest.approx(offset, abs=0.01)
     assert abs(motion.baseline_corrected(order=0).si.horizontal.samples.mean()) < 1e-9
     GroundMotion.read(write(column(SHAKING / 980.665, "g"), "r.txt"))
 
 
-def test_files_in_metres_that_pass_for_g_are_doubted_from_0_15_g_on(write):
+def test_metres_mistaken_for_g_warn_above_0_15_g(write):
     shaking = SHAKING / np.abs(SHAKING).max()
     for peak_in_g in (0.16, 0.3, 0.5, 1.0):
         path = write(column(9.80665 * peak_in_g * shaking, "g"), "r.txt")

@@ -1,4 +1,4 @@
-"""What is said when a figure is asked of the wrong thing."""
+"""Error messages for invalid arguments of plot functions."""
 
 from pathlib import Path
 
@@ -14,7 +14,7 @@ BLOCK = rf.Block(width="1 m", height="6 m", mass="10 t")
 SYSTEM = rf.System(BLOCK, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1))
 TARGET = rf.TargetSpectrum.eurocode_8("0.2 g_0")
 
-MADE = {
+ARGUMENTS = {
     "run": lambda: SYSTEM.simulate(PULSE),
     "bare run": lambda: SYSTEM.simulate(PULSE, outputs=None),
     "sweep": lambda: rf.sweep(SYSTEM, PULSE, scale=[1.0, 2.0]),
@@ -56,7 +56,7 @@ WORDS = {
     "None": ("got None",),
     "numbers": ("a value of type list",),
 }
-DRAWN = {
+PLOTS = {
     "response": (rf.plot.response, "run", "the result of one run with histories", SchemaError),
     "selection": (rf.plot.selection, "set", "a set of motions and its target", SchemaError),
     "tradeoff": (rf.plot.tradeoff, "rungs", "a comparison of models", SchemaError),
@@ -66,19 +66,19 @@ DRAWN = {
 
 
 @pytest.fixture(scope="module")
-def made():
-    return {name: make() for name, make in MADE.items()}
+def arguments():
+    return {name: make() for name, make in ARGUMENTS.items()}
 
 
-@pytest.mark.parametrize("name", DRAWN)
-def test_what_was_given_and_what_draws_it_are_said(name, made):
-    draw, own, needed, error = DRAWN[name]
-    for kind in MADE:
-        if kind == own:
-            draw(made[kind])
+@pytest.mark.parametrize("name", PLOTS)
+def test_error_names_the_argument_and_the_matching_plot_function(name, arguments):
+    draw, accepted, needed, error = PLOTS[name]
+    for kind in ARGUMENTS:
+        if kind == accepted:
+            draw(arguments[kind])
             continue
         with pytest.raises(error) as caught:
-            draw(made[kind])
+            draw(arguments[kind])
         message = str(caught.value)
         assert message.startswith(f"rf.plot.{name} needs {needed}"), kind
         for words in WORDS[kind]:
@@ -87,7 +87,7 @@ def test_what_was_given_and_what_draws_it_are_said(name, made):
         assert len(message) < 250
 
 
-def test_two_axes_are_drawn_beside_the_one_motion():
+def test_sweep_of_two_axes_and_one_motion_is_plotted():
     system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
     pulse = rf.GroundMotion.sine_pulse("2 m/s^2", "1 Hz")
     runs = rf.sweep(system, pulse, scale=[1.0, 2.0, 3.0], height=["3 m", "4 m"], accuracy="fast")
@@ -103,41 +103,41 @@ def test_two_axes_are_drawn_beside_the_one_motion():
         rf.plot.sweep(several, "peak_rotation")
 
 
-def test_a_file_is_opened_by_what_reads_it():
+def test_error_for_a_path_suggests_the_reader():
     with pytest.raises(SchemaError, match=r"rf\.plot\.response\(xr\.open_dataset\('run\.nc'\)\)"):
         rf.plot.response("run.nc")
     with pytest.raises(ComponentError, match=r"rf\.plot\.motion\(rf\.GroundMotion\.read\('a'\)\)"):
         rf.plot.motion("a")
 
 
-def test_a_run_that_was_stored_is_drawn(made, tmp_path):
+def test_reopened_run_is_plotted(arguments, tmp_path):
     for name, draw in (("run", rf.plot.response), ("rungs", rf.plot.tradeoff)):
-        made[name].to_netcdf(tmp_path / "stored.nc")
+        arguments[name].to_netcdf(tmp_path / "stored.nc")
         with xr.open_dataset(tmp_path / "stored.nc") as stored:
             draw(stored)
 
 
-def test_one_run_is_drawn_whole(made):
-    both = xr.concat([made["run"], made["run"]], "scale", data_vars="all")
+def test_response_requires_a_single_complete_run(arguments):
+    both = xr.concat([arguments["run"], arguments["run"]], "scale", data_vars="all")
     with pytest.raises(SchemaError, match=r"several runs over scale; .* dataset\.isel\(scale=0\)"):
         rf.plot.response(both)
     rf.plot.response(both.isel(scale=0))
     with pytest.raises(SchemaError, match="got one of a single instant; simulate for longer"):
         rf.plot.response(SYSTEM.simulate(duration="1e-9 s"))
     with pytest.raises(SchemaError, match="lacks 'contact_state', 'uplift_angle'"):
-        rf.plot.response(made["run"].drop_vars(["uplift_angle", "contact_state"]))
+        rf.plot.response(arguments["run"].drop_vars(["uplift_angle", "contact_state"]))
     with pytest.raises(SchemaError, match=r"rf\.plot\.tradeoff needs .* lacks 'history_error'"):
-        rf.plot.tradeoff(made["rungs"].drop_vars("history_error"))
+        rf.plot.tradeoff(arguments["rungs"].drop_vars("history_error"))
 
 
-def test_a_history_in_another_unit_is_drawn_by_it():
-    """The rotation over the overturning angle took degrees for radians."""
+def test_converted_histories_are_plotted_in_their_unit():
+    """Rotations in degrees are not divided by an overturning angle in radians."""
     system = rf.System(rf.Block(width="0.6 m", height="2 m", mass="400 kg"))
     run = system.simulate(rf.GroundMotion.sine_pulse("-4 m/s^2", "1.5 Hz"), free_vibration="1 s")
-    turned = run.assign(rotation=np.rad2deg(run.rotation).assign_attrs(units="deg"))
-    turned = turned.assign_coords(time=("time", 1000 * run.time.values, {"units": "ms"}))
-    drawn = [
-        rf.plot.response(one, panels="rotation").figure.axes[0].lines[0].get_xydata()
-        for one in (turned, run)
+    converted = run.assign(rotation=np.rad2deg(run.rotation).assign_attrs(units="deg"))
+    converted = converted.assign_coords(time=("time", 1000 * run.time.values, {"units": "ms"}))
+    plotted = [
+        rf.plot.response(dataset, panels="rotation").figure.axes[0].lines[0].get_xydata()
+        for dataset in (converted, run)
     ]
-    np.testing.assert_allclose(*drawn, rtol=1e-12, atol=1e-15)
+    np.testing.assert_allclose(*plotted, rtol=1e-12, atol=1e-15)

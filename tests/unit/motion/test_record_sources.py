@@ -1,4 +1,4 @@
-"""How a record may be handed over: paths, gzip, archives, bytes, open files."""
+"""Sources of records: paths, gzip, archives, bytes, open files."""
 
 import bz2
 import gzip
@@ -18,24 +18,24 @@ CSV = b"time (s),acceleration (g)\n0.00,0.0\n0.01,0.1\n0.02,-0.1\n"
 
 
 def zipped(*files: tuple[str, bytes], method: int = zipfile.ZIP_DEFLATED) -> bytes:
-    held = io.BytesIO()
-    with zipfile.ZipFile(held, "w", method) as archive:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", method) as archive:
         for name, data in files:
             archive.writestr(name, data)
-    return held.getvalue()
+    return buffer.getvalue()
 
 
 def tarred(*files: tuple[str, bytes], mode: str = "w") -> bytes:
-    held = io.BytesIO()
-    with tarfile.open(fileobj=held, mode=mode) as archive:
+    buffer = io.BytesIO()
+    with tarfile.open(fileobj=buffer, mode=mode) as archive:
         for name, data in files:
             info = tarfile.TarInfo(name)
             info.size = len(data)
             archive.addfile(info, io.BytesIO(data))
-    return held.getvalue()
+    return buffer.getvalue()
 
 
-def test_the_same_record_however_it_comes(tmp_path, monkeypatch):
+def test_paths_archives_bytes_and_open_files_give_same_record(tmp_path, monkeypatch):
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setenv("USERPROFILE", str(tmp_path))
     path = tmp_path / "some.AT2"
@@ -59,8 +59,8 @@ def test_the_same_record_however_it_comes(tmp_path, monkeypatch):
         assert GroundMotion.read(file).sha256 == plain.sha256
     with path.open(encoding="ascii") as file:
         assert GroundMotion.read(file).sha256 == plain.sha256
-    for given in (AT2, bytearray(AT2), memoryview(AT2), io.BytesIO(AT2), packed["one.zip"]):
-        assert GroundMotion.read(given).sha256 == plain.sha256
+    for source in (AT2, bytearray(AT2), memoryview(AT2), io.BytesIO(AT2), packed["one.zip"]):
+        assert GroundMotion.read(source).sha256 == plain.sha256
     assert GroundMotion.read(io.BytesIO(packed["one.tar.gz"])) == plain
     assert GroundMotion.read(zipped(("in.zip", packed["one.zip"]))).sha256 == plain.sha256
     assert GroundMotion.read(AT2).metadata["source_file"] == "bytes"
@@ -73,7 +73,7 @@ def test_arguments_go_with_bytes_too():
         GroundMotion.read(b"0.0\n0.1\n-0.1\n", time_step="0.01 s")
 
 
-def test_a_stored_motion_comes_back_from_bytes(tmp_path):
+def test_stored_motion_is_read_from_bytes(tmp_path):
     pulse = GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
     path = tmp_path / "pulse.nc"
     pulse.to_dataset().to_netcdf(path)
@@ -82,12 +82,12 @@ def test_a_stored_motion_comes_back_from_bytes(tmp_path):
 
 
 def linked(kind: bytes) -> bytes:
-    held = io.BytesIO()
-    with tarfile.open(fileobj=held, mode="w") as archive:
+    buffer = io.BytesIO()
+    with tarfile.open(fileobj=buffer, mode="w") as archive:
         info = tarfile.TarInfo("link.AT2")
         info.type, info.linkname = kind, "/etc/passwd"
         archive.addfile(info)
-    return held.getvalue()
+    return buffer.getvalue()
 
 
 def encrypted() -> bytes:
@@ -130,13 +130,13 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("name", REFUSED)
-def test_what_is_refused(name, tmp_path):
+def test_invalid_archives_are_refused(name, tmp_path):
     data, words = REFUSED[name]
     path = tmp_path / "given"
     path.write_bytes(data)
-    for given in (path, data, io.BytesIO(data)):
+    for source in (path, data, io.BytesIO(data)):
         with pytest.raises(RecordError, match=words):
-            GroundMotion.read(given)
+            GroundMotion.read(source)
     assert not list(tmp_path.glob("*.AT2"))
 
 
@@ -148,9 +148,9 @@ def test_open_files_that_cannot_be_read(tmp_path):
     with (tmp_path / "w").open("wb") as file, pytest.raises(RecordError, match="cannot be read"):
         GroundMotion.read(file)
 
-    class Odd:
+    class InvalidFile:
         def read(self, count):
             return 3.0
 
     with pytest.raises(RecordError, match="gives float"):
-        GroundMotion.read(Odd())
+        GroundMotion.read(InvalidFile())

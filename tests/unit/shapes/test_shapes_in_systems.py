@@ -1,4 +1,4 @@
-"""Bodies by their shape are blocks: a result keeps them, through a file too."""
+"""Bodies defined by their shape are blocks, and survive round trips of results."""
 
 import pytest
 import xarray as xr
@@ -10,7 +10,7 @@ pytestmark = pytest.mark.unit
 L_SHAPE = [(0.0, 0.0), (1.0, 0.0), (1.0, 3.0), (0.4, 3.0), (0.4, 4.0), (0.0, 4.0)]
 
 
-def test_a_result_in_a_file_keeps_the_body(tmp_path):
+def test_shaped_bodies_survive_result_round_trip(tmp_path):
     bodies = (
         rf.Block.from_outline((L_SHAPE, "m"), mass="1 t"),
         rf.Block.cylinder(diameter="1 m", height="3 m", mass="1 t"),
@@ -28,11 +28,11 @@ def test_a_result_in_a_file_keeps_the_body(tmp_path):
         )
         file = tmp_path / f"{number}.nc"
         response.to_netcdf(file)
-        with xr.open_dataset(file) as kept:
-            assert rf.System.from_dataset(kept) == system
+        with xr.open_dataset(file) as stored:
+            assert rf.System.from_dataset(stored) == system
 
 
-def test_descriptions_tell_the_shaking_at_which_a_body_rocks_to_either_side():
+def test_description_gives_uplift_acceleration_to_either_side():
     leaning = [(0.0, 0.0), (1.0, 0.0), (0.2, 3.0), (0.0, 3.0)]
     system = rf.System(rf.Block.from_outline(leaning, unit="m", mass="1 t"))
     words = " ".join(system.describe().split())
