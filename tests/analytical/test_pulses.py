@@ -127,7 +127,7 @@ def case(request):
     return CASES[request.param]
 
 
-def test_every_pulse_is_here():
+def test_every_pulse_has_a_case():
     tested = {case.motion.recipe["constructor"] for case in CASES.values()}
     missing = set(PULSES) - tested - {"double_impulse"}  # which is below
     assert not missing, f"add the paths of {missing} to CASES"
@@ -148,19 +148,19 @@ def test_velocity_and_displacement(case):
 
 
 @pytest.mark.parametrize("name", dict.fromkeys(STOPPING))
-def test_the_ground_comes_to_rest(name):
+def test_final_ground_velocity_is_zero(name):
     _, velocity, _ = path(CASES[name].motion)
     assert abs(velocity[-1]) <= 5e-15 * len(velocity) ** 0.5 * np.max(np.abs(velocity))
 
 
 @pytest.mark.parametrize("name", RETURNING)
-def test_the_ground_comes_back(name):
+def test_final_ground_displacement_is_zero(name):
     _, _, displacement = path(CASES[name].motion)
     assert abs(displacement[-1]) <= EXACT * np.max(np.abs(displacement))
 
 
 @pytest.mark.parametrize(("cycles", "degrees"), ENVELOPED)
-def test_where_the_pulse_of_mavroeidis_leaves_the_ground(cycles, degrees):
+def test_residual_displacement_of_mavroeidis_pulse(cycles, degrees):
     _, _, displacement = path(mavroeidis(cycles, degrees))
     share = (
         0.25 if cycles == 1.0 else math.sin(math.pi * cycles) / (2.0 * math.pi * (1.0 - cycles**2))
@@ -187,7 +187,7 @@ def test_peak_velocity(name, peak):
 
 
 @pytest.mark.parametrize("name", ["type A", "type B", "Mavroeidis 1, 0 deg"])
-def test_the_velocity_asked_for_is_reached_at_a_sample(name):
+def test_requested_peak_velocity_is_reached_at_a_sample(name):
     _, velocity, _ = path(CASES[name].motion)
     assert np.max(velocity) == pytest.approx(VELOCITY, rel=1e-13)
 
@@ -249,7 +249,7 @@ def test_printed_ricker_wavelets():
 
 
 @pytest.mark.parametrize("antisymmetric", [False, True])
-def test_the_period_of_a_ricker_wavelet_is_that_of_its_spectral_peak(antisymmetric):
+def test_ricker_wavelet_period_is_that_of_its_spectral_peak(antisymmetric):
     motion = GroundMotion.ricker_wavelet("1 m/s^2", "1 s", antisymmetric=antisymmetric)
     time = np.arange(len(motion)) * motion.si.time_step
 
@@ -260,7 +260,7 @@ def test_the_period_of_a_ricker_wavelet_is_that_of_its_spectral_peak(antisymmetr
 
 
 @pytest.mark.parametrize("antisymmetric", [False, True])
-def test_the_cut_of_a_ricker_wavelet_is_negligible(antisymmetric):
+def test_truncation_of_ricker_wavelet_is_negligible(antisymmetric):
     samples = GroundMotion.ricker_wavelet(
         "1 m/s^2", "1 s", antisymmetric=antisymmetric
     ).si.horizontal.samples
@@ -306,14 +306,14 @@ def fourier(motion, frequencies, until):
     return [step * abs(np.exp(-2j * np.pi * one * time) @ values) for one in frequencies]
 
 
-def test_how_much_weaker_an_oscillator_takes_a_short_impulse():
+def test_spectral_reduction_of_short_impulse():
     """By the variance 1/28 of its shape: 1 - (omega tau)^2/56."""
     motion, turned = GroundMotion.double_impulse("1 m/s", "1 s", "0.25 s"), 0.2
     (amplitude,) = fourier(motion, [turned / (2.0 * np.pi * 0.25)], 0.25)
     assert (1.0 - amplitude) / turned**2 == pytest.approx(1.0 / 56.0, rel=1e-3)
 
 
-def test_the_one_cycle_sine_of_the_same_greatest_fourier_amplitude():
+def test_velocity_ratio_of_equivalent_one_cycle_sine():
     impulses = GroundMotion.double_impulse("1 m/s", "1 s", "0.001 s")
     assert fourier(impulses, [0.5], impulses.si.duration)[0] == pytest.approx(2.0, rel=1e-5)
     sine = GroundMotion.type_a_pulse("1 m/s", "2 s")

@@ -523,7 +523,7 @@ def test_case_option_refuses_repeated_or_unknown_axes(run_command, folder):
 
 
 @pytest.mark.usefixtures("no_pictures")
-def test_a_report_on_a_store_has_the_whole_of_its_name(typed, folder, monkeypatch):
+def test_report_on_a_store_uses_its_full_name(run_command, folder, monkeypatch):
     (folder / "study.toml").write_text('scene = "scene.toml"\n[axes]\nscale = [1, 2]\n')
     assert run_command("study", "study.toml", "--store", "kept.1")[0] == 0
     arguments = ("report", "--no-certificate")

@@ -206,12 +206,12 @@ def test_invalid_test_data_are_refused():
         {"peaks": (xr.DataArray([0.1, 0.08, 0.07], attrs={"units": "rad"}), "deg")},
     ],
 )
-def test_arrays_need_units(given):
+def test_arrays_need_units(arguments):
     words = (
         r"(time|rotation|measured|peaks) (needs |has the unit '\w+', but '\w+' is given with it)"
     )
     with pytest.raises(UnitsError, match=words):
-        rf.fit_free_decay(START, **given)
+        rf.fit_free_decay(START, **arguments)
 
 
 @pytest.mark.parametrize("rotation", ["finite", "small"])

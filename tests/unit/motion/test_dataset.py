@@ -36,7 +36,7 @@ def motion(request):
     return request.param()
 
 
-def test_in_memory(motion):
+def test_motion_survives_dataset_round_trip(motion):
     check_same(GroundMotion.from_dataset(motion.to_dataset()), motion)
 
 

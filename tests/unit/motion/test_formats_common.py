@@ -117,7 +117,7 @@ WHOLE = {
 @pytest.mark.filterwarnings("ignore:.*the file ends inside what line")
 @pytest.mark.parametrize("share", [0.1, 0.3, 0.5, 0.8, 0.95])
 @pytest.mark.parametrize("key", SAMPLES)
-def test_of_a_part_of_it_nothing_wrong_is_read(key, share, tmp_path):
+def test_truncated_file_never_gives_wrong_samples(key, share, tmp_path):
     sample = SAMPLES[key]
     path = tmp_path / sample.name
     path.write_bytes(sample.data[: int(share * len(sample.data))])

@@ -99,7 +99,7 @@ def test_missing_unit_can_be_passed_as_argument(write):
     assert read(write, text, "r.V1", component="N", unit="g").si.peak > 0.0
 
 
-def test_a_smc_file_is_not_taken_for_one(write):
+def test_smc_header_is_not_read_as_csmip(write):
     with pytest.raises(RecordError, match=r"number of comment lines \(integer 16\)"):
         read(write, "2 CORRECTED ACCELEROGRAM   CHAN\n" + csmip(2))
 

@@ -28,8 +28,10 @@ class TestCsmip:
         assert "event" not in read(write, text, component="E").metadata
 
     @pytest.mark.parametrize("number", ["0", "-5", "1.2.3"])
-    def test_a_rate_that_is_none(self, write, number):
-        text = made.cgs(points=f"{{count}} Accelerogram points at {number} pts/sec in units of g .")
+    def test_invalid_sampling_rate_is_refused(self, write, number):
+        text = dialects.cgs(
+            points=f"{{count}} Accelerogram points at {number} pts/sec in units of g ."
+        )
         with pytest.raises(RecordError, match=r"expected a (rate|time step)|expected 10 numbers"):
             read(write, text, component="E")
 
@@ -108,7 +110,7 @@ class TestUnam:
         )
         expect(motion, 0.01 * VALUES["E"])
         np.testing.assert_allclose(motion.si.vertical.samples, -0.01 * VALUES["U"], rtol=1e-12)
-        south = read(write, made.unam(orientations="/-V/N90E/-N00E"), component="S")
+        south = read(write, dialects.unam(orientations="/-V/N90E/-N00E"), component="S")
         expect(south, 0.01 * VALUES["N"])  # of the third channel, which is positive to the south
         assert south.metadata["azimuth"] == 180.0
 

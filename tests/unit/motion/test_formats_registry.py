@@ -94,7 +94,7 @@ def test_former_module_of_readers_warns_and_redirects():
         rockframe.motion.readers.nothing  # noqa: B018
 
 
-def test_a_format_can_be_named_in_capitals(write):
+def test_format_name_is_case_insensitive(write):
     with pytest.raises(RecordError, match=r"expected a header line 'Sampling Freq\(Hz\)'"):
         GroundMotion.read(write("x", "r"), format="K_NET")
 

@@ -125,7 +125,7 @@ class TestAsdf:
         with pytest.raises(RecordError, match=r"3 components: 'HNE' .* 'HNN' .* 'HNZ'"):
             GroundMotion.read(write(asdf(tmp_path), "w.h5"))
 
-    def test_an_hdf5_file_of_something_else(self, tmp_path):
+    def test_other_hdf5_file_is_refused(self, tmp_path):
         for group, words in (
             ("Wavefronts", "found no variable 'acceleration'"),
             ("Waveforms", "found no waveforms"),
@@ -138,7 +138,7 @@ class TestAsdf:
                 GroundMotion.read(path)
 
     @pytest.mark.parametrize("rate", [0.0, -1.0, float("nan"), 1e-9])
-    def test_a_rate_that_is_none(self, write, tmp_path, rate):
+    def test_invalid_sampling_rate_is_refused(self, write, tmp_path, rate):
         words = f"a sampling rate of {rate} Hz" if rate != 1e-9 else "a time step of 1000000000.0 s"
         with pytest.raises(RecordError, match=words):
             GroundMotion.read(write(asdf(tmp_path, rate=rate), "w.h5"), component="HNE")

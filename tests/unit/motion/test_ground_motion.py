@@ -505,7 +505,7 @@ def test_pulse_with_recorded_vertical_has_no_constructor():
         {"constructor": "sine_pulse", "operations": [{"scaled": {"colour": "red"}}]},
     ],
 )
-def test_descriptions_that_fit_nothing(description):
+def test_invalid_descriptions_are_refused(description):
     words = "^found (only a description|the (constructor|operation) '|arguments that do not fit)"
     with pytest.raises(SchemaError, match=words):
         GroundMotion.from_dict(description)

@@ -192,7 +192,7 @@ def test_the_other_file_of_tcu128_holds_the_other_component():
     assert 0.5 < np.sum(east**2) / np.sum(north**2) < 1.0
 
 
-def test_miniseed_wants_obspy_or_gives_the_motion(monkeypatch):
+def test_miniseed_is_read_or_requires_obspy(monkeypatch):
     path = record_path(MINISEED)
     record_path(STATION_XML)
     with monkeypatch.context() as without:

@@ -156,8 +156,8 @@ def test_invalid_player_arguments_are_refused():
         rf.plot.player(run_of("rigid ground", outputs=None))
 
 
-def test_a_browser_draws_it(tmp_path):
-    """Of which no part asks for anything, and whose script ends without a fault."""
+def test_browser_renders_the_player(tmp_path):
+    """No part is loaded from elsewhere, and the script ends without a fault."""
     browser = which("chromium") or which("google-chrome")
     if browser is None:
         pytest.skip("neither chromium nor google-chrome is installed")
@@ -168,11 +168,11 @@ def test_a_browser_draws_it(tmp_path):
         [browser, *usual, f"--user-data-dir={tmp_path}/profile", "--dump-dom", path.as_uri()],
         capture_output=True, text=True, timeout=120, check=True,
     ).stdout  # fmt: skip
-    assert 'data-ready="yes"' in seen
+    assert 'data-ready="yes"' in output
     states = {state for strip in read(page.to_html())[0]["strips"] for state in strip["states"]}
     assert len(states) > 1
     # the key, which the script makes
-    assert sorted(re.findall(r"</i>([^<]+)</span>", seen)) == sorted(states)
+    assert sorted(re.findall(r"</i>([^<]+)</span>", output)) == sorted(states)
 
 
 def texts_in_browser(page, tmp_path, height=640, canvas="traces"):
@@ -203,8 +203,8 @@ def texts_in_browser(page, tmp_path, height=640, canvas="traces"):
 def test_time_labels_do_not_overlap(tmp_path, longer):
     run = run_of("rigid ground")
     stretched = run.assign_coords(time=run.time * longer)
-    written = texts_in_browser(rf.plot.player(stretched), tmp_path)
-    places = sorted({x for words, x, _ in written if words.endswith(" s")})
+    texts = texts_in_browser(rf.plot.player(stretched), tmp_path)
+    places = sorted({x for words, x, _ in texts if words.endswith(" s")})
     assert 4 <= len(places) <= 11
     assert np.diff(places).min() > 40.0
 
@@ -223,11 +223,11 @@ def test_the_scale_bar_has_the_unit_of_lengths(tmp_path, unit, bar):
     ("height", "title", "fewest"), [(480, "a long title " * 60, 1), (900, "a title", 6)]
 )
 def test_numbers_beside_low_traces_do_not_overlap(tmp_path, height, title, fewest):
-    """The lowest have none; high ones have those of both ends, but for zeros."""
+    """The lowest traces have none; high ones have those of both ends, but no zeros."""
     run = run_of("rigid ground")
     run = run.assign(slip=run.vertical_displacement)
-    written = written_by_a_browser(rf.plot.player(run, title=title), tmp_path, height)
-    assert "slip [m]" in [words for words, _, _ in written]
-    heights = sorted({y for _, x, y in written if x < 52.0})
+    texts = texts_in_browser(rf.plot.player(run, title=title), tmp_path, height)
+    assert "slip [m]" in [words for words, _, _ in texts]
+    heights = sorted({y for _, x, y in texts if x < 52.0})
     assert len(heights) >= fewest
     assert not (np.diff(heights) <= 9.0).any()
