@@ -33,7 +33,7 @@ def model_on(*parts):
 
 @pytest.mark.parametrize("fixed", [True, False])
 @pytest.mark.parametrize("base", BASES)
-def test_all_lanes_share_their_instructions(base, fixed):
+def test_lanes_use_packed_instructions(base, fixed):
     from rockframe.compiled.calls import register_kernels
     from rockframe.compiled.jobs import Job
     from rockframe.solve.lanes.steps import steps_in_lanes
@@ -54,7 +54,7 @@ def test_all_lanes_share_their_instructions(base, fixed):
 
 
 @pytest.mark.parametrize("base", BASES)
-def test_lanes_beside_single_runs(base):
+def test_lanes_are_faster_than_single_runs(base):
     from rockframe.solve.lanes.integrate import LaneRun, integrate_lanes
 
     motion = rf.GroundMotion.stochastic(

@@ -56,5 +56,5 @@ def costs():
 
 
 @pytest.mark.parametrize("name", MOST)
-def test_cost_beside_two_pads(costs, name):
+def test_cost_relative_to_two_pads(costs, name):
     assert costs[name] <= MOST[name]

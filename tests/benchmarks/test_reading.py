@@ -48,7 +48,7 @@ def test_18000_samples(tmp_path, name, text, limit):
     assert taken < limit
 
 
-def test_the_longest_text_that_is_read(tmp_path):
+def test_longest_text_is_read_within_time_and_memory(tmp_path):
     # the bound that no file may cost more than about a second and 200 MB
     count = 300_000
     path = tmp_path / "long.csv"

@@ -199,7 +199,7 @@ def test_import():
     assert mine < 0.7
 
 
-def test_first_simulation_of_a_second_process():
+def test_first_simulation_time_with_filled_cache():
     scene = (
         "import time; t0 = time.perf_counter(); import rockframe as rf; t1 = time.perf_counter();"
         "s = rf.System(rf.Block(width='1 m', height='4 m', mass='1 t'),"

@@ -16,7 +16,7 @@ RUN = {"output_step": f"{OUTPUT_STEP} s"}
 
 
 @pytest.mark.parametrize("name", scenes())
-def test_beside_scipy(name):
+def test_work_and_error_against_scipy(name):
     """RK45, loose and through the samples: the least that SciPy can do."""
     scene, excitation = scenes()[name], motion().window("0 s", f"{SECONDS} s")
     exact = scene.system.simulate(excitation, accuracy=EXACT, **RUN)["rotation"].to_numpy()
@@ -38,7 +38,7 @@ def test_beside_scipy(name):
     assert error(ours, exact) < error(found[0], exact)
 
 
-def test_beside_opensees():
+def test_work_and_error_against_opensees():
     try:
         ops = opensees()
     except ImportError as reason:

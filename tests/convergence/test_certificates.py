@@ -90,7 +90,7 @@ def exact_peak(name):
         pytest.param("hand-over of a cascade, soft soil", "reference", marks=pytest.mark.long),
     ],
 )
-def test_the_error_of_a_peak_is_not_hidden_by_what_all_tolerances_share(name, accuracy):
+def test_peak_error_estimate_includes_error_common_to_all_tolerances(name, accuracy):
     """A tighter tolerance alone leaves the hand-over and the record's intervals as they are."""
     system, motion = HARD[name]
     run = system.simulate(motion, accuracy=accuracy, certify=True, **REST)
@@ -114,7 +114,7 @@ def test_an_estimate_is_at_most_ten_times_too_small(number):
 
 
 @pytest.mark.parametrize("number", NUMBERS)
-def test_clean_certificates_keep_their_word(number):
+def test_clean_certificates_hold_within_their_margin(number):
     """Against nudges inside what is stated, and scales inside the margin."""
     case, scale, run = certified(number)
     if not clean(run):
@@ -125,7 +125,7 @@ def test_clean_certificates_keep_their_word(number):
         assert case.summary(scale * (1.0 + change)).overturned == fell
 
 
-def test_nothing_is_vouched_for_at_the_boundary():
+def test_no_clean_certificate_at_overturning_boundary():
     for distance, row in at_the_boundary(iter(pool())):
         assert row.contradicted == 0
         assert row.clean == 0 or distance > 1e-4

@@ -122,11 +122,11 @@ def share(values):
 
 
 @pytest.mark.long
-def test_the_error_is_hardly_ever_more_than_ten_times_the_tolerance(measured):
+def test_error_rarely_exceeds_ten_times_tolerance(measured):
     assert share(outcome.ratio <= 10.0 for outcome in measured) >= 0.95
 
 
-def test_where_the_tolerance_rules_the_error_is_within_a_factor_of_ten(measured):
+def test_tolerance_bound_error_is_within_factor_of_ten(measured):
     """Elsewhere the samples of the motion make steps so short that the error is smaller.
 
     On rigid ground it is smaller anyway: little happens between impacts, and the tolerance is
@@ -138,7 +138,7 @@ def test_where_the_tolerance_rules_the_error_is_within_a_factor_of_ten(measured)
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_events_are_timed_at_reference_to_less_than_a_tenth_of_a_nanosecond(measured, kind):
+def test_reference_event_times_are_accurate_to_0_1_ns(measured, kind):
     times = [o.event_time_error for o in measured if o.kind == kind and o.tolerance == 1e-11]
     assert len(times) >= 5
     assert max(times) <= 1e-10

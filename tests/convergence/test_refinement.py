@@ -82,7 +82,7 @@ ALLOWED = {"standard": 1e-5, "reference": 1e-8}
     "name",
     [pytest.param(name, marks=[pytest.mark.long] * (name == "cascade")) for name in SCENES],
 )
-def test_more_samples_of_the_same_lines_change_nothing(name, level):
+def test_resampling_piecewise_linear_motion_changes_nothing(name, level):
     plain = run(name, level)
     for parts in (2, 8, 64):
         assert difference(plain, run(name, level, parts)) < ALLOWED[level], parts

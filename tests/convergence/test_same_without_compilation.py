@@ -69,7 +69,7 @@ SECOND_LOOKS = {
     "name",
     [pytest.param(name, marks=[pytest.mark.long] * (name in SECOND_LOOKS)) for name in STACKS],
 )
-def test_stacks_are_the_same_whose_steps_call_their_equations(name):
+def test_stacks_match_with_and_without_compilation(name):
     stack, base, accuracy = STACKS[name]
     system = rf.System(stack, base)
     compiled = system.simulate(SHORT, accuracy=accuracy, outputs=["energy"])
@@ -84,7 +84,7 @@ def test_stacks_are_the_same_whose_steps_call_their_equations(name):
     "name",
     [pytest.param(name, marks=[pytest.mark.long] * (name in SECOND_LOOKS)) for name in SCENES],
 )
-def test_compiled_and_plain_are_the_same(name, monkeypatch):
+def test_compiled_and_uncompiled_runs_are_identical(name, monkeypatch):
     motion, parts, options = SCENES[name]
     accuracy = options.get("accuracy", "standard")
     rules = {key: value for key, value in options.items() if key != "accuracy"}
@@ -105,7 +105,7 @@ def test_compiled_and_plain_are_the_same(name, monkeypatch):
         assert plain.impact_count > (3 if "small" in name else 2)
 
 
-def test_runs_whose_steps_call_the_equations_count_their_time(monkeypatch):
+def test_time_of_uncompiled_steps_is_counted(monkeypatch):
     """After some seconds it pays to compile the equations into the steps."""
     system = rf.System(BLOCK)
     (own,) = bind((march_by_tolerance,), InlinedEquations(system.assembly.model.system))

@@ -58,7 +58,7 @@ def test_events_are_located_to_1e_10_s(scene):
 
 
 @pytest.mark.parametrize("level", ["fast", "standard", "reference"])
-def test_named_levels(level):
+def test_named_accuracy_levels_bound_energy_residual(level):
     result = SCENES["pads"].simulate(rf.GroundMotion.sine_pulse(), accuracy=level)
     bound = {"fast": 1e-2, "standard": 1e-5, "reference": 1e-8}[level]
     assert float(result.energy_residual) <= bound

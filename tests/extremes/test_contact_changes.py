@@ -51,7 +51,7 @@ def test_a_corner_that_would_be_held_again_at_once_does_not_leave(scale, frequen
 
 
 @pytest.mark.parametrize(("scale", "frequency_ratio"), SLIP_FOR_A_MOMENT)
-def test_a_slip_that_rises_and_falls_within_a_step_ends_where_it_falls(scale, frequency_ratio):
+def test_short_slip_within_step_ends_in_time(scale, frequency_ratio):
     found = runs(3.0, scale, frequency_ratio)
     lasting = [time for run in found.values() for time in times_of_slips(run)]
     assert lasting
@@ -113,7 +113,7 @@ def in_both_directions(number):
 
 
 @pytest.mark.parametrize("case", [*ENDS_OF_THE_CAP, *FAR_FROM_THE_ROOT])
-def test_ends_do_not_leave_and_come_back_at_one_instant(case):
+def test_ends_do_not_chatter_at_one_instant(case):
     coupling, number, scale, *parts = case
     system, motion = stack(coupling, *parts), in_both_directions(number).scaled(scale)
     fast = system.simulate(motion, accuracy="fast", second_look=False)

@@ -24,7 +24,7 @@ COUNT = 6 * MORE
     ],
 )
 @pytest.mark.parametrize("subject", SUBJECTS)
-def test_the_extremes_of_a_subject_keep_to_the_bounds(subject, accuracy, count):
+def test_extreme_scenes_of_subject_stay_within_bounds(subject, accuracy, count):
     for number, scene in enumerate(scenes(subject, count)):
         failures = judge(scene, accuracy).failures
         assert not failures, f"scene {number}: {'; '.join(failures)}\n{scene}"
@@ -33,7 +33,7 @@ def test_the_extremes_of_a_subject_keep_to_the_bounds(subject, accuracy, count):
 @pytest.mark.long
 @given(st.integers(0, 2**32 - 1), st.sets(st.sampled_from(list(SUBJECTS)), min_size=2, max_size=3))
 @settings(max_examples=25 * MORE, deadline=None)
-def test_extremes_together_keep_to_the_bounds(seed, subjects):
+def test_combined_extremes_stay_within_bounds(seed, subjects):
     rng = np.random.default_rng(seed)
     scene = usual(rng)
     for subject in sorted(subjects):
@@ -42,7 +42,7 @@ def test_extremes_together_keep_to_the_bounds(seed, subjects):
     assert not failures, f"{'; '.join(failures)}\n{scene}"
 
 
-def test_the_scenes_cover_what_they_name():
+def test_scenes_cover_all_options_and_ranges():
     drawn = [scene for subject in SUBJECTS for scene in scenes(subject, COUNT)]
     assert {scene.base for scene in drawn} == set(BASES)
     assert {scene.restraint for scene in drawn} == set(RULES)
@@ -53,7 +53,7 @@ def test_the_scenes_cover_what_they_name():
     assert max(scene.slenderness for scene in drawn) > 20.0
 
 
-def test_what_breaks_a_bound_is_named():
+def test_verdict_lists_every_broken_bound():
     """A soft block on pads that cannot be finished in its steps is no success."""
     verdict = judge(Scene(peak=0.5), "standard")
     assert verdict.failures == []
@@ -63,7 +63,7 @@ def test_what_breaks_a_bound_is_named():
 
 
 @pytest.mark.parametrize("stiffness", ["2 TPa", "20 TPa", "2e15 Pa", "2e20 Pa"])
-def test_statics_above_soil_that_hardly_gives_way_are_those_on_the_ground(stiffness):
+def test_statics_on_nearly_rigid_soil_match_rigid_ground(stiffness):
     """Rotations of the soil are below what rounding leaves of those of the block."""
     block = rf.Block(width="1 m", height="4 m", mass="10 t")
     pads = rf.TwoSpringSupport(frequency_ratio=15, damping_ratio=0.05)

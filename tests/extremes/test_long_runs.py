@@ -25,7 +25,7 @@ SCENES = {
     "name",
     [pytest.param(name, marks=[pytest.mark.long] * (name != "rigid ground")) for name in SCENES],
 )
-def test_without_losses_ten_thousand_cycles_keep_their_energy(name):
+def test_ten_thousand_lossless_cycles_conserve_energy(name):
     parts, options, share = SCENES[name]
     system = rf.System(*parts, **options)
     # Housner's period, which pads only lengthen; half as many cycles again to be sure
@@ -53,7 +53,7 @@ def test_without_losses_ten_thousand_cycles_keep_their_energy(name):
     ],
     ids=["pads", "soil"],
 )
-def test_a_record_of_an_hour(parts):
+def test_one_hour_record_runs_in_bounded_memory(parts):
     rng = np.random.default_rng(5)
     noise = np.convolve(rng.normal(size=720_000), np.hanning(41), "same")
     noise *= 0.35 * 9.80665 * math.tan(THETA) / np.abs(noise).max()

@@ -55,7 +55,7 @@ def test_short_programs_run():
         assert done.stdout.strip()
 
 
-def test_extras_that_are_named_are_there():
+def test_documented_extras_exist():
     declared = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
     table = declared.split("[project.optional-dependencies]")[1].split("\n[tool")[0]
     extras = set(re.findall(r"^(\w+) = \[", table, re.MULTILINE))
@@ -64,7 +64,7 @@ def test_extras_that_are_named_are_there():
             assert set(group.split(",")) <= extras, f"{page}: {command}"
 
 
-def test_the_version_that_is_cited_is_this_one():
+def test_cited_version_is_current():
     import rockframe
 
     for name in ("data/citation.cff", "development/citing.md", "development/changelog.md"):

@@ -36,7 +36,7 @@ def public_functions():
 ALL = dict(public_functions())
 
 
-def test_there_are_many():
+def test_public_functions_are_found():
     assert len(ALL) > 80
 
 
@@ -87,7 +87,7 @@ def inherits(function):
     return int(first in ("self", "cls", "kind", "motion", "made", "suite"))
 
 
-def test_what_is_given_back_is_described():
+def test_return_values_are_described():
     missing = [
         name
         for name, function in ALL.items()
@@ -98,7 +98,7 @@ def test_what_is_given_back_is_described():
     assert missing == []
 
 
-def test_arrays_tell_their_shape():
+def test_array_docs_state_their_shape():
     """Of what is an array, of arguments and results; datasets tell their dimensions."""
     missing = [
         f"{name}: {one.name} : {one.type}"
@@ -110,7 +110,7 @@ def test_arrays_tell_their_shape():
     assert missing == []
 
 
-def test_errors_are_told_where_units_are_checked():
+def test_functions_with_quantities_document_raises():
     """Whoever takes a quantity refuses one of another kind."""
     missing = [
         name

@@ -113,14 +113,14 @@ def screens(tmp_path_factory):
     return Site.found
 
 
-def test_no_equation_is_cut_and_no_page_is_wider_than_the_screen(screens):
+def test_equations_and_pages_fit_the_screen(screens):
     assert sum(one["equations"] for one in screens) > 400
     for one in screens:
         assert one["cut"] == [], (one["page"], one["width"])
         assert one["beyond"] == 0, (one["page"], one["width"])
 
 
-def test_a_wide_screen_shows_nearly_all_equations_whole(screens):
+def test_few_equations_scroll_on_wide_screen(screens):
     wide = [one for one in screens if one["width"] == DESKTOP]
     scrolling = sum(one["scrolling"] for one in wide)
     assert scrolling <= LARGEST_SHARE * sum(one["equations"] for one in wide)

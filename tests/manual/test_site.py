@@ -59,7 +59,7 @@ def test_no_request_leaves_the_site():
             assert not ELSEWHERE.match(address), f"{sheet.relative_to(SITE)} loads {address}"
 
 
-def test_what_pages_load_is_there():
+def test_files_loaded_by_pages_exist():
     for page in pages():
         for address in Loaded(page.read_text(encoding="utf-8")).addresses:
             if address and not address.startswith(("data:", "#")):
@@ -67,7 +67,7 @@ def test_what_pages_load_is_there():
                 assert file.exists(), f"{page.relative_to(SITE)} loads {address}"
 
 
-def test_no_page_tells_of_the_machine_that_built_it():
+def test_pages_do_not_reveal_build_machine():
     """A warning of a script would stand there with its file: those wanted are printed as text."""
     sources = SITE.joinpath("_sources").rglob("*.txt")
     for page in [*pages(), *sources, *SITE.rglob("*.ipynb")]:
@@ -78,7 +78,7 @@ def test_no_page_tells_of_the_machine_that_built_it():
             assert "rockframe compiles what" not in text, page.relative_to(SITE)
 
 
-def test_formulas_are_drawn_by_files_of_the_site():
+def test_mathjax_is_served_from_the_site():
     page = (SITE / "theory" / "two_pads.html").read_text(encoding="utf-8")
     (script,) = re.findall(r'src="([^"]*mathjax[^"]*)"', page)
     folder = (SITE / "theory" / script).resolve().parent
@@ -114,7 +114,7 @@ def test_search_finds(index, word, page):
     assert page in found
 
 
-def test_every_object_of_the_reference_has_its_page_and_a_link_to_it():
+def test_every_reference_object_has_page_and_link():
     links = (SITE / "reference" / "index.html").read_text(encoding="utf-8")
     lists = (ROOT / "docs" / "reference" / "index.md").read_text(encoding="utf-8")
     for name in re.findall(r"^   ([A-Za-z][\w.]+)$", lists, re.MULTILINE):

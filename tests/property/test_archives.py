@@ -98,7 +98,7 @@ def test_damaged_archives(folder, name, damage):
     ),
     sample=st.sampled_from(sorted(SAMPLES)),
 )
-def test_any_names(tmp_path_factory, names, sample):
+def test_member_names_cannot_escape_archive(tmp_path_factory, names, sample):
     place = tmp_path_factory.mktemp("names") / "below"
     place.mkdir()
     data = SAMPLES[sample].data
@@ -205,7 +205,7 @@ BOMBS = {
         for name in BOMBS
     ],
 )
-def test_bombs(folder, name, tmp_path):
+def test_decompression_bombs_are_refused(folder, name, tmp_path):
     data = BOMBS[name]()
     path = tmp_path / "bomb"
     path.write_bytes(data)

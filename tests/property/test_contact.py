@@ -43,7 +43,7 @@ def test_pads_never_pull(scenario):
 
 @given(scenarios())
 @settings(max_examples=60, deadline=None)
-def test_runs_end_as_they_should(scenario):
+def test_runs_end_completed_or_overturned(scenario):
     response = scenario.run(free_vibration="4 s")
     assert response.status.item() in (0, 1)
     theta = response.overturning_angle.item()
@@ -57,7 +57,7 @@ def test_runs_end_as_they_should(scenario):
             assert np.isfinite(variable.values).all(), name
 
 
-def test_a_landing_whose_hold_would_lift_the_corner_again_has_a_motion():
+def test_landing_whose_hold_lifts_corner_again_does_not_chatter():
     """Far beyond overturning the hold would throw the corner up, in a series without end.
 
     It acts only while the corner presses, and the block falls flat.
@@ -86,7 +86,7 @@ def test_a_landing_whose_hold_would_lift_the_corner_again_has_a_motion():
     assert np.isfinite(response.rotation.values).all()
 
 
-def test_a_run_that_cannot_be_finished_returns_what_it_has_and_says_so():
+def test_unfinished_run_warns_and_returns_partial_result():
     scenario = replace(CASE, peak=0.4, vertical=0.0)
     with pytest.warns(SolverWarning, match="Not finished"):
         response = scenario.run(accuracy=rf.Accuracy(rtol=1e-8, max_steps=500))
@@ -99,7 +99,7 @@ def test_a_run_that_cannot_be_finished_returns_what_it_has_and_says_so():
 
 @given(scenarios(bases=RULES))
 @settings(max_examples=60, deadline=None)
-def test_the_time_in_flight_is_that_between_the_events(scenario):
+def test_flight_time_is_time_between_flight_events(scenario):
     check_flight(scenario.run(outputs=None), within=1e-12)
 
 

@@ -97,7 +97,7 @@ def cubics(kind, count=4000):
 @pytest.mark.parametrize(
     "kind", ["zero, rising", "zero, without a rate", "positive, rising", "positive, falling"]
 )
-def test_every_dip_of_a_cubic_is_looked_into(kind):
+def test_every_dip_of_cubic_below_zero_is_detected(kind):
     start, change, end, end_change = cubics(kind)
     rise, bend = end - start - change, end_change - change
     u = np.linspace(0.0, 1.0, 201)[:, None]

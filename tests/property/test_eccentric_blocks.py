@@ -79,7 +79,7 @@ def begun_and_shaken():
             yield replace(CASE, scene=scene, base=rule, peak=0.8, separation="pressure")
 
 
-def test_the_mirror_image_responds_with_the_mirror_image():
+def test_mirrored_scene_gives_mirrored_response():
     """In the bed's part in contact up to rounding, and then up to the third event."""
     events, leans = 0, []
     for scenario in begun_and_shaken():
@@ -102,7 +102,7 @@ def test_the_mirror_image_responds_with_the_mirror_image():
     assert max(leans) > 1e-3
 
 
-def test_the_mirror_image_rests_as_the_mirror_image():
+def test_mirrored_scene_has_mirrored_statics():
     for scenario in every():
         one, other = (each.system.equilibrium() for each in (scenario, scenario.mirrored))
         assert set(one.variables) == set(other.variables)

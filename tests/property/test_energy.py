@@ -100,7 +100,7 @@ def test_energy_balances(scenario):
         {"base": "rigid", "radius": 5.0, "slenderness": 4.0, "beta": 20.0, "start": 0.5},
     ],
 )
-def test_the_residual_is_over_the_largest_term_of_the_whole_run(scene):
+def test_energy_residual_is_relative_to_largest_term_of_run(scene):
     """Not only of the instants of events and of the end, where little may be stored."""
     excitation = {"peak": 0.2, "frequency": 0.5, "cycles": 0.5, "vertical": 0.0}
     scenario = Scenario(**{"xi": 0.0, "rotation": "finite", **excitation, **scene})
@@ -166,7 +166,7 @@ def test_energy_never_rises_at_an_event(scenario):
 
 @pytest.mark.parametrize("rotation", ["finite", "small"])
 @pytest.mark.parametrize("start", [0.2, 0.6, -0.9])
-def test_without_losses_the_leading_corner_keeps_all_energy(start, rotation):
+def test_lossless_leading_corner_conserves_energy(start, rotation):
     """Undamped, with eps = 1, rocking freely through many contact changes."""
 
     block = rf.Block.from_size(radius="5 m", slenderness=4, mass="50 t")
@@ -208,7 +208,7 @@ def test_a_block_left_alone_comes_to_rest(rule):
 
 
 @pytest.mark.parametrize("base", RULES)
-def test_the_residual_of_a_quiet_run_is_that_of_a_strong_one(base):
+def test_energy_residual_does_not_depend_on_motion_strength(base):
     """In full contact a tenth of the motion makes a hundredth of the energies, and of the errors.
 
     The springs' energy at rest stays what it is; over that the residual would vanish.
@@ -228,7 +228,7 @@ def test_the_residual_of_a_quiet_run_is_that_of_a_strong_one(base):
 @pytest.mark.long
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 @pytest.mark.parametrize("number", [47, 295])
-def test_each_loss_only_grows_where_bodies_take_back_some_of_a_blow(number):
+def test_each_loss_never_decreases_on_mixed_bases(number):
     """On pads out of flight, beside rigid bases: the hold is a part of the blow then."""
     system, motion, _ = drawn_tied(number)
     response = system.simulate(motion, outputs="energy", output_step="1 ms", second_look=False)

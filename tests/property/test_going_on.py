@@ -76,7 +76,7 @@ def test_a_record_split_in_two_gives_the_same_response(name, at):
     assert float(second.energy_residual) <= 1e-8
 
 
-def test_the_end_survives_a_file(tmp_path):
+def test_end_state_survives_netcdf_round_trip(tmp_path):
     system = SCENES["coupled"]
     first = system.simulate(MOTION.window(end="3 s"))
     first.to_netcdf(tmp_path / "first.nc")
@@ -86,7 +86,7 @@ def test_the_end_survives_a_file(tmp_path):
     xr.testing.assert_equal(later, now)
 
 
-def test_it_goes_on_at_rest_and_without_a_motion():
+def test_run_can_be_continued_without_motion():
     system = SCENES["pads"]
     first = system.simulate(MOTION.window(end="3 s"))
     calm = system.simulate(initial=first, duration="5 s")
@@ -106,13 +106,13 @@ def test_a_continued_run_can_be_certified():
 
 
 @pytest.mark.parametrize("name", ["pads", "cascade"])
-def test_a_continued_run_tells_where_it_began(name):
+def test_continued_run_records_its_initial_state(name):
     first = SCENES[name].simulate(MOTION.window(end="3 s"))
     run = SCENES[name].simulate(initial=first, duration="0.1 s")
     assert json.loads(run.run_json)["initial"]["ending"] == json.loads(first.end_state)
 
 
-def test_runs_that_cannot_be_continued():
+def test_invalid_continuations_are_refused():
     system = SCENES["pads"]
     with pytest.raises(AssemblyError, match="holds no end of a run"):
         system.simulate(MOTION, initial=MOTION.to_dataset())
@@ -131,7 +131,7 @@ def test_runs_that_cannot_be_continued():
         system.simulate(MOTION, initial=3)
 
 
-def test_a_run_that_came_back_from_beyond_the_angle_goes_on():
+def test_run_that_returned_from_beyond_overturning_angle_continues():
     """As the one run that both make, asked to go on; one that ends beyond it, or flat, does not."""
     system = rf.System(rf.Block(width="1 m", height="5 m", mass="10 t"))
     pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
@@ -163,7 +163,7 @@ def test_units_do_not_matter():
 @pytest.mark.parametrize(
     "base", ["ground", "pads", "stack", pytest.param("cap", marks=pytest.mark.wide)]
 )
-def test_the_greatest_slip_is_that_of_the_run_that_goes_on(base):
+def test_peak_slip_of_continued_run_excludes_first_run(base):
     block = rf.Block(width="1 m", height="2 m", mass="4 t")
     statue, pads = rf.Block(width="0.5 m", height="1 m", mass="1 t"), PADS.replace(friction=0.25)
     parts = {

@@ -75,7 +75,7 @@ def assert_close(found, wanted, name):
     np.testing.assert_allclose(found, wanted, rtol=1e-9, atol=1e-9 * size, err_msg=name)
 
 
-def test_the_mirror_image_responds_with_the_mirror_image(name, response):
+def test_mirrored_scene_gives_mirrored_response(name, response):
     other = scene(name, "-3 deg", -0.04).simulate(
         MIRRORED, free_vibration="1 s", outputs=OUTPUTS, accuracy="reference"
     )
@@ -90,7 +90,7 @@ def test_the_mirror_image_responds_with_the_mirror_image(name, response):
         assert other[f"left_{one}"].item() == pytest.approx(mirrored, rel=1e-9)
 
 
-def test_the_energies_balance_with_gravity_along_the_base_as_gravity(system, response):
+def test_energy_balances_on_slope(system, response):
     assert not response.overturned.item()
     assert response.first_uplift_time.item() > 0.0
     stored = response.kinetic_energy + response.potential_energy + response.elastic_energy
@@ -105,7 +105,7 @@ def test_the_energies_balance_with_gravity_along_the_base_as_gravity(system, res
         assert np.ptp(response.input_energy.values[still]) < 1e-7 * size
 
 
-def test_on_still_ground_it_stays_at_rest(system):
+def test_block_stays_at_rest_on_still_slope(system):
     run = system.simulate(duration="1 s", outputs=("energy",))
     rest = system.equilibrium().rest_rotation.item()
     assert rest == run.rotation.values[0]
@@ -121,7 +121,7 @@ def test_on_still_ground_it_stays_at_rest(system):
         assert abs(held) < 1e-9 * 5e3 * 9.81 * 3.0
 
 
-def test_a_level_base_is_none(name):
+def test_zero_inclination_equals_level_base(name):
     plain, level = scene(name), scene(name, "0 deg")
     assert plain == level
     assert plain.to_dict() == level.to_dict()
@@ -132,14 +132,14 @@ def test_a_level_base_is_none(name):
     assert runs[0].attrs["axes"] == "horizontal and vertical"
 
 
-def test_it_tends_to_the_level_base(name):
+def test_tiny_inclination_converges_to_level_base(name):
     level = scene(name, None, 0.04).simulate(RECORD, accuracy="reference")
     almost = scene(name, "1e-9 deg", 0.04).simulate(RECORD, accuracy="reference")
     theta = level.overturning_angle.item()
     np.testing.assert_allclose(almost.rotation.values, level.rotation.values, atol=1e-6 * theta)
 
 
-def test_it_goes_to_files_and_back(system, response, tmp_path):
+def test_inclination_survives_dict_and_netcdf_round_trip(system, response, tmp_path):
     assert rf.System.from_dict(json.loads(json.dumps(system.to_dict()))) == system
     assert f"{system.inclination.m_as('deg'):.6g}" == "3"
     assert "inclination=" in repr(system)
@@ -152,7 +152,7 @@ def test_it_goes_to_files_and_back(system, response, tmp_path):
         assert "higher on the right" in read.attrs["axes"]
 
 
-def test_a_run_goes_on_from_another(system):
+def test_run_on_slope_can_be_continued(system):
     fine = {"accuracy": 1e-10, "output_step": "10 ms"}
     whole = system.simulate(RECORD, duration="2 s", **fine)
     first = system.simulate(RECORD, duration="1 s", **fine)

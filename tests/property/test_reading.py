@@ -213,7 +213,7 @@ ATTRIBUTES = st.dictionaries(
     ),
     attributes=ATTRIBUTES,
 )
-def test_netcdf_files_of_any_make(folder, sizes, variables, attributes):
+def test_arbitrary_netcdf_files_are_read_or_refused(folder, sizes, variables, attributes):
     path = folder / "made.nc"
     with netCDF4.Dataset(path, "w") as file:
         for name, size in zip(("time", "interval", "power"), sizes, strict=True):
@@ -236,7 +236,7 @@ def test_netcdf_files_of_any_make(folder, sizes, variables, attributes):
         for place, key in enumerate(key for key in SAMPLES if key != "cwa pair")
     ],
 )
-def test_no_number_of_a_header_makes_it_allocate(folder, key):
+def test_huge_header_numbers_allocate_little_memory(folder, key):
     # the numbers of the header in turn become as large as their field allows
     sample = SAMPLES[key]
     head = sample.data[:3_500]
@@ -289,7 +289,7 @@ LONG = {
 
 @pytest.mark.long
 @pytest.mark.parametrize("data", LONG.values(), ids=LONG)
-def test_long_files_neither_take_long_nor_much(folder, data):
+def test_long_files_are_refused_quickly_with_little_memory(folder, data):
     path = folder / "long"
     path.write_bytes(data)
     tracemalloc.start()

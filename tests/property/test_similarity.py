@@ -72,19 +72,19 @@ def compare(kind, numbers):
     # columns with ties take a compiler longest; blocks that slide with ties remain
     [pytest.param(kind, marks=[pytest.mark.long] * (kind == "ties")) for kind in DRAWN],
 )
-def test_a_scene_of_another_size_moves_alike(kind):
+def test_scaled_scene_gives_scaled_response(kind):
     compare(kind, range(FEW))
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("kind", DRAWN)
-def test_many_scenes_of_another_size_move_alike(kind):
+def test_many_scaled_scenes_give_scaled_responses(kind):
     compare(kind, range(FEW, MANY))
 
 
 @pytest.mark.parametrize("kind", ["pads", "coupled", "ties", "held", "stack of mixed bases"])
 @pytest.mark.parametrize("length", LENGTHS)
-def test_a_scene_of_another_size_stands_alike(kind, length):
+def test_scaled_scene_has_scaled_statics(kind, length):
     system, *_ = drawn(kind, 0)
     other = similar_system(system, length, MASSES[0])
     assert not differences(system.equilibrium(), other.equilibrium(), length, MASSES[0])
@@ -94,7 +94,7 @@ def test_a_scene_of_another_size_stands_alike(kind, length):
 
 
 @pytest.mark.parametrize("length", LENGTHS[::3])
-def test_scales_of_a_motion_that_overturn_another_size_are_the_same(length):
+def test_critical_scale_and_sweep_do_not_depend_on_size(length):
     system, motion, *_ = drawn("slides", 0)
     sizes = (system, motion), (similar_system(system, length, 1.0), similar_motion(motion, length))
     found = [

@@ -157,7 +157,7 @@ def test_energy_never_rises_at_an_event(scenario):
 
 @pytest.mark.parametrize("rule", ["leading-corner", "centre"])
 @pytest.mark.parametrize("scene", ONE_MODEL)
-def test_without_losses_all_energy_is_kept(scene, rule):
+def test_lossless_scenes_conserve_energy(scene, rule):
     """Undamped, with eps = 1 and no slip between restraints, through many contact changes."""
     scenario = replace(CASE, scene=scene, base=rule, xi=0.0, soil_xi=0.0, start=0.4, rate=0.1)
     parts = [part for part in scenario.system.parts if part.noun != "base"]
@@ -205,7 +205,7 @@ def test_a_scene_left_alone_comes_to_rest(scene, rule, separation):
 
 @given(soil_scenarios())
 @settings(max_examples=25, deadline=None)
-def test_the_soil_bears_along_the_base_alone_and_does_not_pull(scenario):
+def test_soil_contact_stays_within_base_and_does_not_pull(scenario):
     response = scenario.run(output_step="2 ms", overturning="continue")
     width, weight = widths(scenario)
     length, force = response.contact_length.values, response.soil_reaction.values
@@ -253,7 +253,7 @@ def test_pads_on_a_cap_never_pull(scenario):
     )
 )  # fmt: skip
 @settings(max_examples=25, deadline=None)
-def test_runs_end_as_they_should(scenario):
+def test_runs_end_completed_or_overturned(scenario):
     response = scenario.run(free_vibration="4 s")
     assert response.status.item() in (0, 1), response.attrs["verdict"]
     theta = response.overturning_angle.item()
@@ -277,7 +277,7 @@ def test_runs_end_as_they_should(scenario):
     )
 )  # fmt: skip
 @settings(max_examples=25, deadline=None)
-def test_the_time_in_flight_is_that_between_the_events(scenario):
+def test_flight_time_is_time_between_flight_events(scenario):
     check_flight(scenario.run(outputs=None), within=1e-9)
 
 
@@ -292,7 +292,7 @@ def test_the_time_in_flight_is_that_between_the_events(scenario):
     )
 )  # fmt: skip
 @settings(max_examples=25, deadline=None)
-def test_events_join_up(scenario):
+def test_contact_states_are_continuous_between_events(scenario):
     response = scenario.run(output_step="5 ms")
     stacked = scenario.scene in ("coupled", "cascade")
     for of in ("", "soil_") if stacked else ("",):
@@ -405,7 +405,7 @@ def test_a_mirrored_record_gives_the_mirrored_response(scene, rule, separation):
 
 @every_kind
 @pytest.mark.parametrize("xi", [0.0, 0.2])
-def test_what_is_symmetric_stays_symmetric(scene, rule, separation, xi):
+def test_purely_vertical_motion_causes_no_rotation(scene, rule, separation, xi):
     """Shaken up and down only, off the soil and back, neither block nor cap ever turns."""
     system = replace(CASE, scene=scene, base=rule, separation=separation, xi=xi, soil_xi=xi).system
     t = np.arange(201) * 0.01
@@ -435,7 +435,7 @@ def test_the_output_step_changes_nothing_but_the_samples(scenario, step):
 
 @given(soil_scenarios())
 @settings(max_examples=10, deadline=None)
-def test_samples_at_the_same_time_agree_whatever_the_output_step(scenario):
+def test_common_samples_agree_for_any_output_step(scenario):
     coarse = scenario.run(output_step="20 ms")
     fine = scenario.run(output_step="5 ms")
     count = (fine.sizes["time"] - 1) // 4
@@ -479,7 +479,7 @@ def test_motions_do_not_depend_on_the_mass(scenario, power):
 
 
 @pytest.mark.parametrize("scene", SOIL_SCENES)
-def test_the_same_scene_in_other_units_responds_alike(scene):
+def test_response_is_equal_in_other_units(scene):
     metric = [
         rf.Block(width="2.4 m", height="9.6 m", mass="50 t"),
         rf.WinklerSoil(stiffness="20 MPa", damping="250 kPa*s"),

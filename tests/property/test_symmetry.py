@@ -121,7 +121,7 @@ def test_a_mirrored_record_gives_the_mirrored_response(base, seed):
 
 @pytest.mark.parametrize("base", RULES)
 @pytest.mark.parametrize("xi", [0.0, 0.2])
-def test_what_is_symmetric_stays_symmetric(base, xi):
+def test_purely_vertical_motion_causes_no_rotation(base, xi):
     """Shaken up and down only, off its pads and back, the block never turns."""
     system = Scenario(base=base, peak=1.0, vertical=0.0, **{**CASE, "xi": xi}).system
     t = np.arange(401) * 0.01

@@ -262,7 +262,7 @@ def imbalances(equation, contact, printed):
     [(eq_12a, FULL), (eq_12b, FULL), (eq_15a, LEFT), (eq_15a, RIGHT), (eq_15b, LEFT),
      (eq_15b, RIGHT)],
 )  # fmt: skip
-def test_the_corrected_equation_is_newton_and_eulers(equation, contact):
+def test_corrected_equations_match_newton_euler(equation, contact):
     assert imbalances(equation, contact, set()).max() < EXACT
 
 
@@ -290,7 +290,7 @@ def imbalances_13c(printed):
     return np.array(values)
 
 
-def test_the_lever_of_the_horizontal_reaction():
+def test_lever_of_horizontal_reaction_in_eq_13c():
     assert imbalances_13c(set()).max() < EXACT
     assert np.median(imbalances_13c({"angle"})) > 1e-2
 
@@ -310,7 +310,7 @@ def rigid_damper(case, strength):
 
 
 @pytest.mark.parametrize(("reading", "holds"), [("corner", True), ("centre", False)])
-def test_the_inertia_in_the_law_of_impact(reading, holds):
+def test_impact_law_holds_with_inertia_about_corner(reading, holds):
     """Eqs. (2) and (3) hold if their I_O is the inertia about a corner, I_O + m R0^2."""
     strength = 0.4  # c_inf dt
     for case in cases(FULL)[:20]:
@@ -373,12 +373,12 @@ def energy_drift(contact, printed):
 
 
 @pytest.mark.parametrize("contact", [FULL, LEFT, RIGHT], ids=["full", "left", "right"])
-def test_the_corrected_equations_keep_the_energy(contact):
+def test_corrected_equations_conserve_energy(contact):
     assert energy_drift(contact, set()) < 1e-9
 
 
 @pytest.mark.parametrize("contact", [FULL, LEFT, RIGHT], ids=["full", "left", "right"])
-def test_the_printed_equations_do_not_keep_it(contact):
+def test_printed_equations_do_not_conserve_energy(contact):
     everything = {"angle", "omega", "damping", "bracket", "side"}
     assert energy_drift(contact, everything) > 1e-3
 
@@ -407,7 +407,7 @@ MODES = {
 
 
 @pytest.mark.parametrize("contact", [FULL, LEFT, RIGHT], ids=["full", "left", "right"])
-def test_rockframe_solves_newton_and_eulers_equations(contact):
+def test_rockframe_accelerations_match_newton_euler(contact):
     for case in cases(contact)[:50]:
         system = model_of(case).system
         mode = system.part.number_of(MODES[contact])

@@ -98,7 +98,7 @@ def test_table_1_row_4_as_printed_has_another_space_proportion():
     assert ROW_4_AS_PRINTED.printed_chi == 0.123
 
 
-def test_table_1_row_4_is_mended_by_the_sections_of_row_1_only():
+def test_only_sections_of_row_1_correct_table_1_row_4():
     """Of the column widths and beam heights in the table one pair alone gives 0.123."""
     sizes = (0.25, 0.30, 0.35, 0.40)
     fitting = [
@@ -111,7 +111,7 @@ def test_table_1_row_4_is_mended_by_the_sections_of_row_1_only():
 
 
 @every(ALL)
-def test_the_space_proportion_is_that_of_the_closed_form(row):
+def test_space_proportion_matches_closed_form(row):
     assert row.frame().space_proportion == pytest.approx(row.closed_chi(), rel=1e-13)
 
 
@@ -145,7 +145,7 @@ def test_no_densities_give_the_printed_shape_factor(row):
     assert float(alone.min()) > 2.0 > row.printed_mu
 
 
-def test_the_printed_shape_factors_are_no_multiple_of_ours():
+def test_printed_shape_factors_are_not_proportional_to_computed():
     ratios = [row.printed_mu / row.mu for row in TABLE_1]
     assert max(ratios) / min(ratios) > 4.0
 

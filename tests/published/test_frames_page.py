@@ -27,7 +27,7 @@ def check_steps(cells, steps):
     np.testing.assert_allclose(steps, expected, rtol=0.01)
 
 
-def test_under_the_record():
+def test_documented_ratios_under_record_are_reproduced():
     motion = tcu128(record_path("PEERSMD_CHICHI_TCU128-N.AT2"))
     rows = table(PAGE, SHAKEN)
     assert len(rows) == 12
@@ -42,7 +42,7 @@ def test_under_the_record():
         check_steps(lifts_and_steps[2:], both.steps)
 
 
-def test_released():
+def test_documented_ratios_in_free_response_are_reproduced():
     rows = table(PAGE, RELEASED)
     assert len(rows) == 4
     for floors, beta, *cells, _, _ in rows:

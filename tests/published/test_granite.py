@@ -20,7 +20,7 @@ CONFUSION = (
 )
 
 
-def test_probability_of_blocks_that_all_fall_below_one_angle():
+def test_probability_of_blocks_below_one_angle_in_closed_form():
     falls = np.arange(len(ANGLES)) <= 7
     bound = 0.5 * np.log(ANGLES[7] * ANGLES[8])
     for median, spread in ((0.08, 0.1), (0.2, 0.3)):
@@ -29,7 +29,7 @@ def test_probability_of_blocks_that_all_fall_below_one_angle():
 
 
 @pytest.mark.long
-def test_a_known_block_is_found_by_which_motions_overturn_it():
+def test_fit_recovers_known_block_from_its_verdicts():
     generator = np.random.default_rng(4)
     motions = [
         rf.GroundMotion.sine_pulse(f"{peak} m/s^2", f"{hertz} Hz", cycles)
@@ -58,7 +58,7 @@ def confusion():
     return {(row[0], row[1]): row[2:] for row in table(TABLES, CONFUSION)}
 
 
-def test_the_sentences_follow_the_tables():
+def test_sentences_agree_with_tables_and_data():
     told = confusion()
     for cells in told.values():
         hits, missed, false, stood = map(int, cells[:4])
@@ -85,7 +85,7 @@ def test_the_sentences_follow_the_tables():
         assert all(one["low"] < one["predicted"] < one["high"] for one in kept[name])
 
 
-def test_the_fitted_blocks_do_what_the_page_says():
+def test_documented_verdicts_of_fitted_blocks_are_reproduced():
     path = programme_path()
     if not path.is_file():
         pytest.skip(f"the shake-table tests are not at {path} (set {VARIABLE})")

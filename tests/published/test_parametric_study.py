@@ -60,7 +60,7 @@ def reference(restraint):
 
 
 @pytest.mark.long
-def test_every_run_ends_as_it_should(standard, reference):
+def test_every_run_ends_completed_or_overturned(standard, reference):
     for runs in (standard, reference):
         assert runs.peak_rotation.size == 108
         expected = xr.where(runs.overturned, 1, 0)
@@ -80,7 +80,7 @@ def test_standard_and_reference_agree(standard, reference):
     assert float(difference.max()) <= 1e-5
 
 
-def test_what_the_manual_says_of_the_levels():
+def test_documented_errors_of_accuracy_levels_are_reproduced():
     """The page "Accuracy", with the paper's gravity."""
     page, gravity = "guide/accuracy.md", "9.81 m/s^2"
     runs = {
@@ -113,7 +113,7 @@ def test_mirrored_pulse_gives_the_mirrored_result(standard, restraint):
 
 
 @pytest.mark.parametrize("accuracy", ["fast", "standard"])
-def test_one_sweep_gives_the_bits_of_single_runs(accuracy):
+def test_sweep_is_bitwise_identical_to_single_runs(accuracy):
     def scene(radius, slenderness, frequency_ratio, damping_ratio):
         block = rf.Block.from_size(radius=radius, slenderness=slenderness, mass="1 t")
         pads = rf.TwoSpringSupport(frequency_ratio=frequency_ratio, damping_ratio=damping_ratio)
@@ -153,7 +153,7 @@ def test_overturning_comes_sooner_with_slenderness(runs):
     assert (np.diff(times, axis=-1)[both] < 0.0).all()
 
 
-def test_overturning_after_the_pulse_at_h_over_b_6_is_refuted_on_pads(runs):
+def test_slender_block_on_pads_overturns_within_the_pulse(runs):
     # "the overturning response may occur after the end of excitation (H/B = 6.0 in Fig. 11)":
     # with the corrected equations the block of Fig. 11 (R0 = 5, beta = 20) overturns in the
     # pulse, at its first swing. On rigid ground it does what the paper says.
@@ -165,13 +165,13 @@ def test_overturning_after_the_pulse_at_h_over_b_6_is_refuted_on_pads(runs):
     assert float(rigid.overturning_time) == pytest.approx(3.12423, abs=1e-5)
 
 
-def test_larger_blocks_overturn_later_or_not_at_all(runs):
+def test_larger_blocks_overturn_less_often(runs):
     # "as the size of the structure increases, the possibility of overturning decreases"
     counts = runs.overturned.sum(["slenderness", "frequency_ratio", "damping_ratio"])
     assert (np.diff(counts.sel(radius=list(RADII)).to_numpy()) < 0).all()
 
 
-def test_flight_happens_though_the_paper_excludes_it(runs):
+def test_flight_occurs_in_a_quarter_of_the_runs(runs):
     # "this situation should be avoided"; it is not, in a quarter of the runs
     flights = runs.flight_time > 0.0
     assert int(flights.sum()) == 26

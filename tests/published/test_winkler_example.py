@@ -116,7 +116,7 @@ def test_numbers_of_the_free_response(released):
 
 @every_shape
 @pytest.mark.parametrize("floors", FLOORS)
-def test_the_cascade_knows_no_soil_in_a_free_response(released, floors, shape):
+def test_k0_has_no_influence_on_cascade_free_response(released, floors, shape):
     """A first stage at rest on a still ground stays there: k0 has no influence at all."""
     for beta in BETAS:
         runs = [released[shape, floors, beta, k0, "cascade"] for k0 in SOILS]
@@ -168,7 +168,7 @@ def test_six_storeys_on_soft_pads_respond_more_on_stiffer_soil(released, shape):
 
 
 @every_shape
-def test_stiff_pads_do_not_take_k0_out_of_six_storeys(released, shape):
+def test_k0_influences_six_storeys_on_stiff_pads(released, shape):
     """ "With the increase of the base spring stiffness (beta increase), k0 almost no longer has a
     large impact".
 
@@ -308,7 +308,7 @@ def test_the_vertical_displacement_of_three_storeys_is_above_that_of_six(release
 
 
 @pytest.mark.parametrize("floors", FLOORS)
-def test_neither_reading_of_the_cascade_gives_all_statements(floors):
+def test_neither_reading_of_cascade_confirms_all_statements(floors):
     """If the first stage has the initial rotation, k0 acts and beta does not.
 
     Then peaks increase with k0, more so with six storeys on soft pads, as in the paper; but the
@@ -332,7 +332,7 @@ def test_neither_reading_of_the_cascade_gives_all_statements(floors):
 # TCU128, section 4.3.2 ------------------------------------------------------------------------
 
 
-def test_the_record(motion):
+def test_record_window_contains_peak(motion):
     """30 to 60 s hold the strong part: the peak is that of the whole record, 0.170 g."""
     peak = float(np.abs(motion.to_dataset().acceleration).max())
     assert peak == pytest.approx(0.17024 * 9.80665, rel=1e-4)
@@ -396,7 +396,7 @@ def test_stiffer_pads_lessen_the_response(recorded):
         assert (np.diff(peaks) < 0.0).all() == (shape == PRINTED or floors == 6)
 
 
-def test_stiffer_pads_do_not_lessen_the_vertical_displacement_in_order(recorded):
+def test_stiffer_pads_do_not_always_reduce_vertical_displacement(recorded):
     """The same statement for the vertical displacement.
 
     Printed mu: held coupled, refuted by cascade, which has its largest at beta = 40. With mu by
@@ -412,7 +412,7 @@ def test_stiffer_pads_do_not_lessen_the_vertical_displacement_in_order(recorded)
 
 @every_shape
 @every_coupling
-def test_three_storeys_stand(recorded, coupling, shape):
+def test_three_storeys_do_not_overturn(recorded, coupling, shape):
     """ "For the three-story structure, the structure will not overturn during the entire event".
 
     Held: less than 5 % of the overturning angle at k0 = 9 MPa.
@@ -424,7 +424,7 @@ def test_three_storeys_stand(recorded, coupling, shape):
 
 @every_shape
 @every_coupling
-def test_six_storeys_on_soft_pads_stand_as_recorded(recorded, coupling, shape):
+def test_six_storeys_on_soft_pads_do_not_overturn(recorded, coupling, shape):
     """ "When the spring stiffness at the base is small (beta = 20), the six-story structure will
     overturn during the event".
 
@@ -436,7 +436,7 @@ def test_six_storeys_on_soft_pads_stand_as_recorded(recorded, coupling, shape):
 
 
 @pytest.mark.parametrize("density", [500.0, 750.0, 1000.0])
-def test_with_a_lighter_cap_the_verdicts_are_the_papers(motion, density):
+def test_lighter_cap_reproduces_verdicts_of_paper(motion, density):
     """The same statement with mu by Eq. (22), coupled, and a cap of 7 to 14 t: held.
 
     The record is not scaled. The paper does not say how heavy its cap is.
@@ -460,7 +460,7 @@ FACTORS = {
 
 
 @pytest.mark.parametrize("case", FACTORS, ids=str)
-def test_factors_at_which_the_frames_overturn(motion, case):
+def test_critical_factors_of_frames(motion, case):
     shape, floors, coupling = case
     for beta, factor in zip(BETAS, FACTORS[case], strict=True):
         system = scene(floors, beta, coupling, shape=shape)
@@ -490,7 +490,7 @@ def test_stiffer_pads_avoid_overturning(motion, shape, coupling, factor):
         assert overturns(system, motion, factor) == ((floors, beta) == (6, 20))
 
 
-def test_height_and_soft_pads_bring_overturning_nearer():
+def test_height_and_soft_pads_lower_critical_factors():
     """ "Reducing the height of the structure or increasing the stiffness of the base spring will
     greatly reduce the response of the structure".
 
@@ -550,7 +550,7 @@ def test_conclusion_1_damping_of_the_pads(case):
 @every_coupling
 @every_shape
 @pytest.mark.parametrize("floors", FLOORS)
-def test_conclusion_2_size(motion, shape, floors, coupling):
+def test_conclusion_2_larger_frames_do_not_overturn(motion, shape, floors, coupling):
     """ "Increasing the size can effectively prevent the overturning of the rocking block".
 
     Held: at the factor that overturns a frame, one of twice the size stands on the same soil. For
@@ -562,7 +562,7 @@ def test_conclusion_2_size(motion, shape, floors, coupling):
 
 
 @every_shape
-def test_conclusion_3_soil_and_height_free(released, shape):
+def test_conclusion_3_soil_and_height_in_free_response(released, shape):
     """ "When the spring stiffness of the base is small, the soil elastic coefficient has a greater
     impact on the higher story structure".
 

@@ -41,7 +41,7 @@ def test_uplift(damping_ratio):
 
 
 @pytest.mark.parametrize("restraint", RULES)
-def test_uplift_with_changes_met(restraint):
+def test_uplift_with_steps_at_contact_changes_matches_mujoco(restraint):
     case = Case("half sine", 0.35, 0.10, restraint, seconds=SECONDS)
     found, impacts = compared(case, meet_changes=True)
     assert impacts > 0

@@ -63,7 +63,7 @@ def states(pair):
         yield rng.normal(size=12) * OF_UPPER, mode, ours, ground
 
 
-def test_accelerations_are_those_solved_by_hand(pair):
+def test_accelerations_match_two_body_solution(pair):
     by_hand, chain = pair
     for state, mode, ours, ground in states(pair):
         slope = by_hand.accelerate(mode, state, ground)
@@ -71,7 +71,7 @@ def test_accelerations_are_those_solved_by_hand(pair):
         assert close(chain.energies(ours, state), by_hand.energies(mode, state), 1e-12)
 
 
-def test_guards_are_those_of_both_bodies(pair):
+def test_guards_match_two_body_solution(pair):
     by_hand, chain = pair
     # those of the cap, whose ends have one each
     lower = [0, CORNER_GUARDS, *range(2 * CORNER_GUARDS, GUARDS)]
@@ -84,7 +84,7 @@ def test_guards_are_those_of_both_bodies(pair):
         assert np.allclose(np.array(found.changes)[places], theirs.changes, rtol=1e-9, atol=1e-9)
 
 
-def test_velocities_answer_impulses_as_solved_by_hand(pair):
+def test_impulse_responses_match_two_body_solution(pair):
     by_hand, chain = pair
     rng = np.random.default_rng(4)
     for state, mode, ours, _ in states(pair):
@@ -101,7 +101,7 @@ def test_velocities_answer_impulses_as_solved_by_hand(pair):
             assert close(other[:-1], one[:-1], 1e-11)  # a cap that is held has no sway of its own
 
 
-def test_what_is_observed_is_what_two_bodies_show(pair):
+def test_observed_columns_match_two_body_solution(pair):
     by_hand, chain = pair
     memory = np.random.default_rng(5).normal(size=len(MEMORY) + 1)
     # motion and forces of the block, the cap's motion, the block on the cap, then the bases
@@ -119,7 +119,7 @@ def test_what_is_observed_is_what_two_bodies_show(pair):
         )
 
 
-def test_a_chain_tells_what_it_cannot_carry(pair):
+def test_unknown_base_law_raises(pair):
     by_hand, _ = pair
     body, numbers = (
         by_hand.upper.body,
@@ -147,7 +147,7 @@ if COMPILED:
             assert found.difference < 1e-6, one
             assert found.run.energy_residual < 1e-8, one
 
-    def test_runs_of_a_mirrored_stack_are_mirrored():
+    def test_mirrored_stack_gives_mirrored_response():
         scene = replace(draw(np.random.default_rng([77, 3, 5]), 3), rotation=0.05)
         ours = run_chain(scene, None, "standard", 0.01)
         mirror = run_chain(mirrored(scene), None, "standard", 0.01)
@@ -156,13 +156,13 @@ if COMPILED:
         assert np.abs(rotations(model, ours) + rotations(other, mirror)).max() < 1e-12
 
     @pytest.mark.long
-    def test_fast_steps_come_near():
+    def test_fast_and_standard_stay_near_reference_model():
         scene = draw(np.random.default_rng([77, 3, 5]), 3)
         assert compared(scene, "fast").difference < 1e-2
         assert compared(scene, "standard").difference < 1e-5
 
 
-def test_the_comparison_that_the_manual_shows_is_what_was_found():
+def test_documented_comparison_matches_data():
     tables = json.loads(DATA.read_text())
     page = (DATA.parents[1] / "validation_scenes.md").read_text()
     for table in tables:

@@ -166,7 +166,7 @@ def test_a_raised_block_starts_in_vertical_equilibrium():
 # balances -----------------------------------------------------------------------------------
 
 
-def test_without_damping_and_loss_the_energy_is_kept():
+def test_lossless_system_conserves_energy():
     run = coupled.simulate(
         **tower(xi=0.0, soil_xi=0.0, settlement=0.01),
         restitution=1.0,
@@ -212,7 +212,7 @@ def test_the_balance_of_energy_closes_in_flight(restraint):
     assert run.energy_residual < 1e-9
 
 
-def test_off_the_soil_both_momenta_are_those_of_a_free_system():
+def test_momenta_of_flying_system_are_those_of_free_bodies():
     run = leap()
     q, v = coordinates(run), run.rates
     free = run.cap_contact == "flight"
@@ -293,7 +293,7 @@ def test_a_landing_scales_the_speed_of_the_corner():
         assert push > 0.0
 
 
-def test_contact_is_a_function_of_the_state():
+def test_contact_is_determined_by_state():
     size = tower(settlement=0.015, xi=0.2)
     k, c, delta = pads(size)
     run = rocked()
@@ -318,7 +318,7 @@ def test_contact_is_a_function_of_the_state():
 # limits and symmetry ------------------------------------------------------------------------
 
 
-def test_on_a_heavy_hard_footing_the_block_rocks_as_on_two_springs():
+def test_heavy_hard_footing_converges_to_block_on_two_springs():
     times = np.linspace(0.0, 1.2, 25)
     given = {**BLOCK, "frequency_ratio": 12.0, "damping_ratio": 0.1, "duration": 1.2}
     k, _, delta = pads(given)
@@ -349,7 +349,7 @@ def test_on_a_heavy_hard_footing_the_block_rocks_as_on_two_springs():
     assert misses[1] == pytest.approx(misses[0] / 10.0, rel=0.05)
 
 
-def test_on_hard_pads_block_and_cap_are_one_body_on_the_soil():
+def test_block_and_cap_on_hard_pads_converge_to_one_body():
     times = np.linspace(0.0, 0.7, 15)
     high = (M_C * H_C + M * (H + 2.0 * H_C)) / (M + M_C)
     inertia = INERTIA + CAP_INERTIA

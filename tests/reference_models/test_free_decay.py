@@ -82,12 +82,12 @@ def test_restitution_without_noise():
         *(pytest.param(*by, marks=pytest.mark.long) for by in ((1.1, 0.9), (0.9, 0.9), (1.1, 1.1))),
     ],
 )
-def test_pads_without_noise_from_starts_that_are_off_by_a_tenth(frequency, damping):
+def test_pad_parameters_are_recovered_from_perturbed_start(frequency, damping):
     found = read_back(pads(20.0 * frequency, 0.1 * damping), on_pads(), PADS)
     np.testing.assert_allclose(found.fitted_value, [20.0, 0.1], rtol=1e-6)
 
 
-def test_restitution_of_pads_is_found_with_their_other_parameters():
+def test_pad_restitution_is_recovered_with_other_parameters():
     start = rf.System(
         BLOCK, rf.TwoSpringSupport(frequency_ratio=21, damping_ratio=0.11, restitution=0.85)
     )
@@ -97,7 +97,7 @@ def test_restitution_of_pads_is_found_with_their_other_parameters():
 
 
 @pytest.mark.long
-def test_intervals_hold_the_true_values_as_often_as_they_say():
+def test_confidence_intervals_have_stated_coverage():
     system, rotation = rf.System(BLOCK), on_rigid_ground()
     fits = [read_back(system, rotation, "restitution", 1e-3, seed) for seed in range(24)]
     scores = np.array([errors(found, [0.9]) for found in fits])
@@ -107,14 +107,14 @@ def test_intervals_hold_the_true_values_as_often_as_they_say():
 
 
 @pytest.mark.long
-def test_intervals_of_pads():
+def test_confidence_intervals_of_pad_parameters_cover_true_values():
     fits = [read_back(pads(), on_pads(), PADS, 5e-4, seed) for seed in range(6)]
     scores = [errors(found, [20.0, 0.1]) for found in fits]
     assert np.mean(np.abs(scores) < 1.976) >= 0.85
     assert np.max(np.abs(scores)) < 5.0
 
 
-def test_noise_that_is_not_independent_is_told():
+def test_correlated_noise_warns():
     smooth = np.convolve(np.random.default_rng(3).normal(size=TIME.size + 9), np.ones(10), "valid")
     with pytest.warns(ModelWarning, match="each residual follows the one before"):
         found = read_back(rf.System(BLOCK), on_rigid_ground() + 3e-4 * smooth, "restitution")

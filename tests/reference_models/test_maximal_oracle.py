@@ -29,7 +29,7 @@ PULSE = Excitation.pulse(HARMONIC, 1.0 / 128.0, 128, 1.0, 0.0, 4.0, 2.0)
 SOIL = {"soil_stiffness": 15e6, "cap_width": 3.0, "cap_height": 0.8, "cap_mass": 2e4}
 
 
-def test_formula_has_its_order():
+def test_runge_kutta_formula_has_order_8():
     rows = runge_kutta.MATRIX.sum(axis=1)
     assert np.allclose(rows, runge_kutta.NODES, atol=1e-14)
     for order in range(1, 9):
@@ -109,7 +109,7 @@ def test_mirrored_motion():
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_the_mirror_image_of_an_eccentric_block(kind):
+def test_mirrored_eccentric_block_gives_mirrored_response(kind):
     scene = Scene(
         kind, rule="leading-corner", eccentricity=0.3, xi=0.3, beta=12.0, free=2.0, cap=True, **SOIL
     )
@@ -122,7 +122,7 @@ def test_the_mirror_image_of_an_eccentric_block(kind):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_an_eccentric_block_rests_where_it_starts(kind):
+def test_eccentric_block_starts_in_equilibrium(kind):
     """Closed statics against the accelerations of the equations of motion."""
     leans = []
     for number in range(60):

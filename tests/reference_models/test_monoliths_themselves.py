@@ -64,7 +64,7 @@ def noisy_record(seed=3, count=121, step=0.02, peak=4.0):
 
 
 @pytest.mark.parametrize("rotation", ["finite", "small"])
-def test_free_rocking_without_damping_keeps_its_energy(rotation):
+def test_lossless_free_rocking_conserves_energy(rotation):
     start = 0.1
     run = two_spring.simulate(
         **{**GOLDEN, "damping_ratio": 0.0},
@@ -169,7 +169,7 @@ def test_mirror_symmetry(restraint):
     assert [event.kind for event in runs[0].events] == [event.kind for event in runs[1].events]
 
 
-def test_knots_may_be_restarted_or_stepped_over():
+def test_restarting_at_knots_does_not_change_result():
     step, record = noisy_record(count=61)
     common = {**GOLDEN, "duration": 2.0, "sample_times": np.linspace(0.0, 2.0, 21)}
     grid = step * np.arange(record.size)
@@ -190,7 +190,7 @@ def test_knots_may_be_restarted_or_stepped_over():
 
 
 @pytest.mark.parametrize("restraint", RULES)
-def test_a_straight_drop_stays_straight(restraint):
+def test_flat_drop_causes_no_rotation(restraint):
     _, _, delta = bed(20.0)
     height = 0.05
     run = two_spring.simulate(
@@ -230,7 +230,7 @@ def test_vertical_motion_in_contact_is_a_damped_oscillator():
     np.testing.assert_allclose(run.vertical, exact, rtol=0, atol=1e-12 * delta + 1e-14)
 
 
-def test_a_record_that_ends_high_ends_at_once():
+def test_nonzero_final_sample_drops_to_zero_at_once():
     omega, _, delta = bed(20.0)
     push, last = 2.0, 0.4
     times = np.linspace(0.0, 1.2, 61)
@@ -295,7 +295,7 @@ def test_landing_scales_the_speed_of_the_corner():
         assert momentum == pytest.approx(arm * (event.after[4] - event.before[4]), rel=1e-9)
 
 
-def test_taking_hold_again_does_not_chatter():
+def test_re_engagement_does_not_chatter():
     run = two_spring.simulate(
         **{**GOLDEN, **block(10.0, 4.0), "frequency_ratio": 10.0}, **one_sine(), duration=10.0
     )
@@ -307,7 +307,7 @@ def test_taking_hold_again_does_not_chatter():
 
 
 @pytest.mark.parametrize("eps", [1.0, None, 0.5])
-def test_hard_springs_tend_to_the_greatest_restitution_of_the_rigid_block(eps):
+def test_hard_springs_converge_to_greatest_restitution_of_rigid_block(eps):
     """An impulse at the new corner has no moment about it: the rate is halted by eps_max only."""
     start = 0.5 * math.atan(0.25)
     times = np.linspace(0.0, 2.4, 1201)
@@ -327,7 +327,7 @@ def test_hard_springs_tend_to_the_greatest_restitution_of_the_rigid_block(eps):
     assert run.events[0].time > 1.0
 
 
-def test_overturning_stops_or_goes_on():
+def test_run_stops_or_continues_at_overturning():
     size = {**GOLDEN, **block(1.0, 6.0)}
     theta = math.atan(1.0 / 6.0)
     times = [0.0, 0.2, 5.0]
@@ -444,7 +444,7 @@ def test_thresholds_of_overturning_without_impact(cycles, ratio, threshold):
     assert below.overturned == (cycles == 1.0)
 
 
-def test_a_rigid_block_waits_rests_and_starts_again():
+def test_rigid_block_rests_and_uplifts_again():
     size = block(2.0, 4.0)
     times = np.linspace(0.0, 12.0, 121)
     weak = 0.24 * G * np.sin(np.linspace(0.0, 6.0 * math.pi, 200))

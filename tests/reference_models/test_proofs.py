@@ -87,7 +87,7 @@ def holds(boxes, run):
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_a_run_with_fifty_digits_is_inside(name, exact_runs):
+def test_enclosures_contain_fifty_digit_run(name, exact_runs):
     boxes, prover = enclosures(name)
     assert prover.impacts == exact_runs[name].impacts > 2
     assert holds(boxes, exact_runs[name])
@@ -110,7 +110,7 @@ def member(name, kind, by):
 @pytest.mark.parametrize(
     "name", [pytest.param("symmetric", marks=pytest.mark.long), "skew, with vertical motion"]
 )
-def test_a_run_with_another_number_is_inside_a_set_of_them(name, kind, tolerance):
+def test_set_enclosures_contain_run_with_perturbed_parameter(name, kind, tolerance):
     boxes, prover = enclosures(name, **{kind: tolerance})
     assert prover.impacts > 2
     for share in (-0.999, 0.6):
@@ -118,7 +118,7 @@ def test_a_run_with_another_number_is_inside_a_set_of_them(name, kind, tolerance
     assert not holds(boxes, member(name, kind, 40.0 * tolerance).run())
 
 
-def test_a_run_with_all_numbers_off_is_inside_a_set_of_all():
+def test_set_enclosures_contain_run_with_all_parameters_perturbed():
     by = 0.9e-7
     boxes, _ = enclosures("another motion", restitution=1e-7, scale=1e-7, angle=1e-7)
     block = changed(changed(numbers(SYMMETRIC), -by, "restitution"), by, "angle")
@@ -126,7 +126,7 @@ def test_a_run_with_all_numbers_off_is_inside_a_set_of_all():
 
 
 @pytest.mark.parametrize("kind", ["scale", "angle"])
-def test_what_an_input_does_within_a_step_is_missed_where_it_is_left_out(kind, monkeypatch):
+def test_omitted_deviation_within_step_is_caught(kind, monkeypatch):
     right = flow.Deviations.of
 
     def wrong(sign, **given):
@@ -137,7 +137,7 @@ def test_what_an_input_does_within_a_step_is_missed_where_it_is_left_out(kind, m
     assert not holds(boxes, member("symmetric", kind, 0.9e-7).run())
 
 
-def test_members_that_lift_before_the_last_one_are_inside():
+def test_set_enclosures_contain_members_that_uplift_early():
     # without what they rise until then the set would begin at rest
     boxes, _ = enclosures("symmetric", scale=1e-4)
     first = min(boxes, key=lambda interval: (boxes[interval][0] == 0, interval))
@@ -146,7 +146,7 @@ def test_members_that_lift_before_the_last_one_are_inside():
         assert holds({first: boxes[first]}, run)
 
 
-def test_members_of_a_set_may_strike_before_a_sample_and_after_it(monkeypatch):
+def test_set_enclosures_contain_impacts_on_both_sides_of_sample(monkeypatch):
     tolerance, sample, across = 1e-3, 53, (0.82 * ACROSS).round(6)
     monkeypatch.setitem(CASES, "about a sample", (SYMMETRIC, across, None))
     boxes, _ = enclosures("about a sample", restitution=tolerance)
@@ -224,7 +224,7 @@ def test_radii_that_are_forgotten_are_caught(exact_runs, monkeypatch):
     assert caught("symmetric", exact_runs["symmetric"])
 
 
-def test_an_impact_that_is_not_guessed_is_never_passed_over(monkeypatch):
+def test_unpredicted_impact_leaves_verdict_undecided(monkeypatch):
     monkeypatch.setattr(RockingProver, "_predict_impact", lambda *arguments: None)
     with pytest.raises(Undecided):
         enclosures("symmetric")

@@ -306,7 +306,7 @@ def outside(case, prepare=None, beside=NOWHERE):
     "case",
     [pytest.param(case, marks=[pytest.mark.long] * (k != 1)) for k, case in enumerate(CASES)],
 )
-def test_enclosures_hold_the_run_of_fifty_digits(case):
+def test_enclosures_contain_fifty_digit_run(case):
     found = outside(case)
     assert found.stopped is None
     assert found.missed == 0
@@ -331,7 +331,7 @@ def widened(one):
     one.states = one.states._replace(spread=radii / one.weights)
 
 
-def test_the_set_of_a_box_holds_the_run_from_its_corner():
+def test_box_enclosures_contain_run_from_its_corner():
     found = outside("skew, held by contact", widened, BESIDE)
     assert found.stopped is None
     assert found.missed == 0
@@ -363,7 +363,7 @@ def about_a_jump(moved):
     return one.states.box(one.weights)
 
 
-def test_members_that_land_on_both_sides_of_a_jump_of_the_ground_are_enclosed():
+def test_landings_on_both_sides_of_ground_jump_are_enclosed():
     radii = np.array([1e-10, 1e-10, 1e-10, 1e-10, 0.0])
 
     def widen(one):
@@ -381,7 +381,7 @@ def test_members_that_land_on_both_sides_of_a_jump_of_the_ground_are_enclosed():
 
 
 @pytest.mark.parametrize("restraint", ["centre", "contact-state"])
-def test_a_corner_that_may_lift_off_before_the_other_one_lands_is_undecided(restraint):
+def test_possible_lift_off_before_landing_is_undecided(restraint):
     """The left corner lands within some 3e-6 s, in which the right pad may cease to press."""
     system = rf.System(EVEN, FIRM, restraint=restraint, gravity="9.81 m/s^2")
     still = rf.GroundMotion.from_arrays(([0.0, 0.0], "m/s^2"), "1 s").si

@@ -6,7 +6,7 @@ from reference_models.walls import compare
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_rotations_impacts_and_verdicts_are_those_of_the_other_program(seed):
+def test_random_walls_match_independent_program(seed):
     apart, ours, theirs = compare(seed)
     assert apart < 1e-7
     assert bool(ours.overturned) == theirs.overturned

@@ -95,7 +95,7 @@ def landing(pair: Pair, place, speed, touching):
     return pattern, int(memory[kept + ADMISSIBLE_COUNT]), np.array(six), after / had
 
 
-def test_one_body_is_housners():
+def test_chain_of_one_body_matches_housner_block():
     rng = np.random.default_rng(1)
     impacts = compared = one = 0
     while compared < 30:
@@ -134,7 +134,7 @@ def test_one_body_is_housners():
 
 
 @pytest.mark.parametrize("slenderness", [1.5, 3.0, 8.0])
-def test_one_body_loses_in_an_impact_what_housners_does(slenderness):
+def test_impact_of_one_body_has_housner_restitution(slenderness):
     _, model = alone(rf.Block(width="1 m", height=f"{slenderness} m", mass="1 t"))
     system, state, memory = model.system, np.zeros(6), np.zeros(len(model.memory))
     mode = system.with_bearing_corners(0, 2, 0)
@@ -195,7 +195,7 @@ def changes():
 
 
 @pytest.mark.parametrize("change", changes())
-def test_what_was_eliminated_is_forgotten_as_places_or_loads_change(change):
+def test_elimination_is_invalidated_when_positions_or_loads_change(change):
     stone, block = rf.RigidGround(friction=0.3), rf.Block(width="1 m", height="1 m", mass="1 t")
     stack = rf.Stack(block, block, interfaces=[stone])
     system = rf.System(stack, stone).assembly.model.system
@@ -221,7 +221,7 @@ def column(count):
     return model.system, *model.initial(Start())[:2]
 
 
-def test_forces_stand_for_the_mode_state_and_ground_that_they_were_solved_for_alone():
+def test_cached_forces_are_valid_only_for_same_mode_state_and_ground():
     system, standing, state = column(12)
     ground = Ground(0.5, 0.1)
     system.find_forces(standing, state, ground)
@@ -240,7 +240,7 @@ def test_forces_stand_for_the_mode_state_and_ground_that_they_were_solved_for_al
     assert not system.forces_are_valid(large + 1, state, ground)
 
 
-def test_bodies_that_rest_on_the_ground_are_ground_to_those_above():
+def test_resting_bodies_act_as_ground_for_bodies_above():
     """The motion is that of which all forces are solved for, of one that rocks on two at rest."""
     system, standing, state = column(3)
     rocks = system.with_bearing_corners(standing, 0b111101, 0)

@@ -65,7 +65,7 @@ def test_landings_in_exact_numbers(pair, before, rate, after, rates, energy):
     assert 1.0 - found.lost / whole == pytest.approx(energy, rel=1e-13)
 
 
-def test_landings_by_angular_momentum():
+def test_exact_landing_rates_follow_from_angular_momentum():
     """Momentum about the corner on the ground, and of the upper block about its own corner."""
     third = sp.Rational(1, 3)
     half, one = sp.Rational(1, 2), sp.Integer(1)
@@ -247,7 +247,7 @@ def monolith(width, height, peak, free):
     )  # fmt: skip
 
 
-def test_a_body_of_hardly_any_mass_leaves_the_lower_one_a_block_alone():
+def test_nearly_massless_upper_body_leaves_lower_block_alone():
     one = Body.uniform(0.5, 2.0, 1000.0)
     run = simulate(
         Pair(one, Body.uniform(0.4, 0.05, 1e-9)), harmonic(3.4, 0.0, **PULSE, free=1.5), 0.01
@@ -258,7 +258,7 @@ def test_a_body_of_hardly_any_mass_leaves_the_lower_one_a_block_alone():
     assert run.place[:count, 2] == pytest.approx(alone.rotation[:count], abs=1e-9)
 
 
-def test_a_heavy_lower_body_stands():
+def test_heavy_lower_body_acts_as_ground():
     squat = Body.uniform(4.0, 0.2, 1e9)
     run = simulate(
         Pair(squat, Body.uniform(0.5, 2.0, 1000.0)), harmonic(3.4, 0.0, **PULSE, free=1.5), 0.01
@@ -280,7 +280,7 @@ def test_halves_of_a_column_rock_as_one_body():
 
 
 @pytest.mark.long
-def test_dying_rocking_of_one_body_ends():
+def test_decaying_rocking_ends_in_rest():
     """Impacts of a block alone accumulate: the sum of their spans is finite."""
     half = Body.uniform(0.5, 1.0, 500.0)
     run = simulate(
@@ -327,7 +327,7 @@ def test_tolerance_does_not_matter():
 
 
 @pytest.mark.long
-def test_ground_that_falls_away_leaves_both_in_flight():
+def test_falling_ground_leaves_bodies_in_flight():
     """Jolted upwards and then dropped faster than they fall, they fly, land and rest."""
     pieces = harmonic(0.3, -14.0, 2.0, 1, free=1.0)
     run = simulate(ROUGH, pieces, 0.01, quickest=0.5)
@@ -338,7 +338,7 @@ def test_ground_that_falls_away_leaves_both_in_flight():
 
 @pytest.mark.long
 @pytest.mark.skipif(not have_records(), reason="recorded motions are not there")
-def test_a_hinge_that_pulls_and_would_close_at_once_is_held():
+def test_pulling_hinge_that_would_close_at_once_is_held():
     """Opposite senses of rocking: let go, a light upper block would come down on the lower one."""
     scene = draw(np.random.default_rng([11, 29]))
     pieces, period = pieces_for(scene.motion)
@@ -368,7 +368,7 @@ def test_random_scenes_uplift_and_overturn():
 @pytest.mark.parametrize(
     "number", [2, 11, *(pytest.param(one, marks=pytest.mark.long) for one in (0, 13))]
 )
-def test_the_package_moves_alike(number):
+def test_rockframe_matches_reference_model(number):
     found = compared(draw(np.random.default_rng([11, number])))
     assert found.same_verdict
     assert found.difference < 1e-8
@@ -378,7 +378,7 @@ def test_the_package_moves_alike(number):
 
 
 @pytest.mark.long
-def test_how_many_patterns_are_admissible():
+def test_number_of_admissible_patterns():
     rng = np.random.default_rng(5)
     found = {kind: counted(rng, kind, 400) for kind in KINDS}
     for kind in KINDS[:2]:
@@ -403,7 +403,7 @@ def test_impacts_lose_energy_and_keep_momentum(kind):
             )
 
 
-def test_complementary_impulses_are_one_pattern_where_all_that_touches_presses():
+def test_complementary_impulses_match_projected_pattern():
     rng = np.random.default_rng(7)
     same = 0
     for _ in range(200):
@@ -417,7 +417,7 @@ def test_complementary_impulses_are_one_pattern_where_all_that_touches_presses()
     assert same > 100
 
 
-def test_all_subsets_are_tried():
+def test_patterns_cover_all_subsets_of_touching_ends():
     assert len(patterns(ALL)) == 16
     assert len(set(patterns(ALL))) == 16
     assert len(patterns({"ground": ("left",), "joint": ("left", "right")})) == 8

@@ -30,7 +30,7 @@ def test_random_scenes(number):
     "number",
     [pytest.param(one, marks=[pytest.mark.long] * (one in (6, 199))) for one in ON_SPRINGS],
 )
-def test_random_scenes_of_which_one_base_gives_way(number):
+def test_random_scenes_with_one_compliant_base_match_rockframe(number):
     one = compared(draw_giving([8, number]))
     assert max(one.rotation, one.slip) < AGREES
     assert not one.missing

@@ -44,7 +44,7 @@ def jolt(acceleration, length, free, up=0.0):
 # places ----------------------------------------------------------------------------------------
 
 
-def test_rows_and_turns_are_derivatives_of_the_places():
+def test_contact_rows_are_derivatives_of_positions():
     rng = np.random.default_rng(1)
     for _ in range(5):
         place = standing(ROUGH) + rng.uniform(-0.4, 0.4, 6)
@@ -69,7 +69,7 @@ def test_rows_and_turns_are_derivatives_of_the_places():
             assert found == pytest.approx((low[1] - 2 * low[0] + low[2]) / size**2, abs=1e-4)
 
 
-def test_tidied_places_touch_where_they_bear():
+def test_projected_positions_touch_at_bearing_ends():
     rng = np.random.default_rng(2)
     for ground, joint in [
         (ENDS, ENDS),
@@ -93,7 +93,7 @@ def test_tidied_places_touch_where_they_bear():
 
 
 @pytest.mark.parametrize("number", [3, 13, 14, 16, 57])
-def test_friction_without_end_is_the_pair_that_is_held(number):
+def test_infinite_friction_matches_pair_without_slip(number):
     """Numbers of scenes with pulses in which the upper body is the narrower one."""
     scene = plain_drawing.draw(np.random.default_rng([11, number]))
     pieces, period = plain_drawing.pieces_for(scene.motion)
@@ -134,7 +134,7 @@ def lone_block(rng):
 # it slides, rocks, does both, and slips in impacts. In scenes that are not here many ever smaller
 # impacts end while the block slides; each program leaves out the last ones in its own way, to 1e-5
 @pytest.mark.parametrize("number", [1, 7, 8, 11, 33])
-def test_a_heavy_lower_body_leaves_the_upper_one_a_block_alone(number):
+def test_upper_body_on_heavy_body_matches_lone_block(number):
     heavy = Body.uniform(30.0, 1.0, 1e12)
     body, friction, across, block = lone_block(np.random.default_rng([3, number]))
     pieces = [*pieces_of(0.1, across), still(2.5, 3.5)]
@@ -177,7 +177,7 @@ def test_newmarks_distance(key, times, share):
     assert run.energies[key] == pytest.approx(burnt, rel=1e-10)
 
 
-def test_vertical_acceleration_adds_to_what_presses():
+def test_vertical_acceleration_changes_friction_force():
     run = simulate_pair(
         FLAT, {**HELD, "ground": Friction(0.1, 0.1)},
         jolt(3.0, 0.3, 2.0, up=-4.0), 0.01,
@@ -225,7 +225,7 @@ def rolls_over(slender, friction):
 
 @pytest.mark.parametrize("key", INTERFACES)
 @pytest.mark.parametrize(("slender", "friction"), [(0.4, 0.1), (0.4, 0.25), (0.6, 0.3), (0.3, 0.5)])
-def test_impacts_of_one_rectangle(key, slender, friction):
+def test_impacts_of_one_rectangle_in_closed_form(key, slender, friction):
     """Below 3 t / (4 + t²) the corner that strikes slips through the impact."""
     body = Body.uniform(2.0 * slender, 2.0, 1.0)
     if key == "joint":
@@ -365,7 +365,7 @@ def test_tolerance_does_not_matter():
     assert runs[1].slip == pytest.approx(runs[0].slip, abs=1e-8)
 
 
-def test_the_slip_is_what_the_base_has_moved():
+def test_slip_equals_displacement_of_bearing_end():
     """While nothing flies: of the end that bears, along the surface under it."""
     scene = draw([7, 48])
     run = simulate(scene)
@@ -378,7 +378,7 @@ def test_the_slip_is_what_the_base_has_moved():
     assert np.mean(np.subtract(found, start)) == pytest.approx(slip[1], abs=1e-9)
 
 
-def test_ground_that_falls_away_leaves_both_in_flight():
+def test_falling_ground_leaves_bodies_in_flight():
     frictions = {"ground": Friction(0.5, 0.4), "joint": Friction(0.4, 0.35)}
     pieces = harmonic(0.3, -14.0, 2.0, 1, free=1.0)
     run = simulate_pair(ROUGH, frictions, pieces, 0.01, quickest=0.5)
@@ -387,7 +387,7 @@ def test_ground_that_falls_away_leaves_both_in_flight():
     assert all(one.ends == ENDS for one in run.events[-1].after)
 
 
-def test_an_upper_base_that_leaves_the_top_is_told():
+def test_upper_base_leaving_the_top_raises():
     frictions = {"ground": Friction(), "joint": Friction(0.1, 0.1)}
     pair = replace(FLAT, offset=0.9)
     with pytest.raises(OffTheTopError, match="leaves the top") as fault:
@@ -398,7 +398,7 @@ def test_an_upper_base_that_leaves_the_top_is_told():
         simulate_pair(replace(FLAT, offset=1.1), frictions, jolt(5.0, 0.3, 2.0), 0.01)
 
 
-def test_motion_whose_events_have_no_end_is_told():
+def test_endless_events_end_run_as_chatter():
     """Slips that end and begin on both bases rock the bodies, each time less."""
     pair = Pair(
         Body.uniform(0.86, 2.0, 6600.0), Body(4900.0, 1720.0, 0.333, 1.053, 1.109, 0.0134), -0.003

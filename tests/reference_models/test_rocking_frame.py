@@ -23,7 +23,7 @@ def scenes(count):
         yield rng, column, number, rng.choice([0.0, 0.3, 1.0, 4.0, 20.0]) * number * mass
 
 
-def test_accelerations_reactions_and_impacts_are_those_of_the_bodies():
+def test_accelerations_reactions_and_impacts_match_separate_bodies():
     for rng, column, number, beam in scenes(60):
         si = column.si
         bodies = Bodies(
@@ -58,7 +58,7 @@ def test_accelerations_reactions_and_impacts_are_those_of_the_bodies():
         assert landed == pytest.approx(-side * abs(rate) * restitution, rel=1e-12)
 
 
-def test_tendons_pull_as_between_the_bodies():
+def test_tendon_forces_match_separate_bodies():
     for rng, column, number, beam in scenes(40):
         si = column.si
         bodies = Bodies(
@@ -95,7 +95,7 @@ def test_tendons_pull_as_between_the_bodies():
         assert held == pytest.approx(-still * corner, rel=1e-10)
 
 
-def test_points_of_columns_and_beam_are_where_the_bodies_are():
+def test_points_of_columns_and_beam_match_separate_bodies():
     _, column, number, beam = next(scenes(1))
     si = column.si
     bodies = Bodies(

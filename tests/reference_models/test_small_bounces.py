@@ -68,7 +68,7 @@ def members(system, motion, until):
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("name", BLOCKS)
 @pytest.mark.parametrize("shaking", GROUNDS)
-def test_every_member_rests_or_has_lifted_as_it_was_told(name, shaking):
+def test_every_member_rests_or_uplifts_within_bounds(name, shaking):
     motion = GROUNDS[shaking]
     system, found = settled(BLOCKS[name], motion)
     assert found is not None
@@ -88,7 +88,7 @@ def test_every_member_rests_or_has_lifted_as_it_was_told(name, shaking):
         assert set(states) == {(0.0, 0.0)}
 
 
-def test_bounces_that_lose_more_than_they_do_are_caught(monkeypatch):
+def test_overestimated_bounce_losses_are_caught(monkeypatch):
     motion, block = GROUNDS["strong to one side"], BLOCKS["symmetric"]
     right = bounces._Bounds.restitution
     monkeypatch.setattr(bounces._Bounds, "restitution", property(lambda of: right.fget(of) / 3))
@@ -97,7 +97,7 @@ def test_bounces_that_lose_more_than_they_do_are_caught(monkeypatch):
     assert any(state != (0.0, 0.0) for state in members(system, motion, until))
 
 
-def test_rotations_that_grow_as_a_slow_ground_lifts_the_block_are_bounded():
+def test_rotations_are_bounded_as_slow_ground_lifts_block():
     """The ground takes three times 1/p to lift a block that it has nearly lifted at the start."""
     system = rf.System(BLOCKS["symmetric"], gravity="9.81 m/s^2")
     assembly, lasts = system.assembly, "1.6 s"
@@ -120,7 +120,7 @@ def test_rotations_that_grow_as_a_slow_ground_lifts_the_block_are_bounded():
             assert found is None or float(run.peak_rotation) <= found.height
 
 
-def test_members_that_may_not_have_struck_yet_keep_the_speed_before_their_impact(monkeypatch):
+def test_members_before_impact_use_speed_before_impact(monkeypatch):
     system, seen = rf.System(BLOCKS["symmetric"], gravity="9.81 m/s^2"), []
     assembly = system.assembly
     monkeypatch.setattr(rocking, "follow_bounces", lambda *given: seen.append(float(given[3])))
@@ -143,7 +143,7 @@ def test_members_that_may_not_have_struck_yet_keep_the_speed_before_their_impact
     assert seen[2] < 1.1 * SPEED
 
 
-def test_a_ground_that_may_jump_is_known_and_pays_for_it():
+def test_jumping_ground_is_detected_and_widens_speed_bound():
     block = rf.System(BLOCKS["symmetric"], gravity="9.81 m/s^2").assembly
     lines = GROUNDS["strong to one side"]
     jumping = rf.GroundMotion.sine_pulse("1 m/s^2", "2 Hz")

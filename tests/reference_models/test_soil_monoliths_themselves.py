@@ -99,7 +99,7 @@ def test_resultants_are_those_of_many_small_springs(separation, finite):
 
 
 @pytest.mark.parametrize("finite", [True, False])
-def test_what_ends_a_state_is_given_with_its_rate(finite):
+def test_guard_rates_match_finite_differences(finite):
     bed = winkler.Bed(
         half_width=WIDTH, height=HEIGHT, stiffness=700.0, damping=40.0, settlement=0.01,
         separation="pressure", finite=finite,
@@ -197,7 +197,7 @@ def test_slight_motion_has_the_frequencies_of_full_contact(rotation, separation)
     assert not run.events
 
 
-def test_a_bed_in_full_contact_is_two_springs_nearer_in():
+def test_bed_in_full_contact_matches_springs_at_gauss_points():
     """Force, moment and power are of second degree along the base: two points do as well."""
     size = body(settlement=0.02, damping_ratio=0.2)
     b = WIDTH / math.sqrt(3.0)
@@ -225,7 +225,7 @@ def test_a_bed_in_full_contact_is_two_springs_nearer_in():
 
 
 @pytest.mark.parametrize("rotation", ["finite", "small"])
-def test_free_rocking_without_damping_keeps_its_energy(rotation):
+def test_lossless_free_rocking_conserves_energy(rotation):
     run = winkler.simulate(
         **body(damping_ratio=0.0),
         restraint="leading-corner",
@@ -384,7 +384,7 @@ def test_the_restraint_rules_coincide_for_small_rotation():
         np.testing.assert_allclose(other.rotation, runs[0].rotation, rtol=0, atol=1e-11)
 
 
-def test_mass_and_stiffness_go_together():
+def test_response_depends_only_on_stiffness_over_mass():
     times = np.linspace(0.0, 1.5, 31)
     runs = [
         winkler.simulate(
@@ -396,7 +396,7 @@ def test_mass_and_stiffness_go_together():
     assert runs[1].dashpot_work == pytest.approx(MASS * runs[0].dashpot_work, rel=1e-8)
 
 
-def test_overturning_stops_or_goes_on():
+def test_run_stops_or_continues_at_overturning():
     size = body(half_width=0.4, half_height=2.0)
     pulse = {"acceleration": lambda t: -G * math.sin(2.0 * math.pi * t), "breakpoints": (0.5,)}
     stopped = winkler.simulate(**size, **pulse, duration=2.0, sample_times=[0.0, 2.0], **TIGHT)

@@ -51,7 +51,7 @@ def stack(count: int, **given) -> Scene:
 
 @pytest.mark.parametrize("kind", COLUMNS)
 @pytest.mark.parametrize("variant", ["plain", "eccentric"])
-def test_one_or_two_bodies_as_in_the_other_model(kind, variant):
+def test_one_or_two_bodies_match_maximal_coordinates_model(kind, variant):
     for number in range(SCENES[variant]):
         known = replace(draw_known(kind, 1, number, variant), separation="displacement")
         if known.small:
@@ -208,7 +208,7 @@ def test_a_corner_that_would_be_held_again_at_once_does_not_leave():
 
 
 @pytest.mark.parametrize("firm", [1.0, 2.0])
-def test_firm_pads_make_one_body_of_three(firm):
+def test_three_bodies_on_firm_pads_converge_to_one_body(firm):
     """Three blocks on pads so stiff that they stay together, beside one of their size."""
     third, whole = block(1.0, 1.0), block(1.0, 3.0)
     below = pads([whole], 30.0, eps=1.0)[0]  # an impact would act on the lowest block alone

@@ -139,7 +139,7 @@ def compared() -> list:
     return found
 
 
-def test_rotations_are_those_of_the_monolith(compared):
+def test_rotations_match_monolith(compared):
     assert len(compared) >= SCENES - 5
     differences = {}
     for number, run, theirs in compared:
@@ -151,7 +151,7 @@ def test_rotations_are_those_of_the_monolith(compared):
     assert np.median(list(differences.values())) < 1e-9
 
 
-def test_so_are_the_events_of_ties_and_the_energies(compared):
+def test_tie_events_match_monolith_and_energy_balances(compared):
     kinds = Counter()
     for number, run, theirs in compared:
         shown = run.events.kind[run.events.kind >= EventKind.RESTRAINER_SLACK]

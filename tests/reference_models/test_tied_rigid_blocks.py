@@ -125,14 +125,14 @@ def compared() -> list[dict]:
     return [found for number in SCENES if (found := compare(number)) is not None]
 
 
-def test_rotations_are_those_written_by_hand(compared):
+def test_rotations_match_handwritten_equation(compared):
     assert len(compared) == len(SCENES)
     off = {one["number"]: one["difference"] for one in compared if one["difference"] > AGREES}
     assert off == {}
     assert np.median([one["difference"] for one in compared]) < 1e-9
 
 
-def test_so_are_the_verdicts_and_the_energies(compared):
+def test_verdicts_match_handwritten_equation_and_energy_balances(compared):
     kinds = Counter()
     for one in compared:
         assert one["energy_residual"] < 1e-8, one["number"]
@@ -149,7 +149,7 @@ def test_so_are_the_verdicts_and_the_energies(compared):
         (True, (1.085,), (1.0,)),  # from 0.984 to 1.064 g
     ],
 )
-def test_an_anchored_block_falls_where_a_free_one_stands(anchored, stands, falls):
+def test_anchored_block_overturns_where_free_block_does_not(anchored, stands, falls):
     """Makris and Zhang's effect, against a Runge-Kutta scan: a sine of six times p."""
     theta, p, gravity, mass = 0.349, 2.14, 9.81, 1000.0
     radius = 0.75 * gravity / p**2

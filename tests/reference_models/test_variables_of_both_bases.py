@@ -122,7 +122,7 @@ def observed(model, run):
 
 @pytest.mark.long
 @pytest.mark.reference_models
-def test_each_base_has_its_own_variables_and_states():
+def test_each_base_of_stack_has_own_variables_and_states():
     plain = stack(lambda pads: pads, lambda pads: pads)
     model = stack(
         lambda pads: aged(pads, "age_above", RATES[0]),

@@ -176,7 +176,7 @@ def test_a_landing_makes_pads_yield():
 
 
 @pytest.mark.parametrize("rule", [pytest.param("centre", marks=pytest.mark.long), "contact-state"])
-def test_pads_that_are_strong_enough_are_elastic(rule):
+def test_monolith_with_strong_pads_matches_elastic_monolith(rule):
     """The monolith against the one of elastic pads."""
     scene = Scene(radius=3.0, slenderness=3.0, xi=0.05, rough=(9.0, 3.0, 26))
     times = np.linspace(0.0, scene.duration, 301)
