@@ -135,8 +135,8 @@ def test_unknown_base_law_raises(pair):
 
 
 if COMPILED:
-    from reference_models.stacks.comparing import compared, model_of, rotations, run_chain
-    from reference_models.stacks.drawing import draw
+    from reference_models.stacks.comparison import compared, model_of, rotations, run_chain
+    from reference_models.stacks.random_scenes import draw
 
     # the reference model takes most of a minute to compile
     @pytest.mark.long

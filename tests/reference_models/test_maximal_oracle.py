@@ -10,11 +10,11 @@ import pytest
 pytest.importorskip("numba")
 from reference_models.maximal import layout as at
 from reference_models.maximal import runge_kutta
-from reference_models.maximal.comparing import compare, run_reference
-from reference_models.maximal.drawing import VARIANTS, draw
+from reference_models.maximal.comparison import compare, run_reference
 from reference_models.maximal.excitation import HARMONIC
 from reference_models.maximal.forces import accelerate, rooms
 from reference_models.maximal.guards import total_rotation
+from reference_models.maximal.random_scenes import VARIANTS, draw
 from reference_models.maximal.running import kinetic, run, stored
 from reference_models.maximal.scene import GRAVITY, KINDS, Scene, mirrored, paces, parameters
 from reference_models.maximal.simulate import Excitation, simulate

@@ -17,9 +17,9 @@ from reference_models.rigid_pair.choices import (
 )
 from reference_models.rigid_pair.compare import compared
 from reference_models.rigid_pair.count_impacts import KINDS, counted, draw_impact, draw_pair
-from reference_models.rigid_pair.drawing import draw, have_records, pieces_for
 from reference_models.rigid_pair.ground import harmonic, still
 from reference_models.rigid_pair.pair import GRAVITY, Body, Pair, Pattern, Phase
+from reference_models.rigid_pair.random_scenes import draw, have_records, pieces_for
 from reference_models.rigid_pair.simulate import simulate
 
 pytestmark = pytest.mark.reference_models

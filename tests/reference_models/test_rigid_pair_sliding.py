@@ -2,9 +2,9 @@
 
 import pytest
 from reference_models.rigid_pair.compare import AGREES
-from reference_models.rigid_pair.drawing import have_records
+from reference_models.rigid_pair.random_scenes import have_records
 from reference_models.rigid_pair_sliding.compare import compared
-from reference_models.rigid_pair_sliding.drawing import draw, draw_giving
+from reference_models.rigid_pair_sliding.random_scenes import draw, draw_giving
 
 pytestmark = [pytest.mark.wide, pytest.mark.reference_models]
 

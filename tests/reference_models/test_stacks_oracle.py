@@ -6,19 +6,19 @@ import numpy as np
 import pytest
 
 pytest.importorskip("numba")
-from reference_models.maximal.drawing import draw as draw_known
 from reference_models.maximal.excitation import HARMONIC
 from reference_models.maximal.motions import both
+from reference_models.maximal.random_scenes import draw as draw_known
 from reference_models.maximal.scene import Scene as Known
 from reference_models.maximal.simulate import Excitation
 from reference_models.maximal.simulate import simulate as simulate_known
-from reference_models.stacks.drawing import draw
+from reference_models.stacks.contact import COMPLETED
 from reference_models.stacks.forces import accelerate
+from reference_models.stacks.from_maximal import as_stack
 from reference_models.stacks.impulses import jump, relate
-from reference_models.stacks.paired import as_stack
+from reference_models.stacks.random_scenes import draw
 from reference_models.stacks.scene import GRAVITY, Bed, Body, Pads, Scene, mirrored, stack_of
 from reference_models.stacks.simulate import simulate
-from reference_models.stacks.standing import COMPLETED
 from reference_models.stacks.starting import placed, rest_of
 
 # tests of a reference model, which changes seldom

@@ -19,9 +19,9 @@ if __package__ in (None, ""):
     sys.path.insert(0, str(HERE.parents[2]))
     sys.path.append(str(ROOT))
 
-from reference_models.maximal.comparing import LEVELS, Outcome, compare  # noqa: E402
-from reference_models.maximal.drawing import VARIANTS  # noqa: E402
+from reference_models.maximal.comparison import LEVELS, Outcome, compare  # noqa: E402
 from reference_models.maximal.motions import have_records  # noqa: E402
+from reference_models.maximal.random_scenes import VARIANTS  # noqa: E402
 from reference_models.maximal.scene import KINDS  # noqa: E402
 
 DATA = ROOT / "docs" / "data"

@@ -9,6 +9,7 @@ from .compiling import compiled
 from .events import due
 from .excitation import ground
 from .forces import has_lower
+from .guard_search import SAMPLES, earliest, sample_guards
 from .guards import evaluate, noise_levels
 from .impulses import tidy
 from .layout import (
@@ -32,7 +33,6 @@ from .layout import (
 )
 from .rigid_switches import place_hinged
 from .runge_kutta import rates, step
-from .watching import SAMPLES, earliest, sample_guards
 
 TIME, STEP, STOP, PACE, LONGEST = range(5)
 

@@ -21,9 +21,9 @@ if __package__ in (None, ""):
     sys.path.insert(0, str(HERE.parents[2]))
     sys.path.append(str(ROOT))
 
-from reference_models.rigid_pair import drawing  # noqa: E402
-from reference_models.rigid_pair.drawing import FREE, Scene  # noqa: E402
+from reference_models.rigid_pair import random_scenes  # noqa: E402
 from reference_models.rigid_pair.pair import Body  # noqa: E402
+from reference_models.rigid_pair.random_scenes import FREE, Scene  # noqa: E402
 from reference_models.rigid_pair.simulate import Run, simulate  # noqa: E402
 
 import rockframe as rf  # noqa: E402
@@ -81,7 +81,7 @@ def system_of(scene: Scene) -> rf.System:
 def motion_of(motion: dict[str, Any]) -> rf.GroundMotion:
     """Return the package's ground motion."""
     if motion["form"] == "record":
-        step, across, up = drawing.record_of(motion)
+        step, across, up = random_scenes.record_of(motion)
         return rf.GroundMotion.from_arrays((across, "m/s^2"), f"{step!r} s", vertical=(up, "m/s^2"))
     make = getattr(rf.GroundMotion, f"{motion['form']}_pulse")
     made = [
@@ -94,7 +94,7 @@ def motion_of(motion: dict[str, Any]) -> rf.GroundMotion:
 
 def compared(scene: Scene, accuracy: str = "reference") -> Compared:
     """Run a scene by both."""
-    pieces, period = drawing.pieces_for(scene.motion)
+    pieces, period = random_scenes.pieces_for(scene.motion)
     reference = simulate(scene.pair, pieces, STEP, quickest=period)
     package = system_of(scene).simulate(
         motion_of(scene.motion), free_vibration=f"{FREE!r} s", accuracy=accuracy,
@@ -119,7 +119,7 @@ def table_of(seed: int, numbers) -> dict:
     found = {}
     for one in numbers:
         try:
-            found[one] = compared(drawing.draw(np.random.default_rng([seed, one])))
+            found[one] = compared(random_scenes.draw(np.random.default_rng([seed, one])))
         except Exception as fault:
             fault.add_note(f"scene {one}")
             raise
@@ -135,7 +135,7 @@ def table_of(seed: int, numbers) -> dict:
     )  # fmt: skip
     return {
         "seed": seed,
-        "records": drawing.have_records(),
+        "records": random_scenes.have_records(),
         "scenes": len(found),
         "agree": int(np.sum(differences < AGREES)),
         "median": float(f"{np.median(differences):.1e}"),
@@ -174,7 +174,7 @@ def main() -> None:
         "--json", type=Path, default=ROOT / "docs" / "data" / "rigid_pair_oracle.json"
     )
     given = parser.parse_args()
-    if not drawing.have_records():
+    if not random_scenes.have_records():
         print("no recorded motions (set ROCKFRAME_RECORDS)")
         return
     table = table_of(given.seed, given.replay or range(given.scenes))

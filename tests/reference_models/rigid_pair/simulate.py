@@ -9,7 +9,7 @@ from scipy.integrate import DOP853
 from scipy.optimize import brentq
 
 from .choices import Outcome, complementary, projected, strike, touching_of, yield_to
-from .flying import gaps, shift_after
+from .flight import gaps, shift_after
 from .ground import Piece
 from .pair import ENDS, SIGN, Pair, Pattern, Phase, turned
 

@@ -23,14 +23,14 @@ if __package__ in (None, ""):
 from reference_models.monoliths.slipping_block import Bed, Pads  # noqa: E402
 from reference_models.rigid_pair import compare as held  # noqa: E402
 from reference_models.rigid_pair_sliding.contacts import INTERFACES  # noqa: E402
-from reference_models.rigid_pair_sliding.drawing import (  # noqa: E402
+from reference_models.rigid_pair_sliding.events import Event, OffTheTopError, Run  # noqa: E402
+from reference_models.rigid_pair_sliding.random_scenes import (  # noqa: E402
     FREE,
     STEP,
     Scene,
     draw,
     draw_giving,
 )
-from reference_models.rigid_pair_sliding.events import Event, OffTheTopError, Run  # noqa: E402
 from reference_models.rigid_pair_sliding.simulate import simulate  # noqa: E402
 
 import rockframe as rf  # noqa: E402

@@ -11,11 +11,11 @@ from scipy.integrate import DOP853
 from scipy.optimize import brentq
 
 from .choices import Frictions
+from .compliant_bases import Giving, GivingMoving
 from .contacts import STANDING, middle_slips
-from .drawing import Scene, pieces_for
 from .events import Run
-from .giving import Giving, GivingMoving
-from .moving import GONE, Moving
+from .moving_pair import GONE, Moving
+from .random_scenes import Scene, pieces_for
 
 
 class _Running(Moving):

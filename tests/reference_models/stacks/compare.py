@@ -18,9 +18,9 @@ if __package__ in (None, ""):
     sys.path.append(str(ROOT))
 
 from reference_models.maximal.motions import have_records  # noqa: E402
-from reference_models.stacks.comparing import compared  # noqa: E402
-from reference_models.stacks.drawing import draw, tied  # noqa: E402
-from reference_models.stacks.standing import OVERTURNED  # noqa: E402
+from reference_models.stacks.comparison import compared  # noqa: E402
+from reference_models.stacks.contact import OVERTURNED  # noqa: E402
+from reference_models.stacks.random_scenes import draw, tied  # noqa: E402
 
 AGREES = 1e-6
 

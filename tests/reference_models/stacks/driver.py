@@ -5,12 +5,12 @@ from typing import NamedTuple
 import numpy as np
 from reference_models.maximal.compiling import compiled, within
 from reference_models.maximal.excitation import ground
-from reference_models.maximal.watching import SAMPLES
+from reference_models.maximal.guard_search import SAMPLES
 
+from .contact import COMPLETED, FIRED, OVERTURNED, SUSPECT, TOO_SMALL
+from .guard_search import earliest
 from .guards import due, evaluate, noise_levels
 from .impulses import tidy
-from .searching import earliest
-from .standing import COMPLETED, FIRED, OVERTURNED, SUSPECT, TOO_SMALL
 from .stepping import may_fall, rates, sample_guards, step
 
 # time, next step, number of the last stop, the step that was taken, whether it ends at a stop

@@ -6,8 +6,8 @@ import numpy as np
 from reference_models.maximal.compiling import compiled, within
 from reference_models.maximal.impulses import solve_dense
 
+from .contact import FREE, HELD, SLIDES, SLIDING, TOUCHING
 from .kinematics import end, relative, sway
-from .standing import FREE, HELD, SLIDES, SLIDING, TOUCHING
 
 
 @compiled

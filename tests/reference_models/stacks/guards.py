@@ -5,11 +5,7 @@ import math
 import numpy as np
 from reference_models.maximal.compiling import compiled, within
 
-from .forces import accelerate, pad_force, stretched
-from .impulses import relate, slip
-from .kinematics import end, size_of, sway
-from .scene import LEADING_CORNER
-from .standing import (
+from .contact import (
     BASE_GUARDS,
     CLEAR,
     END_GUARDS,
@@ -23,6 +19,10 @@ from .standing import (
     SLIDING,
     TOUCHING,
 )
+from .forces import accelerate, pad_force, stretched
+from .impulses import relate, slip
+from .kinematics import end, size_of, sway
+from .scene import LEADING_CORNER
 
 QUIET = 1e-11
 """Speed of an end, over a typical one, that is rounding."""

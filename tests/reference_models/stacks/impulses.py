@@ -4,9 +4,9 @@ import numpy as np
 from reference_models.maximal.compiling import compiled
 from reference_models.maximal.impulses import solve_dense
 
+from .contact import HELD
 from .forces import end_row, hold_row, product
 from .kinematics import end, relative, sway
-from .standing import HELD
 
 
 @compiled

@@ -8,12 +8,12 @@ import numpy as np
 from reference_models.maximal.excitation import RECORD, ground
 from reference_models.maximal.simulate import Excitation
 
+from .contact import BASE_GUARDS, CHATTER, FIRED, OVERTURNED, Room, Standing
 from .driver import STOP, TIME, Course, advance
 from .forces import base_force
 from .guards import noise_levels
 from .impulses import kinetic, relate
 from .scene import Scene, Stack, stack_of
-from .standing import BASE_GUARDS, CHATTER, FIRED, OVERTURNED, Room, Standing
 from .starting import start
 from .stepping import Motion, path_of
 from .switches import Events

@@ -5,11 +5,7 @@ import math
 import numpy as np
 from scipy.optimize import root
 
-from .forces import accelerate, pad_force, stretched
-from .impulses import note_places, relate
-from .kinematics import end, sway
-from .scene import CENTRE, LEADING_CORNER, WORKS, Scene, Stack
-from .standing import (
+from .contact import (
     CLEAR,
     HELD,
     RELAXING,
@@ -19,6 +15,10 @@ from .standing import (
     room_of,
     standing_of,
 )
+from .forces import accelerate, pad_force, stretched
+from .impulses import note_places, relate
+from .kinematics import end, sway
+from .scene import CENTRE, LEADING_CORNER, WORKS, Scene, Stack
 
 
 class NoRestError(Exception):

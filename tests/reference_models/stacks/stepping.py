@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from reference_models.maximal.compiling import compiled, within
 from reference_models.maximal.excitation import ground
+from reference_models.maximal.guard_search import SAMPLES, dip
 from reference_models.maximal.runge_kutta import ERROR_WEIGHT, MATRIX, NODES, STAGES, WEIGHTS
-from reference_models.maximal.watching import SAMPLES, dip
 
 from .forces import accelerate, powers
 from .guards import evaluate

@@ -6,12 +6,7 @@ These functions run once for each event and are not compiled.
 
 import math
 
-from .forces import accelerate, pad_force, yielding_rate
-from .guards import QUIET
-from .impulses import jump, note_places, project, relate, slip
-from .kinematics import end, size_of, sway
-from .scene import CENTRE, LEADING_CORNER
-from .standing import (
+from .contact import (
     BASE_GUARDS,
     CLEAR,
     END_GUARDS,
@@ -26,6 +21,11 @@ from .standing import (
     SLIDING,
     TOUCHING,
 )
+from .forces import accelerate, pad_force, yielding_rate
+from .guards import QUIET
+from .impulses import jump, note_places, project, relate, slip
+from .kinematics import end, size_of, sway
+from .scene import CENTRE, LEADING_CORNER
 
 SAME = 1e-9
 """Share of the settlement within which both ends land, or leave, together."""

@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from reference_models.maximal.drawing import draw_log, draw_motion
+from reference_models.maximal.random_scenes import draw_log, draw_motion
 
 from .scene import GRAVITY, RULES, Body, Pads, Scene, Tie, centre_of
 

@@ -7,7 +7,6 @@ import numpy as np
 
 import rockframe as rf
 
-from .drawing import draw
 from .layout import (
     BED_SETTLEMENT,
     CHATTER,
@@ -22,6 +21,7 @@ from .layout import (
 )
 from .motions import both
 from .program import TIGHT, rows_at, run_program, scaled_start
+from .random_scenes import draw
 from .scene import Scene, parameters
 from .simulate import TOLERANCE, History, simulate
 

@@ -4,15 +4,15 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from reference_models.rigid_pair import drawing
-from reference_models.rigid_pair.drawing import draw_pair, log_between
+from reference_models.rigid_pair import random_scenes
 from reference_models.rigid_pair.ground import Piece, pieces_of, still
 from reference_models.rigid_pair.pair import GRAVITY, Pair
+from reference_models.rigid_pair.random_scenes import draw_pair, log_between
 
 from .choices import Frictions
 from .contacts import INTERFACES, Friction
 
-FREE = drawing.FREE
+FREE = random_scenes.FREE
 """Still ground after a motion [s]."""
 STEP = 0.1
 """Between the samples of noise [s]."""
@@ -133,6 +133,6 @@ def _motion(rng: np.random.Generator, pair: Pair, frictions: Frictions) -> dict[
 def pieces_for(motion: dict[str, Any]) -> tuple[list[Piece], float]:
     """Return the pieces of a motion and of still ground after it, and its least period [s]."""
     if motion["form"] != "noise":
-        return drawing.pieces_for(motion)
+        return random_scenes.pieces_for(motion)
     pieces = pieces_of(STEP, motion["across"], motion["up"])
     return [*pieces, still(pieces[-1].stop, pieces[-1].stop + FREE)], math.inf

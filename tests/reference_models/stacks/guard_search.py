@@ -1,6 +1,6 @@
 """The first guard that falls through zero in a step, and when."""
 
-from reference_models.maximal.watching import LAPS, POINTS, SAMPLES, dip
+from reference_models.maximal.guard_search import LAPS, POINTS, SAMPLES, dip
 
 from .stepping import value_at
 

@@ -13,7 +13,7 @@ from reference_models.rigid_pair.pair import ENDS
 
 from .choices import Touch
 from .contacts import INTERFACES, Bearing, Contact, Pattern, contact, height, on_top
-from .moving import Moving
+from .moving_pair import Moving
 
 HELD = "held"
 """In place of the ends of an interface that gives way: the point that is held, or slips."""

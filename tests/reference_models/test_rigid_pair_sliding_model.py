@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from reference_models.monoliths.slide_rock import Block
-from reference_models.rigid_pair import drawing as plain_drawing
+from reference_models.rigid_pair import random_scenes as rigid_scenes
 from reference_models.rigid_pair import simulate as plain
 from reference_models.rigid_pair.ground import Piece, harmonic, pieces_of, still
 from reference_models.rigid_pair.pair import ENDS, GRAVITY, Body, Pair
@@ -22,8 +22,8 @@ from reference_models.rigid_pair_sliding.contacts import (
     standing,
     tidied,
 )
-from reference_models.rigid_pair_sliding.drawing import draw
 from reference_models.rigid_pair_sliding.events import OffTheTopError
+from reference_models.rigid_pair_sliding.random_scenes import draw
 from reference_models.rigid_pair_sliding.simulate import simulate, simulate_pair
 
 pytestmark = [pytest.mark.reference_models, pytest.mark.long]
@@ -95,8 +95,8 @@ def test_projected_positions_touch_at_bearing_ends():
 @pytest.mark.parametrize("number", [3, 13, 14, 16, 57])
 def test_infinite_friction_matches_pair_without_slip(number):
     """Numbers of scenes with pulses in which the upper body is the narrower one."""
-    scene = plain_drawing.draw(np.random.default_rng([11, number]))
-    pieces, period = plain_drawing.pieces_for(scene.motion)
+    scene = rigid_scenes.draw(np.random.default_rng([11, number]))
+    pieces, period = rigid_scenes.pieces_for(scene.motion)
     one = plain.simulate(scene.pair, pieces, 0.01, quickest=period)
     two = simulate_pair(scene.pair, HELD, pieces, 0.01, quickest=period)
     assert one.overturned == two.overturned
