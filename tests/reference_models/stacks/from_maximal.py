@@ -1,4 +1,4 @@
-"""Scenes of the model of one or two bodies as stacks."""
+"""Scenes of the reference model ``maximal``, of one or two bodies, as stacks."""
 
 from reference_models.maximal import layout as at
 from reference_models.maximal.rest import rest_of
@@ -8,24 +8,26 @@ from reference_models.maximal.scene import parameters
 from .scene import Bed, Body, Pads, Scene
 
 
-def as_stack(known: Known) -> Scene:
+def as_stack(scene: Known) -> Scene:
     """Return a scene of finite rotation on pads, a bed that parts by displacement, or both."""
-    p = parameters(known, 1e-13)
+    p = parameters(scene, 1e-13)
     bodies: list[Body] = []
     bases: list[Pads | Bed] = []
-    if known.kind != "bed":
-        h, e = known.half_height, known.eccentricity
-        bodies.append(Body(known.mass, known.inertia, known.half_width, h, h, 0.0, e))
-        bases.append(Pads(p[at.STIFFNESS], p[at.DAMPING], known.rebounds()))
-    if known.kind != "pads":
+    if scene.kind != "bed":
+        h, e = scene.half_height, scene.eccentricity
+        bodies.append(Body(scene.mass, scene.inertia, scene.half_width, h, h, 0.0, e))
+        bases.append(Pads(p[at.STIFFNESS], p[at.DAMPING], scene.rebounds()))
+    if scene.kind != "pads":
         width, height, e = p[at.LOWER_HALF_WIDTH], p[at.LOWER_HEIGHT], p[at.LOWER_ECCENTRICITY]
         mass, inertia = p[at.LOWER_MASS], p[at.LOWER_INERTIA]
-        # the block alone decides whether both overturn
-        limit = None if known.kind == "bed" else float("inf")
+        # the rotation of the block decides the overturning of both
+        limit = None if scene.kind == "bed" else float("inf")
         bodies.append(Body(mass, inertia, width, height, p[at.TOP], 0.0, e, limit))
         bases.append(Bed(p[at.BED_STIFFNESS], p[at.BED_DAMPING]))
-    angle, rate = known.start * p[at.LIMIT], known.start_rate * known.frequency * p[at.LIMIT]
-    if known.kind == "coupled":  # it tells the rotation relative to the ground
-        angle -= rest_of(known, p).lower_angle
-    told = known.told or known.start != 0.0 or known.eccentricity == 0.0
-    return Scene(tuple(bodies), tuple(bases), known.rule, angle if told else None, rate, known.free)
+    angle, rate = scene.start * p[at.LIMIT], scene.start_rate * scene.frequency * p[at.LIMIT]
+    if scene.kind == "coupled":  # that model states the rotation relative to the ground
+        angle -= rest_of(scene, p).lower_angle
+    explicit_start = scene.told or scene.start != 0.0 or scene.eccentricity == 0.0
+    return Scene(
+        tuple(bodies), tuple(bases), scene.rule, angle if explicit_start else None, rate, scene.free
+    )
