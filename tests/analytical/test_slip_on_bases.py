@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from benchmarks.random_parts import drawn
+from benchmarks.random_parts import draw_scene
 from plainly import plainly
 
 import rockframe as rf
@@ -282,7 +282,7 @@ def test_friction_as_great_as_one_likes_holds(friction):
 @pytest.mark.parametrize(("number", "ends"), [(189, "0.1 s"), (169, "0.13 s"), (174, "0.13 s")])
 def test_great_friction_is_compared_no_finer_than_what_presses_is_known(number, ends):
     """Each body slipped and stuck in turn, without end, as its friction came to the limit."""
-    drawn_system, shake = drawn("friction on pads", np.random.default_rng(number))
+    drawn_system, shake = draw_scene("friction on pads", np.random.default_rng(number))
     block = drawn_system.parts["block"]
     width, height = block.si.width, block.si.height
     below = rf.Block(
@@ -334,7 +334,7 @@ def test_a_corner_of_a_squat_body_keeps_nothing_of_its_speed_on_pads():
 )
 def test_corners_that_rounding_sends_back_to_their_pads_leave(number, ends):
     """Each came down and left in turn, without end, as it touched its pad on its way up."""
-    system, motion = drawn("stack of squat bodies", np.random.default_rng(number))
+    system, motion = draw_scene("stack of squat bodies", np.random.default_rng(number))
     with plainly():
         found = system.simulate(
             motion, duration=ends, accuracy="fast", outputs=None, second_look=False
@@ -344,7 +344,7 @@ def test_corners_that_rounding_sends_back_to_their_pads_leave(number, ends):
 
 def test_a_body_that_would_slip_hardly_any_way_is_held_where_its_end_turns_back():
     """It slipped to either side at the middle and at a corner, and its end left and landed."""
-    system, motion = drawn("stack of squat bodies", np.random.default_rng(2412))
+    system, motion = draw_scene("stack of squat bodies", np.random.default_rng(2412))
     with plainly():
         found = system.simulate(motion, duration="0.36 s", outputs=("energy",))
     assert int(found.status) <= Status.TOPPLED
@@ -353,7 +353,7 @@ def test_a_body_that_would_slip_hardly_any_way_is_held_where_its_end_turns_back(
 
 def test_overturning_at_the_instant_of_another_event_is_no_repetition():
     """The state and the mode were those after the landing that came before, and the run ended."""
-    system, motion = drawn("stack of squat bodies", np.random.default_rng(840))
+    system, motion = draw_scene("stack of squat bodies", np.random.default_rng(840))
     with plainly():
         found = system.simulate(motion, accuracy="fast", outputs=None, second_look=False)
     assert int(found.status) == Status.OVERTURNED
@@ -363,7 +363,7 @@ def test_overturning_at_the_instant_of_another_event_is_no_repetition():
 @pytest.mark.long
 def test_friction_of_millions_lets_bounces_and_slips_end():
     """A body let go of its base and was held, without end, as the one below slipped."""
-    system, motion = drawn("stack with friction of any size", np.random.default_rng(650))
+    system, motion = draw_scene("stack with friction of any size", np.random.default_rng(650))
     found = system.simulate(motion, duration="1.03 s", outputs=("energy",), second_look=False)
     assert int(found.status) <= Status.TOPPLED
     assert float(found.energy_residual) < 1e-8

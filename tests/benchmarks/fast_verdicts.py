@@ -83,21 +83,23 @@ def arguments(scene, duration):
 def timed(system, plan):
     """Run; give what became of it, and the time."""
     start = time.perf_counter()
-    found = compute_response(system.assembly, plan).trajectory
-    return found, time.perf_counter() - start
+    trajectory = compute_response(system.assembly, plan).trajectory
+    return trajectory, time.perf_counter() - start
 
 
-def judged(system, motion, asked):
+def judge_fast(system, motion, arguments_of_run):
     """Tell what is wrong with a run at "fast", whether it says so, and what the looks cost."""
-    plan = plan_run(system.assembly, motion, accuracy="fast", **asked)
+    plan = plan_run(system.assembly, motion, accuracy="fast", **arguments_of_run)
     compute_response(
         system.assembly, plan
     )  # what is computed once for a scene is no cost of either
     first, cost = timed(system, plan)
     second, more = timed(system, second_look(system.assembly, plan))
-    exact = plan_run(system.assembly, motion, accuracy="reference", outputs=None, **asked)
+    exact = plan_run(
+        system.assembly, motion, accuracy="reference", outputs=None, **arguments_of_run
+    )
     truth, _ = timed(system, exact)
-    told = bool(list(doubts(system.setting, plan, first, second)))
+    is_reported = bool(list(doubts(system.setting, plan, first, second)))
     if first.overturned != truth.overturned:
         kind = "other verdict"
     elif abs(first.peak_rotation - truth.peak_rotation) > MAX_PEAK_ERROR * truth.peak_rotation:
@@ -108,19 +110,22 @@ def judged(system, motion, asked):
         kind = "other fall"
     else:
         kind = "right"
-    return kind, told, more / cost
+    return kind, is_reported, more / cost
 
 
 def main():
     """Print the table."""
     warnings.simplefilter("ignore", RockframeWarning)
     print("scenes | number | what is wrong | how many | of which told | median cost of the look")
-    for name, drawn, count in (("short", short, 1600), ("long", long, 3000)):
-        rows = [judged(*drawn(number)) for number in range(count)]
-        every, told = (Counter(kind for kind, said, _ in rows if said or k) for k in (True, False))
+    for name, draw_case, count in (("short", short, 1600), ("long", long, 3000)):
+        rows = [judge_fast(*draw_case(number)) for number in range(count)]
+        all_kinds, reported = (
+            Counter(kind for kind, is_reported, _ in rows if is_reported or k)
+            for k in (True, False)
+        )
         cost = float(np.median([cost for *_, cost in rows]))
-        for kind, of in every.items():
-            print(f"{name} | {count} | {kind} | {of} | {told[kind]} | {cost:.2f}", flush=True)
+        for kind, of in all_kinds.items():
+            print(f"{name} | {count} | {kind} | {of} | {reported[kind]} | {cost:.2f}", flush=True)
 
 
 if __name__ == "__main__":

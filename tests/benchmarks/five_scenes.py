@@ -29,10 +29,10 @@ class Scene:
 @cache
 def motion() -> rf.GroundMotion:
     """Return eight seconds of strong motion: in every scene contact changes."""
-    drawn = rf.GroundMotion.stochastic(
+    record = rf.GroundMotion.stochastic(
         6.8, "5 km", seed=29, stress_drop="20 MPa", source="one corner"
     )
-    return drawn.scaled(2.4).window("5 s", "13 s")
+    return record.scaled(2.4).window("5 s", "13 s")
 
 
 def scenes() -> dict[str, Scene]:

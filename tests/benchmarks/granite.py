@@ -25,13 +25,13 @@ from benchmarks.granite_programme import SPECIMENS, programme_path, read_program
 from rockframe.errors import RockframeWarning
 
 
-def what_blocks_did(bench: Bench, kept: Path | None) -> np.ndarray:
+def run_blocks(bench: Bench, cache: Path | None) -> np.ndarray:
     """Try all blocks with all motions, or read what they did, shape (pairs, angles, tests)."""
-    if kept is not None and kept.is_file():
-        return np.load(kept)
+    if cache is not None and cache.is_file():
+        return np.load(cache)
     overturned = np.array([verdicts(pair, bench.shakings) for pair in pairs().tolist()])
-    if kept is not None:
-        np.save(kept, overturned)
+    if cache is not None:
+        np.save(cache, overturned)
     return overturned
 
 
@@ -44,7 +44,7 @@ def main() -> None:
     options = parser.parse_args()
     warnings.simplefilter("ignore", RockframeWarning)
     bench = Bench.of(read_programme(options.tests))
-    overturned = what_blocks_did(bench, options.verdicts)
+    overturned = run_blocks(bench, options.verdicts)
     studies = {}
     for one in SPECIMENS:
         fell = bench.programme.fell[one]

@@ -144,20 +144,20 @@ class Confusion(NamedTuple):
     stood_as_said: int
 
     @classmethod
-    def of(cls, said: np.ndarray, fell: np.ndarray) -> Confusion:
+    def of(cls, verdict: np.ndarray, fell: np.ndarray) -> Confusion:
         """Count."""
-        counts = (said & fell, ~said & fell, said & ~fell, ~said & ~fell)
+        counts = (verdict & fell, ~verdict & fell, verdict & ~fell, ~verdict & ~fell)
         return cls(*(int(one.sum()) for one in counts))
 
 
-def accuracy(said: np.ndarray, fell: np.ndarray) -> float:
+def accuracy(verdict: np.ndarray, fell: np.ndarray) -> float:
     """Return the share of right verdicts."""
-    return float((said == fell).mean())
+    return float((verdict == fell).mean())
 
 
-def balanced_accuracy(said: np.ndarray, fell: np.ndarray) -> float:
+def balanced_accuracy(verdict: np.ndarray, fell: np.ndarray) -> float:
     """Return the mean of the shares of right verdicts among tests that fell and that stood."""
-    return float(0.5 * (said[fell].mean() + (~said[~fell]).mean()))
+    return float(0.5 * (verdict[fell].mean() + (~verdict[~fell]).mean()))
 
 
 def log_loss(chances: np.ndarray, fell: np.ndarray) -> float:
@@ -182,12 +182,12 @@ def interval(
     predicted: np.ndarray,
     fell: np.ndarray,
     drawn: list[np.ndarray],
-    beside: np.ndarray | None = None,
+    reference: np.ndarray | None = None,
 ) -> tuple[float, float]:
     """Return the 95 % interval of a score, or of how far it is from that of what stands beside."""
     scores = [score(predicted[tests], fell[tests]) for tests in drawn]
-    if beside is not None:
-        others = [score(beside[tests], fell[tests]) for tests in drawn]
+    if reference is not None:
+        others = [score(reference[tests], fell[tests]) for tests in drawn]
         scores = np.subtract(scores, others)
     low, high = np.quantile(scores, [0.025, 0.975])
     return float(low), float(high)

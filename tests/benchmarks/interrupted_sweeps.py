@@ -33,31 +33,35 @@ def main() -> int:
     same = 0
     with tempfile.TemporaryDirectory() as place:
         first = Path(place) / "whole"
-        begun = time.perf_counter()
+        start = time.perf_counter()
         child(first).communicate()
-        took = time.perf_counter() - begun
-        whole, numbers = files(first), as_bytes(rf.open_study(first))
-        print(f"uninterrupted: {took:.1f} s")
+        duration = time.perf_counter() - start
+        expected_files, expected_dataset = files(first), as_bytes(rf.open_study(first))
+        print(f"uninterrupted: {duration:.1f} s")
         for number in range(1, kills + 1):
             folder = Path(place) / f"study {number}"
             # every fifth at any moment from the start of the process, the others while it writes
-            after = rng.randrange(len(whole)) if number % 5 else -1
-            delay = rng.uniform(0.0, 0.1 if number % 5 else 0.8 * took)
+            after = rng.randrange(len(expected_files)) if number % 5 else -1
+            delay = rng.uniform(0.0, 0.1 if number % 5 else 0.8 * duration)
             running = child(folder)
-            beside = None if number % 3 else child(folder)
+            second_process = None if number % 3 else child(folder)
             while running.poll() is None and len(list(folder.glob("*.arrays"))) <= after:
                 time.sleep(0.002)
             time.sleep(delay)
             running.kill()
             running.communicate()
-            kept, parts = told(folder)
-            if beside is not None and beside.communicate()[0].strip() != "done":
-                kept += ", the second process failed"
-            found = as_bytes(the_sweep(folder))
-            good = files(folder) == whole and found == numbers and "failed" not in kept
+            state, parts = left_behind(folder)
+            if second_process is not None and second_process.communicate()[0].strip() != "done":
+                state += ", the second process failed"
+            dataset = as_bytes(the_sweep(folder))
+            good = (
+                files(folder) == expected_files
+                and dataset == expected_dataset
+                and "failed" not in state
+            )
             same += good
             print(
-                f"{number:3d}: killed {delay:.3f} s after {after + 1} files; {kept}, "
+                f"{number:3d}: killed {delay:.3f} s after {after + 1} files; {state}, "
                 f"{parts} half-written files; "
                 f"resumed: {'identical' if good else 'ANOTHER'}",
                 flush=True,
@@ -66,7 +70,7 @@ def main() -> int:
     return int(same < kills)
 
 
-def told(folder) -> tuple[str, int]:
+def left_behind(folder) -> tuple[str, int]:
     """Say what a killed sweep has left."""
     try:
         done = int((rf.open_study(folder).status != RunStatus.NOT_RUN).sum())

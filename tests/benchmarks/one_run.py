@@ -70,11 +70,11 @@ class Spent:
 
         @wraps(function)
         def call(*arguments, **options):
-            begun = time.process_time()
+            start = time.process_time()
             try:
                 return function(*arguments, **options)
             finally:
-                self.times[name] += time.process_time() - begun
+                self.times[name] += time.process_time() - start
 
         return call
 
@@ -89,13 +89,13 @@ def measured(system: rf.System, ground: rf.GroundMotion, level: str) -> dict[str
             output_step=None,
         )  # fmt: skip
 
-    def whole(**options) -> None:
+    def simulate(**options) -> None:
         system.simulate(ground, accuracy=level, second_look=False, **options)
 
     ways = {
         "loop": loop,
-        "without histories": lambda: whole(outputs=None),
-        "with histories": whole,
+        "without histories": lambda: simulate(outputs=None),
+        "with histories": simulate,
     }
     least = defaultdict[str, float](lambda: 1e9)
     with ExitStack() as stack:
@@ -107,12 +107,12 @@ def measured(system: rf.System, ground: rf.GroundMotion, level: str) -> dict[str
             for way, function in ways.items():
                 for _ in range(2):  # the second finds its code and its memory
                     spent.times.clear()
-                    begun = time.process_time()
+                    start = time.process_time()
                     function()
-                    took = time.process_time() - begun
+                    duration = time.process_time() - start
                 if way == "loop":
-                    took = spent.times["loop"]
-                least[way] = min(least[way], took)
+                    duration = spent.times["loop"]
+                least[way] = min(least[way], duration)
                 if way == "with histories":
                     for name in PARTS:
                         least[name] = min(least[name], spent.times[name])

@@ -28,10 +28,10 @@ TOLERANCES = tuple(10.0**-power for power in range(2, 12))
 
 def excitation(factor: float) -> rf.GroundMotion:
     """Return the motion of the five scenes, by another factor."""
-    drawn = rf.GroundMotion.stochastic(
+    record = rf.GroundMotion.stochastic(
         6.8, "5 km", seed=29, stress_drop="20 MPa", source="one corner"
     )
-    return drawn.scaled(factor).window("5 s", "13 s")
+    return record.scaled(factor).window("5 s", "13 s")
 
 
 def system(damping_ratio: float) -> rf.System:
@@ -73,8 +73,8 @@ def _compare(ops, damping_ratio, factor, steps, repeats) -> dict:
     answer = scene.simulate(motion, accuracy=EXACT, **run)
     exact = answer["rotation"].to_numpy()
 
-    def error(found: np.ndarray) -> float:
-        return float(np.abs(found - exact).max() / np.abs(exact).max())
+    def error(rotation: np.ndarray) -> float:
+        return float(np.abs(rotation - exact).max() / np.abs(exact).max())
 
     points = []
     settings = {level: level for level in LEVELS}
@@ -94,16 +94,16 @@ def _compare(ops, damping_ratio, factor, steps, repeats) -> dict:
                 "steps": int(found.attrs["solver_steps"]),
             }
         )
-    given = arguments(damping_ratio, motion)
+    options = arguments(damping_ratio, motion)
     for count in steps:
         for test in TESTS:
 
             def theirs(count=count, test=test):
-                return simulate(ops, **given, steps_per_sample=count, converged=test)
+                return simulate(ops, **options, steps_per_sample=count, converged=test)
 
             row = {
                 "program": "OpenSees",
-                "setting": f"step {1e3 * given['time_step'] / count:g} ms, test {test:g}",
+                "setting": f"step {1e3 * options['time_step'] / count:g} ms, test {test:g}",
             }
             try:
                 found = theirs()

@@ -108,9 +108,9 @@ def scenes():
 
 def seconds(system, ground, level):
     """Return the processor time of a run, and the run."""
-    begun = time.process_time()
+    start = time.process_time()
     run = system.simulate(ground, accuracy=level, outputs=None, second_look=False)
-    return time.process_time() - begun, run
+    return time.process_time() - start, run
 
 
 def measured(without, having, ground, level):

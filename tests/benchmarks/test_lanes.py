@@ -70,12 +70,12 @@ def test_lanes_are_faster_than_single_runs(base):
     lanes, alone = [], []
     for _ in range(5):
         began = perf_counter()
-        found = integrate_lanes([LaneRun(model, start)], motions, none, np.arange(len(motions)))
+        result = integrate_lanes([LaneRun(model, start)], motions, none, np.arange(len(motions)))
         lanes.append(perf_counter() - began)
         began = perf_counter()
         runs = [integrate(model, Start(), one, FAST, **options) for one in motions]
         alone.append(perf_counter() - began)
-    assert found.clock.shape[0] == len(runs)
+    assert result.clock.shape[0] == len(runs)
     gain = min(alone[1:]) / min(lanes[1:])
     print(f"{base}: {1e6 * min(lanes) / len(motions):.0f} us a run in lanes, {gain:.1f} times")
     assert gain > LEAST[base]

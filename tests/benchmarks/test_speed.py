@@ -161,7 +161,7 @@ def test_whole_simulation_against_scipy():
     error = float(abs(result.rotation - reference.rotation).max())
     mine = best(lambda: scene.simulate(record, outputs=None))
     block = rf.Block.from_size(**BLOCK)
-    given = {
+    options = {
         "half_width": 0.5 * block.width.m_as("m"), "half_height": 0.5 * block.height.m_as("m"),
         "shape_factor": 3.0, "frequency_ratio": BETA, "damping_ratio": XI, "time_step": STEP,
         "acceleration": samples, "duration": (count - 1) * STEP,
@@ -169,7 +169,7 @@ def test_whole_simulation_against_scipy():
     }  # fmt: skip
     for rtol in (1e-4, 1e-6, 1e-8):
         start = time.perf_counter()
-        other = monolith.simulate(**given, rtol=rtol, atol=rtol * 1e-3)
+        other = monolith.simulate(**options, rtol=rtol, atol=rtol * 1e-3)
         yours = time.perf_counter() - start
         its_error = float(np.abs(other.rotation - reference.rotation.to_numpy()).max())
         say(
@@ -183,10 +183,10 @@ def test_whole_simulation_against_scipy():
 
 def fresh(code: str, **environment: str) -> list[float]:
     # a process finds what earlier ones left on disk, Python's own code as well
-    given = {key: value for key, value in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"}
+    options = {key: value for key, value in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"}
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True,
-        env=given | environment,
+        env=options | environment,
     )  # fmt: skip
     return [float(word) for word in done.stdout.split()]
 

@@ -37,15 +37,15 @@ def main() -> None:
     sys.setprofile(count)
     system(block, pads).simulate(motion, duration="3 s")
     sys.setprofile(None)
-    found = sorted(
+    functions = sorted(
         (code.co_filename.removeprefix(PACKAGE), code.co_firstlineno, code.co_qualname, often)
         for code, often in CALLS.items()
         if code.co_flags & FUNCTION == FUNCTION and not code.co_name.startswith("<")
     )
     if sys.argv[1:] == ["list"]:
-        for file, line, name, often in found:
+        for file, line, name, often in functions:
             print(f"{file}:{line} {name} {often}")
-    print(f"{len({file for file, *_ in found})} files, {len(found)} functions")
+    print(f"{len({file for file, *_ in functions})} files, {len(functions)} functions")
 
 
 if __name__ == "__main__":

@@ -55,11 +55,11 @@ SCIPY = {
 }
 
 
-def error(found: np.ndarray, exact: np.ndarray) -> float:
+def error(rotation: np.ndarray, exact: np.ndarray) -> float:
     """Return the largest error of a rotation over its peak; infinite if a run ended early."""
-    if found.shape != exact.shape or not np.isfinite(found).all():
+    if rotation.shape != exact.shape or not np.isfinite(rotation).all():
         return float("inf")
-    return float(np.abs(found - exact).max() / np.abs(exact).max())
+    return float(np.abs(rotation - exact).max() / np.abs(exact).max())
 
 
 def ours(system: rf.System, excitation: rf.GroundMotion, exact: np.ndarray) -> Iterator[dict]:
@@ -71,14 +71,14 @@ def ours(system: rf.System, excitation: rf.GroundMotion, exact: np.ndarray) -> I
         def run(accuracy=accuracy, **other):
             return system.simulate(excitation, accuracy=accuracy, overturning="continue", **other)
 
-        found = run(output_step=f"{OUTPUT_STEP} s")
+        result = run(output_step=f"{OUTPUT_STEP} s")
         yield {
             "program": "rockframe",
             "setting": name,
             "time": cost(lambda run=run: run(output_step=f"{OUTPUT_STEP} s"), REPEATS),
             "time_without_histories": cost(lambda run=run: run(outputs=None), REPEATS),
-            "error": error(found["rotation"].to_numpy(), exact),
-            "steps": int(found.attrs["solver_steps"]),
+            "error": error(result["rotation"].to_numpy(), exact),
+            "steps": int(result.attrs["solver_steps"]),
         }
 
 
@@ -95,10 +95,10 @@ def by_scipy(scene: Scene, exact: np.ndarray) -> Iterator[dict]:
                 "restart_every_knot": way == AT_SAMPLES,
                 "max_step": SAMPLES_AT_ONCE * si.time_step, "overturning": "continue",
             }  # fmt: skip
-            found: list[np.ndarray] = []
+            rotations: list[np.ndarray] = []
 
-            def run(arguments=arguments, found=found):
-                found.append(scene.by_hand(**arguments))
+            def run(arguments=arguments, rotations=rotations):
+                rotations.append(scene.by_hand(**arguments))
 
             row = {"program": "SciPy", "method": method, "way": way, "setting": f"rtol {rtol:g}"}
             try:
@@ -108,7 +108,7 @@ def by_scipy(scene: Scene, exact: np.ndarray) -> Iterator[dict]:
                 continue
             if time < FEW:
                 time = min(time, cost(run, 2))
-            yield row | {"time": time, "error": error(found[-1], exact)}
+            yield row | {"time": time, "error": error(rotations[-1], exact)}
             if time > PATIENCE:
                 break
 
@@ -138,7 +138,7 @@ def measure(name: str, before: list[dict] | None = None) -> dict:
     }
 
 
-def stepping_alone() -> dict:
+def time_of_stepping_alone() -> dict:
     """Time SciPy's RK45 on equations that cost nothing, as often as the two ways step at least.
 
     What SciPy's own Python takes, whatever the equations are compiled with; no events, no output.
@@ -193,7 +193,7 @@ def main(wanted: list[str]) -> None:
             continue
         found = measure(name)
         data = stored()
-        data["stepping_alone"] = stepping_alone()
+        data["stepping_alone"] = time_of_stepping_alone()
         data["scenes"][name] = found
         data["motion"] = {"description": repr(motion()), "output_step": OUTPUT_STEP}
         store(data)

@@ -96,7 +96,7 @@ def outcomes(kind, rng):
     growth = error(run(TIGHT, motion.scaled(1.0 + NUDGE).si)) / NUDGE
     if growth > GROWTH:
         return None
-    found = []
+    outcomes_of_scene = []
     for tolerance in TOLERANCES:
         # the step limit of the levels is not what is measured here
         other = run(rf.Accuracy(rtol=tolerance, steps_per_period=6.0), ground)
@@ -104,17 +104,19 @@ def outcomes(kind, rng):
         if len(other.events.time) == len(exact.events.time):
             off = np.abs(other.events.time - exact.events.time).max(initial=0.0)
         bound = other.step_count > 2 * len(motion)
-        found.append(Outcome(kind, tolerance, error(other) / tolerance, bound, float(off)))
-    return found
+        outcomes_of_scene.append(
+            Outcome(kind, tolerance, error(other) / tolerance, bound, float(off))
+        )
+    return outcomes_of_scene
 
 
 @pytest.fixture(scope="module")
 def measured():
     rng = np.random.default_rng(2026)
     tried = [outcomes(KINDS[k % len(KINDS)], rng) for k in range(SCENES)]
-    calm = [found for found in tried if found is not None]
+    calm = [outcomes_found for outcomes_found in tried if outcomes_found is not None]
     assert len(calm) >= 0.75 * SCENES
-    return [outcome for found in calm for outcome in found]
+    return [outcome for outcomes_found in calm for outcome in outcomes_found]
 
 
 def share(values):

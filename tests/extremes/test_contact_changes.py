@@ -31,18 +31,18 @@ def shaking(scale):
 def runs(slenderness, scale, frequency_ratio):
     block = rf.Block.from_size(radius="3 m", slenderness=slenderness, mass="50 t")
     pads = rf.TwoSpringSupport(frequency_ratio=frequency_ratio, damping_ratio=0.1)
-    found = {
+    runs_found = {
         level: rf.System(block, pads).simulate(shaking(scale), free_vibration="2 s", accuracy=level)
         for level in ("fast", "standard", "reference")
     }
-    for level, run in found.items():
+    for level, run in runs_found.items():
         assert run.status == 0
         assert run.sizes["event"] < 60
-        apart = abs(run.peak_rotation / found["reference"].peak_rotation - 1.0)
-        assert apart < (2e-3 if level == "fast" else 1e-7)
-    assert found["reference"].energy_residual < 1e-10
-    assert found["standard"].energy_residual < 1e-7
-    return found
+        difference = abs(run.peak_rotation / runs_found["reference"].peak_rotation - 1.0)
+        assert difference < (2e-3 if level == "fast" else 1e-7)
+    assert runs_found["reference"].energy_residual < 1e-10
+    assert runs_found["standard"].energy_residual < 1e-7
+    return runs_found
 
 
 @pytest.mark.parametrize(("scale", "frequency_ratio"), HELD_AGAIN)
@@ -52,8 +52,8 @@ def test_a_corner_that_would_be_held_again_at_once_does_not_leave(scale, frequen
 
 @pytest.mark.parametrize(("scale", "frequency_ratio"), SLIP_FOR_A_MOMENT)
 def test_short_slip_within_step_ends_in_time(scale, frequency_ratio):
-    found = runs(3.0, scale, frequency_ratio)
-    lasting = [time for run in found.values() for time in times_of_slips(run)]
+    runs_found = runs(3.0, scale, frequency_ratio)
+    lasting = [time for run in runs_found.values() for time in times_of_slips(run)]
     assert lasting
     assert max(lasting) > 1e-4
 

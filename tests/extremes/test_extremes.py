@@ -43,14 +43,14 @@ def test_combined_extremes_stay_within_bounds(seed, subjects):
 
 
 def test_scenes_cover_all_options_and_ranges():
-    drawn = [scene for subject in SUBJECTS for scene in scenes(subject, COUNT)]
-    assert {scene.base for scene in drawn} == set(BASES)
-    assert {scene.restraint for scene in drawn} == set(RULES)
-    assert {scene.separation for scene in drawn} == {"displacement", "pressure"}
-    assert {scene.rotation for scene in drawn} == {"finite", "small"}
-    assert max(scene.frequency_ratio for scene in drawn) > 1e3
-    assert max(scene.soil_ratio for scene in drawn) > 500.0
-    assert max(scene.slenderness for scene in drawn) > 20.0
+    drawn_scenes = [scene for subject in SUBJECTS for scene in scenes(subject, COUNT)]
+    assert {scene.base for scene in drawn_scenes} == set(BASES)
+    assert {scene.restraint for scene in drawn_scenes} == set(RULES)
+    assert {scene.separation for scene in drawn_scenes} == {"displacement", "pressure"}
+    assert {scene.rotation for scene in drawn_scenes} == {"finite", "small"}
+    assert max(scene.frequency_ratio for scene in drawn_scenes) > 1e3
+    assert max(scene.soil_ratio for scene in drawn_scenes) > 500.0
+    assert max(scene.slenderness for scene in drawn_scenes) > 20.0
 
 
 def test_verdict_lists_every_broken_bound():

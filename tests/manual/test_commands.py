@@ -33,9 +33,9 @@ def spoken(command):
 def test_every_command_is_tried():
     """By .ci/run, which takes those of the README from there, or here."""
     tried = f"{TRIED}\n{README}".replace(".venv/bin/", "")
-    found = list(commands())
-    assert len(found) > 10
-    for page, command in found:
+    all_commands = list(commands())
+    assert len(all_commands) > 10
+    for page, command in all_commands:
         if command.startswith(("python -c", *ASK_THE_NETWORK, *SETTING_UP)):
             continue
         program, *words = spoken(command)

@@ -31,19 +31,19 @@ class Loaded(HTMLParser):
         self.feed(text)
 
     def handle_starttag(self, tag, attrs):
-        given = {name: value or "" for name, value in attrs}
+        attributes = {name: value or "" for name, value in attrs}
         if tag == "link":
-            kinds = set(given.get("rel", "").lower().split())
+            kinds = set(attributes.get("rel", "").lower().split())
             wanted = {"href"} if kinds & LOADING_LINKS else set()
         else:
             wanted = LOADED_BY
-        self.addresses += [given[name] for name in wanted if name in given]
-        self.addresses += urls_in_css(given.get("style", ""))
+        self.addresses += [attributes[name] for name in wanted if name in attributes]
+        self.addresses += urls_in_css(attributes.get("style", ""))
 
 
 def urls_in_css(text):
-    found = re.findall(r"url\(\s*['\"]?([^'\")]+)", text)
-    return found + re.findall(r"@import\s+['\"]([^'\"]+)", text)
+    urls = re.findall(r"url\(\s*['\"]?([^'\")]+)", text)
+    return urls + re.findall(r"@import\s+['\"]([^'\"]+)", text)
 
 
 def pages():

@@ -52,10 +52,10 @@ def _repeat(data: bytes, here: float, there: float, piece: bytes) -> bytes:
 
 
 def _renumber(data: bytes, here: float, there: float, piece: bytes) -> bytes:
-    found = list(re.finditer(rb"\d+", data[:HEADER]))
-    if not found:
+    numbers_found = list(re.finditer(rb"\d+", data[:HEADER]))
+    if not numbers_found:
         return data
-    match = found[int(here * (len(found) - 1))]
+    match = numbers_found[int(here * (len(numbers_found) - 1))]
     number = NUMBERS[int(there * (len(NUMBERS) - 1))]
     return data[: match.start()] + number + data[match.end() :]
 

@@ -84,8 +84,8 @@ class Scenario:
         return self.base == "rigid" or 0.75 * self.beta**2 * sine * tangent > 1.0
 
     def run(self, **options):
-        given = {"free_vibration": f"{self.free!r} s", "initial": self.initial, **options}
-        return self.system.simulate(self.motion, **given)
+        arguments = {"free_vibration": f"{self.free!r} s", "initial": self.initial, **options}
+        return self.system.simulate(self.motion, **arguments)
 
 
 CASE = Scenario(

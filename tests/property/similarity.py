@@ -24,8 +24,8 @@ AS_THEY_ARE = ("accuracy", "outputs", "overturning", "second_look")
 @cache
 def dimensions(unit):
     """Return the powers of mass, length and time in a unit."""
-    found = pint.application_registry.Quantity(1.0, unit.replace(" ", "*")).dimensionality
-    return [found.get(f"[{name}]", 0) for name in ("mass", "length", "time")]
+    powers = pint.application_registry.Quantity(1.0, unit.replace(" ", "*")).dimensionality
+    return [powers.get(f"[{name}]", 0) for name in ("mass", "length", "time")]
 
 
 def factor(unit, length, mass):
@@ -64,16 +64,16 @@ def similar_motion(motion, length, nudge=0.0):
     return rf.GroundMotion.from_arrays((across, "m/s^2"), step, **up)
 
 
-def similar_arguments(asked, length, mass):
+def similar_arguments(arguments, length, mass):
     """Return the arguments of a run in another size."""
-    found = {
-        name: one if name in AS_THEY_ARE else scaled(one, length, mass)
-        for name, one in asked.items()
+    scaled_arguments = {
+        name: value if name in AS_THEY_ARE else scaled(value, length, mass)
+        for name, value in arguments.items()
     }
-    if asked.get("initial") is not None:
-        start = scaled(asked["initial"].to_dict(), length, mass)
-        found["initial"] = rf.InitialState.from_dict(start)
-    return found
+    if arguments.get("initial") is not None:
+        start = scaled(arguments["initial"].to_dict(), length, mass)
+        scaled_arguments["initial"] = rf.InitialState.from_dict(start)
+    return scaled_arguments
 
 
 def without_numbers(text):
@@ -91,7 +91,7 @@ def differences(one, other, length, mass):
     # not the verdict, which tells of slips from a micrometre on
     texts = (without_numbers(each.attrs.get("cautions")) for each in (one, other))
     alike["cautions"] = len(set(texts)) == 1
-    found = {name: math.inf for name, same in alike.items() if not same}
+    differences_found = {name: math.inf for name, same in alike.items() if not same}
     for name in set(one.variables) & set(other.variables):
         ours, theirs = one[name].to_numpy(), other[name].to_numpy()
         number = ours.dtype.kind == "f"
@@ -99,9 +99,11 @@ def differences(one, other, length, mass):
             theirs = theirs / factor(one[name].attrs.get("units"), length, mass)
         if np.array_equal(ours, theirs, equal_nan=number):
             continue
-        found[name] = math.inf
+        differences_found[name] = math.inf
         if number and ours.shape == theirs.shape:
-            apart = np.where(ours == theirs, 0.0, np.abs(ours - theirs))
-            apart = np.where(np.isnan(ours) & np.isnan(theirs), 0.0, apart)
-            found[name] = float(np.max(apart) / np.nanmax(np.abs(ours), initial=1e-300))
-    return found
+            difference = np.where(ours == theirs, 0.0, np.abs(ours - theirs))
+            difference = np.where(np.isnan(ours) & np.isnan(theirs), 0.0, difference)
+            differences_found[name] = float(
+                np.max(difference) / np.nanmax(np.abs(ours), initial=1e-300)
+            )
+    return differences_found

@@ -44,7 +44,7 @@ MOTION = record()
 
 
 @cache
-def whole_of(name):
+def unbroken_run(name):
     """Run a scene without a stop: once, and not before a test asks."""
     return SCENES[name].simulate(MOTION, accuracy="reference")
 
@@ -54,25 +54,25 @@ def whole_of(name):
     "at", [0.01, 1.37, *(pytest.param(at, marks=pytest.mark.long) for at in (3.0, 5.55))]
 )
 def test_a_record_split_in_two_gives_the_same_response(name, at):
-    system, whole = SCENES[name], whole_of(name)
-    assert not bool(whole.overturned)
+    system, unbroken = SCENES[name], unbroken_run(name)
+    assert not bool(unbroken.overturned)
     first = system.simulate(MOTION.window(end=f"{at} s"), accuracy="reference")
     second = system.simulate(MOTION.window(f"{at} s"), initial=first, accuracy="reference")
     place = round(at / STEP)
     for variable in ("rotation", "vertical_displacement", "horizontal_displacement"):
-        scale = float(np.abs(whole[variable]).max())
+        scale = float(np.abs(unbroken[variable]).max())
         both = np.concatenate([first[variable].values, second[variable].values[1:]])
-        assert both == pytest.approx(whole[variable].values, abs=2e-7 * scale)
+        assert both == pytest.approx(unbroken[variable].values, abs=2e-7 * scale)
         # no jump where one ends and the other begins
         assert second[variable].values[0] == first[variable].values[-1]
     events = np.concatenate([first.event_time, second.event_time + place * STEP])
-    assert events == pytest.approx(whole.event_time.values, abs=1e-7)
+    assert events == pytest.approx(unbroken.event_time.values, abs=1e-7)
     for variable in ("contact_state", "soil_contact_state"):
         for side in ("before", "after"):
             states = f"{variable}_{side}"
-            if states in whole:
+            if states in unbroken:
                 both = np.concatenate([first[states], second[states]])
-                assert both.tolist() == whole[states].values.tolist()
+                assert both.tolist() == unbroken[states].values.tolist()
     assert float(second.energy_residual) <= 1e-8
 
 
@@ -117,12 +117,12 @@ def test_invalid_continuations_are_refused():
     with pytest.raises(AssemblyError, match="holds no end of a run"):
         system.simulate(MOTION, initial=MOTION.to_dataset())
     for name in ("end_state", "system_json"):
-        part = whole_of("pads").copy()
+        part = unbroken_run("pads").copy()
         del part.attrs[name]
         with pytest.raises(AssemblyError, match="holds no end of a run"):
             system.simulate(MOTION, initial=part)
     with pytest.raises(AssemblyError, match="end of a run of another system"):
-        system.simulate(MOTION, initial=whole_of("soil"))
+        system.simulate(MOTION, initial=unbroken_run("soil"))
     fallen = system.simulate(MOTION.scaled(20.0))
     assert bool(fallen.overturned)
     with pytest.raises(AssemblyError, match="end of a run that overturned"):
@@ -135,17 +135,17 @@ def test_run_that_returned_from_beyond_overturning_angle_continues():
     """As the one run that both make, asked to go on; one that ends beyond it, or flat, does not."""
     system = rf.System(rf.Block(width="1 m", height="5 m", mass="10 t"))
     pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
-    asked = {"overturning": "continue", "outputs": None, "accuracy": "reference"}
-    first = system.simulate(pulse.scaled(3.68), duration="6 s", **asked)
-    whole = system.simulate(pulse.scaled(3.68), duration="9 s", **asked)
+    arguments = {"overturning": "continue", "outputs": None, "accuracy": "reference"}
+    first = system.simulate(pulse.scaled(3.68), duration="6 s", **arguments)
+    unbroken = system.simulate(pulse.scaled(3.68), duration="9 s", **arguments)
     assert bool(first.overturned)  # the angle was passed
-    rest = system.simulate(initial=first, duration="3 s", **asked)
-    ends = [json.loads(run.end_state)["state"] for run in (whole, rest)]
+    rest = system.simulate(initial=first, duration="3 s", **arguments)
+    ends = [json.loads(run.end_state)["state"] for run in (unbroken, rest)]
     np.testing.assert_allclose(*ends, atol=1e-9)
     for scale, duration in ((3.74, "9 s"), (3.74, "3 s"), (3.68, "1.5 s")):
-        run = system.simulate(pulse.scaled(scale), duration=duration, **asked)
+        run = system.simulate(pulse.scaled(scale), duration=duration, **arguments)
         with pytest.raises(AssemblyError, match="end of a run that overturned"):
-            system.simulate(initial=run, duration="3 s", **asked)
+            system.simulate(initial=run, duration="3 s", **arguments)
 
 
 def test_units_do_not_matter():
@@ -157,7 +157,7 @@ def test_units_do_not_matter():
             rf.TwoSpringSupport(frequency_ratio=20, damping_ratio="10 %"),
         )
     run = other.simulate(MOTION, accuracy="reference")
-    assert run.rotation.values == pytest.approx(whole_of("pads").rotation.values, abs=1e-9)
+    assert run.rotation.values == pytest.approx(unbroken_run("pads").rotation.values, abs=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -26,17 +26,17 @@ class Eccentric(SoilScenario):
 
     eccentricity: float = 0.3  # over half the width
     level: float = 0.45  # of the centre of mass, over the height
-    told: bool = False  # that the block starts upright, though it leans at rest
+    starts_upright: bool = False  # that the block starts upright, though it leans at rest
 
     @property
     def block(self):
         size = super().block.si
-        beside = self.sign * self.eccentricity * size.half_width
+        offset = self.sign * self.eccentricity * size.half_width
         return rf.Block(
             width=f"{size.width!r} m",
             height=f"{size.height!r} m",
             mass=f"{self.mass!r} kg",
-            centre_of_mass=(f"{self.level * size.height!r} m", f"{beside!r} m"),
+            centre_of_mass=(f"{self.level * size.height!r} m", f"{offset!r} m"),
         )
 
     @property
@@ -50,13 +50,13 @@ class Eccentric(SoilScenario):
     @property
     def initial(self):
         given = super().initial
-        return given if self.told or self.start else given.replace(rotation=None)
+        return given if self.starts_upright or self.start else given.replace(rotation=None)
 
     @property
     def points(self):
         size = self.block.si
-        beside = self.sign * 0.5 * size.half_width
-        return {"shelf": (f"{beside!r} m", f"{0.7 * size.height!r} m")}
+        offset = self.sign * 0.5 * size.half_width
+        return {"shelf": (f"{offset!r} m", f"{0.7 * size.height!r} m")}
 
 
 CASE = Eccentric(**vars(PADS_CASE), firmness=30.0, cap_width=1.3)
@@ -72,7 +72,7 @@ def every(**changes):
 def begun_and_shaken():
     """Return scenes that start in all ways, by all rules."""
     yield from every()
-    yield from every(told=True, peak=0.35, eccentricity=-0.15)
+    yield from every(starts_upright=True, peak=0.35, eccentricity=-0.15)
     yield from every(start=0.4, rate=-0.3, peak=0.3)
     for rule in RULES:
         for scene in SCENES[1:]:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from benchmarks.tied_runs import drawn as drawn_tied
+from benchmarks.tied_runs import draw_scene as draw_tied
 from hypothesis import example, given, settings
 from property.checks import check_energy_at_events
 from property.scenarios import GRAVITY, RULES, Scenario, scenarios
@@ -230,7 +230,7 @@ def test_energy_residual_does_not_depend_on_motion_strength(base):
 @pytest.mark.parametrize("number", [47, 295])
 def test_each_loss_never_decreases_on_mixed_bases(number):
     """On pads out of flight, beside rigid bases: the hold is a part of the blow then."""
-    system, motion, _ = drawn_tied(number)
+    system, motion, _ = draw_tied(number)
     response = system.simulate(motion, outputs="energy", output_step="1 ms", second_look=False)
     for name in ("impact_energy", "repinning_energy"):
         steps = np.diff(response[name].values)

@@ -6,7 +6,7 @@ elongations move with the bodies.
 
 import numpy as np
 import pytest
-from benchmarks.random_parts import PARTS, drawn
+from benchmarks.random_parts import PARTS, draw_scene
 
 import rockframe as rf
 from rockframe.errors import AssemblyError
@@ -41,13 +41,13 @@ def scenes(seed):
     rng = np.random.default_rng(seed)
     for part in PARTS:
         try:
-            system, motion = drawn(part, rng)
+            system, motion = draw_scene(part, rng)
         except AssemblyError:  # on pads that are too soft for it
             continue
         yield part, system, motion
     for part in TIED:
         on = part.removeprefix("friction on ")
-        _, motion = drawn("friction on pads", rng)
+        _, motion = draw_scene("friction on pads", rng)
         base = rf.RigidGround(friction=rng.uniform(0.05, 1.0))
         if on == "pads":
             base = rf.TwoSpringSupport(frequency_ratio=rng.uniform(8.0, 40.0), damping_ratio=0.1)
@@ -87,18 +87,18 @@ def test_histories_agree(seed):
         away &= np.abs(time[2:] - time[:-2] - 2.0 * width) < 1e-9
         for place, rate in RATES.items():
             if place in run and rate in run:
-                found = (rows(run[place])[:, 2:] - rows(run[place])[:, :-2]) / (2.0 * width)
-                given = rows(run[rate])
-                curved = np.abs(np.diff(given, 2))  # what a difference leaves out, six times
-                size = max(np.abs(given).max(), 1e-6)  # [m/s] or [rad/s]: less is rounding
-                error = np.abs(found - given[:, 1:-1]) - curved - 1e-6 * size
+                differences = (rows(run[place])[:, 2:] - rows(run[place])[:, :-2]) / (2.0 * width)
+                rates = rows(run[rate])
+                curvature = np.abs(np.diff(rates, 2))  # what a difference leaves out, six times
+                size = max(np.abs(rates).max(), 1e-6)  # [m/s] or [rad/s]: less is rounding
+                error = np.abs(differences - rates[:, 1:-1]) - curvature - 1e-6 * size
                 assert (error[:, away] <= 1e-3 * size).all(), (name, seed, place)
-        stands = ~(time > run.attrs["overturning_time"])
+        before_overturning = ~(time > run.attrs["overturning_time"])
         for peak, history in PEAKS.items():
             # peaks leave out the moments in which friction stops a new held point
             stops = peak == "peak_base_shear" and "slip" in run
             if peak in run and history in run and not stops:
-                most = np.abs(rows(run[history])[:, stands]).max(axis=1)
+                most = np.abs(rows(run[history])[:, before_overturning]).max(axis=1)
                 assert (np.atleast_1d(run[peak]) >= (1.0 - 1e-3) * most - 1e-9).all(), (name, peak)
         if "restrainer_elongation" in run:
             moves = np.abs(np.diff(run.rotation)) > 1e-6

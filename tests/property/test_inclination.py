@@ -45,13 +45,13 @@ TURNED_ROUND = (
 )
 
 
-def block(beside=0.0):
-    return rf.Block(width="0.8 m", height="3 m", mass="5 t", eccentricity=f"{beside} m")
+def block(eccentricity=0.0):
+    return rf.Block(width="0.8 m", height="3 m", mass="5 t", eccentricity=f"{eccentricity} m")
 
 
-def scene(name, inclination=None, beside=0.0):
+def scene(name, inclination=None, eccentricity=0.0):
     parts, options = SCENES[name]
-    return rf.System(block(beside), *parts, inclination=inclination, **options)
+    return rf.System(block(eccentricity), *parts, inclination=inclination, **options)
 
 
 @pytest.fixture(scope="module", params=SCENES)
@@ -69,10 +69,10 @@ def response(system):
     return system.simulate(RECORD, free_vibration="1 s", outputs=OUTPUTS, accuracy="reference")
 
 
-def assert_close(found, wanted, name):
+def assert_close(values, expected, name):
     """Compare to nine digits: rest is found by a search, whose last bits are not mirrored."""
-    size = np.abs(wanted[np.isfinite(wanted)]).max()
-    np.testing.assert_allclose(found, wanted, rtol=1e-9, atol=1e-9 * size, err_msg=name)
+    size = np.abs(expected[np.isfinite(expected)]).max()
+    np.testing.assert_allclose(values, expected, rtol=1e-9, atol=1e-9 * size, err_msg=name)
 
 
 def test_mirrored_scene_gives_mirrored_response(name, response):

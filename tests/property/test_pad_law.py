@@ -64,13 +64,13 @@ def free_forces(kind, model, run):
     for mode in np.unique(run.mode):
         contact = system.body_mode(int(mode), 0).contact
         free[mode] = [left for left in (True, False) if corner_contact(contact, left) == RELAXING]
-    found = []
+    forces = []
     for mode, state in zip(run.mode, run.state, strict=True):
         for left in free[mode]:
             line = body.base_line_at(system.state_of(0, state))
             if pads.corner(left, line).pressed > 0.0:
-                found.append(pads.reaction(RELAXING, left, line, ()) / gravity)
-    return found
+                forces.append(pads.reaction(RELAXING, left, line, ()) / gravity)
+    return forces
 
 
 @pytest.mark.parametrize("rule", RULES)

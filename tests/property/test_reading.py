@@ -144,8 +144,8 @@ def undamaged(folder):
     held = Files(
         {key: (one.name, one.data, {"component": one.component}) for key, one in SAMPLES.items()}
     )
-    for key, (name, make, asked) in BINARY.items():
-        held[key] = (name, make(folder), asked)
+    for key, (name, make, arguments) in BINARY.items():
+        held[key] = (name, make(folder), arguments)
     return held
 
 

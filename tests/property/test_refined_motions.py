@@ -55,14 +55,14 @@ def scene(seed):
 
 
 def check(system, samples, step, accuracy):
-    asked = {"duration": f"{len(samples) * step + 0.2} s", "output_step": f"{step} s"}
-    finer = system.simulate(motion_of(samples, step, FINER), accuracy="reference", **asked)
-    found = system.simulate(motion_of(samples, step, 1), accuracy=accuracy, **asked)
-    count = min(len(finer.time), len(found.time))
-    apart = np.abs(found.rotation.values[:count] - finer.rotation.values[:count]).max()
-    assert apart <= LIMITS[accuracy] * float(finer.peak_rotation)
+    arguments = {"duration": f"{len(samples) * step + 0.2} s", "output_step": f"{step} s"}
+    fine = system.simulate(motion_of(samples, step, FINER), accuracy="reference", **arguments)
+    coarse = system.simulate(motion_of(samples, step, 1), accuracy=accuracy, **arguments)
+    count = min(len(fine.time), len(coarse.time))
+    difference = np.abs(coarse.rotation.values[:count] - fine.rotation.values[:count]).max()
+    assert difference <= LIMITS[accuracy] * float(fine.peak_rotation)
     if accuracy != "fast":
-        assert list(found.event_kind.values) == list(finer.event_kind.values)
+        assert list(coarse.event_kind.values) == list(fine.event_kind.values)
 
 
 @pytest.mark.parametrize("seed", [*range(12), *REBOUNDS[0]])

@@ -368,11 +368,11 @@ def print_soils(motion):
 def print_factors(motion):
     print(f"\nTCU128: least factor found that overturns, grid {GRID}, then bisection to 1 %")
     for shape, floors, beta in itertools.product(SHAPE_FACTORS, FLOORS, BETAS):
-        found = [
+        factors = [
             overturning_factor(scene(floors, beta, coupling, shape=shape), motion)
             for coupling in COUPLINGS
         ]
-        print(f"| {shape} | {floors} | {beta} |", *(f"{factor:.4g} |" for factor in found))
+        print(f"| {shape} | {floors} | {beta} |", *(f"{factor:.4g} |" for factor in factors))
 
 
 def print_caps(motion):

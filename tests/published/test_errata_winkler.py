@@ -56,8 +56,8 @@ class State:
 
 def states():
     rng = np.random.default_rng(7)
-    found = []
-    while len(found) < STATES:
+    states_found = []
+    while len(states_found) < STATES:
         theta, radius, mu = rng.uniform(0.15, 0.46), rng.uniform(2, 12), rng.uniform(1.5, 3.5)
         b, h = radius * math.sin(theta), radius * math.cos(theta)
         omega = rng.uniform(10, 40) * math.sqrt(mu / (1 + mu) * G / radius)
@@ -71,8 +71,10 @@ def states():
         if not -b < -(delta - y) / a < b:
             continue
         spin, speed = rng.uniform(-0.2, 0.2) * theta, rng.uniform(-0.15, 0.15) * omega * delta
-        found.append(State(b, h, radius**2 / mu, k, c, a, y, spin, speed, *rng.uniform(-3, 3, 2)))
-    return found
+        states_found.append(
+            State(b, h, radius**2 / mu, k, c, a, y, spin, speed, *rng.uniform(-3, 3, 2))
+        )
+    return states_found
 
 
 def psi(q):

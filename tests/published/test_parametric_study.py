@@ -127,9 +127,9 @@ def test_sweep_is_bitwise_identical_to_single_runs(accuracy):
     single = study(accuracy=accuracy)
     assert swept.status.size == 108
     for name, values in single.data_vars.items():
-        found = swept[name].transpose(*values.dims)
-        assert found.dtype == values.dtype, name
-        assert found.values.tobytes() == np.ascontiguousarray(values).tobytes(), name
+        swept_values = swept[name].transpose(*values.dims)
+        assert swept_values.dtype == values.dtype, name
+        assert swept_values.values.tobytes() == np.ascontiguousarray(values).tobytes(), name
 
 
 @pytest.fixture(scope="module")

@@ -510,8 +510,8 @@ def test_height_and_soft_pads_lower_critical_factors():
             (HONEST, "cascade"): [False, False],  # the first stage overturns anyway
             (HONEST, "coupled"): [True, True],
         }
-        found = [bool(one[2] > one[0]) for one in (low, high)]
-        assert found == stiff_is_safer[shape, coupling]
+        stiff_is_safer_found = [bool(one[2] > one[0]) for one in (low, high)]
+        assert stiff_is_safer_found == stiff_is_safer[shape, coupling]
 
 
 # Conclusions, section 5 -----------------------------------------------------------------------

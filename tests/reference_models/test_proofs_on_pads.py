@@ -180,7 +180,7 @@ class ExactRun:
         return self
 
     def root(self, k, begin, length, guard):
-        """Find where a guard falls to zero, within a bracket at low precision, then by the secant rule."""
+        """Find where a guard falls to zero: bracketed at low precision, then by the secant rule."""
 
         def value(at, columns=COLUMNS):
             return self.guards(self.moved(k, begin, at, columns))[guard]

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 import xarray as xr
-from benchmarks.tied_runs import drawn
+from benchmarks.tied_runs import draw_scene
 from benchmarks.tied_runs import run as run_drawn
 from plainly import plainly
 
@@ -494,7 +494,7 @@ def test_pads_too_soft_to_bear_a_body_beside_links_that_hold_nothing_are_refused
 
 @pytest.mark.parametrize("number", [pytest.param(802, marks=pytest.mark.long), 1929])
 def test_links_that_begin_to_answer_within_a_step_are_found_on_the_way(number):
-    system, *_ = drawn(number)
+    system, *_ = draw_scene(number)
     chain = system.setting.standing.chain
     upper = chain.bodies[0].part.body
     turned = 0.5 * math.atan2(upper.right, upper.height)

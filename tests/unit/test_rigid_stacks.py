@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 import xarray as xr
-from benchmarks.columns_of_drums import drawn as drawn_column
-from benchmarks.random_parts import drawn
+from benchmarks.columns_of_drums import draw_scene as draw_column
+from benchmarks.random_parts import draw_scene
 from plainly import plainly
 
 import rockframe as rf
@@ -257,7 +257,7 @@ def test_more_links_than_can_be_numbered_are_refused():
 )
 def test_changes_of_contact_come_to_an_end(number, ends):
     """Each stopped before it, by changes of contact without end, or by a force that is none."""
-    system, motion = drawn("stack of mixed bases", np.random.default_rng(number))
+    system, motion = draw_scene("stack of mixed bases", np.random.default_rng(number))
     with plainly():
         found = system.simulate(
             motion, duration=ends, accuracy="fast", outputs=None, second_look=False
@@ -268,7 +268,7 @@ def test_changes_of_contact_come_to_an_end(number, ends):
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 def test_a_slip_does_not_begin_against_its_force():
     """A drum, nearly weightless, would slip and stick in turn: it tilts as it begins to slip."""
-    system, motion = drawn_column(142)
+    system, motion = draw_column(142)
     found = system.simulate(motion, duration="0.12 s", outputs=None)
     assert int(found.status) == Status.COMPLETED
 
@@ -282,7 +282,7 @@ def test_a_slip_does_not_begin_against_its_force():
 )
 def test_columns_that_stopped_go_on(number, ends):
     """Of eleven closed corners and more, of slips that small bounces end, and without forces."""
-    system, motion = drawn_column(number)
+    system, motion = draw_column(number)
     found = system.simulate(
         motion, duration=ends, accuracy="standard", outputs=None, second_look=False
     )
@@ -293,7 +293,7 @@ def test_columns_that_stopped_go_on(number, ends):
 @pytest.mark.parametrize(("number", "ends", "most"), [(684, "0.5 s", 1e-5), (434, "0.53 s", 1e-3)])
 def test_what_begins_to_slip_has_the_velocity_that_it_had(number, ends, most):
     """A body that is held begins to slip as another one, on pads, changes its contact."""
-    system, motion = drawn("stack of mixed bases", np.random.default_rng(number))
+    system, motion = draw_scene("stack of mixed bases", np.random.default_rng(number))
     with plainly():
         found = system.simulate(
             motion, duration=ends, accuracy="fast", outputs=None, second_look=False
@@ -305,7 +305,7 @@ def test_what_begins_to_slip_has_the_velocity_that_it_had(number, ends, most):
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 def test_what_has_lost_its_hold_is_not_held_at_the_bound():
     """It cannot slip with the corners that bear; two of them part."""
-    system, motion = drawn("stack of mixed bases", np.random.default_rng(4852))
+    system, motion = draw_scene("stack of mixed bases", np.random.default_rng(4852))
     found = system.simulate(motion, duration="1.31 s", accuracy="fast", outputs=None)
     assert int(found.status) == Status.COMPLETED
 
@@ -313,7 +313,7 @@ def test_what_has_lost_its_hold_is_not_held_at_the_bound():
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 def test_a_pad_that_catches_up_creates_no_energy():
     """The end that it meets does not slide by a force that has a corner below pull."""
-    system, motion = drawn("stack of mixed bases", np.random.default_rng(1835))
+    system, motion = draw_scene("stack of mixed bases", np.random.default_rng(1835))
     with plainly():
         found = system.simulate(
             motion, duration="0.66 s", accuracy="fast", outputs=None, second_look=False
@@ -324,7 +324,7 @@ def test_a_pad_that_catches_up_creates_no_energy():
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 def test_a_stack_that_falls_as_one_lands_as_one():
     """Its ground falls faster four times; rates of 1e-29 had the upper block bounce once."""
-    system, motion = drawn("stack of mixed bases", np.random.default_rng(326))
+    system, motion = draw_scene("stack of mixed bases", np.random.default_rng(326))
     with plainly():
         found = system.simulate(
             motion, duration="1.15 s", accuracy="fast", outputs=None, second_look=False
@@ -345,7 +345,7 @@ def test_sets_near_one_are_found_from_the_highest_down(most):
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 def test_several_sets_at_a_change_of_slip_are_no_modes_of_an_impact():
-    system, motion = drawn("stack of mixed bases", np.random.default_rng(38))
+    system, motion = draw_scene("stack of mixed bases", np.random.default_rng(38))
     with plainly():
         found = system.simulate(motion, accuracy="fast", outputs=None, second_look=False)
     told = "and there are 2 ways to bear and to slip then: taken is one with body 1 in full"
@@ -406,7 +406,7 @@ def test_no_hold_out_of_flight_upon_a_light_body_gives_energy(mass, rule, seed):
 @pytest.mark.parametrize("number", [122, 123])
 def test_bodies_that_come_to_rest_as_they_slip_give_no_energy(number):
     """What ends bounces may pull; friction does not act then, since it would drive the slip."""
-    system, motion = drawn("stack of mixed bases", np.random.default_rng(number))
+    system, motion = draw_scene("stack of mixed bases", np.random.default_rng(number))
     run = system.simulate(motion, outputs=["energy"], accuracy="fast", second_look=False)
     taken = (run.impact_energy + run.repinning_energy).to_numpy()
     assert np.diff(taken).min() > -1e-10 * float(run.kinetic_energy.max())
