@@ -38,12 +38,12 @@ def clean(run) -> bool:
 
 
 def strength(case: Case) -> float:
-    """Return a scale that is well off the edge, to either side."""
+    """Return a scale at a given distance from the boundary, to either side."""
     return float(np.random.default_rng([7, case.number]).uniform(0.6, 1.6))
 
 
 def contradictions(case: Case, scale: float, fell: bool, count: int = NUDGES) -> int:
-    """Count how many random nudges inside what is stated, and a tight run, say otherwise."""
+    """Count contradictions by random nudges within the stated margins, and by a tight run."""
     rng = np.random.default_rng([11, case.number])
     every = list(parameters(case.system.assembly))
     plan = case.plan(scale)
@@ -69,7 +69,7 @@ class Row:
 
 
 def at_the_boundary(pool: Iterator[Case]) -> Iterator[tuple[float, Row]]:
-    """Certify beside the edge; count clean certificates and what contradicts them."""
+    """Certify near the boundary; count clean certificates and their contradictions."""
     rows = {distance: Row() for distance in DISTANCES}
     for number, case in enumerate(pool):
         distance = DISTANCES[number % len(DISTANCES)]

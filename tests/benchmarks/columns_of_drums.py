@@ -1,4 +1,4 @@
-"""Random columns of drums, many of them thrown up or falling with their ground: how do they end?
+"""Outcomes of random columns of drums, many thrown upwards or falling with their ground.
 
 Run from the root, with ``PYTHONPATH=.``: ``python tests/benchmarks/columns_of_drums.py``; writes
 docs/data/columns_of_drums.json.
@@ -19,7 +19,7 @@ DATA = Path(__file__).resolve().parents[2] / "docs" / "data" / "columns_of_drums
 SEED = 77
 GRAVITY = 9.80665
 RUNS = 500
-COMPLETE = 2  # the last status of runs that come to their end: completed, overturned, toppled
+COMPLETE = 2  # the last status of finished runs: completed, overturned, toppled
 
 
 def draw_scene(number):

@@ -1,8 +1,8 @@
-"""Print the table of the page "Accuracy": which runs at "fast" are wrong, and which say so.
+"""Print the table of the page "Accuracy": wrong runs at "fast", and how many report it.
 
 From the root of the repository: ``python tests/benchmarks/fast_verdicts.py``. Random scenes run at
-"fast" with the second look and at "reference". The short ones are those of the pages on extremes
-and certificates, the long ones shake by noise and records for up to 25 s, also on stiff pads.
+"fast" with the second look and at "reference". Short scenes are those of the pages on extremes
+and certificates; long ones have noise and records of up to 25 s, also on stiff pads.
 """
 
 import sys
@@ -34,7 +34,7 @@ RECORDS = (
 )
 LONGEST = 25.0
 OTHER_FALL = 0.05
-"""Share of its time by which an overturning is another one."""
+"""Relative difference of overturning times beyond which two overturnings differ."""
 
 
 def short(number):
@@ -49,7 +49,7 @@ def short(number):
 
 
 def long(number):
-    """Return the same, of many impacts."""
+    """Return a scene with many impacts, its motion and its arguments."""
     rng = np.random.default_rng([100, number])
     scene = usual(rng)
     ratio = float(10.0 ** rng.uniform(0.9, 2.2))
@@ -71,7 +71,7 @@ def long(number):
 
 
 def arguments(scene, duration):
-    """Return how long a run is, where it starts, and in which sense it is asked."""
+    """Return duration, initial state and other arguments of a run."""
     start = scene.start * float(np.arctan(1.0 / scene.slenderness))
     return {
         "duration": f"{duration!r} s",
@@ -81,14 +81,14 @@ def arguments(scene, duration):
 
 
 def timed(system, plan):
-    """Run; give what became of it, and the time."""
+    """Run; return the trajectory and the time."""
     start = time.perf_counter()
     trajectory = compute_response(system.assembly, plan).trajectory
     return trajectory, time.perf_counter() - start
 
 
 def judge_fast(system, motion, arguments_of_run):
-    """Tell what is wrong with a run at "fast", whether it says so, and what the looks cost."""
+    """Return the error of a run at "fast", whether it is reported, and the second look's cost."""
     plan = plan_run(system.assembly, motion, accuracy="fast", **arguments_of_run)
     compute_response(
         system.assembly, plan

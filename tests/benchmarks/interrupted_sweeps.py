@@ -1,13 +1,12 @@
-"""A stored sweep that is killed at random moments, and what is there when it is resumed.
+"""A stored sweep killed at random moments, and the result after it is resumed.
 
 Usage: python tests/benchmarks/interrupted_sweeps.py [kills] [seed]
 
-Each time a process that runs a sweep of 240 cases into a new folder is killed (SIGKILL) a moment
-after it has written some number of files, both drawn, or at any time after its start; then the same
+Each time a process that runs a sweep of 240 cases into a new folder is killed (SIGKILL) shortly
+after it has written a random number of files, or at a random time after its start; then the same
 sweep is run there again. Every third time a second process works on the same folder, is not killed,
-and must end with the whole. Prints for each kill when it came, what had been kept by then, and
-whether all files and the dataset are, to the last byte, those of a sweep that was never
-interrupted. Exits with 1 if one is not.
+and must finish the whole sweep. Prints for each kill its time, the stored cases, and whether all
+files and the dataset equal those of an uninterrupted sweep to the last byte. Exits with 1 if not.
 """
 
 import random
@@ -40,7 +39,7 @@ def main() -> int:
         print(f"uninterrupted: {duration:.1f} s")
         for number in range(1, kills + 1):
             folder = Path(place) / f"study {number}"
-            # every fifth at any moment from the start of the process, the others while it writes
+            # every fifth kill at a random time after the start, the others while the process writes
             after = rng.randrange(len(expected_files)) if number % 5 else -1
             delay = rng.uniform(0.0, 0.1 if number % 5 else 0.8 * duration)
             running = child(folder)
@@ -71,7 +70,7 @@ def main() -> int:
 
 
 def left_behind(folder) -> tuple[str, int]:
-    """Say what a killed sweep has left."""
+    """Return what a killed sweep has stored, and its number of half-written files."""
     try:
         done = int((rf.open_study(folder).status != RunStatus.NOT_RUN).sum())
     except StudyError:

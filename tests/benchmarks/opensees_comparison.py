@@ -1,4 +1,4 @@
-"""OpenSees beside rockframe on two pads with the middle of the base held: histories and costs."""
+"""OpenSees compared with rockframe on two pads, middle of the base held: histories and costs."""
 
 import math
 import warnings
@@ -21,13 +21,13 @@ CASES = {
 """Damping ratio, and factor of the motion. Only the first two have the same law in both."""
 STEPS_PER_SAMPLE = (1, 2, 4, 8, 16, 32, 64, 128)
 TESTS = (1e-6, 1e-8, 1e-10)
-"""Changes of the unknowns at which Newton's iteration ends [m]; the cheapest is kept."""
+"""Changes of the unknowns that end Newton's iteration [m]; the cheapest is reported."""
 LEVELS = ("fast", "standard", "reference")
 TOLERANCES = tuple(10.0**-power for power in range(2, 12))
 
 
 def excitation(factor: float) -> rf.GroundMotion:
-    """Return the motion of the five scenes, by another factor."""
+    """Return the motion of the five scenes with another factor."""
     record = rf.GroundMotion.stochastic(
         6.8, "5 km", seed=29, stress_drop="20 MPa", source="one corner"
     )
@@ -38,7 +38,7 @@ def system(damping_ratio: float) -> rf.System:
     """Return the scene; without dashpots a landing corner keeps its speed."""
     block = rf.Block(width=f"{2 * B} m", height=f"{2 * H} m", mass=f"{MASS} kg")
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ModelWarning)  # restitution 1 is meant
+        warnings.simplefilter("ignore", ModelWarning)  # restitution 1 is intended
         restitution = 1.0 if damping_ratio == 0.0 else None
         pads = rf.TwoSpringSupport(
             frequency_ratio=PADS["frequency_ratio"],
@@ -49,7 +49,7 @@ def system(damping_ratio: float) -> rf.System:
 
 
 def arguments(damping_ratio: float, motion: rf.GroundMotion) -> dict:
-    """Return the same scene as OpenSees takes it."""
+    """Return the arguments of the same scene in OpenSees."""
     vertical = PADS["frequency_ratio"] * math.sqrt(0.75 * GRAVITY / math.hypot(B, H))
     return {
         "half_width": B, "half_height": H, "mass": MASS, "inertia": MASS * (B**2 + H**2) / 3.0,
@@ -61,7 +61,7 @@ def arguments(damping_ratio: float, motion: rf.GroundMotion) -> dict:
 
 
 def compare(steps: tuple[int, ...] = STEPS_PER_SAMPLE, repeats: int = 3) -> dict:
-    """Run all cases in both programs; give errors and times."""
+    """Run all cases in both programs; return errors and times."""
     ops = opensees()
     ops.logFile("/dev/null", "-noEcho")
     return {name: _compare(ops, *case, steps, repeats) for name, case in CASES.items()}

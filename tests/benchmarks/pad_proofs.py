@@ -1,7 +1,7 @@
-"""Prove verdicts of random blocks on pads under recorded motions, beside reference runs.
+"""Prove verdicts of random blocks on pads under recorded motions; compare with reference runs.
 
-``python tests/benchmarks/pad_proofs.py 100`` writes docs/data/pad_proofs.json. Of each record it
-takes twelve seconds about its peak, so that a hundred scenes take some minutes.
+``python tests/benchmarks/pad_proofs.py 100`` writes docs/data/pad_proofs.json. Twelve
+seconds about the peak of each record are used, so that a hundred scenes take some minutes.
 """
 
 import json

@@ -1,7 +1,7 @@
-"""Random blocks under recorded motions: what is proved, beside runs and beside fifty digits.
+"""Proved verdicts of random blocks under recorded motions, against runs and 50-digit runs.
 
 Run as ``python tests/benchmarks/proofs.py`` with the repository on the path and the records of
-tests/records.py at hand; writes docs/data/proofs.json. With ``--sets 50`` it proves sets of
+tests/records.py available; writes docs/data/proofs.json. With ``--sets 50`` it proves sets of
 numbers about the first fifty blocks instead, and writes docs/data/proof_sets.json.
 """
 
@@ -47,7 +47,7 @@ SETS = ((1e-12, 1), (1e-12, 8), (1e-9, 1), (1e-9, 8), (1e-6, 1))  # tolerance, m
 
 
 def records():
-    """Return the strong part of each record, as it was written."""
+    """Return the strong part of each record, unfiltered."""
     parts = {}
     for name, (file, component) in RECORDS.items():
         bare = {"time_step": "0.005 s", "unit": "g"} if file.endswith(".txt") else {}
@@ -61,7 +61,7 @@ def records():
 
 
 def draw_case(k, all_records):
-    """Draw a block and its motion: every third one eccentric, every fifth on a slope."""
+    """Draw a block and its motion; every third block is eccentric, every fifth on a slope."""
     rng = np.random.default_rng([SEED, k])
     name = list(all_records)[k % len(all_records)]
     radius, slenderness = np.exp(rng.uniform(np.log(0.4), np.log(8.0))), rng.uniform(2.5, 8.0)
@@ -84,7 +84,7 @@ def draw_case(k, all_records):
 
 
 def compare_with_run(scene, motion, proof):
-    """Whether the run of greatest accuracy ends otherwise, and how far its instant is off."""
+    """Return whether the most accurate run has another verdict, and the difference of its time."""
     run = scene.simulate(motion, free_vibration=AFTER, accuracy="reference", outputs=None)
     falls, end = bool(run.overturned), float(run.attrs["solver_end_time"])
     apart = math.nan
@@ -106,7 +106,7 @@ def count_outside_fifty_digits(scene, motion, proof):
         assembly.setting.overturning_angles, (0.0, 0.0), watch=watch,
     )  # fmt: skip
     vertical = None if motion.si.vertical is None else motion.si.vertical.samples
-    # up to where it comes to rest, which with fifty digits has no end
+    # up to rest, which the 50-digit run never reaches
     moving = [number for number, (side, _) in boxes.items() if side]
     rests = [n for n, (side, _) in boxes.items() if side == 0 and n > min(moving, default=n)]
     until = max((n for n in boxes if n < min(rests, default=n + 1)), default=0)

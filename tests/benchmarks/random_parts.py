@@ -1,4 +1,4 @@
-"""Random scenes of walls, frames, tendons, friction and stacks: none may end but by its verdict.
+"""Random scenes of walls, frames, tendons, friction and stacks; every run must reach a verdict.
 
 Run from the root, with ``PYTHONPATH=.``:
 ``python tests/benchmarks/random_parts.py --json docs/data/random_parts.json``; `--parts` for some.
@@ -17,7 +17,7 @@ import rockframe as rf
 from rockframe.errors import AssemblyError
 
 GRAVITY = 9.80665
-COMPLETE = 2  # the last status of runs that come to their end: completed, overturned, toppled
+COMPLETE = 2  # the last status of finished runs: completed, overturned, toppled
 PARTS = (
     "stiff wall", "frame", "frame with tendons", "friction on pads", "friction on soil",
     "elastic wall on rigid ground", "elastic wall on pads", "stack of mixed bases",
@@ -41,7 +41,7 @@ def draw_base(on, friction, rng):
 
 
 def draw_friction(width, height, rng):
-    """Return random coefficients, half of them near what parts sliding from rocking."""
+    """Return random coefficients, half of them near the limit between sliding and rocking."""
     static = rng.choice([rng.uniform(0.02, 1.0), width / height * rng.uniform(0.6, 1.5)])
     return {"friction": static, "kinetic_friction": min(static * rng.uniform(0.5, 1.0), 0.6)}
 
@@ -59,7 +59,7 @@ def draw_wall(width, height, rng):
 
 
 def draw_stack(width, height, rng, counts=(2, 2, 3), kinds=BASES, friction=None):
-    """Return blocks upon one another, each on a base of its own."""
+    """Return stacked blocks, each with its own kind of base."""
     shares = rng.dirichlet(np.full(int(rng.choice(counts)), 4.0))
     blocks, bases = [], []
     for share in shares:  # from the ground up
@@ -146,7 +146,7 @@ def main():
     parser.add_argument("--json", type=Path)
     options = parser.parse_args()
     warnings.simplefilter("ignore")
-    # what is not drawn anew stays
+    # results of other parts are kept
     known = options.json is not None and options.json.exists()
     table = json.loads(options.json.read_text(encoding="utf-8")) if known else {}
     for part in options.parts:
@@ -162,7 +162,7 @@ def main():
                         print(part, accuracy, count, run.attrs["verdict"], flush=True)
                     worst = max(worst, float(run.energy_residual))
                     unsure += Counter({name: run.attrs.get(name, 0) > 0 for name in NOT_UNIQUE})
-                except AssemblyError:  # nothing stands so, on pads that are too soft for it
+                except AssemblyError:  # the pads are too soft to stand on
                     ends["refused"] += 1
                 except Exception as fault:
                     ends[type(fault).__name__] += 1

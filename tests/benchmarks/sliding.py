@@ -1,4 +1,4 @@
-"""Random blocks that slide and rock: against a program of their own, and many that only must end.
+"""Random blocks that slide and rock: against a reference model, and many runs that must finish.
 
 Run as ``python tests/benchmarks/sliding.py`` with the repository on the path; writes
 docs/data/sliding.json.
@@ -40,15 +40,15 @@ def compare_scenes(count, draw, seed):
     for k in range(count):
         try:
             comparisons[k] = compare(draw(np.random.default_rng([seed, k])))
-        except AssemblyError:  # bases too soft to stand on
+        except AssemblyError:  # bases are too soft to stand on
             refused.append(k)
-        except RuntimeError:  # the reference goes to and fro between two modes
+        except RuntimeError:  # the reference alternates endlessly between two modes
             endless.append(k)
     return summary(comparisons, refused, endless)
 
 
 def summary(comparisons, refused, endless):
-    """Tell how scenes agree, by their numbers; and which the reference does not end."""
+    """Summarise the agreement of scenes, and list those that the reference does not finish."""
     numbers, comparisons = list(comparisons), list(comparisons.values())
     same = [
         [kind for _, kind in comparison["ours"]] == [kind for _, kind in comparison["theirs"]]
@@ -85,7 +85,7 @@ def summary(comparisons, refused, endless):
 
 
 def draw_rough_motion(rng, size):
-    """A motion that jumps, rattles, or throws the block up."""
+    """Draw a motion with jumps, high frequencies, or upward throws."""
     count = int(rng.integers(50, 250))
     width = int(rng.choice([1, 1, 5, 20]))
     across, upwards = (
@@ -93,14 +93,14 @@ def draw_rough_motion(rng, size):
         for _ in "xy"
     )
     if rng.random() < 0.2:
-        across = size * np.sign(across) * np.ones(count)  # as a rectangle, to its end
+        across = size * np.sign(across) * np.ones(count)  # a rectangle up to its end
     up = float(rng.choice([0.0, 0.3, 1.5])) * 9.81 * upwards
     vertical = {"vertical": (up, "m/s^2")} if up.any() else {}
     return rf.GroundMotion.from_arrays((size * across, "m/s^2"), "0.02 s", **vertical)
 
 
 def draw_rough_scene(rng):
-    """Draw a scene and a run of it that need only end."""
+    """Draw a scene and arguments of a run that only has to finish."""
     scene = draw(rng)
     friction = scene.system.parts.ground.si
     ground = {"friction": friction.friction, "kinetic_friction": friction.kinetic_friction}
@@ -156,7 +156,7 @@ def run_to_the_end(count):
 
 
 def main():
-    """Run both, and write what came out."""
+    """Run all comparisons and write their results."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--scenes", type=int, default=300)
     parser.add_argument("--on-bases", type=int, default=60, help="scenes on pads and beds")
@@ -168,7 +168,7 @@ def main():
     parser.add_argument("--json", type=Path, default=ROOT / "docs" / "data" / "sliding.json")
     options = parser.parse_args()
     warnings.simplefilter("ignore")
-    # what is not asked for stays
+    # results not requested are kept
     results = json.loads(options.json.read_text()) if options.json.exists() else {}
     results |= {"seed": SEED}
     parts = {

@@ -1,14 +1,14 @@
-"""What a case of a sweep costs, alone and in lanes, beside a loop of single runs.
+"""Cost of a case of a sweep, alone and in lanes, compared with a loop of single runs.
 
 Usage: python tests/benchmarks/sweeps.py [record]
 
 Prints milliseconds of processor time per case on one processor, the least of several rounds, and
 the ratios; then cases per second of a sweep on all processors; then, of 10 000 cases, which share
 of the processor time is spent outside the compiled loops (planning, building scenes, labels), and
-how much faster two threads are than one. Then the same of random tables, in which every case has a
-scene and a scale of its own: with scenes assembled together, and one by one; which share of the
-cases runs outside lanes; and how long a table of a million cases takes to plan. The record is a
-file; without one the motion has the length of El Centro and is drawn from a model.
+how much faster two threads are than one. Then the same for random tables, in which every case has
+its own scene and scale, with scenes assembled together and one by one; the share of cases outside
+lanes; and the time to plan a table of a million cases. The record is a file; without one the motion
+has the length of El Centro and is drawn from a model.
 """
 
 import math
@@ -41,7 +41,7 @@ PLANNED = 1_000_000
 
 
 def main() -> None:
-    """Time all ways, for a parameter, for the scale of the motion, and for a grid of both."""
+    """Time all variants for a parameter, for the scale of the motion, and for a grid of both."""
     if len(sys.argv) > 1:
         motion = rf.GroundMotion.read(sys.argv[1])
     else:
@@ -82,7 +82,7 @@ study.COMPILING_SHARE = math.inf  # lanes are compiled in the first round
 
 
 def costs(motion, axes, accuracy) -> dict[str, float]:
-    """Return the processor time of a case by several ways that take turns [ms]."""
+    """Return the processor time of a case for several variants in turn [ms]."""
     options = {"outputs": None, "accuracy": accuracy}
 
     def loop():
@@ -122,7 +122,7 @@ def table(name, count) -> dict[str, np.ndarray]:
 
 
 def monte_carlo(motion, name, accuracy) -> str:
-    """Tell what a case of a random table costs [ms], and how many ran outside lanes."""
+    """Report the cost of a case of a random table [ms], and the share outside lanes."""
     study.MIN_CASES_IN_LANES = 1
     system, cases = rf.System(BLOCK, *TABLES[name][0]), table(name, DRAWN)
     run_assembled_together = chunk.run_assembled_together
@@ -173,7 +173,7 @@ def share(motion, axes) -> float:
 
 
 def gain(motion, axes) -> float:
-    """Return how much faster two threads are than one, by least wall times of rounds in turns."""
+    """Return the speed-up of two threads over one, by least wall times of alternating rounds."""
     times = {1: [], 2: []}
     for _ in range(ROUNDS):
         for threads, taken in times.items():

@@ -1,4 +1,4 @@
-"""Lanes against the loop of single runs: packed instructions, and what they gain."""
+"""Lanes against the loop of single runs: packed instructions and their gain."""
 
 import re
 from time import perf_counter
@@ -23,7 +23,7 @@ PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
 SOIL = rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.2)
 BASES = {"rigid ground": (), "pads": (PADS,), "soil": (SOIL,)}
 LEAST = {"rigid ground": 1.2, "pads": 2.0, "soil": 2.0}
-"""Gain; on rigid ground a run has an impact in every twentieth step."""
+"""Required gain; on rigid ground a run has an impact in every twentieth step."""
 
 
 def model_on(*parts):
@@ -49,7 +49,7 @@ def test_lanes_use_packed_instructions(base, fixed):
     packed = len(re.findall(r"\tv?(?:mul|add|sub)pd\t", text))
     alone = len(re.findall(r"\tv?(?:mul|add|sub)sd\t", text))
     print(f"{base}: {packed} packed, {alone} alone")
-    # each loop has a rest for lanes beyond the last full register, of the same instructions
+    # each loop has a scalar remainder for lanes beyond the last full register
     assert packed > 0.4 * alone
 
 

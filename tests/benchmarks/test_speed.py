@@ -1,7 +1,7 @@
-"""Speed, as ratios measured in one run; apart from the suite's pass and fail.
+"""Speed, as ratios measured in one run.
 
 Run with ``python -m pytest tests/benchmarks -m benchmarks -s``. Each test prints what it
-measured and asserts the ratio that the project asks of itself.
+measured and asserts the required ratio.
 """
 
 import ctypes
@@ -70,11 +70,11 @@ def c_loop(tmp_path_factory):
 
 
 class LoopInC:
-    """The same block, motion and accuracy in C, with nothing around it."""
+    """The same block, motion and accuracy in plain C."""
 
     def __init__(self, library: ctypes.CDLL) -> None:
         self.library = library
-        # so weak that the block stays in full contact: the loop in C knows no other state
+        # so weak that the block stays in full contact, the only state of the loop in C
         self.weak = motion(0.3)
         self.model = system().setting.compile()
         body, pads = self.model.system.part
@@ -104,7 +104,7 @@ def loop_in_c(c_loop):
 
 
 def ratio_of(ours, theirs) -> tuple[float, float]:
-    """Return the least times of two functions that take turns [ms]."""
+    """Return the least times of two functions called alternately [ms]."""
     pairs = []
     for _ in range(40):
         start = time.perf_counter()
@@ -182,7 +182,7 @@ def test_whole_simulation_against_scipy():
 
 
 def fresh(code: str, **environment: str) -> list[float]:
-    # a process finds what earlier ones left on disk, Python's own code as well
+    # a process finds files of earlier ones on disk, also Python's bytecode
     options = {key: value for key, value in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"}
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True,

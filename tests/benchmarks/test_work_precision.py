@@ -1,4 +1,4 @@
-"""A small part of the measurement of work against precision, and its rivals' agreement.
+"""A small part of the measurement of work against precision, and agreement of the other programs.
 
 Run with ``python -m pytest tests/benchmarks -m benchmarks -s``. The whole measurement is
 ``tests/benchmarks/work_precision.py``.
@@ -17,7 +17,7 @@ RUN = {"output_step": f"{OUTPUT_STEP} s"}
 
 @pytest.mark.parametrize("name", scenes())
 def test_work_and_error_against_scipy(name):
-    """RK45, loose and through the samples: the least that SciPy can do."""
+    """RK45 with a loose tolerance, through the samples: SciPy's cheapest run."""
     scene, excitation = scenes()[name], motion().window("0 s", f"{SECONDS} s")
     exact = scene.system.simulate(excitation, accuracy=EXACT, **RUN)["rotation"].to_numpy()
     step = excitation.si.time_step
@@ -42,7 +42,7 @@ def test_work_and_error_against_opensees():
     try:
         ops = opensees()
     except ImportError as reason:
-        pytest.skip(f"OpenSees is not at hand: {reason}")
+        pytest.skip(f"OpenSees is not available: {reason}")
     from benchmarks.opensees_comparison import CASES, arguments, excitation, system
     from benchmarks.opensees_pads import simulate
 

@@ -16,8 +16,8 @@ from reference_models.test_tied_rigid_blocks import AGREES, compare
 DATA = Path(__file__).resolve().parents[2] / "docs" / "data" / "tied_oracle.json"
 SCENES = 340
 SHORT = 1e-5
-"""Steps of the equation by hand where both do not agree, for it sees no rotation that passes zero
-twice within one [s]."""
+"""Steps of the hand-written equation for scenes that disagree, as it misses two passages through
+zero within one step [s]."""
 
 
 def main() -> None:
@@ -30,7 +30,7 @@ def main() -> None:
     comparisons, left_out, events = [], 0, Counter()
     for number in range(options.scenes):
         comparison = compare(number)
-        if comparison is None:  # the corner is lifted, which the equation by hand does not follow
+        if comparison is None:  # the corner is lifted, outside of the hand-written equation
             left_out += 1
             continue
         if comparison["difference"] > AGREES:

@@ -1,4 +1,4 @@
-"""Random scenes with restrainers that only must end: by chatter, step limit or an error none may.
+"""Random scenes with restrainers; no run may end by chatter, step limit or error.
 
 Run from the root as ``PYTHONPATH=.:tests python tests/benchmarks/tied_runs.py``; writes
 docs/data/tied_runs.json.
@@ -31,7 +31,7 @@ def draw_blocks(rng):
 
 
 def draw_base(rng, last):
-    """Draw what a body stands on."""
+    """Draw the base of a body."""
     kind = rng.choice(["rigid", "rigid", "pads", "soil"] if last else ["rigid", "pads"])
     if kind == "rigid":
         return rf.RigidGround()
@@ -42,7 +42,7 @@ def draw_base(rng, last):
 
 
 def draw_tie(rng, blocks):
-    """Draw a restrainer, of a stiffness from that which does little to a million times that."""
+    """Draw a restrainer, of a stiffness from negligible to a million times that."""
     on = int(rng.integers(len(blocks)))
     others = [None, *(k for k in range(len(blocks)) if k != on)]
     to = others[int(rng.integers(len(others)))]
@@ -78,7 +78,7 @@ def draw_tie(rng, blocks):
 
 
 def draw_motion(rng, size):
-    """Draw a motion that jumps, rattles, or throws bodies up."""
+    """Draw a motion with jumps, high frequencies, or upward throws."""
     count, width = int(rng.integers(50, 250)), int(rng.choice([1, 1, 5, 20]))
     across, upwards = (
         np.convolve(rng.normal(size=count), np.ones(width) / width, "same") * width**0.5
@@ -90,7 +90,7 @@ def draw_motion(rng, size):
 
 
 def draw_scene(number):
-    """Draw a scene, a motion, and how it is run."""
+    """Draw a scene, a motion, and the arguments of its run."""
     rng = np.random.default_rng([SEED, number])
     blocks = draw_blocks(rng)
     parts = [rf.Block(width=f"{w!r} m", height=f"{h!r} m", mass=f"{m!r} kg") for w, h, m in blocks]
@@ -112,7 +112,7 @@ def draw_scene(number):
 
 
 def run(number):
-    """Run a scene: its level, how it ended, and how well its energy is in balance."""
+    """Run a scene; return its accuracy level, its end and its energy residual."""
     try:
         system, motion, arguments = draw_scene(number)
     except RockframeError as refused:
@@ -128,7 +128,7 @@ def run(number):
 
 
 def summary(runs, refused):
-    """Count how runs ended."""
+    """Count runs by their end."""
     balance = {}
     for _, level, _, residual in runs:
         balance.setdefault(level, []).append(residual)
@@ -146,7 +146,7 @@ def summary(runs, refused):
 
 
 def main():
-    """Run scenes, and write how they ended."""
+    """Run scenes and write their ends."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--runs", type=int, default=2400)
     parser.add_argument("--replay", type=int, nargs="+")

@@ -1,4 +1,4 @@
-"""Times, and the machine they belong to."""
+"""Timing, and the description of the machine."""
 
 import os
 import platform
@@ -13,7 +13,7 @@ PACKAGES = ("rockframe", "numpy", "scipy", "numba", "openseespy")
 def cost(function: Callable[[], object], repeats: int) -> float:
     """Return the least processor time of several calls [s].
 
-    Processor time: what else runs on the machine does not enter as waiting.
+    Processor time excludes waiting for other work on the machine.
     """
     times = []
     for _ in range(repeats):

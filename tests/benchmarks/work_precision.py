@@ -1,19 +1,19 @@
-"""Work against precision: rockframe beside SciPy's solvers in the five scenes, and OpenSees.
+"""Work against precision of rockframe, of SciPy's solvers in the five scenes, and of OpenSees.
 
 ``python tests/benchmarks/work_precision.py`` measures everything and writes
 ``docs/data/work_precision.json``, from which the manual draws its figure. It takes some
 twenty minutes, nearly all of them in SciPy. Names of scenes, or ``opensees``, as arguments measure
 these alone and leave the rest of the file as it is; ``rockframe`` measures rockframe alone in all
-scenes, beside what SciPy needed before.
+scenes and keeps the earlier points of SciPy.
 
 Time is processor time of a whole call, from arguments to histories every 0.02 s. Error is the
 largest error of the rotation at these instants over its peak, against rockframe at a tolerance of
-1e-12, which the programs by hand confirm (``disagreement``).
+1e-12, which the hand-written programs confirm (``disagreement``).
 
-SciPy integrates the programs by hand of the tests. Each method goes two ways: it begins anew at
-every sample of the motion, where the ground's acceleration has a kink, or steps through the
-samples with a step of at most ten of them, and leaves the kinks to the error control. Both begin
-anew at changes of contact, which are sought on the dense output of each step.
+SciPy integrates the hand-written programs of the tests. Each method is used in two ways: it
+restarts at every sample of the motion, where the ground's acceleration has a kink, or steps through
+the samples, at most ten at a time, and leaves the kinks to the error control. Both restart at
+changes of contact, which are found on the dense output of each step.
 """
 
 import json
@@ -37,7 +37,7 @@ LEVELS = ("fast", "standard", "reference")
 TOLERANCES = tuple(10.0**-power for power in range(2, 12))
 REPEATS = 15
 PATIENCE = 100.0
-"""Time of a run [s] after which SciPy is not asked for a tighter tolerance in that way."""
+"""Time of a run [s] beyond which SciPy gets no tighter tolerance in that way."""
 FEW = 2.0
 """Time of a run [s] up to which it is repeated."""
 
@@ -114,7 +114,7 @@ def by_scipy(scene: Scene, exact: np.ndarray) -> Iterator[dict]:
 
 
 def measure(name: str, before: list[dict] | None = None) -> dict:
-    """Measure one scene; or rockframe alone, beside points measured before."""
+    """Measure one scene; or rockframe alone, added to points measured before."""
     scene = scenes()[name]
     run = {"output_step": f"{OUTPUT_STEP} s", "overturning": "continue"}
     answer = scene.system.simulate(motion(), accuracy=EXACT, **run)
@@ -139,9 +139,9 @@ def measure(name: str, before: list[dict] | None = None) -> dict:
 
 
 def time_of_stepping_alone() -> dict:
-    """Time SciPy's RK45 on equations that cost nothing, as often as the two ways step at least.
+    """Time SciPy's RK45 on equations without cost, with the least number of steps of both ways.
 
-    What SciPy's own Python takes, whatever the equations are compiled with; no events, no output.
+    This is the cost of SciPy's own Python code, without events and output.
     """
     excitation = motion()
     step, count = excitation.si.time_step, len(excitation) - 1
@@ -163,7 +163,7 @@ def time_of_stepping_alone() -> dict:
 
 
 def stored() -> dict:
-    """Read what has been measured before."""
+    """Read the stored measurements."""
     return json.loads(DATA.read_text()) if DATA.is_file() else {"scenes": {}}
 
 
@@ -176,7 +176,7 @@ def store(data: dict) -> None:
 
 
 def main(wanted: list[str]) -> None:
-    """Measure what is wanted, all of it unless told."""
+    """Measure the requested scenes, by default all."""
     if wanted == ["rockframe"]:
         data = stored()
         for name, found in data["scenes"].items():

@@ -1,8 +1,8 @@
-"""What a tolerance promises: requested against achieved error over random scenes.
+"""Requested against achieved error over random scenes.
 
 The achieved error is that of all coordinates and rates along time, each over its own
 largest size, against a run at 1e-13. Scenes in which a change of the motion by 1e-9 grows more
-than a hundredfold have no error that a tolerance could promise; they are left out, and counted.
+than a hundredfold have no error that a tolerance can bound; they are omitted and counted.
 """
 
 import os
@@ -26,7 +26,7 @@ NUDGE, GROWTH = 1e-9, 1e2
 
 @dataclass(frozen=True)
 class Outcome:
-    """Of one run: its error, over the tolerance, and how far its events are off [s]."""
+    """Error of one run over the tolerance, and error of its event times [s]."""
 
     kind: str
     tolerance: float
@@ -58,7 +58,7 @@ def system(kind, rng):
 
 
 def excitation(block, rng):
-    """Smoothed noise of 0.5 to 5 times what uplifts a block on rigid ground."""
+    """Return smoothed noise of 0.5 to 5 times the uplift acceleration on rigid ground."""
     smooth = int(rng.integers(2, 30))
     noise = rng.normal(size=int(rng.integers(200, 800)))
     values = np.convolve(noise, np.ones(smooth) / smooth, "same")
@@ -69,7 +69,7 @@ def excitation(block, rng):
 
 
 def outcomes(kind, rng):
-    """Run one scene; give its outcomes, or none where it is chaotic or does not move."""
+    """Run one scene; return its outcomes, or None if it is chaotic or does not move."""
     scene = system(kind, rng)
     motion = excitation(scene.parts.block.si, rng)
     equations, duration = scene.setting.compile(), motion.si.duration
@@ -98,7 +98,7 @@ def outcomes(kind, rng):
         return None
     outcomes_of_scene = []
     for tolerance in TOLERANCES:
-        # the step limit of the levels is not what is measured here
+        # the step limit of the levels is not measured here
         other = run(rf.Accuracy(rtol=tolerance, steps_per_period=6.0), ground)
         off = np.nan
         if len(other.events.time) == len(exact.events.time):
@@ -131,8 +131,8 @@ def test_error_rarely_exceeds_ten_times_tolerance(measured):
 def test_tolerance_bound_error_is_within_factor_of_ten(measured):
     """Elsewhere the samples of the motion make steps so short that the error is smaller.
 
-    On rigid ground it is smaller anyway: little happens between impacts, and the tolerance is
-    kept where the rotation is a twentieth of its largest size.
+    On rigid ground it is smaller anyway: motion between impacts is smooth, and the tolerance
+    holds where the rotation is a twentieth of its largest size.
     """
     ruled = [o for o in measured if o.bound_by_tolerance and o.kind != "rigid ground"]
     assert len(ruled) > 0.3 * len(measured)

@@ -1,4 +1,4 @@
-"""Every subject's first scenes keep to the bounds; ROCKFRAME_EXTREMES=20 takes 20 times as many."""
+"""First scenes of every subject keep the bounds; ROCKFRAME_EXTREMES=20 runs 20 times as many."""
 
 import os
 
@@ -54,7 +54,7 @@ def test_scenes_cover_all_options_and_ranges():
 
 
 def test_verdict_lists_every_broken_bound():
-    """A soft block on pads that cannot be finished in its steps is no success."""
+    """A run on pads that exceeds its number of steps counts as a failure."""
     verdict = judge(Scene(peak=0.5), "standard")
     assert verdict.failures == []
     assert verdict.steps > 100
@@ -64,7 +64,7 @@ def test_verdict_lists_every_broken_bound():
 
 @pytest.mark.parametrize("stiffness", ["2 TPa", "20 TPa", "2e15 Pa", "2e20 Pa"])
 def test_statics_on_nearly_rigid_soil_match_rigid_ground(stiffness):
-    """Rotations of the soil are below what rounding leaves of those of the block."""
+    """Rotations of the soil are below the rounding of those of the block."""
     block = rf.Block(width="1 m", height="4 m", mass="10 t")
     pads = rf.TwoSpringSupport(frequency_ratio=15, damping_ratio=0.05)
     soil = rf.WinklerSoil(stiffness=stiffness, damping_ratio=0.2)

@@ -1,6 +1,6 @@
-"""The manual as it was built: nothing comes from elsewhere, and search finds what people look for.
+"""The built manual: no page loads anything from elsewhere, and search finds common words.
 
-The folder is ``docs/_build/html``, or what the environment variable ``ROCKFRAME_SITE`` names.
+The folder is ``docs/_build/html``, or that of the environment variable ``ROCKFRAME_SITE``.
 """
 
 import json
@@ -23,7 +23,7 @@ pytestmark = pytest.mark.skipif(
 
 
 class Loaded(HTMLParser):
-    """What a page loads by itself when it is opened."""
+    """Collects the addresses that a page loads when it is opened."""
 
     def __init__(self, text):
         super().__init__()
@@ -68,13 +68,13 @@ def test_files_loaded_by_pages_exist():
 
 
 def test_pages_do_not_reveal_build_machine():
-    """A warning of a script would stand there with its file: those wanted are printed as text."""
+    """A warning of a script appears with its file name; intended ones are printed as text."""
     sources = SITE.joinpath("_sources").rglob("*.txt")
     for page in [*pages(), *sources, *SITE.rglob("*.ipynb")]:
         text = page.read_text(encoding="utf-8")
         assert f"{ROOT}{os.sep}" not in text, page.relative_to(SITE)
         assert not re.search(r"\.py:\d+: \w*Warning: ", text), page.relative_to(SITE)
-        if "gallery" in page.parts:  # what is said of compiling depends on the machine
+        if "gallery" in page.parts:  # messages about compilation depend on the machine
             assert "rockframe compiles what" not in text, page.relative_to(SITE)
 
 

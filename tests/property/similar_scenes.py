@@ -1,4 +1,4 @@
-"""Random scenes of every kind, with a motion and how they are run, for runs in another size."""
+"""Random scenes of every kind with motion and arguments, for runs in another size."""
 
 import math
 from dataclasses import replace
@@ -26,7 +26,7 @@ def usual(base, rng):
 
 
 def of_part(part, rng):
-    """Draw walls, frames, tendons, stacks, of which some are on pads that are too soft."""
+    """Draw walls, frames, tendons, stacks; some are on pads that are too soft."""
     while True:
         try:
             return *random_parts.draw_scene(part, rng), {}
@@ -42,7 +42,7 @@ def slides(draw, rng):
 
 
 def tied(rng):
-    """Draw one to three blocks with ties, of which some are too hard to stand."""
+    """Draw one to three blocks with ties; some ties prevent a position of rest."""
     while True:
         try:
             system, motion, arguments = tied_runs.draw_scene(int(rng.integers(1_000_000)))
@@ -56,7 +56,7 @@ def held(rng):
     while True:
         try:
             return _held(rng)
-        except rf.errors.AssemblyError:  # it falls by what pulls at it
+        except rf.errors.AssemblyError:  # its loads make it fall
             continue
 
 
@@ -130,4 +130,4 @@ DRAWN = {
     "ties": tied,
     "held": held,
 }
-"""By its kind, what draws a scene: its system, its motion, and the arguments of its run."""
+"""Functions by kind that draw a scene: system, motion and arguments of its run."""

@@ -1,8 +1,8 @@
-"""The same scene of another size and another mass, and whether it moves alike.
+"""Similar scenes of another size and mass, and comparison of their results.
 
-Lengths are multiplied by L, masses by M and times by sqrt(L), accelerations stay as they are: all
-else that has a unit follows from its dimension, as :func:`factor` tells. With L a power of four and
-M one of two all numbers keep their digits, but where a library rounds a square otherwise.
+Lengths are multiplied by L, masses by M and times by sqrt(L), accelerations are unchanged; all
+other quantities scale by their dimension, see :func:`factor`. With L a power of four and M a power
+of two all numbers keep their digits, except where a library rounds a square differently.
 """
 
 import math
@@ -29,7 +29,7 @@ def dimensions(unit):
 
 
 def factor(unit, length, mass):
-    """Return what a number with a unit is multiplied by."""
+    """Return the scale factor of a number with a unit."""
     if unit in (None, "", "1", "rad"):
         return 1.0
     heavy, long, lasting = dimensions(unit)
@@ -37,7 +37,7 @@ def factor(unit, length, mass):
 
 
 def scaled(value, length, mass):
-    """Return arguments, or what describes parts, with all that has a unit in another size."""
+    """Return arguments, or descriptions of parts, with all quantities in another size."""
     if isinstance(value, dict):
         return {name: scaled(one, length, mass) for name, one in value.items()}
     if isinstance(value, list | tuple):
@@ -57,7 +57,7 @@ def similar_system(system, length, mass):
 
 
 def similar_motion(motion, length, nudge=0.0):
-    """Return the same accelerations at steps of another length, or with a nudge."""
+    """Return the same accelerations with a scaled time step, or nudged."""
     step, vertical = f"{math.sqrt(length) * motion.si.time_step!r} s", motion.si.vertical
     up = {} if vertical is None else {"vertical": (vertical.samples, "m/s^2")}
     across = (1.0 + nudge) * motion.si.horizontal.samples
@@ -77,18 +77,18 @@ def similar_arguments(arguments, length, mass):
 
 
 def without_numbers(text):
-    """Return a text with all numbers struck out."""
+    """Return a text with all numbers removed."""
     return NUMBER.sub("#", str(text))
 
 
 def differences(one, other, length, mass):
-    """Return what differs in its last bit between two datasets, the other one scaled back.
+    """Return the differences between two datasets, the other one scaled back.
 
-    By its name, the greatest difference over the greatest value; infinite of what is no number.
+    By name, the greatest difference over the greatest value; infinite if not a number.
     """
     alike = {name: one.attrs.get(name) == other.attrs.get(name) for name in COUNTS}
     alike["sizes"] = one.sizes == other.sizes and set(one.variables) == set(other.variables)
-    # not the verdict, which tells of slips from a micrometre on
+    # not the verdict, which mentions slips above a micrometre
     texts = (without_numbers(each.attrs.get("cautions")) for each in (one, other))
     alike["cautions"] = len(set(texts)) == 1
     differences_found = {name: math.inf for name, same in alike.items() if not same}

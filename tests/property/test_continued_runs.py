@@ -1,4 +1,4 @@
-"""A run that goes on where another ended is the one run that both make."""
+"""A run and its continuation equal one uninterrupted run."""
 
 import json
 import math
@@ -29,7 +29,7 @@ STEP = 0.01
 
 
 def record():
-    """Smooth noise, horizontal and vertical, that uplifts and drops every scene."""
+    """Return smooth noise, horizontal and vertical, that uplifts and drops every scene."""
     rng = np.random.default_rng(11)
     across, upwards = (
         np.convolve(rng.normal(size=800), np.hanning(25) / 12.0, "same") for _ in range(2)
@@ -45,7 +45,7 @@ MOTION = record()
 
 @cache
 def unbroken_run(name):
-    """Run a scene without a stop: once, and not before a test asks."""
+    """Run a scene without interruption, once and on demand."""
     return SCENES[name].simulate(MOTION, accuracy="reference")
 
 
@@ -63,7 +63,7 @@ def test_a_record_split_in_two_gives_the_same_response(name, at):
         scale = float(np.abs(unbroken[variable]).max())
         both = np.concatenate([first[variable].values, second[variable].values[1:]])
         assert both == pytest.approx(unbroken[variable].values, abs=2e-7 * scale)
-        # no jump where one ends and the other begins
+        # no jump between the runs
         assert second[variable].values[0] == first[variable].values[-1]
     events = np.concatenate([first.event_time, second.event_time + place * STEP])
     assert events == pytest.approx(unbroken.event_time.values, abs=1e-7)
@@ -100,7 +100,7 @@ def test_a_continued_run_can_be_certified():
     first = SCENES["pads"].simulate(MOTION.window(end="3 s"))
     run = SCENES["pads"].simulate(MOTION.window("3 s"), initial=first, certify=True)
     assert bool(run.verdict_converged)
-    # where it begins is no start that could be scaled
+    # the start of a continuation cannot be scaled
     free = SCENES["pads"].simulate(initial=first, duration="1 s", certify=True)
     assert math.isnan(free.verdict_margin)
 
@@ -132,7 +132,7 @@ def test_invalid_continuations_are_refused():
 
 
 def test_run_that_returned_from_beyond_overturning_angle_continues():
-    """As the one run that both make, asked to go on; one that ends beyond it, or flat, does not."""
+    """With overturning="continue" as one run; runs that overturned or fell flat are refused."""
     system = rf.System(rf.Block(width="1 m", height="5 m", mass="10 t"))
     pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
     arguments = {"overturning": "continue", "outputs": None, "accuracy": "reference"}

@@ -1,7 +1,7 @@
-"""Histories of random scenes of all kinds, as far as they have to agree with one another.
+"""Consistency of histories of random scenes of all kinds.
 
-Velocities are the rates of displacements between events; peaks are nowhere less than histories;
-elongations move with the bodies.
+Velocities are the rates of displacements between events; peaks are not exceeded by histories;
+elongations follow the bodies.
 """
 
 import numpy as np
@@ -17,7 +17,7 @@ pytestmark = [
 ]
 
 SEEDS = range(7000, 7010)
-FINER = 40  # samples of a run in one of its motion
+FINER = 40  # output samples per sample of the motion
 RATES = {
     "rotation": "angular_velocity",
     "vertical_displacement": "vertical_velocity",
@@ -42,7 +42,7 @@ def scenes(seed):
     for part in PARTS:
         try:
             system, motion = draw_scene(part, rng)
-        except AssemblyError:  # on pads that are too soft for it
+        except AssemblyError:  # the pads are too soft to stand on
             continue
         yield part, system, motion
     for part in TIED:
@@ -66,9 +66,9 @@ def runs(seed):
             run = system.simulate(
                 motion, output_step=f"{step / FINER} s", points={"p": ("0.1 m", "0.5 m")}
             )
-        except AssemblyError:  # nothing stands so, on pads that are too soft for it
+        except AssemblyError:  # the pads are too soft to stand on
             continue
-        if int(run.status) <= 2:  # came to its end
+        if int(run.status) <= 2:  # reached its end
             yield name, run, step
 
 
@@ -81,7 +81,7 @@ def test_histories_agree(seed):
     for name, run, step in runs(seed):
         time = run.time.to_numpy()
         width = step / FINER
-        # forces bend where the motion of the ground does, and at events
+        # forces have kinks at those of the ground motion and at events
         bends = np.concatenate([run.event_time, np.arange(0.0, time[-1] + step, step)])
         away = np.abs(time[1:-1, None] - bends).min(axis=1) > 2.1 * width
         away &= np.abs(time[2:] - time[:-2] - 2.0 * width) < 1e-9
@@ -89,13 +89,15 @@ def test_histories_agree(seed):
             if place in run and rate in run:
                 differences = (rows(run[place])[:, 2:] - rows(run[place])[:, :-2]) / (2.0 * width)
                 rates = rows(run[rate])
-                curvature = np.abs(np.diff(rates, 2))  # what a difference leaves out, six times
+                curvature = np.abs(
+                    np.diff(rates, 2)
+                )  # six times the error of the central difference
                 size = max(np.abs(rates).max(), 1e-6)  # [m/s] or [rad/s]: less is rounding
                 error = np.abs(differences - rates[:, 1:-1]) - curvature - 1e-6 * size
                 assert (error[:, away] <= 1e-3 * size).all(), (name, seed, place)
         before_overturning = ~(time > run.attrs["overturning_time"])
         for peak, history in PEAKS.items():
-            # peaks leave out the moments in which friction stops a new held point
+            # peaks exclude the instants at which friction stops a new held point
             stops = peak == "peak_base_shear" and "slip" in run
             if peak in run and history in run and not stops:
                 most = np.abs(rows(run[history])[:, before_overturning]).max(axis=1)

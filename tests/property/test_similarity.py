@@ -1,9 +1,9 @@
-"""Scenes of another size and mass, of millimetres to kilometres, move alike to the last bit.
+"""Similar scenes, of millimetres to kilometres, have the same response to the last bit.
 
-But where a square is rounded otherwise, by a library, which one in a thousand shows.
+The exception is a square that a library rounds differently, in one scene of a thousand.
 
-A length in metres, a time in seconds or a force in newtons that stands somewhere in the code shows
-here: an accuracy, a floor of rounding, a speed that counts as none.
+This reveals any length in metres, time in seconds or force in newtons in the code: an absolute
+accuracy, a rounding floor, a speed that counts as zero.
 """
 
 from zlib import crc32
@@ -22,7 +22,7 @@ import rockframe as rf
 
 pytestmark = [
     pytest.mark.property,
-    # random scenes stretch their models, in either size alike
+    # random scenes may leave the range of their models, in both sizes
     pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning"),
     pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning"),
 ]
@@ -36,10 +36,10 @@ NUDGES, MORE, LEAST = (1e-15, -2e-15, 3e-15), 1e3, 1e-10
 
 
 def draw_scene(kind, number):
-    """Return a scene of a kind, how it is run, and the factors of its lengths and masses."""
+    """Return a scene of a kind, the arguments of its run, and the factors of lengths and masses."""
     system, motion, arguments = DRAWN[kind](np.random.default_rng([crc32(kind.encode()), number]))
     arguments |= {"accuracy": ACCURACIES[number % 3], "outputs": OUTPUTS}
-    # a motion as it is made from samples, not from what it was drawn by
+    # a motion made from samples only
     return (
         system,
         similar_motion(motion, 1.0),
@@ -50,7 +50,7 @@ def draw_scene(kind, number):
 
 
 def compare(kind, numbers):
-    """Check that scenes move alike in another size."""
+    """Check that scenes have similar responses in another size."""
     for number in numbers:
         system, motion, arguments, length, mass = draw_scene(kind, number)
         response = system.simulate(motion, **arguments)
@@ -58,7 +58,7 @@ def compare(kind, numbers):
             similar_motion(motion, length), **similar_arguments(arguments, length, mass)
         )
         differing = differences(response, other, length, mass)
-        if differing:  # by the rounding of a square, and by no more than rounding makes of it
+        if differing:  # by the rounding of a square, and not more than nudges of that size cause
             nudged = [
                 differences(
                     response,
@@ -82,7 +82,7 @@ def compare(kind, numbers):
 @pytest.mark.wide
 @pytest.mark.parametrize(
     "kind",
-    # columns with ties take a compiler longest; blocks that slide with ties remain
+    # columns with ties take longest to compile; sliding blocks with ties remain
     [pytest.param(kind, marks=[pytest.mark.long] * (kind == "ties")) for kind in DRAWN],
 )
 def test_scaled_scene_gives_scaled_response(kind):

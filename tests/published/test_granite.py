@@ -1,4 +1,4 @@
-"""Granite blocks on a shake table: the fit, and what the page says of the fitted blocks."""
+"""Granite blocks on a shake table: the fit, and the numbers of the page."""
 
 import json
 

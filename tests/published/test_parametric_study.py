@@ -81,7 +81,7 @@ def test_standard_and_reference_agree(standard, reference):
 
 
 def test_documented_errors_of_accuracy_levels_are_reproduced():
-    """The page "Accuracy", with the paper's gravity."""
+    """The numbers of the page "Accuracy", with the paper's gravity."""
     page, gravity = "guide/accuracy.md", "9.81 m/s^2"
     runs = {
         level: study(accuracy=level, gravity=gravity).stack(case=list(AXES))
@@ -156,7 +156,7 @@ def test_overturning_comes_sooner_with_slenderness(runs):
 def test_slender_block_on_pads_overturns_within_the_pulse(runs):
     # "the overturning response may occur after the end of excitation (H/B = 6.0 in Fig. 11)":
     # with the corrected equations the block of Fig. 11 (R0 = 5, beta = 20) overturns in the
-    # pulse, at its first swing. On rigid ground it does what the paper says.
+    # pulse, at its first swing. On rigid ground it behaves as in the paper.
     times = runs.overturning_time.sel(radius=5, slenderness=6, frequency_ratio=20)
     np.testing.assert_allclose(times, [0.6614, 0.6629, 0.6658, 0.6712], atol=5e-5)
     rigid = rf.System(
