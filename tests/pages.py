@@ -13,7 +13,7 @@ def read(page: str) -> str:
     return (DOCS / page).read_text(encoding="utf-8")
 
 
-def said(page: str, sentence: str) -> list[float]:
+def numbers_in(page: str, sentence: str) -> list[float]:
     """Return the numbers in a sentence of a page.
 
     Each ``#`` in `sentence` stands for a number; line breaks do not matter.
@@ -42,7 +42,7 @@ def table(page: str, head: str) -> list[list[str]]:
     return rows
 
 
-def listed() -> list[str]:
+def reference_names() -> list[str]:
     """Return the names listed in the reference, including all those of listed packages."""
     text = read("reference/index.md")
     names = re.findall(r"^   ([A-Za-z][\w.]+)$", text, re.MULTILINE)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from benchmarks.random_parts import draw_scene
-from plainly import plainly
+from plain_python import plain_python
 
 import rockframe as rf
 from rockframe.dynamics.chain import model
@@ -258,7 +258,7 @@ def two_bodies(**friction):
     plinth = rf.Block(width="1.5 m", height="2 m", mass="3 t")
     stack = rf.Stack(BLOCK, plinth, interfaces=[PADS.replace(frequency_ratio=20, **friction)])
     soil = SOIL.replace(stiffness="20 MPa", **friction)
-    with plainly():
+    with plain_python():
         found = rf.System(stack, soil).simulate(jump, duration="0.3 s", second_look=False)
     assert found.status.item() == 0
     return found
@@ -290,7 +290,7 @@ def test_great_friction_is_compared_no_finer_than_what_presses_is_known(number, 
     )  # fmt: skip
     pads = PADS.replace(frequency_ratio=20, friction=1e5)
     stack = rf.Stack(block, below, interfaces=[pads])
-    with plainly():
+    with plain_python():
         found = rf.System(stack, pads).simulate(
             shake, duration=ends, outputs=None, second_look=False
         )
@@ -335,7 +335,7 @@ def test_a_corner_of_a_squat_body_keeps_nothing_of_its_speed_on_pads():
 def test_corners_that_rounding_sends_back_to_their_pads_leave(number, ends):
     """Each came down and left in turn, without end, as it touched its pad on its way up."""
     system, motion = draw_scene("stack of squat bodies", np.random.default_rng(number))
-    with plainly():
+    with plain_python():
         found = system.simulate(
             motion, duration=ends, accuracy="fast", outputs=None, second_look=False
         )
@@ -345,7 +345,7 @@ def test_corners_that_rounding_sends_back_to_their_pads_leave(number, ends):
 def test_a_body_that_would_slip_hardly_any_way_is_held_where_its_end_turns_back():
     """It slipped to either side at the middle and at a corner, and its end left and landed."""
     system, motion = draw_scene("stack of squat bodies", np.random.default_rng(2412))
-    with plainly():
+    with plain_python():
         found = system.simulate(motion, duration="0.36 s", outputs=("energy",))
     assert int(found.status) <= Status.TOPPLED
     assert float(found.energy_residual) < 1e-8
@@ -354,7 +354,7 @@ def test_a_body_that_would_slip_hardly_any_way_is_held_where_its_end_turns_back(
 def test_overturning_at_the_instant_of_another_event_is_no_repetition():
     """The state and the mode were those after the landing that came before, and the run ended."""
     system, motion = draw_scene("stack of squat bodies", np.random.default_rng(840))
-    with plainly():
+    with plain_python():
         found = system.simulate(motion, accuracy="fast", outputs=None, second_look=False)
     assert int(found.status) == Status.OVERTURNED
     assert found.event_time[-1] == found.event_time[-2] == found.overturning_time

@@ -17,7 +17,7 @@ import warnings
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from kept_sweep import CASES, as_bytes, child, files, the_sweep
+from stored_sweep import CASES, as_bytes, run_sweep, start_sweep, stored_files
 
 import rockframe as rf
 from rockframe.errors import StudyError
@@ -33,17 +33,17 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as place:
         first = Path(place) / "whole"
         start = time.perf_counter()
-        child(first).communicate()
+        start_sweep(first).communicate()
         duration = time.perf_counter() - start
-        expected_files, expected_dataset = files(first), as_bytes(rf.open_study(first))
+        expected_files, expected_dataset = stored_files(first), as_bytes(rf.open_study(first))
         print(f"uninterrupted: {duration:.1f} s")
         for number in range(1, kills + 1):
             folder = Path(place) / f"study {number}"
             # every fifth kill at a random time after the start, the others while the process writes
             after = rng.randrange(len(expected_files)) if number % 5 else -1
             delay = rng.uniform(0.0, 0.1 if number % 5 else 0.8 * duration)
-            running = child(folder)
-            second_process = None if number % 3 else child(folder)
+            running = start_sweep(folder)
+            second_process = None if number % 3 else start_sweep(folder)
             while running.poll() is None and len(list(folder.glob("*.arrays"))) <= after:
                 time.sleep(0.002)
             time.sleep(delay)
@@ -52,9 +52,9 @@ def main() -> int:
             state, parts = left_behind(folder)
             if second_process is not None and second_process.communicate()[0].strip() != "done":
                 state += ", the second process failed"
-            dataset = as_bytes(the_sweep(folder))
+            dataset = as_bytes(run_sweep(folder))
             good = (
-                files(folder) == expected_files
+                stored_files(folder) == expected_files
                 and dataset == expected_dataset
                 and "failed" not in state
             )

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from plainly import plainly
+from plain_python import plain_python
 
 import rockframe as rf
 from rockframe import extension as ext
@@ -33,7 +33,7 @@ def example():
 
 def test_a_rope_runs_and_balances_its_energies(example):
     system = rf.System(BLOCK, PADS, example.Rope(**POINTS, reach="0.1 m"))
-    with plainly():  # beside links of other laws it is compiled
+    with plain_python():  # beside links of other laws it is compiled
         run = system.simulate(PULSE, free_vibration="1 s")
     assert float(run.energy_residual) < 1e-8
     assert float(run.peak_restrainer_force[0]) > 0.0
@@ -43,7 +43,7 @@ def test_a_rope_runs_and_balances_its_energies(example):
 @pytest.mark.long
 def test_one_that_hardly_hardens_is_a_tie(example):
     rope = example.Rope(**POINTS, reach="1e6 m")
-    with plainly():
+    with plain_python():
         runs = [
             rf.System(BLOCK, PADS, one).simulate(PULSE, duration="0.4 s", accuracy="reference")
             for one in (rope, rf.Restrainer(**POINTS))
@@ -85,7 +85,7 @@ def test_the_page_names_files_that_are_there():
 def test_links_of_several_laws_are_in_one_scene(example, entries):
     rope, tie = example.Rope(**POINTS, reach="1 m", name="rope"), rf.Restrainer(**POINTS)
     load = rf.Load(at=("0 m", "3 m"), vertical="2 kN")
-    with plainly(*entries):
+    with plain_python(*entries):
         found = rf.System(BLOCK, PADS, rope, tie, load).simulate(
             PULSE, free_vibration="1 s", outputs=("energy",)
         )
@@ -94,7 +94,7 @@ def test_links_of_several_laws_are_in_one_scene(example, entries):
     assert float(found.peak_restrainer_force.min()) > 0.0
     # each beside one that is never taut moves as it does alone
     idle = tie.replace(slack="1 km")
-    with plainly():
+    with plain_python():
         alone, beside = (
             rf.System(BLOCK, PADS, rope, *others).simulate(PULSE, free_vibration="0.5 s")
             for others in ((), (idle,))

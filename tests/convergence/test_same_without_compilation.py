@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from plainly import plainly
+from plain_python import plain_python
 
 import rockframe as rf
 from rockframe.compiled import COMPILED, bind
@@ -73,7 +73,7 @@ def test_stacks_match_with_and_without_compilation(name):
     stack, base, accuracy = STACKS[name]
     system = rf.System(stack, base)
     compiled = system.simulate(SHORT, accuracy=accuracy, outputs=["energy"])
-    with plainly():
+    with plain_python():
         plain = system.simulate(SHORT, accuracy=accuracy, outputs=["energy"])
     for variable, values in compiled.variables.items():
         np.testing.assert_array_equal(values, plain.variables[variable], err_msg=variable)
@@ -95,7 +95,7 @@ def test_compiled_and_uncompiled_runs_are_identical(name, monkeypatch):
             integrate, "equations_of", partial(equations_of, compiled_in=compiled_in)
         )
         runs[compiled_in] = system.simulate(motion, accuracy=accuracy, outputs=["energy"])
-    with plainly():
+    with plain_python():
         plain = system.simulate(motion, accuracy=accuracy, outputs=["energy"])
     for compiled in runs.values():
         assert plain.variables.keys() == compiled.variables.keys()

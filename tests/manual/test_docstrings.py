@@ -3,7 +3,7 @@
 import inspect
 
 import pytest
-from pages import listed
+from pages import reference_names
 
 import rockframe as rf
 
@@ -49,7 +49,7 @@ def test_every_public_name_is_documented(name):
 
 def test_every_public_name_has_a_page():
     """The reference lists each public name exactly once."""
-    shown = listed()
+    shown = reference_names()
     assert len(shown) == len(set(shown)) > 100
     public = {name for name in rf.__all__ if name not in (*PACKAGES, "__version__")}
     for package in ("plot", "export", "codes", "errors", "measures"):

@@ -7,7 +7,7 @@ import pytest
 from benchmarks import granite_fit as fit
 from benchmarks.granite_blocks import ANGLES, Shaking, Shape, overturns, verdicts
 from benchmarks.granite_programme import SPECIMENS, VARIABLE, programme_path, read_programme
-from pages import DOCS, said, table
+from pages import DOCS, numbers_in, table
 from scipy.special import expit
 
 import rockframe as rf
@@ -66,12 +66,12 @@ def test_sentences_agree_with_tables_and_data():
         assert cells[4].split()[0] == f"{right:.3f}"
         balanced = 0.5 * (hits / (hits + missed) + stood / (false + stood))
         assert cells[5].split()[0] == f"{balanced:.3f}"
-    reached = said(
+    reached = numbers_in(
         PAGE, "The blocks reach # on the tests that they were fitted to, and # on tests held out"
     )
     names = ("block, all tests", "block, held out")
     assert reached == [float(confusions["both", name][4].split()[0]) for name in names]
-    falls = said(PAGE, "the first did # times, the second # times")
+    falls = numbers_in(PAGE, "the first did # times, the second # times")
     assert falls == [sum(map(int, confusions[one, names[0]][:2])) for one in ("1", "2")]
     stored = json.loads((DOCS / "data" / "granite.json").read_text(encoding="utf-8"))
     middle = {
@@ -80,7 +80,7 @@ def test_sentences_agree_with_tables_and_data():
     }
     tests = sum(one["tests"] for one in stored["ensemble"])
     sentence = "They leave # of # outcomes between 0.1 and 0.9, the regression #."
-    assert said(PAGE, sentence) == [middle["ensemble"], tests, middle["regressed"]]
+    assert numbers_in(PAGE, sentence) == [middle["ensemble"], tests, middle["regressed"]]
     for name in middle:
         assert all(one["low"] < one["predicted"] < one["high"] for one in stored[name])
 

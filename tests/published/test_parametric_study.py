@@ -10,7 +10,7 @@ import itertools
 import numpy as np
 import pytest
 import xarray as xr
-from pages import said
+from pages import numbers_in
 
 import rockframe as rf
 
@@ -95,12 +95,12 @@ def test_documented_errors_of_accuracy_levels_are_reproduced():
         abs(runs[level].peak_relative_rotation - exact.peak_relative_rotation)
         for level in ("fast", "standard")
     )
-    (most,) = said(page, 'with `"fast"` by at most #,')
+    (most,) = numbers_in(page, 'with `"fast"` by at most #,')
     assert float(fast.max()) == pytest.approx(most, rel=0.05)
-    (most,) = said(page, 'with `"standard"` by at most #.')
+    (most,) = numbers_in(page, 'with `"standard"` by at most #.')
     assert float(standard.max()) == pytest.approx(most, rel=0.05)
-    (fast_residual,) = said(page, 'With `"fast"` it is at most # in the 108 runs.')
-    residuals = said(page, "in the 108 runs at most # (standard) and # (reference).")
+    (fast_residual,) = numbers_in(page, 'With `"fast"` it is at most # in the 108 runs.')
+    residuals = numbers_in(page, "in the 108 runs at most # (standard) and # (reference).")
     for level, most in zip(runs, (fast_residual, *residuals), strict=True):
         assert float(runs[level].energy_residual.max()) == pytest.approx(most, rel=0.05)
 

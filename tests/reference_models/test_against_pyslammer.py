@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from plainly import plainly
+from plain_python import plain_python
 
 import rockframe as rf
 
@@ -46,7 +46,7 @@ def test_slip_down_a_slope(name, records):
     along = samples * (3.0 / np.abs(samples).max())
     block = rf.Block(width="2 m", height="1 m", mass="1 t")
     system = rf.System(block, rf.RigidGround(friction=FRICTION), inclination=f"{SLOPE} rad")
-    with plainly():
+    with plain_python():
         run = system.simulate(downhill(along, step), accuracy="reference", outputs=None)
     coarse = step * np.arange(len(along))
     fine = np.linspace(0.0, coarse[-1], FINER * (len(along) - 1) + 1)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from plainly import plainly
+from plain_python import plain_python
 
 from rockframe.dynamics.base_numbers import BaseNumbers, pads_numbers, pads_over
 from rockframe.dynamics.body import LEADING_CORNER
@@ -128,7 +128,7 @@ def test_each_base_of_stack_has_own_variables_and_states():
         lambda pads: aged(pads, "age_above", RATES[0]),
         lambda pads: aged(pads, "age_below", RATES[1]),
     )
-    with plainly():
+    with plain_python():
         expected, run = shaken(plain), shaken(model)
         plain_histories, histories = observed(plain, expected), observed(model, run)
     assert len(expected.events.time) > 4

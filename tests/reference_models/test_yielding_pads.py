@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from own_example import example
 from reference_models.monoliths import two_spring, yielding_pads
+from user_examples import example
 
 import rockframe as rf
 

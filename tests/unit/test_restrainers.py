@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 from benchmarks.tied_runs import draw_scene
 from benchmarks.tied_runs import run as run_drawn
-from plainly import plainly
+from plain_python import plain_python
 
 import rockframe as rf
 from rockframe.dynamics.events import ContactState, EventKind, LinkState
@@ -217,7 +217,7 @@ def test_a_tie_breaks_at_an_elongation_as_at_the_force_there():
     assert int(found.broken_restrainer_count) == 1
 
 
-@plainly()
+@plain_python()
 @pytest.mark.parametrize(
     "base", [rf.RigidGround(), pytest.param(PADS, marks=pytest.mark.long)], ids=["ground", "pads"]
 )

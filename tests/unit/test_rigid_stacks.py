@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 from benchmarks.columns_of_drums import draw_scene as draw_column
 from benchmarks.random_parts import draw_scene
-from plainly import plainly
+from plain_python import plain_python
 
 import rockframe as rf
 from rockframe.dynamics.chain import rows as at
@@ -258,7 +258,7 @@ def test_more_links_than_can_be_numbered_are_refused():
 def test_changes_of_contact_come_to_an_end(number, ends):
     """Each stopped before it, by changes of contact without end, or by a force that is none."""
     system, motion = draw_scene("stack of mixed bases", np.random.default_rng(number))
-    with plainly():
+    with plain_python():
         found = system.simulate(
             motion, duration=ends, accuracy="fast", outputs=None, second_look=False
         )
@@ -294,7 +294,7 @@ def test_columns_that_stopped_go_on(number, ends):
 def test_what_begins_to_slip_has_the_velocity_that_it_had(number, ends, most):
     """A body that is held begins to slip as another one, on pads, changes its contact."""
     system, motion = draw_scene("stack of mixed bases", np.random.default_rng(number))
-    with plainly():
+    with plain_python():
         found = system.simulate(
             motion, duration=ends, accuracy="fast", outputs=None, second_look=False
         )
@@ -314,7 +314,7 @@ def test_what_has_lost_its_hold_is_not_held_at_the_bound():
 def test_a_pad_that_catches_up_creates_no_energy():
     """The end that it meets does not slide by a force that has a corner below pull."""
     system, motion = draw_scene("stack of mixed bases", np.random.default_rng(1835))
-    with plainly():
+    with plain_python():
         found = system.simulate(
             motion, duration="0.66 s", accuracy="fast", outputs=None, second_look=False
         )
@@ -325,7 +325,7 @@ def test_a_pad_that_catches_up_creates_no_energy():
 def test_a_stack_that_falls_as_one_lands_as_one():
     """Its ground falls faster four times; rates of 1e-29 had the upper block bounce once."""
     system, motion = draw_scene("stack of mixed bases", np.random.default_rng(326))
-    with plainly():
+    with plain_python():
         found = system.simulate(
             motion, duration="1.15 s", accuracy="fast", outputs=None, second_look=False
         )
@@ -346,7 +346,7 @@ def test_sets_near_one_are_found_from_the_highest_down(most):
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 def test_several_sets_at_a_change_of_slip_are_no_modes_of_an_impact():
     system, motion = draw_scene("stack of mixed bases", np.random.default_rng(38))
-    with plainly():
+    with plain_python():
         found = system.simulate(motion, accuracy="fast", outputs=None, second_look=False)
     told = "and there are 2 ways to bear and to slip then: taken is one with body 1 in full"
     assert told in found.attrs["cautions"]

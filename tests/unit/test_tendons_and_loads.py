@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from plainly import plainly
+from plain_python import plain_python
 
 import rockframe as rf
 from rockframe.command.files.scenes import read_scene
@@ -116,7 +116,7 @@ def test_links_of_any_laws_run_by_the_same_machine_code(base):
 
 def test_the_work_of_a_load_is_gravity_beside_restrainers_too():
     slack = rf.Restrainer(on=("-1 m", "6 m"), to=("-3 m", "6 m"), stiffness="1 MN/m", slack="9 m")
-    with plainly():
+    with plain_python():
         alone, beside = (
             rf.System(BLOCK, LOAD, *links).simulate(PULSE, duration="0.8 s", outputs=("energy",))
             for links in ((), (slack,))

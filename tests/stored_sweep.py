@@ -20,15 +20,15 @@ CASES = 120
 CHILD = """
 import sys
 sys.path.insert(0, {tests!r})
-from kept_sweep import note_cases, the_sweep
+from stored_sweep import note_cases, run_sweep
 {first}
-the_sweep(sys.argv[1])
+run_sweep(sys.argv[1])
 print("done")
 """
 TESTS = str(Path(__file__).resolve().parent)
 
 
-def the_sweep(store=None, **changes):
+def run_sweep(store=None, **changes):
     """Run 120 cases, in 40 chunks; half of them cannot be assembled."""
     options = {"chunk": 3, "accuracy": "reference", "outputs": ["rotation"], **changes}
     return rf.sweep(
@@ -37,12 +37,12 @@ def the_sweep(store=None, **changes):
     )  # fmt: skip
 
 
-def files(folder):
+def stored_files(folder):
     """Return the bytes of all stored arrays by file name."""
     return {path.name: path.read_bytes() for path in folder.glob("*.arrays")}
 
 
-def child(folder, first=""):
+def start_sweep(folder, first=""):
     """Start a process that runs the sweep after the lines `first`."""
     return subprocess.Popen(
         [sys.executable, "-W", "ignore", "-c", CHILD.format(tests=TESTS, first=first), str(folder)],
@@ -70,7 +70,7 @@ def as_bytes(dataset):
             for name, one in dataset.variables.items()}  # fmt: skip
 
 
-def alike(one, other, *, apart=()):
+def assert_identical(one, other, *, apart=()):
     """Assert that two datasets are identical except for `history` and the attributes `apart`."""
     assert list(one.dims) == list(other.dims)
     assert as_bytes(one) == as_bytes(other)

@@ -12,7 +12,7 @@ PROMPT = "$ "
 LEFT_OUT = "..."
 
 
-def type_in(console, capsys, monkeypatch):
+def run_console(console, capsys, monkeypatch):
     """Run the commands of a console, and compare their output with the output shown.
 
     A line of three dots stands for any lines; a command without output shown is not compared.

@@ -13,7 +13,7 @@ from rockframe.compiled.entries import Entry
 
 
 @contextmanager
-def plainly(*entries: Callable[..., Any]) -> Iterator[None]:
+def plain_python(*entries: Callable[..., Any]) -> Iterator[None]:
     """Run in plain Python, without compilation, as long as this context.
 
     With `entries` only these: with :func:`rockframe.solve.driver.advance` the run is plain Python

@@ -51,7 +51,7 @@ def example(file: Path = FILE) -> Iterator[ModuleType]:
 
 
 @contextmanager
-def as_before() -> Iterator[None]:
+def restored_registrations() -> Iterator[None]:
     """Undo all registrations at the end."""
     saved = [dict(table) for table in TABLES]
     try:
