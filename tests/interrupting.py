@@ -1,19 +1,19 @@
-"""An executor that is interrupted."""
+"""An executor that raises KeyboardInterrupt."""
 
 from concurrent.futures import Executor, Future
 
 
 class Interrupting(Executor):
-    """Runs at once, and is interrupted from the keyboard after some chunks."""
+    """Runs chunks immediately, and raises KeyboardInterrupt after some of them."""
 
     def __init__(self, after):
         self.left = after
 
     def submit(self, function, /, *arguments, **options):
-        found = Future()
+        future = Future()
         if self.left:
             self.left -= 1
-            found.set_result(function(*arguments, **options))
+            future.set_result(function(*arguments, **options))
         else:
-            found.set_exception(KeyboardInterrupt())
-        return found
+            future.set_exception(KeyboardInterrupt())
+        return future

@@ -1,4 +1,4 @@
-"""Tests whose bases are damped beyond critical on purpose."""
+"""A mark for tests with intended supercritical damping."""
 
 import pytest
 

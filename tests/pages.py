@@ -1,11 +1,11 @@
-"""Numbers that pages of the manual state, read from the pages."""
+"""Reads numbers and tables from pages of the manual."""
 
 import re
 from importlib import import_module
 from pathlib import Path
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
-DIGITS = 0.6  # share by which a number of one digit may be off: 1.5 is written as 2
+DIGITS = 0.6  # relative error allowed for a number of one digit: 1.5 is written as 2
 
 
 def read(page: str) -> str:
@@ -13,10 +13,10 @@ def read(page: str) -> str:
     return (DOCS / page).read_text(encoding="utf-8")
 
 
-def said(page: str, sentence: str) -> list[float]:
-    """Return the numbers of a sentence of a page.
+def numbers_in(page: str, sentence: str) -> list[float]:
+    """Return the numbers in a sentence of a page.
 
-    Each ``#`` in `sentence` stands for a number, the rest for itself, however its lines break.
+    Each ``#`` in `sentence` stands for a number; line breaks do not matter.
     """
     words = r"\s+".join(re.escape(word) for word in sentence.split())
     found = re.findall(words.replace(r"\#", r"(\d[\d.]*(?:e-?\d+)?)"), read(page))
@@ -42,10 +42,13 @@ def table(page: str, head: str) -> list[list[str]]:
     return rows
 
 
-def listed() -> list[str]:
-    """Return the names that the reference lists, also those of packages that it lists whole."""
+def reference_names() -> list[str]:
+    """Return the names listed in the reference, including all those of listed packages."""
     text = read("reference/index.md")
     names = re.findall(r"^   ([A-Za-z][\w.]+)$", text, re.MULTILINE)
     for package in re.findall(r"^   :every: (\w+)$", text, re.MULTILINE):
-        names += [f"{package}.{one}" for one in import_module(f"rockframe.{package}").__all__]
+        names += [
+            f"{package}.{name_in_package}"
+            for name_in_package in import_module(f"rockframe.{package}").__all__
+        ]
     return names

@@ -1,18 +1,18 @@
-"""Processor time that a call needs, without what happens to come between."""
+"""Processor time of a call without accidental interruptions."""
 
 import time
 from collections.abc import Callable
 from typing import Any
 
 
-def processor_time(call: Callable[[], Any], enough: float) -> float:
-    """Seconds that a call takes of the processor.
+def processor_time(call: Callable[[], Any], limit: float) -> float:
+    """Return the processor time of a call in seconds.
 
-    A call that took longer than `enough` is asked once more, and the lesser time told: a garbage
-    collection of a process with much in it takes a second by itself.
+    A call longer than `limit` is repeated and the lesser time returned, as a garbage collection in
+    a large process takes a second by itself.
     """
     times = []
-    while len(times) < 2 and min(times, default=enough) >= enough:
+    while len(times) < 2 and min(times, default=limit) >= limit:
         start = time.process_time()
         call()
         times.append(time.process_time() - start)

@@ -1,4 +1,4 @@
-"""Where the recorded motions are that some tests read; none is kept with the tests."""
+"""Paths of the recorded motions that some tests read; none is stored with the tests."""
 
 import os
 from pathlib import Path
@@ -10,12 +10,12 @@ _BESIDE_THE_PROJECT = Path(__file__).resolve().parents[2] / "shared" / "records"
 
 
 def records_folder() -> Path:
-    """Return the folder where recorded motions are looked for."""
+    """Return the folder of recorded motions."""
     return Path(os.environ.get(RECORDS_VARIABLE, _BESIDE_THE_PROJECT))
 
 
 def record_path(name: str) -> Path:
-    """Return the path of a recorded motion, or skip the test when it is not there.
+    """Return the path of a recorded motion, or skip the test if it is missing.
 
     Parameters
     ----------

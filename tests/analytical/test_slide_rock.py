@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from own_example import SCENE_FILE, example
-from plainly import plainly
+from plain_python import plain_python
+from user_examples import SCENE_FILE, example
 
 import rockframe as rf
 from rockframe.dynamics.protocol import Ground
@@ -22,7 +22,7 @@ HISTORIES = (
 @pytest.fixture(scope="module", autouse=True)
 def own():
     """Return the module of the example, its scene registered; compiled it gives the same."""
-    with example(SCENE_FILE) as module, plainly():
+    with example(SCENE_FILE) as module, plain_python():
         yield module
 
 

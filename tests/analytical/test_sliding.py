@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from plainly import plainly
+from plain_python import plain_python
 
 import rockframe as rf
 from rockframe.dynamics.events import EventKind
@@ -42,7 +42,7 @@ MIRRORED = {"rotation", "slip", "slip_velocity", "horizontal_displacement"}
 
 @pytest.fixture(scope="module", autouse=True)
 def _in_plain_python():
-    with plainly():
+    with plain_python():
         yield
 
 

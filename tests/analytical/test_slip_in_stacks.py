@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from plainly import plainly
+from plain_python import plain_python
 
 import rockframe as rf
 from rockframe.dynamics.chain.impact import write_trial_data
@@ -54,7 +54,7 @@ def run_of(interfaces, base, motion, *links, bodies=(STATUE, PLINTH), offset=0.0
 )
 def test_ambiguous_slip_after_jump_is_in_cautions(between, below, told):
     jump = rf.GroundMotion.from_arrays((np.full(11, 0.6 * GRAVITY), "m/s^2"), "0.01 s")
-    with plainly():
+    with plain_python():
         found = run_of(
             [ground(*between)], ground(*below), jump, bodies=(PLATE, PLATE), free_vibration=None
         )
@@ -66,7 +66,7 @@ def test_ambiguous_slip_after_jump_is_in_cautions(between, below, told):
 def test_two_plates_that_slide_in_closed_form(way):
     upper, lower, strong, length = 0.1, 0.3, way * 5.0, 0.4
     steady = rf.GroundMotion.from_arrays((np.full(41, strong), "m/s^2"), "0.01 s")
-    with plainly():  # these equations take longest to compile
+    with plain_python():  # these equations take longest to compile
         found = run_of(
             [ground(0.2, upper)], ground(0.35, lower), steady, bodies=(PLATE, SLAB),
             free_vibration=None,
@@ -83,7 +83,7 @@ def test_two_plates_that_slide_in_closed_form(way):
 
 def test_sticking_body_rides_on_sliding_body():
     steady = rf.GroundMotion.from_arrays((np.full(41, 5.0), "m/s^2"), "0.01 s")
-    with plainly():
+    with plain_python():
         found = run_of([ground(0.4)], ground(0.3, 0.25), steady, free_vibration=None)
     slip = 0.5 * (0.25 * GRAVITY - 5.0) * 0.4**2
     assert found.body_slip.values[:, -1] == pytest.approx([0.0, slip], rel=1e-9, abs=1e-12)
@@ -161,7 +161,7 @@ def test_restrainers_limit_slip():
     loose = {"on": ("0.5 m", "0.6 m"), "to": ("1.5 m", "0.6 m"), "on_body": 2}
     never = rf.Restrainer(**loose, stiffness="1 MN/m", slack="100 m")
     tight = rf.Restrainer(**loose, stiffness="5 MN/m", compression=True)
-    with plainly():
+    with plain_python():
         free, slack, held = (
             run_of([joint], ground(0.2), shaken, *links, free_vibration=None)
             for links in ((), (never,), (tight,))
@@ -183,7 +183,7 @@ def test_leaving_the_ground_as_friction_gives_way_is_an_event():
         rf.Block(width="0.85 m", height="3.2 m", mass="3.2 t"),
         rf.Block(width="1.1 m", height="3.6 m", mass="3 t"),
     ]
-    with plainly():
+    with plain_python():
         found = run_of(
             [ground(0.5, 0.4)], ground(1.06, 0.7), motion, bodies=bodies, free_vibration=None,
             output_step="1 ms",

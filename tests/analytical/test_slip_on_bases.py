@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from benchmarks.random_parts import drawn
-from plainly import plainly
+from benchmarks.random_parts import draw_scene
+from plain_python import plain_python
 
 import rockframe as rf
 from rockframe.dynamics.chain import model
@@ -258,7 +258,7 @@ def two_bodies(**friction):
     plinth = rf.Block(width="1.5 m", height="2 m", mass="3 t")
     stack = rf.Stack(BLOCK, plinth, interfaces=[PADS.replace(frequency_ratio=20, **friction)])
     soil = SOIL.replace(stiffness="20 MPa", **friction)
-    with plainly():
+    with plain_python():
         found = rf.System(stack, soil).simulate(jump, duration="0.3 s", second_look=False)
     assert found.status.item() == 0
     return found
@@ -282,7 +282,7 @@ def test_arbitrarily_large_friction_holds(friction):
 @pytest.mark.parametrize(("number", "ends"), [(189, "0.1 s"), (169, "0.13 s"), (174, "0.13 s")])
 def test_large_friction_does_not_chatter_from_rounding(number, ends):
     """Each body slipped and stuck in turn, without end, as its friction came to the limit."""
-    drawn_system, shake = drawn("friction on pads", np.random.default_rng(number))
+    drawn_system, shake = draw_scene("friction on pads", np.random.default_rng(number))
     block = drawn_system.parts["block"]
     width, height = block.si.width, block.si.height
     below = rf.Block(
@@ -290,7 +290,7 @@ def test_large_friction_does_not_chatter_from_rounding(number, ends):
     )  # fmt: skip
     pads = PADS.replace(frequency_ratio=20, friction=1e5)
     stack = rf.Stack(block, below, interfaces=[pads])
-    with plainly():
+    with plain_python():
         found = rf.System(stack, pads).simulate(
             shake, duration=ends, outputs=None, second_look=False
         )
@@ -334,8 +334,8 @@ def test_squat_block_has_zero_restitution_on_pads():
 )
 def test_corners_of_squat_bodies_do_not_chatter_from_rounding(number, ends):
     """Each came down and left in turn, without end, as it touched its pad on its way up."""
-    system, motion = drawn("stack of squat bodies", np.random.default_rng(number))
-    with plainly():
+    system, motion = draw_scene("stack of squat bodies", np.random.default_rng(number))
+    with plain_python():
         found = system.simulate(
             motion, duration=ends, accuracy="fast", outputs=None, second_look=False
         )
@@ -344,8 +344,8 @@ def test_corners_of_squat_bodies_do_not_chatter_from_rounding(number, ends):
 
 def test_body_with_negligible_slip_does_not_chatter():
     """It slipped to either side at the middle and at a corner, and its end left and landed."""
-    system, motion = drawn("stack of squat bodies", np.random.default_rng(2412))
-    with plainly():
+    system, motion = draw_scene("stack of squat bodies", np.random.default_rng(2412))
+    with plain_python():
         found = system.simulate(motion, duration="0.36 s", outputs=("energy",))
     assert int(found.status) <= Status.TOPPLED
     assert float(found.energy_residual) < 1e-8
@@ -353,8 +353,8 @@ def test_body_with_negligible_slip_does_not_chatter():
 
 def test_overturning_at_instant_of_another_event_ends_run():
     """The state and the mode were those after the landing that came before, and the run ended."""
-    system, motion = drawn("stack of squat bodies", np.random.default_rng(840))
-    with plainly():
+    system, motion = draw_scene("stack of squat bodies", np.random.default_rng(840))
+    with plain_python():
         found = system.simulate(motion, accuracy="fast", outputs=None, second_look=False)
     assert int(found.status) == Status.OVERTURNED
     assert found.event_time[-1] == found.event_time[-2] == found.overturning_time
@@ -363,7 +363,7 @@ def test_overturning_at_instant_of_another_event_ends_run():
 @pytest.mark.long
 def test_bounces_and_slips_end_at_huge_friction():
     """A body let go of its base and was held, without end, as the one below slipped."""
-    system, motion = drawn("stack with friction of any size", np.random.default_rng(650))
+    system, motion = draw_scene("stack with friction of any size", np.random.default_rng(650))
     found = system.simulate(motion, duration="1.03 s", outputs=("energy",), second_look=False)
     assert int(found.status) <= Status.TOPPLED
     assert float(found.energy_residual) < 1e-8

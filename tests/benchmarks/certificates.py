@@ -38,25 +38,25 @@ def clean(run) -> bool:
 
 
 def strength(case: Case) -> float:
-    """Return a scale that is well off the edge, to either side."""
+    """Return a scale at a given distance from the boundary, to either side."""
     return float(np.random.default_rng([7, case.number]).uniform(0.6, 1.6))
 
 
 def contradictions(case: Case, scale: float, fell: bool, count: int = NUDGES) -> int:
-    """Count how many random nudges inside what is stated, and a tight run, say otherwise."""
+    """Count contradictions by random nudges within the stated margins, and by a tight run."""
     rng = np.random.default_rng([11, case.number])
     every = list(parameters(case.system.assembly))
     plan = case.plan(scale)
-    found = int(case.summary(scale, TRUTH.__class__(rtol=1e-13)).overturned != fell)
+    total = int(case.summary(scale, TRUTH.__class__(rtol=1e-13)).overturned != fell)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RockframeWarning)
         for _ in range(count):
             _, scene_at = every[int(rng.integers(len(every)))]
             scene = scene_at(float(rng.uniform(-1e-3, 1e-3)))
-            found += (
+            total += (
                 scene is not None and compute_response(scene, plan).trajectory.overturned != fell
             )
-    return found
+    return total
 
 
 @dataclass
@@ -69,7 +69,7 @@ class Row:
 
 
 def at_the_boundary(pool: Iterator[Case]) -> Iterator[tuple[float, Row]]:
-    """Certify beside the edge; count clean certificates and what contradicts them."""
+    """Certify near the boundary; count clean certificates and their contradictions."""
     rows = {distance: Row() for distance in DISTANCES}
     for number, case in enumerate(pool):
         distance = DISTANCES[number % len(DISTANCES)]
@@ -86,8 +86,8 @@ def at_the_boundary(pool: Iterator[Case]) -> Iterator[tuple[float, Row]]:
 def verdicts(case: Case, scale: float) -> np.ndarray:
     """Return the verdicts of a dense scan over the reach; -1 where a run is not finished."""
     changes = np.linspace(-REACH, REACH, SCALES)
-    found = [case.summary(scale * (1.0 + change)).overturned for change in changes]
-    return np.array([-1 if fell is None else int(fell) for fell in found])
+    verdicts_found = [case.summary(scale * (1.0 + change)).overturned for change in changes]
+    return np.array([-1 if fell is None else int(fell) for fell in verdicts_found])
 
 
 def true_margin(fell: bool, scanned: np.ndarray) -> float:

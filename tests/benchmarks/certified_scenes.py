@@ -1,8 +1,8 @@
-"""Random scenes for the tables of certificates, each beside the boundary of its verdict.
+"""Random scenes for the tables of certificates, each near the boundary of its verdict.
 
-A scene is drawn from the ranges that engineers use, with its ground motion: noise, as a record of
-straight lines, or a sine, as a record or as an analytic pulse. Its strength is counted from an
-edge: a scale of the motion at which the verdict changes, found on the way up and bisected.
+Scenes are drawn from ranges used in practice, with a ground motion: noise as a record, linear
+between samples, or a sine as a record or as an analytic pulse. Its strength is relative to an edge:
+a scale of the motion at which the verdict changes, found by increasing the scale and bisected.
 """
 
 import warnings
@@ -28,7 +28,7 @@ TIGHT = rf.Accuracy(rtol=1e-12)
 
 @dataclass(frozen=True)
 class Case:
-    """A system, what shakes it at the edge of its verdict, and for how long."""
+    """A system, its motion at the edge of its verdict, and the duration."""
 
     number: int
     base: str
@@ -52,7 +52,7 @@ class Case:
         )
 
     def summary(self, scale: float = 1.0, accuracy="standard", motion=None):
-        """Run; give what became of it."""
+        """Run and return the summary."""
         return compute_response(self.system.assembly, self.plan(scale, accuracy, motion)).trajectory
 
     def certified(self, scale: float = 1.0, accuracy="standard", certify=True):
@@ -69,7 +69,7 @@ class Case:
 
 
 def edge(case: Case, accuracy=TIGHT) -> float | None:
-    """Find a scale at which the verdict changes; of several the first on the way up."""
+    """Find the first scale at which the verdict changes as the scale increases."""
     low = 0.02
     if case.summary(low, "standard").overturned is not False:
         return None
@@ -124,7 +124,7 @@ def draw(rng: np.random.Generator) -> tuple[str, rf.System, rf.GroundMotion, flo
 
 
 def cases(count: int, seed: int = 0) -> Iterator[Case]:
-    """Return the first cases of an endless, fixed list; the scale 1 is an edge of each."""
+    """Return the first cases of an infinite fixed list; scale 1 is an edge of each."""
     found, number = 0, 0
     while found < count:
         drawn = draw(np.random.default_rng([seed, number]))

@@ -1,4 +1,4 @@
-"""Random columns of drums, many of them thrown up or falling with their ground: how do they end?
+"""Outcomes of random columns of drums, many thrown upwards or falling with their ground.
 
 Run from the root, with ``PYTHONPATH=.``: ``python tests/benchmarks/columns_of_drums.py``; writes
 docs/data/columns_of_drums.json.
@@ -19,10 +19,10 @@ DATA = Path(__file__).resolve().parents[2] / "docs" / "data" / "columns_of_drums
 SEED = 77
 GRAVITY = 9.80665
 RUNS = 500
-COMPLETE = 2  # the last status of runs that come to their end: completed, overturned, toppled
+COMPLETE = 2  # the last status of finished runs: completed, overturned, toppled
 
 
-def drawn(number):
+def draw_scene(number):
     """Draw three to seven drums, half of their joints with friction, and a motion."""
     rng = np.random.default_rng([SEED, number])
     count, width, drums, height = int(rng.integers(3, 8)), float(rng.uniform(0.6, 1.6)), [], 0.0
@@ -51,8 +51,8 @@ def drawn(number):
 
 def noise(rng, width):
     """Draw noise of a peak of 1, smoothed over so many of its 80 samples."""
-    found = np.convolve(rng.normal(size=80), np.hanning(width), "same")
-    return found / np.abs(found).max()
+    smoothed = np.convolve(rng.normal(size=80), np.hanning(width), "same")
+    return smoothed / np.abs(smoothed).max()
 
 
 def main():
@@ -60,24 +60,24 @@ def main():
     parser.add_argument("--runs", type=int, default=RUNS)
     parser.add_argument("--replay", type=int, nargs="+")
     parser.add_argument("--json", type=Path, default=DATA)
-    given = parser.parse_args()
+    options = parser.parse_args()
     warnings.simplefilter("ignore")
-    ends, worst, unsettled, begun = Counter(), 0.0, [], time.monotonic()
-    for number in given.replay or range(given.runs):
-        system, motion = drawn(number)
+    ends, worst, unsettled, start = Counter(), 0.0, [], time.monotonic()
+    for number in options.replay or range(options.runs):
+        system, motion = draw_scene(number)
         run = system.simulate(motion, accuracy="standard", outputs=("energy",))
         ends[f"status {int(run.status)}"] += 1
         worst = max(worst, float(run.energy_residual))
         if int(run.status) > COMPLETE:
             unsettled.append(number)
             print(number, run.attrs["verdict"], flush=True)
-    found = {
+    summary = {
         "seed": SEED, "runs": sum(ends.values()), "ends": dict(ends),
         "worst energy balance": float(f"{worst:.2g}"), "to be looked at": unsettled,
     }  # fmt: skip
-    print(json.dumps(found, indent=1), f"{time.monotonic() - begun:.0f} s")
-    if not given.replay:
-        given.json.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+    print(json.dumps(summary, indent=1), f"{time.monotonic() - start:.0f} s")
+    if not options.replay:
+        options.json.write_text(json.dumps(summary, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

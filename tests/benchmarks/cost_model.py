@@ -1,7 +1,7 @@
-"""How the cost of a run grows: with its length, with hard pads, dashpots, impacts, and the model.
+"""Cost of a run over its length, stiffness of pads, dashpots, number of impacts, and model.
 
 ``python tests/benchmarks/cost_model.py`` measures and writes ``docs/data/cost_model.json``, from
-which the manual draws its figure. Times are processor times of whole calls that keep no histories,
+which the manual draws its figure. Times are processor times of whole calls without histories,
 the least of several.
 """
 
@@ -40,14 +40,14 @@ WINDOW = ("5 s", "13 s")
 
 
 def excitation() -> rf.GroundMotion:
-    """Return the motion of the five scenes, unscaled and whole."""
+    """Return the full, unscaled motion of the five scenes."""
     return rf.GroundMotion.stochastic(
         6.8, "5 km", seed=29, stress_drop="20 MPa", source="one corner"
     )
 
 
 def measured(system: rf.System, motion: rf.GroundMotion, accuracy, repeats: int) -> dict:
-    """Time a run without histories; give its counts too."""
+    """Time a run without histories; return its time and counts."""
 
     def run():
         return system.simulate(motion, accuracy=accuracy, outputs=None, overturning="continue")
@@ -82,7 +82,7 @@ def over_lengths() -> dict:
 
 
 def over_impacts() -> dict:
-    """Scale the motion: other numbers of events in the same length."""
+    """Scale the motion for different numbers of events in the same length."""
     rows: dict[str, list[dict]] = {name: [] for name in scenes()}
     for factor in FACTORS:
         motion = excitation().scaled(factor)
@@ -100,7 +100,7 @@ def on_pads(
     level: str | rf.Accuracy,
     motion: rf.GroundMotion,
 ) -> dict:
-    """Measure a block on pads, beside what stability asks for."""
+    """Measure a block on pads, and the number of steps that stability requires."""
     size = BLOCKS[block]
     width, height = 2.0 * size["half_width"], 2.0 * size["half_height"]
     with warnings.catch_warnings():
@@ -131,8 +131,7 @@ def on_pads(
 def over_limits() -> list[dict]:
     """Loosen the least number of steps per period, on the hardest pads.
 
-    The settings refuse fewer than six; what the error control would do alone is seen by lifting
-    that bound.
+    The settings refuse fewer than six; lifting that bound shows the error control alone.
     """
     motion = excitation().scaled(2.0).window(*WINDOW)
     rows = []

@@ -1,8 +1,8 @@
 """Print the table of missed flips on the page "Critical scale".
 
 From the root of the repository: ``python tests/benchmarks/critical_scales.py``. Dense scans, of
-`DENSE` scales up to `LARGEST`, stand for the truth; scans with fewer runs look their runs up
-there. Records are left out where the folder of records is not there.
+`DENSE` scales up to `LARGEST`, are the reference; scans with fewer runs read their runs from them.
+Records are omitted where the folder of records is missing.
 """
 
 import math
@@ -75,7 +75,7 @@ def scenes() -> Iterator[tuple[str, rf.System, rf.GroundMotion]]:
 
 @dataclass(frozen=True)
 class Dense:
-    """All runs of a scene, and the number of the one at uplift."""
+    """All runs of a scene, and the index of the run at uplift."""
 
     kind: str
     runs: list[RunSummary]
@@ -83,11 +83,11 @@ class Dense:
 
     @property
     def first(self) -> int:
-        """The first that overturns."""
+        """Index of the first run that overturns."""
         return [run.overturned for run in self.runs].index(True)
 
     def flips(self) -> set[int]:
-        """Return the numbers of the runs after which the verdict changes."""
+        """Return the indices of runs after which the verdict changes."""
         pairs = enumerate(pairwise(self.runs))
         return {k for k, (one, other) in pairs if one.overturned != other.overturned}
 
@@ -111,7 +111,7 @@ def dense(kind: str, system: rf.System, motion: rf.GroundMotion) -> Dense:
 
 
 def scan(truth: Dense, scales: int, most: int) -> tuple[int, float, int, bool]:
-    """Return the flips found, by how much the first is late, the runs, and how far it looked."""
+    """Return flips found, delay of the first one, number of runs, and largest scale scanned."""
     row = np.unique(np.round(np.linspace(truth.start, DENSE, scales))).tolist()
     found = scan_scales(lambda place: truth.runs[round(place)], row, max_runs=most, width=WIDTH)
     brackets = [(flip.below - 1.0, flip.above + 1.0) for flip in found.flips()]

@@ -1,11 +1,11 @@
-"""MuJoCo beside rockframe on two pads: histories and costs.
+"""MuJoCo compared with rockframe on two pads: histories and costs.
 
 ``python tests/benchmarks/engine_comparison.py`` runs all cases, prints a table and writes
 ``docs/data/engines.json``; it takes half an hour, nearly all of it in MuJoCo. Parts of
 names as arguments run the cases that contain them and leave the rest of the file as it is.
 
-Each case runs in MuJoCo at four steps in two ways: every step as it falls, and steps cut where
-contact changes. Difference is the largest one of the rotation every 0.004 s over its peak, against
+Each case runs in MuJoCo at four steps in two ways: fixed steps, and steps cut where contact
+changes. Difference is the largest one of the rotation every 0.004 s over its peak, against
 rockframe at a tolerance of 1e-12. Time is processor time of a whole run.
 """
 
@@ -46,10 +46,10 @@ RECORD = "ElCentro1940_Peknold.AT2"
 
 @dataclass(frozen=True)
 class Case:
-    """A motion and how strong it is, the pads' damping ratio, the rule of restraint, a length.
+    """A motion and its strength, the pads' damping ratio, the restraint rule, and a duration.
 
     ``size`` is the peak of the pulse in units of gravity, or the factor of the record;
-    ``seconds`` is where the run ends, for the record at its end unless given.
+    ``seconds`` is the duration, by default that of the record.
     """
 
     motion: str
@@ -114,7 +114,7 @@ def excitation(case: Case) -> tuple[rf.GroundMotion, Callable[[float], float]]:
 def by_rockframe(case: Case, accuracy: rf.Accuracy | str = EXACT):
     """Run a case in rockframe; a landing corner keeps its speed."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ModelWarning)  # restitution 1 is meant
+        warnings.simplefilter("ignore", ModelWarning)  # restitution 1 is intended
         pads = rf.TwoSpringSupport(
             frequency_ratio=FREQUENCY_RATIO, damping_ratio=case.damping_ratio, restitution=1.0
         )
@@ -129,7 +129,7 @@ def by_rockframe(case: Case, accuracy: rf.Accuracy | str = EXACT):
 
 
 def by_engine(case: Case, step: float, *, meet_changes: bool) -> np.ndarray:
-    """Run a case in MuJoCo; give the rotation at every output."""
+    """Run a case in MuJoCo; return the rotation at every output time."""
     vertical = FREQUENCY_RATIO * math.sqrt(0.75 * GRAVITY / math.hypot(B, H))
     pads = Pads(
         half_width=B,
@@ -158,7 +158,7 @@ def order(differences: list[float]) -> list[float]:
 
 
 def measure(case: Case) -> dict:
-    """Run a case in both programs; give differences and times."""
+    """Run a case in both programs; return differences and times."""
     answer = by_rockframe(case)
     exact = answer["rotation"].to_numpy()
     kinds = answer["event_kind"]
@@ -195,7 +195,7 @@ def measure(case: Case) -> dict:
 
 
 def lines(name: str, found: dict) -> Iterator[str]:
-    """Return a case's part of the table."""
+    """Return the rows of a case in the table."""
     yield (
         f"{name}: peak {found['peak']:.4f} of the overturning angle, {found['impacts']} impacts, "
         f"{found['returns']} returns without one, {found['flights']} flights of together "
@@ -217,7 +217,7 @@ def lines(name: str, found: dict) -> Iterator[str]:
 
 
 def main(wanted: list[str]) -> None:
-    """Run what is wanted, everything unless told."""
+    """Run the requested cases, by default all."""
     for name, case in CASES.items():
         if wanted and not any(part in name for part in wanted):
             continue

@@ -1,22 +1,21 @@
 """The block on two pads in MuJoCo, a multibody engine that shares no code with rockframe.
 
-The model says what the bodies are and how they are joined; the equations of motion are the
-engine's. A platform slides horizontally; it is so heavy, `HEAVY` times the block, that a force of
-its mass times the ground's acceleration shakes it as the ground. On it stands the block: the
-point of its base that the ground holds may rise (a vertical slide), and the block may turn about
-it (a hinge). Nothing collides. The pads push at the corners, and the engine tells where these
-are, how fast they move, and what a force there does to the joints (its Jacobian): no lever and no
-inertial term is written here. The only law by hand is that of a pad, without memory,
+The model defines the bodies and their joints; the equations of motion are the engine's. A platform
+slides horizontally; it is so heavy, `HEAVY` times the block, that a force of its mass times the
+ground acceleration moves it like the ground. The block stands on it: the held point of its base may
+rise (a vertical slide), and the block may rotate about it (a hinge). There are no collisions. The
+pads push at the corners, and the engine supplies the positions and velocities of these and their
+Jacobians: no lever and no inertial term is written here. Only the law of a pad, without memory, is
+written by hand,
 
     N = max(0, k (delta - y) - c dy/dt)   below the top of the unloaded pad, y < delta,
     N = 0                                 above,
 
 evaluated at every stage of the engine's Runge-Kutta method (fourth order).
 
-Which point is held is a matter of the hinge's place; there is a model for each, and one for
-flight, in which a second horizontal slide lets the block go. Where the model changes, the momenta
-are carried over: those of the old motion along the new coordinates, from which the engine's mass
-matrix gives the new rates.
+The position of the hinge sets the held point; there is a model for each point, and one for flight
+with a second horizontal slide. Where the model changes, momenta are projected on the new
+coordinates, from which the engine's mass matrix gives the new rates.
 """
 
 from collections.abc import Callable
@@ -25,9 +24,9 @@ import mujoco
 import numpy as np
 
 HEAVY = 1e12
-"""Mass of the platform over the block's: what the block does to it is lost in rounding."""
+"""Mass of the platform over the block's: the block's effect on it is below rounding."""
 HALVINGS = 40
-"""Halvings of a step by which a change of contact is met."""
+"""Number of bisections of a step to find a change of contact."""
 SITES = ("left", "middle", "right")
 FLIGHT = "nothing"
 SHAKE, RISE, ROTATION = 0, -2, -1
@@ -76,8 +75,8 @@ class Pads:
     restraint : str
         ``centre``, ``leading-corner`` or ``contact-state``. The held point changes between steps.
     meet_changes : bool
-        Whether a step in which contact changes ends at the change, and another goes on from there
-        to where the first would have ended. Within a step contact is then that of its beginning.
+        Whether a step in which contact changes is split at the change. Contact within a step is
+        then that at its beginning.
     """
 
     def __init__(
@@ -119,7 +118,7 @@ class Pads:
         self._contact: tuple[bool, bool] | None = None
 
     def run(self, outputs: int, steps_per_output: int) -> np.ndarray:
-        """Integrate; give the rotation, clockwise, at the start and at every output."""
+        """Integrate; return the clockwise rotation at the start and at every output time."""
         rotation = np.zeros(outputs + 1)
         mujoco.set_mjcb_passive(self._push)
         try:
@@ -132,7 +131,7 @@ class Pads:
         return rotation
 
     def _push(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
-        """Add the forces on the platform and at the corners, whenever the engine asks for them."""
+        """Callback of the engine: add the forces on the platform and at the corners."""
         forces = data.qfrc_passive
         forces[SHAKE] += HEAVY * self._mass * self._acceleration(data.time)
         left, right = self._contact or (None, None)
@@ -142,7 +141,7 @@ class Pads:
                 forces += force * self._jacobian[2]
 
     def _pad(self, site: str) -> tuple[bool, float]:
-        """Tell whether a corner is below the top of its unloaded pad, and what the law says."""
+        """Return whether a corner is below the top of its unloaded pad, and the pad's force law."""
         corner = self._sites[site]
         mujoco.mj_jacSite(self._model, self._data, self._jacobian, None, corner)
         gap = self._settlement - self._data.site_xpos[corner, 2]
@@ -176,7 +175,7 @@ class Pads:
             left -= high
 
     def _go(self, length: float, start: tuple | None = None) -> None:
-        """Make a step of a given length, from an earlier instant if told."""
+        """Make a step of a given length, optionally from an earlier state."""
         data = self._data
         if start is not None:
             data.qpos[:], data.qvel[:], data.time = start
@@ -191,7 +190,7 @@ class Pads:
         return left, right, leans
 
     def _hold(self, state: tuple[bool, bool, bool]) -> None:
-        """Put the hinge where the rule wants it, or let go."""
+        """Place the hinge by the restraint rule, or release it."""
         left, right, leans = state
         if not (left or right):
             wanted = FLIGHT

@@ -1,8 +1,8 @@
-"""Print the table of the page "Accuracy": which runs at "fast" are wrong, and which say so.
+"""Print the table of the page "Accuracy": wrong runs at "fast", and how many report it.
 
 From the root of the repository: ``python tests/benchmarks/fast_verdicts.py``. Random scenes run at
-"fast" with the second look and at "reference". The short ones are those of the pages on extremes
-and certificates, the long ones shake by noise and records for up to 25 s, also on stiff pads.
+"fast" with the second look and at "reference". Short scenes are those of the pages on extremes
+and certificates; long ones have noise and records of up to 25 s, also on stiff pads.
 """
 
 import sys
@@ -34,7 +34,7 @@ RECORDS = (
 )
 LONGEST = 25.0
 OTHER_FALL = 0.05
-"""Share of its time by which an overturning is another one."""
+"""Relative difference of overturning times beyond which two overturnings differ."""
 
 
 def short(number):
@@ -49,7 +49,7 @@ def short(number):
 
 
 def long(number):
-    """Return the same, of many impacts."""
+    """Return a scene with many impacts, its motion and its arguments."""
     rng = np.random.default_rng([100, number])
     scene = usual(rng)
     ratio = float(10.0 ** rng.uniform(0.9, 2.2))
@@ -71,7 +71,7 @@ def long(number):
 
 
 def arguments(scene, duration):
-    """Return how long a run is, where it starts, and in which sense it is asked."""
+    """Return duration, initial state and other arguments of a run."""
     start = scene.start * float(np.arctan(1.0 / scene.slenderness))
     return {
         "duration": f"{duration!r} s",
@@ -81,23 +81,25 @@ def arguments(scene, duration):
 
 
 def timed(system, plan):
-    """Run; give what became of it, and the time."""
+    """Run; return the trajectory and the time."""
     start = time.perf_counter()
-    found = compute_response(system.assembly, plan).trajectory
-    return found, time.perf_counter() - start
+    trajectory = compute_response(system.assembly, plan).trajectory
+    return trajectory, time.perf_counter() - start
 
 
-def judged(system, motion, asked):
-    """Tell what is wrong with a run at "fast", whether it says so, and what the looks cost."""
-    plan = plan_run(system.assembly, motion, accuracy="fast", **asked)
+def judge_fast(system, motion, arguments_of_run):
+    """Return the error of a run at "fast", whether it is reported, and the second look's cost."""
+    plan = plan_run(system.assembly, motion, accuracy="fast", **arguments_of_run)
     compute_response(
         system.assembly, plan
     )  # what is computed once for a scene is no cost of either
     first, cost = timed(system, plan)
     second, more = timed(system, second_look(system.assembly, plan))
-    exact = plan_run(system.assembly, motion, accuracy="reference", outputs=None, **asked)
+    exact = plan_run(
+        system.assembly, motion, accuracy="reference", outputs=None, **arguments_of_run
+    )
     truth, _ = timed(system, exact)
-    told = bool(list(doubts(system.setting, plan, first, second)))
+    is_reported = bool(list(doubts(system.setting, plan, first, second)))
     if first.overturned != truth.overturned:
         kind = "other verdict"
     elif abs(first.peak_rotation - truth.peak_rotation) > MAX_PEAK_ERROR * truth.peak_rotation:
@@ -108,19 +110,22 @@ def judged(system, motion, asked):
         kind = "other fall"
     else:
         kind = "right"
-    return kind, told, more / cost
+    return kind, is_reported, more / cost
 
 
 def main():
     """Print the table."""
     warnings.simplefilter("ignore", RockframeWarning)
     print("scenes | number | what is wrong | how many | of which told | median cost of the look")
-    for name, drawn, count in (("short", short, 1600), ("long", long, 3000)):
-        rows = [judged(*drawn(number)) for number in range(count)]
-        every, told = (Counter(kind for kind, said, _ in rows if said or k) for k in (True, False))
+    for name, draw_case, count in (("short", short, 1600), ("long", long, 3000)):
+        rows = [judge_fast(*draw_case(number)) for number in range(count)]
+        all_kinds, reported = (
+            Counter(kind for kind, is_reported, _ in rows if is_reported or k)
+            for k in (True, False)
+        )
         cost = float(np.median([cost for *_, cost in rows]))
-        for kind, of in every.items():
-            print(f"{name} | {count} | {kind} | {of} | {told[kind]} | {cost:.2f}", flush=True)
+        for kind, of in all_kinds.items():
+            print(f"{name} | {count} | {kind} | {of} | {reported[kind]} | {cost:.2f}", flush=True)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""What the first run of a kind of scene takes: waiting for a compiler, at once, and later.
+"""Times of the first run of a kind of scene: after compilation, without it, and later.
 
 Prints, for each kind of scene, the time of `simulate` in a new process, under half a minute of
 record, with nothing stored and ``ROCKFRAME_COMPILE=wait``; with nothing stored; with the machine

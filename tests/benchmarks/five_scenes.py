@@ -1,4 +1,4 @@
-"""The five scenes on which speed is measured: for rockframe, and for SciPy by hand."""
+"""The five scenes of speed measurements, for rockframe and for hand-written SciPy programs."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -28,18 +28,18 @@ class Scene:
 
 @cache
 def motion() -> rf.GroundMotion:
-    """Return eight seconds of strong motion: in every scene contact changes."""
-    drawn = rf.GroundMotion.stochastic(
+    """Return eight seconds of strong motion; contact changes in every scene."""
+    record = rf.GroundMotion.stochastic(
         6.8, "5 km", seed=29, stress_drop="20 MPa", source="one corner"
     )
-    return drawn.scaled(2.4).window("5 s", "13 s")
+    return record.scaled(2.4).window("5 s", "13 s")
 
 
 def scenes() -> dict[str, Scene]:
     """Return the five by name.
 
-    The cascade holds the middle of the base in every contact state: the speed of the cap's top
-    then does not jump, and its acceleration says all of its motion.
+    The cascade holds the middle of the base in every contact state, so that the speed of the cap's
+    top does not jump and its acceleration describes all of its motion.
     """
     block = rf.Block(width="4 m", height="18 m", mass="99 t")
     pads = rf.TwoSpringSupport(**PADS)

@@ -1,8 +1,8 @@
 """Write the tables and the numbers of the page "Granite blocks on a shake table".
 
 From the root of the repository: ``python tests/benchmarks/granite.py docs``. The tests are read
-from the file named by ``ROCKFRAME_GRANITE``. Trying blocks takes a quarter of an hour; with
-``--verdicts`` what they did is kept in a file, and read from there the next time.
+from the file named by ``ROCKFRAME_GRANITE``. Running the blocks takes a quarter of an hour; with
+``--verdicts`` their verdicts are stored in a file and read from it the next time.
 """
 
 from __future__ import annotations
@@ -25,26 +25,26 @@ from benchmarks.granite_programme import SPECIMENS, programme_path, read_program
 from rockframe.errors import RockframeWarning
 
 
-def what_blocks_did(bench: Bench, kept: Path | None) -> np.ndarray:
-    """Try all blocks with all motions, or read what they did, shape (pairs, angles, tests)."""
-    if kept is not None and kept.is_file():
-        return np.load(kept)
+def run_blocks(bench: Bench, cache: Path | None) -> np.ndarray:
+    """Run all blocks with all motions, or read their verdicts, shape (pairs, angles, tests)."""
+    if cache is not None and cache.is_file():
+        return np.load(cache)
     overturned = np.array([verdicts(pair, bench.shakings) for pair in pairs().tolist()])
-    if kept is not None:
-        np.save(kept, overturned)
+    if cache is not None:
+        np.save(cache, overturned)
     return overturned
 
 
 def main() -> None:
-    """Try, fit, score and write."""
+    """Run blocks, fit, score and write."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path, help="of the manual")
     parser.add_argument("--tests", type=Path, default=programme_path())
-    parser.add_argument("--verdicts", type=Path, help="file (.npy) of what the blocks did")
+    parser.add_argument("--verdicts", type=Path, help="file (.npy) of the blocks' verdicts")
     options = parser.parse_args()
     warnings.simplefilter("ignore", RockframeWarning)
     bench = Bench.of(read_programme(options.tests))
-    overturned = what_blocks_did(bench, options.verdicts)
+    overturned = run_blocks(bench, options.verdicts)
     studies = {}
     for one in SPECIMENS:
         fell = bench.programme.fell[one]

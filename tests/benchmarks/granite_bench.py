@@ -1,4 +1,4 @@
-"""Tests held out: what blocks and a regression say of motions that they were not fitted to."""
+"""Held-out tests: predictions of blocks and of a regression for motions outside their fit."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from benchmarks.granite_programme import Programme
 
 @dataclass(frozen=True)
 class Bench:
-    """What all fits share: the tests, as blocks and as a regression take them."""
+    """Data of all fits: the tests in the form of blocks and of the regression."""
 
     programme: Programme
     shakings: list[Shaking]
     groups: np.ndarray  # number of each test's motion
     peak: np.ndarray  # of the acceleration [m s^-2]
     features: np.ndarray  # ln PGA, ln(PGV/PGA), shape (tests, 2)
-    drawn: list[np.ndarray]  # tests of motions drawn anew
+    drawn: list[np.ndarray]  # tests of resampled motions
 
     @classmethod
     def of(cls, programme: Programme) -> Bench:
@@ -45,13 +45,13 @@ class Bench:
         return chances
 
     def share_of_others(self, fell: np.ndarray) -> np.ndarray:
-        """Return for each test the share that fell under all other motions."""
+        """Return for each test the share of specimens that fell under all other motions."""
         return np.array([fell[self.groups != motion].mean() for motion in self.groups])
 
 
 @dataclass(frozen=True)
 class Predictions:
-    """What is said of the tests: by one block, by its scatter, by an ensemble, by regression."""
+    """Predictions of the tests by one block, by its scatter, by an ensemble and by regression."""
 
     said: np.ndarray
     chances: np.ndarray
@@ -60,13 +60,13 @@ class Predictions:
 
     @property
     def of_ensemble(self) -> np.ndarray:
-        """Probabilities by the ensemble: neither none nor all of it makes certain."""
+        """Probabilities by the ensemble, never exactly 0 or 1."""
         return (self.ensemble * fit.BLOCKS + 0.5) / (fit.BLOCKS + 1.0)
 
 
 @dataclass(frozen=True)
 class Study:
-    """One specimen: what it did, what was fitted, and what that says."""
+    """One specimen: its verdicts, its fits and their predictions."""
 
     fell: np.ndarray
     search: fit.Search

@@ -1,4 +1,4 @@
-"""Effective planar blocks under the motions of a shake table: which of them overturn when."""
+"""Effective planar blocks under the motions of a shake table, and their verdicts."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ RADII = (0.08, 0.8)
 RESTITUTIONS = (0.7, 0.995)
 PAIRS = 128
 ANGLES = np.geomspace(0.04, 0.36, 20)
-"""Overturning angles that every pair of size and restitution is tried with [rad]."""
+"""Overturning angles combined with every pair of size and restitution [rad]."""
 
 
 class Shape(NamedTuple):
-    """What is fitted: a block's size [m] and overturning angle [rad], and the restitution."""
+    """Fitted parameters: size [m], overturning angle [rad] and restitution of a block."""
 
     radius: float
     angle: float
@@ -33,13 +33,13 @@ class Shape(NamedTuple):
 
     @classmethod
     def of(cls, pair: Iterable[float], angle: float) -> Shape:
-        """Put a pair of size and restitution and an angle together."""
+        """Return the shape of a pair of size and restitution and of an angle."""
         radius, restitution = pair
         return cls(radius, angle, restitution)
 
 
 def block_of(shape: Shape) -> rf.System:
-    """Build the effective block on rigid ground: a solid rectangle, of whatever mass."""
+    """Build the effective block on rigid ground, a solid rectangle of arbitrary mass."""
     slenderness = 1.0 / math.tan(shape.angle)
     block = rf.Block.from_size(radius=f"{shape.radius!r} m", slenderness=slenderness, mass="1 t")
     with warnings.catch_warnings():
@@ -66,7 +66,7 @@ class Shaking:
         return cls(plan, absolute_peak(motion.si.horizontal.pieces))
 
     def overturns(self, system: rf.System) -> bool:
-        """Whether a block overturns; one that the motion cannot lift is not run."""
+        """Whether a block overturns; motions that cannot lift it are not run."""
         if self.peak <= system.setting.uplift_acceleration:
             return False
         overturned = compute_response(system.assembly, self.plan).trajectory.overturned

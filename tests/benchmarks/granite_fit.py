@@ -14,21 +14,21 @@ from scipy.stats import binomtest
 
 MEDIANS = np.geomspace(0.045, 0.27, 73)
 SPREADS = np.geomspace(0.04, 0.5, 16)
-"""Medians [rad] and spreads of the overturning angle that are tried."""
+"""Candidate medians [rad] and spreads of the overturning angle."""
 SURELY = 1e-9
-"""Probability that stands for none: the logarithm of none would be infinite."""
+"""Substitute for probability zero, whose logarithm is infinite."""
 BLOCKS = 50
-"""In an ensemble."""
+"""Number of blocks of an ensemble."""
 RESAMPLES = 4000
 Score: TypeAlias = Callable[[np.ndarray, np.ndarray], float]
-"""Of what is said of tests, and what they did."""
+"""A score of predictions and outcomes."""
 
 
 def shares(median: np.ndarray, spread: np.ndarray) -> np.ndarray:
     """Return share of blocks about each of `ANGLES`, over a last axis, :eq:`eq-scattering-block`.
 
     The logarithm of the angle follows the logistic distribution. Beyond the ends of `ANGLES`
-    blocks do what those at the ends do.
+    blocks have the verdicts of those at the ends.
     """
     inner = np.log(ANGLES[1:] * ANGLES[:-1]) / 2.0
     edges = np.concatenate([[-np.inf], inner, [np.inf]])
@@ -43,7 +43,7 @@ def log_likelihoods(chances: np.ndarray, fell: np.ndarray) -> np.ndarray:
 
 
 class Fit(NamedTuple):
-    """A block of a median angle, and how widely angles scatter about it from test to test."""
+    """A block of a median angle, and the scatter of angles about it from test to test."""
 
     shape: Shape
     spread: float
@@ -52,18 +52,18 @@ class Fit(NamedTuple):
 
 @dataclass(frozen=True)
 class Search:
-    """The likelihood of all that is tried, motion by motion.
+    """The likelihood of all candidates, by motion.
 
     Parameters
     ----------
     pairs : ndarray, shape (pairs, 2)
         Radii and restitutions.
     overturned : ndarray of bool, shape (pairs, angles, tests)
-        What the blocks did.
+        Verdicts of the blocks.
     groups : ndarray of int, shape (tests,)
         Number of each test's motion.
     likelihood : ndarray, shape (pairs, medians, spreads, groups)
-        Its logarithm.
+        Logarithm of the likelihood.
     """
 
     pairs: np.ndarray
@@ -75,7 +75,7 @@ class Search:
     def of(
         cls, pairs: np.ndarray, overturned: np.ndarray, groups: np.ndarray, fell: np.ndarray
     ) -> Search:
-        """Try all medians and spreads with all pairs."""
+        """Evaluate all medians and spreads with all pairs."""
         weights = shares(MEDIANS[:, None], SPREADS)
         belongs = groups[:, None] == np.arange(groups.max() + 1)
         likelihood = [log_likelihoods(weights @ one, fell) @ belongs for one in overturned]
@@ -87,7 +87,7 @@ class Search:
         return total if group is None else total - self.likelihood[..., group]
 
     def best(self, group: int | None = None) -> Fit:
-        """Return the likeliest by all motions but one."""
+        """Return the likeliest fit to all motions but one."""
         likelihood = self.without(group)
         return self._fit(np.unravel_index(likelihood.argmax(), likelihood.shape))
 
@@ -136,7 +136,7 @@ def regressed(coefficients: np.ndarray, features: np.ndarray) -> np.ndarray:
 
 
 class Confusion(NamedTuple):
-    """Tests by what was said and what happened."""
+    """Numbers of tests by prediction and outcome."""
 
     fell_as_said: int
     fell_unsaid: int
@@ -144,20 +144,20 @@ class Confusion(NamedTuple):
     stood_as_said: int
 
     @classmethod
-    def of(cls, said: np.ndarray, fell: np.ndarray) -> Confusion:
-        """Count."""
-        counts = (said & fell, ~said & fell, said & ~fell, ~said & ~fell)
+    def of(cls, verdict: np.ndarray, fell: np.ndarray) -> Confusion:
+        """Count tests."""
+        counts = (verdict & fell, ~verdict & fell, verdict & ~fell, ~verdict & ~fell)
         return cls(*(int(one.sum()) for one in counts))
 
 
-def accuracy(said: np.ndarray, fell: np.ndarray) -> float:
+def accuracy(verdict: np.ndarray, fell: np.ndarray) -> float:
     """Return the share of right verdicts."""
-    return float((said == fell).mean())
+    return float((verdict == fell).mean())
 
 
-def balanced_accuracy(said: np.ndarray, fell: np.ndarray) -> float:
+def balanced_accuracy(verdict: np.ndarray, fell: np.ndarray) -> float:
     """Return the mean of the shares of right verdicts among tests that fell and that stood."""
-    return float(0.5 * (said[fell].mean() + (~said[~fell]).mean()))
+    return float(0.5 * (verdict[fell].mean() + (~verdict[~fell]).mean()))
 
 
 def log_loss(chances: np.ndarray, fell: np.ndarray) -> float:
@@ -182,19 +182,19 @@ def interval(
     predicted: np.ndarray,
     fell: np.ndarray,
     drawn: list[np.ndarray],
-    beside: np.ndarray | None = None,
+    reference: np.ndarray | None = None,
 ) -> tuple[float, float]:
-    """Return the 95 % interval of a score, or of how far it is from that of what stands beside."""
+    """Return the 95 % interval of a score, or of its difference from that of a reference."""
     scores = [score(predicted[tests], fell[tests]) for tests in drawn]
-    if beside is not None:
-        others = [score(beside[tests], fell[tests]) for tests in drawn]
+    if reference is not None:
+        others = [score(reference[tests], fell[tests]) for tests in drawn]
         scores = np.subtract(scores, others)
     low, high = np.quantile(scores, [0.025, 0.975])
     return float(low), float(high)
 
 
 class Bin(NamedTuple):
-    """Tests of similar predictions: how many, and how many of them fell."""
+    """Tests with similar predictions: their number, and how many fell."""
 
     tests: int
     fell: int
@@ -205,7 +205,7 @@ class Bin(NamedTuple):
 
 
 def calibration(chances: np.ndarray, fell: np.ndarray, edges: np.ndarray) -> list[Bin]:
-    """Set predicted beside observed shares, the latter with 95 % Clopper-Pearson intervals."""
+    """Compare predicted and observed shares, the latter with 95 % Clopper-Pearson intervals."""
     place = np.clip(np.searchsorted(edges, chances, side="right") - 1, 0, len(edges) - 2)
     bins = []
     for one in range(len(edges) - 1):

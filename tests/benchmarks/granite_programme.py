@@ -1,4 +1,4 @@
-"""The shake-table tests of two granite blocks: table motions, and which specimen fell."""
+"""The shake-table tests of two granite blocks: table motions and fallen specimens."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ SPECIMENS = (1, 2)
 TIME_STEP = 0.005
 """Of the recordings [s]."""
 BAND = {"low": "0.1 Hz", "high": "25 Hz"}
-"""Below it the recordings hold the drift of the sensor, above it noise."""
+"""Below this band the recordings contain sensor drift, above it noise."""
 
 
 @dataclass(frozen=True)
 class Programme:
-    """All tests: the table's motion, that motion's name, and who fell.
+    """All tests: the table's motion, its name, and which specimens fell.
 
     Parameters
     ----------
     motions : list of GroundMotion
         As recorded on the table, within `BAND`.
     names : ndarray of str, shape (tests,)
-        Of the earthquake record that the table was to follow, at whatever amplitude.
+        Name of the earthquake record that the table followed, at any amplitude.
     numbers : ndarray of int, shape (tests,)
-        By which the tests were counted.
+        Numbers of the tests.
     fell : dict of int to ndarray of bool, shape (tests,)
         By specimen.
     """
@@ -54,12 +54,12 @@ class Programme:
 
 
 def programme_path() -> Path:
-    """Return the path where the file of tests is looked for."""
+    """Return the path of the file of tests."""
     return Path(os.environ.get(VARIABLE, _BESIDE_THE_PROJECT))
 
 
 def read_programme(path: Path, band: dict[str, str] | None = BAND) -> Programme:
-    """Read all tests; without `band` as they were recorded."""
+    """Read all tests; without `band` unfiltered."""
     with xr.open_dataset(path) as file:
         data = file.load()
     if data.acceleration.attrs["units"] != "g":

@@ -28,14 +28,14 @@ Studies = dict[int, Study]
 
 
 class Report:
-    """Collects tables, each between two marks, and the numbers behind the figures."""
+    """Collects tables, each between two marks, and the numbers of the figures."""
 
     def __init__(self) -> None:
         self.text = ""
         self.numbers: dict[str, object] = {}
 
     def add(self, mark: str, head: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
-        """Add a table, and show it."""
+        """Add a table and print it."""
         lines = [head, ("---",) * len(head), *rows]
         part = "".join(f"| {' | '.join(line)} |\n" for line in lines)
         print(f"{mark}\n{part}", flush=True)
@@ -49,20 +49,20 @@ class Report:
 
 
 def between(low: float, high: float) -> str:
-    """Write an interval."""
+    """Format an interval."""
     return f"{low:.3f} to {high:.3f}"
 
 
 def scored(
     score: fit.Score, predicted: np.ndarray, fell: np.ndarray, drawn: list[np.ndarray]
 ) -> str:
-    """Write a score and its interval."""
+    """Format a score and its interval."""
     low, high = fit.interval(score, predicted, fell, drawn)
     return f"{score(predicted, fell):.3f} ({between(low, high)})"
 
 
 def fits(bench: Bench, studies: Studies, report: Report) -> None:
-    """Tell the fitted blocks, and how far they are certain."""
+    """Report the fitted blocks and their uncertainty."""
     rows, kept = [], {}
     names = {"radius": "$R_0$ [m]", "angle": r"$\theta$ [rad]", "restitution": r"$\varepsilon$"}
     for specimen, study in studies.items():
@@ -100,7 +100,7 @@ def fits(bench: Bench, studies: Studies, report: Report) -> None:
 
 
 def regressions(bench: Bench, studies: Studies, report: Report) -> None:
-    """Tell the coefficients of the regressions."""
+    """Report the coefficients of the regressions."""
     rows = []
     for specimen, study in studies.items():
         coefficients = fit.regression(bench.features, study.fell)
@@ -109,7 +109,7 @@ def regressions(bench: Bench, studies: Studies, report: Report) -> None:
 
 
 def confusion(bench: Bench, studies: Studies, report: Report) -> None:
-    """Tell how many verdicts were right."""
+    """Report how many verdicts were right."""
     rows = []
     every: dict[str, list[np.ndarray]] = {}
     for specimen, study in studies.items():
@@ -151,7 +151,7 @@ def _confusion_row(
 
 
 def probabilities(bench: Bench, studies: Studies, report: Report) -> None:
-    """Tell how good the probabilities of tests held out are."""
+    """Report scores of the probabilities of held-out tests."""
     rows = []
     scores = (fit.log_loss, fit.brier)
     for specimen, study in studies.items():
@@ -175,7 +175,7 @@ def probabilities(bench: Bench, studies: Studies, report: Report) -> None:
 
 
 def calibration(studies: Studies, report: Report) -> None:
-    """Set the shares that were predicted beside those that fell, of tests held out."""
+    """Report predicted and observed shares of fallen specimens in held-out tests."""
     fell = np.concatenate([study.fell for study in studies.values()])
     rows = []
     for name, words in (("ensemble", "ensemble"), ("regressed", "regression")):
@@ -194,7 +194,7 @@ def calibration(studies: Studies, report: Report) -> None:
 
 
 def errors(bench: Bench, studies: Studies, report: Report) -> None:
-    """Tell where the verdicts on tests held out were wrong."""
+    """Report the wrong verdicts on held-out tests."""
     rows = []
     for specimen, study in studies.items():
         held, fell = study.held_out, study.fell
@@ -221,7 +221,7 @@ def errors(bench: Bench, studies: Studies, report: Report) -> None:
 
 
 def bands(path: Path, bench: Bench, studies: Studies, report: Report) -> None:
-    """Tell what verdicts hang on the band of the recordings, without a new fit of the blocks."""
+    """Report how verdicts depend on the band of the recordings, without a new fit of the blocks."""
     rows = []
     for name, band in BANDS.items():
         other = bench if band is BAND else Bench.of(read_programme(path, band))
@@ -242,7 +242,7 @@ def bands(path: Path, bench: Bench, studies: Studies, report: Report) -> None:
 
 
 def accuracy(bench: Bench, studies: Studies, report: Report) -> None:
-    """Tell how many verdicts another accuracy of the runs changes."""
+    """Report how many verdicts change with the accuracy of the runs."""
     finer = [Shaking.by(motion, "standard") for motion in bench.programme.motions]
     rows = []
     for specimen, study in studies.items():

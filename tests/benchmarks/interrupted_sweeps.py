@@ -1,13 +1,12 @@
-"""A stored sweep that is killed at random moments, and what is there when it is resumed.
+"""A stored sweep killed at random moments, and the result after it is resumed.
 
 Usage: python tests/benchmarks/interrupted_sweeps.py [kills] [seed]
 
-Each time a process that runs a sweep of 240 cases into a new folder is killed (SIGKILL) a moment
-after it has written some number of files, both drawn, or at any time after its start; then the same
+Each time a process that runs a sweep of 240 cases into a new folder is killed (SIGKILL) shortly
+after it has written a random number of files, or at a random time after its start; then the same
 sweep is run there again. Every third time a second process works on the same folder, is not killed,
-and must end with the whole. Prints for each kill when it came, what had been kept by then, and
-whether all files and the dataset are, to the last byte, those of a sweep that was never
-interrupted. Exits with 1 if one is not.
+and must finish the whole sweep. Prints for each kill its time, the stored cases, and whether all
+files and the dataset equal those of an uninterrupted sweep to the last byte. Exits with 1 if not.
 """
 
 import random
@@ -18,7 +17,7 @@ import warnings
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from kept_sweep import CASES, as_bytes, child, files, the_sweep
+from stored_sweep import CASES, as_bytes, run_sweep, start_sweep, stored_files
 
 import rockframe as rf
 from rockframe.errors import StudyError
@@ -33,31 +32,35 @@ def main() -> int:
     same = 0
     with tempfile.TemporaryDirectory() as place:
         first = Path(place) / "whole"
-        begun = time.perf_counter()
-        child(first).communicate()
-        took = time.perf_counter() - begun
-        whole, numbers = files(first), as_bytes(rf.open_study(first))
-        print(f"uninterrupted: {took:.1f} s")
+        start = time.perf_counter()
+        start_sweep(first).communicate()
+        duration = time.perf_counter() - start
+        expected_files, expected_dataset = stored_files(first), as_bytes(rf.open_study(first))
+        print(f"uninterrupted: {duration:.1f} s")
         for number in range(1, kills + 1):
             folder = Path(place) / f"study {number}"
-            # every fifth at any moment from the start of the process, the others while it writes
-            after = rng.randrange(len(whole)) if number % 5 else -1
-            delay = rng.uniform(0.0, 0.1 if number % 5 else 0.8 * took)
-            running = child(folder)
-            beside = None if number % 3 else child(folder)
+            # every fifth kill at a random time after the start, the others while the process writes
+            after = rng.randrange(len(expected_files)) if number % 5 else -1
+            delay = rng.uniform(0.0, 0.1 if number % 5 else 0.8 * duration)
+            running = start_sweep(folder)
+            second_process = None if number % 3 else start_sweep(folder)
             while running.poll() is None and len(list(folder.glob("*.arrays"))) <= after:
                 time.sleep(0.002)
             time.sleep(delay)
             running.kill()
             running.communicate()
-            kept, parts = told(folder)
-            if beside is not None and beside.communicate()[0].strip() != "done":
-                kept += ", the second process failed"
-            found = as_bytes(the_sweep(folder))
-            good = files(folder) == whole and found == numbers and "failed" not in kept
+            state, parts = left_behind(folder)
+            if second_process is not None and second_process.communicate()[0].strip() != "done":
+                state += ", the second process failed"
+            dataset = as_bytes(run_sweep(folder))
+            good = (
+                stored_files(folder) == expected_files
+                and dataset == expected_dataset
+                and "failed" not in state
+            )
             same += good
             print(
-                f"{number:3d}: killed {delay:.3f} s after {after + 1} files; {kept}, "
+                f"{number:3d}: killed {delay:.3f} s after {after + 1} files; {state}, "
                 f"{parts} half-written files; "
                 f"resumed: {'identical' if good else 'ANOTHER'}",
                 flush=True,
@@ -66,8 +69,8 @@ def main() -> int:
     return int(same < kills)
 
 
-def told(folder) -> tuple[str, int]:
-    """Say what a killed sweep has left."""
+def left_behind(folder) -> tuple[str, int]:
+    """Return what a killed sweep has stored, and its number of half-written files."""
     try:
         done = int((rf.open_study(folder).status != RunStatus.NOT_RUN).sum())
     except StudyError:

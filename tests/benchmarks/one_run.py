@@ -1,10 +1,10 @@
-"""What one run with its histories costs beside the compiled loop alone.
+"""Cost of one run with histories, compared with the compiled loop alone.
 
 Run from the root, with ``PYTHONPATH=.``, ``ROCKFRAME_COMPILE=wait``, and glibc's
-``MALLOC_TRIM_THRESHOLD_`` and ``MALLOC_MMAP_THRESHOLD_`` of a gigabyte, so that memory stays from
-run to run: ``python tests/benchmarks/one_run.py``. Writes docs/data/one_run.json. Loop, runs
-without and runs with histories take turns, so that other work on the machine meets all; each number
-is the least processor time of all rounds, a ratio that over the loop's.
+``MALLOC_TRIM_THRESHOLD_`` and ``MALLOC_MMAP_THRESHOLD_`` of a gigabyte, so that memory is reused
+between runs: ``python tests/benchmarks/one_run.py``. Writes docs/data/one_run.json. Loop, runs
+without and runs with histories alternate, so that other work on the machine affects all alike; each
+number is the least processor time of all rounds, a ratio that over the loop's.
 """
 
 import json
@@ -34,12 +34,12 @@ PARTS = {
     "peaks": (run_outputs, "force_peaks"),
     "dataset": (run, "build_dataset"),
 }
-"""What is timed by itself: what the model shows along steps and at samples, the peaks found along
-these, and the labelled dataset."""
+"""Separately timed parts: model outputs along steps and at samples, peaks between these, and the
+labelled dataset."""
 
 
 def motion(peak: float) -> rf.GroundMotion:
-    """Return a minute of noise in samples of 5 ms, which fades at its end."""
+    """Return a minute of noise in samples of 5 ms that fades at its end."""
     noise = np.convolve(np.random.default_rng(1).normal(size=SAMPLES), np.hanning(61), "same")
     noise[-FADE:] *= np.linspace(1.0, 0.0, FADE)
     return rf.GroundMotion.from_arrays(
@@ -48,7 +48,7 @@ def motion(peak: float) -> rf.GroundMotion:
 
 
 def scenes() -> dict[str, tuple[rf.System, float]]:
-    """Return scenes by name, with the peaks of motions that rock and do not overturn them."""
+    """Return scenes by name, with peaks of motions that rock but do not overturn them."""
     block = rf.Block(width="1 m", height="4 m", mass="2 t")
     return {
         "rigid ground": (rf.System(block), 2.9),
@@ -66,15 +66,15 @@ class Spent:
         self.times: dict[str, float] = defaultdict(float)
 
     def timed(self, name: str, function: Callable[..., object]) -> Callable[..., object]:
-        """Return a function whose time is added up."""
+        """Return a function whose processor time is accumulated."""
 
         @wraps(function)
         def call(*arguments, **options):
-            begun = time.process_time()
+            start = time.process_time()
             try:
                 return function(*arguments, **options)
             finally:
-                self.times[name] += time.process_time() - begun
+                self.times[name] += time.process_time() - start
 
         return call
 
@@ -89,13 +89,13 @@ def measured(system: rf.System, ground: rf.GroundMotion, level: str) -> dict[str
             output_step=None,
         )  # fmt: skip
 
-    def whole(**options) -> None:
+    def simulate(**options) -> None:
         system.simulate(ground, accuracy=level, second_look=False, **options)
 
     ways = {
         "loop": loop,
-        "without histories": lambda: whole(outputs=None),
-        "with histories": whole,
+        "without histories": lambda: simulate(outputs=None),
+        "with histories": simulate,
     }
     least = defaultdict[str, float](lambda: 1e9)
     with ExitStack() as stack:
@@ -105,14 +105,14 @@ def measured(system: rf.System, ground: rf.GroundMotion, level: str) -> dict[str
             stack.enter_context(patch.object(place, function, call))
         for _ in range(ROUNDS):
             for way, function in ways.items():
-                for _ in range(2):  # the second finds its code and its memory
+                for _ in range(2):  # the second call finds its code and its memory
                     spent.times.clear()
-                    begun = time.process_time()
+                    start = time.process_time()
                     function()
-                    took = time.process_time() - begun
+                    duration = time.process_time() - start
                 if way == "loop":
-                    took = spent.times["loop"]
-                least[way] = min(least[way], took)
+                    duration = spent.times["loop"]
+                least[way] = min(least[way], duration)
                 if way == "with histories":
                     for name in PARTS:
                         least[name] = min(least[name], spent.times[name])

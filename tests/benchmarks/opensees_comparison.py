@@ -1,4 +1,4 @@
-"""OpenSees beside rockframe on two pads with the middle of the base held: histories and costs."""
+"""OpenSees compared with rockframe on two pads, middle of the base held: histories and costs."""
 
 import math
 import warnings
@@ -21,24 +21,24 @@ CASES = {
 """Damping ratio, and factor of the motion. Only the first two have the same law in both."""
 STEPS_PER_SAMPLE = (1, 2, 4, 8, 16, 32, 64, 128)
 TESTS = (1e-6, 1e-8, 1e-10)
-"""Changes of the unknowns at which Newton's iteration ends [m]; the cheapest is kept."""
+"""Changes of the unknowns that end Newton's iteration [m]; the cheapest is reported."""
 LEVELS = ("fast", "standard", "reference")
 TOLERANCES = tuple(10.0**-power for power in range(2, 12))
 
 
 def excitation(factor: float) -> rf.GroundMotion:
-    """Return the motion of the five scenes, by another factor."""
-    drawn = rf.GroundMotion.stochastic(
+    """Return the motion of the five scenes with another factor."""
+    record = rf.GroundMotion.stochastic(
         6.8, "5 km", seed=29, stress_drop="20 MPa", source="one corner"
     )
-    return drawn.scaled(factor).window("5 s", "13 s")
+    return record.scaled(factor).window("5 s", "13 s")
 
 
 def system(damping_ratio: float) -> rf.System:
     """Return the scene; without dashpots a landing corner keeps its speed."""
     block = rf.Block(width=f"{2 * B} m", height=f"{2 * H} m", mass=f"{MASS} kg")
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ModelWarning)  # restitution 1 is meant
+        warnings.simplefilter("ignore", ModelWarning)  # restitution 1 is intended
         restitution = 1.0 if damping_ratio == 0.0 else None
         pads = rf.TwoSpringSupport(
             frequency_ratio=PADS["frequency_ratio"],
@@ -49,7 +49,7 @@ def system(damping_ratio: float) -> rf.System:
 
 
 def arguments(damping_ratio: float, motion: rf.GroundMotion) -> dict:
-    """Return the same scene as OpenSees takes it."""
+    """Return the arguments of the same scene in OpenSees."""
     vertical = PADS["frequency_ratio"] * math.sqrt(0.75 * GRAVITY / math.hypot(B, H))
     return {
         "half_width": B, "half_height": H, "mass": MASS, "inertia": MASS * (B**2 + H**2) / 3.0,
@@ -61,7 +61,7 @@ def arguments(damping_ratio: float, motion: rf.GroundMotion) -> dict:
 
 
 def compare(steps: tuple[int, ...] = STEPS_PER_SAMPLE, repeats: int = 3) -> dict:
-    """Run all cases in both programs; give errors and times."""
+    """Run all cases in both programs; return errors and times."""
     ops = opensees()
     ops.logFile("/dev/null", "-noEcho")
     return {name: _compare(ops, *case, steps, repeats) for name, case in CASES.items()}
@@ -73,8 +73,8 @@ def _compare(ops, damping_ratio, factor, steps, repeats) -> dict:
     answer = scene.simulate(motion, accuracy=EXACT, **run)
     exact = answer["rotation"].to_numpy()
 
-    def error(found: np.ndarray) -> float:
-        return float(np.abs(found - exact).max() / np.abs(exact).max())
+    def error(rotation: np.ndarray) -> float:
+        return float(np.abs(rotation - exact).max() / np.abs(exact).max())
 
     points = []
     settings = {level: level for level in LEVELS}
@@ -94,16 +94,16 @@ def _compare(ops, damping_ratio, factor, steps, repeats) -> dict:
                 "steps": int(found.attrs["solver_steps"]),
             }
         )
-    given = arguments(damping_ratio, motion)
+    options = arguments(damping_ratio, motion)
     for count in steps:
         for test in TESTS:
 
             def theirs(count=count, test=test):
-                return simulate(ops, **given, steps_per_sample=count, converged=test)
+                return simulate(ops, **options, steps_per_sample=count, converged=test)
 
             row = {
                 "program": "OpenSees",
-                "setting": f"step {1e3 * given['time_step'] / count:g} ms, test {test:g}",
+                "setting": f"step {1e3 * options['time_step'] / count:g} ms, test {test:g}",
             }
             try:
                 found = theirs()

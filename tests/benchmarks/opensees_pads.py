@@ -3,13 +3,13 @@
 The block is a frame of five bars that no load stretches noticeably (corotTruss, exact at finite
 rotation) between four point masses: at both corners, in the middle of the base, and above it so
 that mass, centre of mass and moment of inertia are the block's. OpenSees' corotational beams would
-do as well on paper; their angles are rounded to 1e-9 or so, and with stiff beams Newton's iteration
-then fails.
+be equivalent in theory, but their angles are rounded to about 1e-9, so that Newton's iteration
+fails with stiff beams.
 
-Under each corner stands a vertical spring without tension (ENT); a dashpot beside it (Viscous) is
-always attached. rockframe's pad lets go when its force, dashpot included, falls to zero. Both
+Under each corner stands a vertical spring without tension (ENT); the parallel dashpot (Viscous) is
+always attached. rockframe's pad separates when its force, dashpot included, falls to zero. Both
 therefore solve the same equations where the pads have no dashpots and restitution is 1, or where
-no corner lifts; and as long as the block does not fly: OpenSees goes on holding the middle of the
+no corner lifts, and as long as the block does not fly, as OpenSees always holds the middle of the
 base.
 """
 
@@ -22,9 +22,9 @@ from types import ModuleType
 import numpy as np
 
 STIFF = 1e7
-"""Stiffness of the bars over that of a pad: their stretching is below the errors compared."""
+"""Stiffness of the bars over that of a pad: their strain is below the errors compared."""
 CONVERGED = 1e-11
-"""Change of the unknowns in Newton's iteration at which a step is taken for solved [m, rad]."""
+"""Change of the unknowns at which Newton's iteration has converged [m, rad]."""
 ITERATIONS = 50
 LIBRARIES = ("libquadmath.so.0", "libgfortran.so.4", "libblas.so.3", "liblapack.so.3")
 
@@ -32,8 +32,8 @@ LIBRARIES = ("libquadmath.so.0", "libgfortran.so.4", "libblas.so.3", "liblapack.
 def opensees() -> ModuleType:
     """Import OpenSees; raise ImportError if that is impossible.
 
-    Its wheel for Linux carries the libraries it needs, but does not say where they are: they
-    are loaded first.
+    Its wheel for Linux contains the libraries it needs, but does not locate them: they are loaded
+    first.
     """
     found = importlib.util.find_spec("openseespylinux")
     if found is not None and found.origin is not None:
@@ -43,7 +43,7 @@ def opensees() -> ModuleType:
                 ctypes.CDLL(str(folder / name), mode=ctypes.RTLD_GLOBAL)
     try:
         from openseespy import opensees as ops
-    except RuntimeError as error:  # what the package raises for a library that is missing
+    except RuntimeError as error:  # the package's error for a missing library
         msg = f"openseespy is installed but does not load: {error}"
         raise ImportError(msg) from error
     return ops
@@ -127,7 +127,7 @@ def simulate(
 
 
 def _top(b: float, h: float, square: float) -> float:
-    """Return the height of the upper point mass at which the inertia is right.
+    """Return the height of the upper point mass that gives the right inertia.
 
     The masses at the base are a half in the middle and a quarter at either corner; `square` is
     the inertia about the centre of mass over the mass.

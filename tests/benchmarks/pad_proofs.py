@@ -1,7 +1,7 @@
-"""Prove verdicts of random blocks on pads under recorded motions, beside reference runs.
+"""Prove verdicts of random blocks on pads under recorded motions; compare with reference runs.
 
-``python tests/benchmarks/pad_proofs.py 100`` writes docs/data/pad_proofs.json. Of each record it
-takes twelve seconds about its peak, so that a hundred scenes take some minutes.
+``python tests/benchmarks/pad_proofs.py 100`` writes docs/data/pad_proofs.json. Twelve
+seconds about the peak of each record are used, so that a hundred scenes take some minutes.
 """
 
 import json
@@ -32,15 +32,15 @@ WRITTEN = ROOT / "docs" / "data" / "pad_proofs.json"
 
 def motions() -> list[rf.GroundMotion]:
     """Return the strong parts, each scaled to 0.4 g."""
-    found = []
+    motions_found = []
     for name in RECORDS:
         record = rf.GroundMotion.read(record_path(name))
         signal = record.si.horizontal.samples
         peak = float(np.argmax(np.abs(signal))) * record.si.time_step
         end = min(peak + 7.0, (signal.size - 1) * record.si.time_step)
         part = record.window(f"{max(peak - 5.0, 0.0):.2f} s", f"{end:.2f} s")
-        found.append(part.scaled(0.4 * 9.80665 / float(np.abs(signal).max())))
-    return found
+        motions_found.append(part.scaled(0.4 * 9.80665 / float(np.abs(signal).max())))
+    return motions_found
 
 
 def main(count: int) -> None:

@@ -1,9 +1,9 @@
-"""What each part costs a run that has it, beside the same run without it.
+"""Cost of each part: a run with it compared with the same run without it.
 
 Run from the root, with ``PYTHONPATH=.`` and ``ROCKFRAME_COMPILE=wait``:
-``python tests/benchmarks/parts_cost.py``, and with words that are in the names of parts to measure
-these anew. Writes docs/data/parts_cost.json. Runs with and without a part take turns, so that other
-work on the machine meets both; a ratio is that of the least processor times.
+``python tests/benchmarks/parts_cost.py``, and with words in the names of parts to measure these
+only. Writes docs/data/parts_cost.json. Runs with and without a part alternate, so that other work
+on the machine affects both alike; a ratio is that of the least processor times.
 """
 
 import json
@@ -39,7 +39,7 @@ def pads(**friction):
 
 
 def stack(count, joint):
-    """Return a stack as high as one block, which is as high as its pieces are at least."""
+    """Return a stack of the height of one block."""
     return rf.Stack(*[block(high(count) / count)] * count, interfaces=[joint] * (count - 1))
 
 
@@ -58,7 +58,7 @@ def frame():
 
 
 def scenes():
-    """Return each part by its name: the scene without it, that with it, and the motion's peak."""
+    """Return by name of the part: scenes without and with it, and the motion's peak."""
     rigid, soft = rf.System(block()), rf.System(block(), pads())
     wall = rf.RearWall(side="left", restitution=-0.5)
     elastic = rf.RearWall(side="left", stiffness="5 MN/m", damping="10 kN s/m", gap="5 mm")
@@ -108,9 +108,9 @@ def scenes():
 
 def seconds(system, ground, level):
     """Return the processor time of a run, and the run."""
-    begun = time.process_time()
+    start = time.process_time()
     run = system.simulate(ground, accuracy=level, outputs=None, second_look=False)
-    return time.process_time() - begun, run
+    return time.process_time() - start, run
 
 
 def measured(without, having, ground, level):

@@ -1,7 +1,7 @@
-"""Random blocks under recorded motions: what is proved, beside runs and beside fifty digits.
+"""Proved verdicts of random blocks under recorded motions, against runs and 50-digit runs.
 
 Run as ``python tests/benchmarks/proofs.py`` with the repository on the path and the records of
-tests/records.py at hand; writes docs/data/proofs.json. With ``--sets 50`` it proves sets of
+tests/records.py available; writes docs/data/proofs.json. With ``--sets 50`` it proves sets of
 numbers about the first fifty blocks instead, and writes docs/data/proof_sets.json.
 """
 
@@ -47,8 +47,8 @@ SETS = ((1e-12, 1), (1e-12, 8), (1e-9, 1), (1e-9, 8), (1e-6, 1))  # tolerance, m
 
 
 def records():
-    """Return the strong part of each record, as it was written."""
-    found = {}
+    """Return the strong part of each record, unfiltered."""
+    parts = {}
     for name, (file, component) in RECORDS.items():
         bare = {"time_step": "0.005 s", "unit": "g"} if file.endswith(".txt") else {}
         motion = rf.GroundMotion.read(records_folder() / file, component=component, **bare)
@@ -56,12 +56,12 @@ def records():
         step = motion.si.time_step
         middle, half = int(np.argmax(np.abs(samples))), round(LONGEST / 2 / step)
         part = samples[max(0, middle - half) : middle + half]
-        found[name] = (part - part[0]) / np.abs(part - part[0]).max(), step
-    return found
+        parts[name] = (part - part[0]) / np.abs(part - part[0]).max(), step
+    return parts
 
 
-def drawn(k, all_records):
-    """Draw a block and its motion: every third one eccentric, every fifth on a slope."""
+def draw_case(k, all_records):
+    """Draw a block and its motion; every third block is eccentric, every fifth on a slope."""
     rng = np.random.default_rng([SEED, k])
     name = list(all_records)[k % len(all_records)]
     radius, slenderness = np.exp(rng.uniform(np.log(0.4), np.log(8.0))), rng.uniform(2.5, 8.0)
@@ -83,8 +83,8 @@ def drawn(k, all_records):
     return name, scene, rf.GroundMotion.from_arrays((across, "m/s^2"), f"{step} s", **vertical)
 
 
-def beside_a_run(scene, motion, proof):
-    """Whether the run of greatest accuracy ends otherwise, and how far its instant is off."""
+def compare_with_run(scene, motion, proof):
+    """Return whether the most accurate run has another verdict, and the difference of its time."""
     run = scene.simulate(motion, free_vibration=AFTER, accuracy="reference", outputs=None)
     falls, end = bool(run.overturned), float(run.attrs["solver_end_time"])
     apart = math.nan
@@ -93,7 +93,7 @@ def beside_a_run(scene, motion, proof):
     return proof.decided and not proof.agrees(falls, end), apart
 
 
-def outside_fifty_digits(scene, motion, proof):
+def count_outside_fifty_digits(scene, motion, proof):
     """Count the samples at which the run with fifty digits is outside of its enclosure."""
     assembly, boxes = scene.assembly, {}
 
@@ -106,7 +106,7 @@ def outside_fifty_digits(scene, motion, proof):
         assembly.setting.overturning_angles, (0.0, 0.0), watch=watch,
     )  # fmt: skip
     vertical = None if motion.si.vertical is None else motion.si.vertical.samples
-    # up to where it comes to rest, which with fifty digits has no end
+    # up to rest, which the 50-digit run never reaches
     moving = [number for number, (side, _) in boxes.items() if side]
     rests = [n for n, (side, _) in boxes.items() if side == 0 and n > min(moving, default=n)]
     until = max((n for n in boxes if n < min(rests, default=n + 1)), default=0)
@@ -137,10 +137,10 @@ def campaign(count, exact):
     level = [k for k in range(count) if k % 5]
     chosen = set(level[:: max(1, len(level) // exact)][:exact])
     for k in range(count):
-        name, scene, motion = drawn(k, every)
-        begun = time.process_time()
+        name, scene, motion = draw_case(k, every)
+        start = time.process_time()
         proof = rf.prove(scene, motion)
-        seconds.append(time.process_time() - begun)
+        seconds.append(time.process_time() - start)
         verdicts[proof.verdict] += 1
         of_record[name][proof.verdict] += 1
         bits[str(proof.bits)] += 1
@@ -148,18 +148,18 @@ def campaign(count, exact):
             widths.append(proof.width)
         else:
             causes[proof.reason] += 1
-        otherwise, apart = beside_a_run(scene, motion, proof)
+        otherwise, apart = compare_with_run(scene, motion, proof)
         contradictions += [k] if otherwise else []
         instants.append(apart)
         if k in chosen:
-            wrong, there = outside_fifty_digits(scene, motion, proof)
+            wrong, there = count_outside_fifty_digits(scene, motion, proof)
             samples += there
             outside += [k] if wrong else []
         print(k, name, proof.verdict, proof.reason, f"{seconds[-1]:.2f}", flush=True)
     return {
         "seed": SEED,
         "blocks": count,
-        "records": {name: dict(found) for name, found in of_record.items()},
+        "records": {name: dict(counts) for name, counts in of_record.items()},
         "verdicts": dict(verdicts),
         "undecided by cause": dict(causes),
         "contradicted by reference": contradictions,
@@ -181,36 +181,36 @@ def campaign(count, exact):
 
 def sets(count):
     """Prove all restitutions, scales and angles within tolerances about blocks, in parts."""
-    every, found = records(), {}
+    all_records, results = records(), {}
     for tolerance, parts in SETS:
-        seconds, causes, whole, shares, wrong = [], Counter(), Counter(), [], []
+        seconds, causes, verdicts, shares, wrong = [], Counter(), Counter(), [], []
         for k in range(count):
-            _, scene, motion = drawn(k, every)
-            begun = time.process_time()
+            _, scene, motion = draw_case(k, all_records)
+            start = time.process_time()
             proof = rf.prove(
                 scene, motion, parts=parts, restitution_tolerance=tolerance,
                 scale_tolerance=tolerance, angle_tolerance=f"{tolerance} rad",
             )  # fmt: skip
-            seconds.append(time.process_time() - begun)
-            whole[proof.verdict] += 1
+            seconds.append(time.process_time() - start)
+            verdicts[proof.verdict] += 1
             shares.append(proof.safe_share + proof.overturning_share)
             if not proof.decided:
                 causes[proof.reason.split(", in the")[0]] += 1
                 continue
             for scale in (1.0 - 0.99 * tolerance, 1.0 + 0.99 * tolerance):
-                otherwise, _ = beside_a_run(scene, motion.scaled(scale), proof)
+                otherwise, _ = compare_with_run(scene, motion.scaled(scale), proof)
                 wrong += [k] if otherwise else []
         which = f"within {tolerance:g}, at most {parts} parts"
-        found[which] = {
-            "verdicts": dict(whole),
+        results[which] = {
+            "verdicts": dict(verdicts),
             "mean share decided": float(f"{np.mean(shares):.3f}"),
             "undecided by cause": dict(causes),
             "contradicted by reference": wrong,
             "median seconds": float(f"{np.median(seconds):.2g}"),
             "greatest seconds": float(f"{max(seconds):.2g}"),
         }
-        print(which, found[which], flush=True)
-    return {"seed": SEED, "blocks": count, "sets": found}
+        print(which, results[which], flush=True)
+    return {"seed": SEED, "blocks": count, "sets": results}
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""How long a step of the Dormand-Prince pair may be before it is unstable."""
+"""The longest stable step of the Dormand-Prince pair."""
 
 import math
 

@@ -8,11 +8,11 @@ import numpy as np
 DATA = Path(__file__).parents[2] / "docs" / "data"
 WANTED = (1e-2, 1e-4, 1e-6, 1e-8)
 ALIKE = 1e-11
-"""Error below which points count as equally accurate: it is near that of the reference."""
+"""Error below which points count as equally accurate, near that of the reference."""
 
 
 def fastest(points: list[dict], program: str, wanted: float) -> dict | None:
-    """Return the quickest run of a program that is at least as accurate as wanted."""
+    """Return the fastest run of a program with at most a given error."""
     good = [
         one
         for one in points
@@ -24,7 +24,7 @@ def fastest(points: list[dict], program: str, wanted: float) -> dict | None:
 
 
 def least_ratio(points: list[dict], program: str) -> float:
-    """Return the least ratio of a program's time to ours at its error or better."""
+    """Return the least ratio of a program's time to rockframe's at its error or better."""
     ratios = []
     for one in points:
         if one["program"] != program or one["error"] is None:
@@ -36,7 +36,7 @@ def least_ratio(points: list[dict], program: str) -> float:
 
 
 def beaten(points: list[dict], program: str) -> bool:
-    """Whether each point of a program has one of rockframe that is as accurate and faster."""
+    """Whether for each point of a program one of rockframe is as accurate and faster."""
     return all(
         (ours := fastest(points, "rockframe", one["error"])) is not None
         and ours["time"] < one["time"]
@@ -46,7 +46,7 @@ def beaten(points: list[dict], program: str) -> bool:
 
 
 def work_precision() -> None:
-    """Print times at wanted errors, and the least ratios."""
+    """Print times at given errors, and the least ratios."""
     data = json.loads((DATA / "work_precision.json").read_text())
     print(data["machine"])
     print("stepping alone", data.get("stepping_alone"))

@@ -1,14 +1,14 @@
-"""What a case of a sweep costs, alone and in lanes, beside a loop of single runs.
+"""Cost of a case of a sweep, alone and in lanes, compared with a loop of single runs.
 
 Usage: python tests/benchmarks/sweeps.py [record]
 
 Prints milliseconds of processor time per case on one processor, the least of several rounds, and
 the ratios; then cases per second of a sweep on all processors; then, of 10 000 cases, which share
 of the processor time is spent outside the compiled loops (planning, building scenes, labels), and
-how much faster two threads are than one. Then the same of random tables, in which every case has a
-scene and a scale of its own: with scenes assembled together, and one by one; which share of the
-cases runs outside lanes; and how long a table of a million cases takes to plan. The record is a
-file; without one the motion has the length of El Centro and is drawn from a model.
+how much faster two threads are than one. Then the same for random tables, in which every case has
+its own scene and scale, with scenes assembled together and one by one; the share of cases outside
+lanes; and the time to plan a table of a million cases. The record is a file; without one the motion
+has the length of El Centro and is drawn from a model.
 """
 
 import math
@@ -41,7 +41,7 @@ PLANNED = 1_000_000
 
 
 def main() -> None:
-    """Time all ways, for a parameter, for the scale of the motion, and for a grid of both."""
+    """Time all variants for a parameter, for the scale of the motion, and for a grid of both."""
     if len(sys.argv) > 1:
         motion = rf.GroundMotion.read(sys.argv[1])
     else:
@@ -58,9 +58,9 @@ def main() -> None:
     for accuracy in ("fast", "standard"):
         for name, axes in grids.items():
             times = costs(motion, axes, accuracy)
-            told = ", ".join(f"{way} {each:.3f} ms" for way, each in times.items())
+            text = ", ".join(f"{way} {each:.3f} ms" for way, each in times.items())
             ratio = times["loop"] / list(times.values())[-1]
-            print(f"{accuracy}, {name}: {told} a case; {ratio:.1f} times")
+            print(f"{accuracy}, {name}: {text} a case; {ratio:.1f} times")
     axes = {"damping_ratio": np.linspace(0.05, 0.5, 10), "scale": np.linspace(0.1, 2.0, MANY // 10)}
     for accuracy in ("fast", "standard"):
         rates = [rate(motion, axes, accuracy) for _ in range(3)]
@@ -72,9 +72,9 @@ def main() -> None:
     for name in TABLES:
         for accuracy in ("fast", "standard", "screen"):
             print(f"{accuracy}, random table on {name}: {monte_carlo(motion, name, accuracy)}")
-    begun = time.process_time()
+    start = time.process_time()
     plan_study(SYSTEM, motion, {}, table("pads", PLANNED), accuracy="fast")
-    print(f"a table of {PLANNED} cases is planned in {time.process_time() - begun:.2f} s")
+    print(f"a table of {PLANNED} cases is planned in {time.process_time() - start:.2f} s")
     print(f"load of the machine meanwhile: {os.getloadavg()[0]:.1f} on {os.cpu_count()} processors")
 
 
@@ -82,7 +82,7 @@ study.COMPILING_SHARE = math.inf  # lanes are compiled in the first round
 
 
 def costs(motion, axes, accuracy) -> dict[str, float]:
-    """Return the processor time of a case by several ways that take turns [ms]."""
+    """Return the processor time of a case for several variants in turn [ms]."""
     options = {"outputs": None, "accuracy": accuracy}
 
     def loop():
@@ -108,9 +108,9 @@ def costs(motion, axes, accuracy) -> dict[str, float]:
 def rate(motion, axes, accuracy) -> float:
     """Return the cases a second of a whole sweep, from the call to the labelled dataset [s^-1]."""
     study.MIN_CASES_IN_LANES = 1
-    begun = time.perf_counter()
+    start = time.perf_counter()
     rf.sweep(SYSTEM, motion, axes=axes, accuracy=accuracy, progress=False)
-    return MANY / (time.perf_counter() - begun)
+    return MANY / (time.perf_counter() - start)
 
 
 def table(name, count) -> dict[str, np.ndarray]:
@@ -122,7 +122,7 @@ def table(name, count) -> dict[str, np.ndarray]:
 
 
 def monte_carlo(motion, name, accuracy) -> str:
-    """Tell what a case of a random table costs [ms], and how many ran outside lanes."""
+    """Report the cost of a case of a random table [ms], and the share outside lanes."""
     study.MIN_CASES_IN_LANES = 1
     system, cases = rf.System(BLOCK, *TABLES[name][0]), table(name, DRAWN)
     run_assembled_together = chunk.run_assembled_together
@@ -141,8 +141,8 @@ def monte_carlo(motion, name, accuracy) -> str:
         alone = 1.0 - float(np.mean(run_chunk(job).scalars[DRIVER] == Driver.IN_LANES))
     finally:
         chunk.run_assembled_together = run_assembled_together
-    told = ", ".join(f"{way} {1e3 * seconds / DRAWN:.3f} ms" for way, seconds in least.items())
-    return f"{told} a case, {1e3 * inside / DRAWN:.3f} ms in lanes; {alone:.1%} outside lanes"
+    text = ", ".join(f"{way} {1e3 * seconds / DRAWN:.3f} ms" for way, seconds in least.items())
+    return f"{text} a case, {1e3 * inside / DRAWN:.3f} ms in lanes; {alone:.1%} outside lanes"
 
 
 @contextmanager
@@ -151,12 +151,12 @@ def _loops_timed():
     inside = [0.0]
     loops = lanes.integrate_lanes
 
-    def timed(*given):
-        begun = time.thread_time()
+    def timed(*arguments):
+        start = time.thread_time()
         try:
-            return loops(*given)
+            return loops(*arguments)
         finally:
-            inside[0] += time.thread_time() - begun
+            inside[0] += time.thread_time() - start
 
     lanes.integrate_lanes = timed
     try:
@@ -168,18 +168,18 @@ def _loops_timed():
 def share(motion, axes) -> float:
     """Return the share of a sweep's processor time that is not spent in compiled loops."""
     with _loops_timed() as inside:
-        whole = _once(lambda: _swept(motion, axes, threads=1))
-    return 1.0 - inside[0] / whole
+        total = _once(lambda: _swept(motion, axes, threads=1))
+    return 1.0 - inside[0] / total
 
 
 def gain(motion, axes) -> float:
-    """Return how much faster two threads are than one, by least wall times of rounds in turns."""
+    """Return the speed-up of two threads over one, by least wall times of alternating rounds."""
     times = {1: [], 2: []}
     for _ in range(ROUNDS):
         for threads, taken in times.items():
-            begun = time.perf_counter()
+            start = time.perf_counter()
             _swept(motion, axes, threads)
-            taken.append(time.perf_counter() - begun)
+            taken.append(time.perf_counter() - start)
     return min(times[1]) / min(times[2])
 
 
@@ -190,9 +190,9 @@ def _swept(motion, axes, threads) -> None:
 
 
 def _once(work) -> float:
-    begun = time.process_time()
+    start = time.process_time()
     work()
-    return time.process_time() - begun
+    return time.process_time() - start
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""What fixed sub-steps cost beside the tolerance of ``"standard"``: the solver alone, one run.
+"""Cost of fixed sub-steps compared with the tolerance of ``"standard"``, for the solver alone.
 
 Run with ``python -m pytest tests/benchmarks/test_fast.py -m benchmarks -s``; it prints the
 table of the guide's page "Accuracy".
@@ -29,11 +29,11 @@ LEAST = {
     "coupled": 5.0,
     "cascade": 1.4,
 }
-"""Ratio asked for, of the times of ``"standard"`` and ``"fast"``."""
+"""Required ratio of the times of ``"standard"`` and ``"fast"``."""
 
 
 def systems() -> dict[str, tuple[rf.System, float]]:
-    """Return the scenes, and the factor on the record with which they rock without falling."""
+    """Return the scenes, and the factor on the record at which they rock without overturning."""
     block = rf.Block(width="4 m", height="18 m", mass="99 t")
     cap = rf.CushionCap(height="0.9 m", mass="36 t")
     soil = rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.20)

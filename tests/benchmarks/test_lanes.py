@@ -1,4 +1,4 @@
-"""Lanes against the loop of single runs: packed instructions, and what they gain."""
+"""Lanes against the loop of single runs: packed instructions and their gain."""
 
 import re
 from time import perf_counter
@@ -23,7 +23,7 @@ PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
 SOIL = rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.2)
 BASES = {"rigid ground": (), "pads": (PADS,), "soil": (SOIL,)}
 LEAST = {"rigid ground": 1.2, "pads": 2.0, "soil": 2.0}
-"""Gain; on rigid ground a run has an impact in every twentieth step."""
+"""Required gain; on rigid ground a run has an impact in every twentieth step."""
 
 
 def model_on(*parts):
@@ -49,7 +49,7 @@ def test_lanes_use_packed_instructions(base, fixed):
     packed = len(re.findall(r"\tv?(?:mul|add|sub)pd\t", text))
     alone = len(re.findall(r"\tv?(?:mul|add|sub)sd\t", text))
     print(f"{base}: {packed} packed, {alone} alone")
-    # each loop has a rest for lanes beyond the last full register, of the same instructions
+    # each loop has a scalar remainder for lanes beyond the last full register
     assert packed > 0.4 * alone
 
 
@@ -70,12 +70,12 @@ def test_lanes_are_faster_than_single_runs(base):
     lanes, alone = [], []
     for _ in range(5):
         began = perf_counter()
-        found = integrate_lanes([LaneRun(model, start)], motions, none, np.arange(len(motions)))
+        result = integrate_lanes([LaneRun(model, start)], motions, none, np.arange(len(motions)))
         lanes.append(perf_counter() - began)
         began = perf_counter()
         runs = [integrate(model, Start(), one, FAST, **options) for one in motions]
         alone.append(perf_counter() - began)
-    assert found.clock.shape[0] == len(runs)
+    assert result.clock.shape[0] == len(runs)
     gain = min(alone[1:]) / min(lanes[1:])
     print(f"{base}: {1e6 * min(lanes) / len(motions):.0f} us a run in lanes, {gain:.1f} times")
     assert gain > LEAST[base]

@@ -1,4 +1,4 @@
-"""What the models cost beside one another: same record, same accuracy, one run.
+"""Costs of the models compared: same record, same accuracy, one run.
 
 Run with ``python -m pytest tests/benchmarks -m benchmarks -s``.
 """
@@ -18,7 +18,7 @@ MOST = {
     "coupled": 4.0,
     "cascade": 3.0,
 }
-"""Cost asked for, over that of the block on two pads."""
+"""Largest allowed cost over that of the block on two pads."""
 
 
 def systems():

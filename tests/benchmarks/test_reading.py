@@ -1,4 +1,4 @@
-"""How long it takes to read a record; apart from the suite's pass and fail.
+"""Time to read a record.
 
 Run with ``python -m pytest tests/benchmarks -m benchmarks -s``.
 """
@@ -49,7 +49,7 @@ def test_18000_samples(tmp_path, name, text, limit):
 
 
 def test_longest_text_is_read_within_time_and_memory(tmp_path):
-    # the bound that no file may cost more than about a second and 200 MB
+    # no file may cost more than about a second and 200 MB
     count = 300_000
     path = tmp_path / "long.csv"
     values = 0.2 * np.sin(0.1 * np.arange(count))

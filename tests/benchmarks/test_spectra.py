@@ -1,4 +1,4 @@
-"""Speed of spectra and intensity measures, beside an independent library.
+"""Speed of spectra and intensity measures, compared with an independent library.
 
 Run with ``python -m pytest tests/benchmarks -m benchmarks -s``.
 """
@@ -15,7 +15,7 @@ from records import record_path
 import rockframe as rf
 from rockframe.measures import intensity_measures, response_spectrum
 
-PERIODS = np.geomspace(0.05, 10.0, 500)  # no shorter ones than the samples carry
+PERIODS = np.geomspace(0.05, 10.0, 500)  # not shorter than the samples resolve
 REPEATS = 9
 
 
@@ -41,7 +41,7 @@ def record():
 
 def test_spectrum_of_an_accelerogram(record):
     eqsig = pytest.importorskip("eqsig")
-    response_spectrum(record, (PERIODS[:2], "s"))  # compiles, the first time
+    response_spectrum(record, (PERIODS[:2], "s"))  # compiles at the first call
     mine = best(lambda: response_spectrum(record, (PERIODS, "s")))
     signal = record.si.horizontal
     yours = best(

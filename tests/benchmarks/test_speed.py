@@ -1,7 +1,7 @@
-"""Speed, as ratios measured in one run; apart from the suite's pass and fail.
+"""Speed, as ratios measured in one run.
 
 Run with ``python -m pytest tests/benchmarks -m benchmarks -s``. Each test prints what it
-measured and asserts the ratio that the project asks of itself.
+measured and asserts the required ratio.
 """
 
 import ctypes
@@ -70,11 +70,11 @@ def c_loop(tmp_path_factory):
 
 
 class LoopInC:
-    """The same block, motion and accuracy in C, with nothing around it."""
+    """The same block, motion and accuracy in plain C."""
 
     def __init__(self, library: ctypes.CDLL) -> None:
         self.library = library
-        # so weak that the block stays in full contact: the loop in C knows no other state
+        # so weak that the block stays in full contact, the only state of the loop in C
         self.weak = motion(0.3)
         self.model = system().setting.compile()
         body, pads = self.model.system.part
@@ -104,7 +104,7 @@ def loop_in_c(c_loop):
 
 
 def ratio_of(ours, theirs) -> tuple[float, float]:
-    """Return the least times of two functions that take turns [ms]."""
+    """Return the least times of two functions called alternately [ms]."""
     pairs = []
     for _ in range(40):
         start = time.perf_counter()
@@ -161,7 +161,7 @@ def test_whole_simulation_against_scipy():
     error = float(abs(result.rotation - reference.rotation).max())
     mine = best(lambda: scene.simulate(record, outputs=None))
     block = rf.Block.from_size(**BLOCK)
-    given = {
+    options = {
         "half_width": 0.5 * block.width.m_as("m"), "half_height": 0.5 * block.height.m_as("m"),
         "shape_factor": 3.0, "frequency_ratio": BETA, "damping_ratio": XI, "time_step": STEP,
         "acceleration": samples, "duration": (count - 1) * STEP,
@@ -169,7 +169,7 @@ def test_whole_simulation_against_scipy():
     }  # fmt: skip
     for rtol in (1e-4, 1e-6, 1e-8):
         start = time.perf_counter()
-        other = monolith.simulate(**given, rtol=rtol, atol=rtol * 1e-3)
+        other = monolith.simulate(**options, rtol=rtol, atol=rtol * 1e-3)
         yours = time.perf_counter() - start
         its_error = float(np.abs(other.rotation - reference.rotation.to_numpy()).max())
         say(
@@ -182,11 +182,11 @@ def test_whole_simulation_against_scipy():
 
 
 def fresh(code: str, **environment: str) -> list[float]:
-    # a process finds what earlier ones left on disk, Python's own code as well
-    given = {key: value for key, value in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"}
+    # a process finds files of earlier ones on disk, also Python's bytecode
+    options = {key: value for key, value in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"}
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True,
-        env=given | environment,
+        env=options | environment,
     )  # fmt: skip
     return [float(word) for word in done.stdout.split()]
 

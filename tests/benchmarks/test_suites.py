@@ -1,4 +1,4 @@
-"""How long it takes to read a suite, and to compute its spectra.
+"""Times to read a suite and to compute its spectra.
 
 Run with ``python -m pytest tests/benchmarks -m benchmarks -s``.
 """
@@ -56,7 +56,7 @@ def test_reading_a_folder(folder, suite):
 
 
 def test_response_spectra(suite):
-    rf.response_spectrum(suite.only(list(suite)[:2]), (PERIODS[0][:2], "s"))  # compiles
+    rf.response_spectrum(suite.only(list(suite)[:2]), (PERIODS[0][:2], "s"))  # compile first
     taken = best(lambda: suite.response_spectrum(PERIODS))
     print(f"\n  {MOTIONS} motions of {SAMPLES} samples at 100 periods: {taken:.2f} s")
     assert taken < 3.0

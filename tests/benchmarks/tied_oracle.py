@@ -16,8 +16,8 @@ from reference_models.test_tied_rigid_blocks import AGREES, compare
 DATA = Path(__file__).resolve().parents[2] / "docs" / "data" / "tied_oracle.json"
 SCENES = 340
 SHORT = 1e-5
-"""Steps of the equation by hand where both do not agree, for it sees no rotation that passes zero
-twice within one [s]."""
+"""Steps of the hand-written equation for scenes that disagree, as it misses two passages through
+zero within one step [s]."""
 
 
 def main() -> None:
@@ -25,45 +25,53 @@ def main() -> None:
     parser.add_argument("--scenes", type=int, default=SCENES)
     parser.add_argument("--tendons", type=int, default=300)
     parser.add_argument("--json", type=Path, default=DATA)
-    given = parser.parse_args()
+    options = parser.parse_args()
     warnings.simplefilter("ignore")
-    found, left_out, events = [], 0, Counter()
-    for number in range(given.scenes):
-        one = compare(number)
-        if one is None:  # the corner is lifted, which the equation by hand does not follow
+    comparisons, left_out, events = [], 0, Counter()
+    for number in range(options.scenes):
+        comparison = compare(number)
+        if comparison is None:  # the corner is lifted, outside of the hand-written equation
             left_out += 1
             continue
-        if one["difference"] > AGREES:
-            print(number, one, flush=True)
-            one = compare(number, longest_step=SHORT) | {"stepped over": True}
-        found.append(one)
-        events += one["events"]
-    differences = [one["difference"] for one in found]
+        if comparison["difference"] > AGREES:
+            print(number, comparison, flush=True)
+            comparison = compare(number, longest_step=SHORT) | {"stepped over": True}
+        comparisons.append(comparison)
+        events += comparison["events"]
+    differences = [comparison["difference"] for comparison in comparisons]
     table = {
-        "scenes": len(found),
+        "scenes": len(comparisons),
         "left out, lifted": left_out,
-        "agree": sum(one <= AGREES for one in differences),
-        "of them by short steps": sum("stepped over" in one for one in found),
+        "agree": sum(comparison <= AGREES for comparison in differences),
+        "of them by short steps": sum("stepped over" in comparison for comparison in comparisons),
         "median": float(f"{np.median(differences):.2g}"),
         "worst": float(f"{max(differences):.2g}"),
-        "verdicts agree": sum(one["overturned"][0] == one["overturned"][1] for one in found),
-        "overturning": sum(one["overturned"][0] for one in found),
-        "worst energy balance": float(f"{max(one['energy_residual'] for one in found):.2g}"),
+        "verdicts agree": sum(
+            comparison["overturned"][0] == comparison["overturned"][1] for comparison in comparisons
+        ),
+        "overturning": sum(comparison["overturned"][0] for comparison in comparisons),
+        "worst energy balance": float(
+            f"{max(comparison['energy_residual'] for comparison in comparisons):.2g}"
+        ),
         "events": dict(sorted(events.items())),
-        "beyond": [one["number"] for one in found if one["difference"] > AGREES],
+        "beyond": [
+            comparison["number"] for comparison in comparisons if comparison["difference"] > AGREES
+        ],
     }
-    with_tendon = [test_tendons.compare(number) for number in range(given.tendons)]
-    differences = [one["difference"] for one in with_tendon]
+    with_tendon = [test_tendons.compare(number) for number in range(options.tendons)]
+    differences = [comparison["difference"] for comparison in with_tendon]
     table["with a tendon"] = {
         "scenes": len(with_tendon),
-        "agree": sum(one <= AGREES for one in differences),
+        "agree": sum(comparison <= AGREES for comparison in differences),
         "median": float(f"{np.median(differences):.2g}"),
         "worst": float(f"{max(differences):.2g}"),
-        "verdicts agree": sum(one["overturned"][0] == one["overturned"][1] for one in with_tendon),
-        "overturning": sum(one["overturned"][0] for one in with_tendon),
-        "events": sum(one["events"] for one in with_tendon),
+        "verdicts agree": sum(
+            comparison["overturned"][0] == comparison["overturned"][1] for comparison in with_tendon
+        ),
+        "overturning": sum(comparison["overturned"][0] for comparison in with_tendon),
+        "events": sum(comparison["events"] for comparison in with_tendon),
     }
-    given.json.write_text(json.dumps(table, indent=1) + "\n", encoding="utf-8")
+    options.json.write_text(json.dumps(table, indent=1) + "\n", encoding="utf-8")
     print(json.dumps(table, indent=1))
 
 

@@ -1,4 +1,4 @@
-"""Random scenes with restrainers that only must end: by chatter, step limit or an error none may.
+"""Random scenes with restrainers; no run may end by chatter, step limit or error.
 
 Run from the root as ``PYTHONPATH=.:tests python tests/benchmarks/tied_runs.py``; writes
 docs/data/tied_runs.json.
@@ -20,18 +20,18 @@ SEED = 31
 GRAVITY = 9.80665
 
 
-def drawn_blocks(rng):
+def draw_blocks(rng):
     """Draw one to three blocks, from the top down."""
-    found, width = [], float(rng.uniform(0.4, 1.5))
+    blocks, width = [], float(rng.uniform(0.4, 1.5))
     for _ in range(int(rng.choice([1, 1, 1, 2, 2, 3]))):
         height = width * float(rng.uniform(0.7, 5.0))
-        found.insert(0, (width, height, 2000.0 * width * height))
+        blocks.insert(0, (width, height, 2000.0 * width * height))
         width *= float(rng.uniform(0.6, 1.0))
-    return found
+    return blocks
 
 
-def drawn_base(rng, last):
-    """Draw what a body stands on."""
+def draw_base(rng, last):
+    """Draw the base of a body."""
     kind = rng.choice(["rigid", "rigid", "pads", "soil"] if last else ["rigid", "pads"])
     if kind == "rigid":
         return rf.RigidGround()
@@ -41,8 +41,8 @@ def drawn_base(rng, last):
     return rf.WinklerSoil(stiffness=f"{10.0 ** rng.uniform(7.0, 9.0)} Pa", damping_ratio=0.1)
 
 
-def drawn_tie(rng, blocks):
-    """Draw a restrainer, of a stiffness from that which does little to a million times that."""
+def draw_tie(rng, blocks):
+    """Draw a restrainer, of a stiffness from negligible to a million times that."""
     on = int(rng.integers(len(blocks)))
     others = [None, *(k for k in range(len(blocks)) if k != on)]
     to = others[int(rng.integers(len(others)))]
@@ -52,33 +52,33 @@ def drawn_tie(rng, blocks):
     stiffness = weight / height * 10.0 ** float(rng.uniform(-1.0, 3.0))
     if rng.random() < 0.1:
         stiffness = weight / height * 1e6
-    given = {"stiffness": f"{stiffness!r} N/m"}
+    options = {"stiffness": f"{stiffness!r} N/m"}
     if rng.random() < 0.25:
-        given["compression"] = True
+        options["compression"] = True
     elif rng.random() < 0.5:
-        given["slack"] = f"{float(rng.choice([0.0, 1e-9, 1e-3, 1e-2, 1e3])) * width!r} m"
+        options["slack"] = f"{float(rng.choice([0.0, 1e-9, 1e-3, 1e-2, 1e3])) * width!r} m"
     elif rng.random() < 0.3:
-        given["preload"] = f"{0.05 * weight!r} N"
-    if rng.random() < 0.5 and "preload" not in given:
-        given["strength"] = f"{weight * 10.0 ** float(rng.uniform(-2.0, 1.0))!r} N"
-        given["brittle"] = bool(rng.random() < 0.5)
+        options["preload"] = f"{0.05 * weight!r} N"
+    if rng.random() < 0.5 and "preload" not in options:
+        options["strength"] = f"{weight * 10.0 ** float(rng.uniform(-2.0, 1.0))!r} N"
+        options["brittle"] = bool(rng.random() < 0.5)
     if rng.random() < 0.4:
         mass = blocks[on][2]
-        given["damping"] = f"{0.05 * float(np.sqrt(stiffness * mass))!r} N s/m"
+        options["damping"] = f"{0.05 * float(np.sqrt(stiffness * mass))!r} N s/m"
     point = (f"{side * width!r} m", f"{height * float(rng.uniform(0.0, 1.0))!r} m")
-    if to is None and rng.random() < 0.2 and "preload" not in given and on == len(blocks) - 1:
-        point = away = (f"{side * width!r} m", "0 m")  # of no length, under a corner
+    if to is None and rng.random() < 0.2 and "preload" not in options and on == len(blocks) - 1:
+        point = other_end = (f"{side * width!r} m", "0 m")  # of no length, under a corner
     elif to is None:
-        away = (f"{side * 3.0 * width!r} m", f"{height * float(rng.uniform(0.0, 1.0))!r} m")
+        other_end = (f"{side * 3.0 * width!r} m", f"{height * float(rng.uniform(0.0, 1.0))!r} m")
     else:
         other, up, _ = blocks[to]
-        given["to_body"] = to + 1
-        away = (f"{-side * other!r} m", f"{up * float(rng.uniform(0.0, 1.0))!r} m")
-    return rf.Restrainer(on=point, to=away, on_body=on + 1, **given)
+        options["to_body"] = to + 1
+        other_end = (f"{-side * other!r} m", f"{up * float(rng.uniform(0.0, 1.0))!r} m")
+    return rf.Restrainer(on=point, to=other_end, on_body=on + 1, **options)
 
 
-def drawn_motion(rng, size):
-    """Draw a motion that jumps, rattles, or throws bodies up."""
+def draw_motion(rng, size):
+    """Draw a motion with jumps, high frequencies, or upward throws."""
     count, width = int(rng.integers(50, 250)), int(rng.choice([1, 1, 5, 20]))
     across, upwards = (
         np.convolve(rng.normal(size=count), np.ones(width) / width, "same") * width**0.5
@@ -89,72 +89,72 @@ def drawn_motion(rng, size):
     return rf.GroundMotion.from_arrays((size * across, "m/s^2"), "0.02 s", **vertical)
 
 
-def drawn(number):
-    """Draw a scene, a motion, and how it is run."""
+def draw_scene(number):
+    """Draw a scene, a motion, and the arguments of its run."""
     rng = np.random.default_rng([SEED, number])
-    blocks = drawn_blocks(rng)
+    blocks = draw_blocks(rng)
     parts = [rf.Block(width=f"{w!r} m", height=f"{h!r} m", mass=f"{m!r} kg") for w, h, m in blocks]
-    base = drawn_base(rng, last=True)
+    base = draw_base(rng, last=True)
     standing = parts[0]
     if len(parts) > 1:
-        under = [drawn_base(rng, last=False) for _ in parts[1:]]
+        under = [draw_base(rng, last=False) for _ in parts[1:]]
         standing = rf.Stack(*parts, interfaces=under)
-    ties = [drawn_tie(rng, blocks) for _ in range(int(rng.integers(1, 4)))]
+    ties = [draw_tie(rng, blocks) for _ in range(int(rng.integers(1, 4)))]
     least = min(w / h for w, h, _ in blocks)
-    motion = drawn_motion(rng, float(rng.uniform(0.3, 3.0)) * least * GRAVITY)
-    asked = {"accuracy": str(rng.choice(["fast", "standard"])), "free_vibration": "1 s"}
+    motion = draw_motion(rng, float(rng.uniform(0.3, 3.0)) * least * GRAVITY)
+    arguments = {"accuracy": str(rng.choice(["fast", "standard"])), "free_vibration": "1 s"}
     if rng.random() < 0.2 and len(parts) == 1:
         angle = float(rng.uniform(-0.4, 0.4)) * least
-        asked["initial"] = rf.InitialState(rotation=f"{angle!r} rad")
+        arguments["initial"] = rf.InitialState(rotation=f"{angle!r} rad")
     if rng.random() < 0.3:
-        asked["overturning"] = "continue"
-    return rf.System(standing, base, *ties), motion, asked
+        arguments["overturning"] = "continue"
+    return rf.System(standing, base, *ties), motion, arguments
 
 
 def run(number):
-    """Run a scene: its level, how it ended, and how well its energy is in balance."""
+    """Run a scene; return its accuracy level, its end and its energy residual."""
     try:
-        system, motion, asked = drawn(number)
+        system, motion, arguments = draw_scene(number)
     except RockframeError as refused:
         return "refused", str(refused).splitlines()[-1], 0.0
     try:
-        found = system.simulate(motion, **asked)
+        response = system.simulate(motion, **arguments)
     except RockframeError as refused:
         return "refused", str(refused).splitlines()[-1], 0.0
-    status = found.status
+    status = response.status
     names = str(status.attrs["flag_meanings"]).split()
     ended = names[list(status.attrs["flag_values"]).index(int(status))]
-    return asked["accuracy"], ended, float(found.energy_residual)
+    return arguments["accuracy"], ended, float(response.energy_residual)
 
 
-def summary(found, refused):
-    """Count how runs ended."""
+def summary(runs, refused):
+    """Count runs by their end."""
     balance = {}
-    for _, level, _, residual in found:
+    for _, level, _, residual in runs:
         balance.setdefault(level, []).append(residual)
     usual = ("completed", "overturned", "toppled")
     return {
         "seed": SEED,
-        "runs": len(found),
-        "of them at": dict(Counter(level for _, level, _, _ in found)),
-        "ended as": dict(Counter(ended for _, _, ended, _ in found)),
+        "runs": len(runs),
+        "of them at": dict(Counter(level for _, level, _, _ in runs)),
+        "ended as": dict(Counter(ended for _, _, ended, _ in runs)),
         "refused": dict(refused),
         "median energy balance": {k: float(f"{np.median(v):.2g}") for k, v in balance.items()},
         "worst energy balance": {k: float(f"{max(v):.2g}") for k, v in balance.items()},
-        "to be looked at": [number for number, _, ended, _ in found if ended not in usual],
+        "to be looked at": [number for number, _, ended, _ in runs if ended not in usual],
     }
 
 
 def main():
-    """Run scenes, and write how they ended."""
+    """Run scenes and write their ends."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--runs", type=int, default=2400)
     parser.add_argument("--replay", type=int, nargs="+")
     parser.add_argument("--json", type=Path, default=DATA)
-    given = parser.parse_args()
+    options = parser.parse_args()
     warnings.simplefilter("ignore")
-    found, refused = [], Counter()
-    for number in given.replay or range(given.runs):
+    runs, refused = [], Counter()
+    for number in options.replay or range(options.runs):
         try:
             level, ended, residual = run(number)
         except Exception as fault:
@@ -162,13 +162,13 @@ def main():
         if level == "refused":
             refused[ended] += 1
         else:
-            found.append((number, level, ended, residual))
-        if found and summary(found[-1:], {})["to be looked at"] and level != "refused":
+            runs.append((number, level, ended, residual))
+        if runs and summary(runs[-1:], {})["to be looked at"] and level != "refused":
             print(number, level, ended, flush=True)
-        if number % 100 == 99 and not given.replay:
-            text = json.dumps(summary(found, refused), indent=1)
-            given.json.write_text(text + "\n", encoding="utf-8")
-    print(json.dumps(summary(found, refused), indent=1))
+        if number % 100 == 99 and not options.replay:
+            text = json.dumps(summary(runs, refused), indent=1)
+            options.json.write_text(text + "\n", encoding="utf-8")
+    print(json.dumps(summary(runs, refused), indent=1))
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Times, and the machine they belong to."""
+"""Timing, and the description of the machine."""
 
 import os
 import platform
@@ -13,7 +13,7 @@ PACKAGES = ("rockframe", "numpy", "scipy", "numba", "openseespy")
 def cost(function: Callable[[], object], repeats: int) -> float:
     """Return the least processor time of several calls [s].
 
-    Processor time: what else runs on the machine does not enter as waiting.
+    Processor time excludes waiting for other work on the machine.
     """
     times = []
     for _ in range(repeats):
@@ -25,7 +25,7 @@ def cost(function: Callable[[], object], repeats: int) -> float:
 
 def machine() -> dict[str, str | int]:
     """Describe the machine and the versions."""
-    found: dict[str, str | int] = {
+    description: dict[str, str | int] = {
         "processor": _processor(),
         "cores": os.cpu_count() or 0,
         "system": f"{platform.system()} {platform.machine()}",
@@ -33,15 +33,15 @@ def machine() -> dict[str, str | int]:
     }
     for name in PACKAGES:
         try:
-            found[name] = version(name)
+            description[name] = version(name)
         except PackageNotFoundError:
             if name == "rockframe":
                 import rockframe
 
-                found[name] = getattr(rockframe, "__version__", "of the working copy")
+                description[name] = getattr(rockframe, "__version__", "of the working copy")
             else:
-                found[name] = "not installed"
-    return found
+                description[name] = "not installed"
+    return description
 
 
 def _processor() -> str:

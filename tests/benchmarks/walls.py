@@ -1,4 +1,4 @@
-"""Random blocks before walls, by the package and by a program of their own.
+"""Random blocks before walls, in the package and in an independent program.
 
 ``python tests/benchmarks/walls.py 300`` prints how many agree, and the worst of them.
 """
@@ -27,7 +27,7 @@ def main(count: int) -> None:
         if difference > 1e-6 or abs(int(ours.impact_count) - len(theirs.impacts)) > 1:
             apart.append(seed)
     print(f"{count} scenes, {impacts} impacts, worst difference {worst:.1e} of theta")
-    print(f"other verdict: {other}; farther apart than 1e-6, or other impacts: {apart}")
+    print(f"other verdict: {other}; difference above 1e-6, or other impacts: {apart}")
 
 
 if __name__ == "__main__":

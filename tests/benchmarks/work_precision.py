@@ -1,19 +1,19 @@
-"""Work against precision: rockframe beside SciPy's solvers in the five scenes, and OpenSees.
+"""Work against precision of rockframe, of SciPy's solvers in the five scenes, and of OpenSees.
 
 ``python tests/benchmarks/work_precision.py`` measures everything and writes
 ``docs/data/work_precision.json``, from which the manual draws its figure. It takes some
 twenty minutes, nearly all of them in SciPy. Names of scenes, or ``opensees``, as arguments measure
 these alone and leave the rest of the file as it is; ``rockframe`` measures rockframe alone in all
-scenes, beside what SciPy needed before.
+scenes and keeps the earlier points of SciPy.
 
 Time is processor time of a whole call, from arguments to histories every 0.02 s. Error is the
 largest error of the rotation at these instants over its peak, against rockframe at a tolerance of
-1e-12, which the programs by hand confirm (``disagreement``).
+1e-12, which the hand-written programs confirm (``disagreement``).
 
-SciPy integrates the programs by hand of the tests. Each method goes two ways: it begins anew at
-every sample of the motion, where the ground's acceleration has a kink, or steps through the
-samples with a step of at most ten of them, and leaves the kinks to the error control. Both begin
-anew at changes of contact, which are sought on the dense output of each step.
+SciPy integrates the hand-written programs of the tests. Each method is used in two ways: it
+restarts at every sample of the motion, where the ground's acceleration has a kink, or steps through
+the samples, at most ten at a time, and leaves the kinks to the error control. Both restart at
+changes of contact, which are found on the dense output of each step.
 """
 
 import json
@@ -37,7 +37,7 @@ LEVELS = ("fast", "standard", "reference")
 TOLERANCES = tuple(10.0**-power for power in range(2, 12))
 REPEATS = 15
 PATIENCE = 100.0
-"""Time of a run [s] after which SciPy is not asked for a tighter tolerance in that way."""
+"""Time of a run [s] beyond which SciPy gets no tighter tolerance in that way."""
 FEW = 2.0
 """Time of a run [s] up to which it is repeated."""
 
@@ -55,11 +55,11 @@ SCIPY = {
 }
 
 
-def error(found: np.ndarray, exact: np.ndarray) -> float:
+def error(rotation: np.ndarray, exact: np.ndarray) -> float:
     """Return the largest error of a rotation over its peak; infinite if a run ended early."""
-    if found.shape != exact.shape or not np.isfinite(found).all():
+    if rotation.shape != exact.shape or not np.isfinite(rotation).all():
         return float("inf")
-    return float(np.abs(found - exact).max() / np.abs(exact).max())
+    return float(np.abs(rotation - exact).max() / np.abs(exact).max())
 
 
 def ours(system: rf.System, excitation: rf.GroundMotion, exact: np.ndarray) -> Iterator[dict]:
@@ -71,14 +71,14 @@ def ours(system: rf.System, excitation: rf.GroundMotion, exact: np.ndarray) -> I
         def run(accuracy=accuracy, **other):
             return system.simulate(excitation, accuracy=accuracy, overturning="continue", **other)
 
-        found = run(output_step=f"{OUTPUT_STEP} s")
+        result = run(output_step=f"{OUTPUT_STEP} s")
         yield {
             "program": "rockframe",
             "setting": name,
             "time": cost(lambda run=run: run(output_step=f"{OUTPUT_STEP} s"), REPEATS),
             "time_without_histories": cost(lambda run=run: run(outputs=None), REPEATS),
-            "error": error(found["rotation"].to_numpy(), exact),
-            "steps": int(found.attrs["solver_steps"]),
+            "error": error(result["rotation"].to_numpy(), exact),
+            "steps": int(result.attrs["solver_steps"]),
         }
 
 
@@ -95,10 +95,10 @@ def by_scipy(scene: Scene, exact: np.ndarray) -> Iterator[dict]:
                 "restart_every_knot": way == AT_SAMPLES,
                 "max_step": SAMPLES_AT_ONCE * si.time_step, "overturning": "continue",
             }  # fmt: skip
-            found: list[np.ndarray] = []
+            rotations: list[np.ndarray] = []
 
-            def run(arguments=arguments, found=found):
-                found.append(scene.by_hand(**arguments))
+            def run(arguments=arguments, rotations=rotations):
+                rotations.append(scene.by_hand(**arguments))
 
             row = {"program": "SciPy", "method": method, "way": way, "setting": f"rtol {rtol:g}"}
             try:
@@ -108,13 +108,13 @@ def by_scipy(scene: Scene, exact: np.ndarray) -> Iterator[dict]:
                 continue
             if time < FEW:
                 time = min(time, cost(run, 2))
-            yield row | {"time": time, "error": error(found[-1], exact)}
+            yield row | {"time": time, "error": error(rotations[-1], exact)}
             if time > PATIENCE:
                 break
 
 
 def measure(name: str, before: list[dict] | None = None) -> dict:
-    """Measure one scene; or rockframe alone, beside points measured before."""
+    """Measure one scene; or rockframe alone, added to points measured before."""
     scene = scenes()[name]
     run = {"output_step": f"{OUTPUT_STEP} s", "overturning": "continue"}
     answer = scene.system.simulate(motion(), accuracy=EXACT, **run)
@@ -138,10 +138,10 @@ def measure(name: str, before: list[dict] | None = None) -> dict:
     }
 
 
-def stepping_alone() -> dict:
-    """Time SciPy's RK45 on equations that cost nothing, as often as the two ways step at least.
+def time_of_stepping_alone() -> dict:
+    """Time SciPy's RK45 on equations without cost, with the least number of steps of both ways.
 
-    What SciPy's own Python takes, whatever the equations are compiled with; no events, no output.
+    This is the cost of SciPy's own Python code, without events and output.
     """
     excitation = motion()
     step, count = excitation.si.time_step, len(excitation) - 1
@@ -163,7 +163,7 @@ def stepping_alone() -> dict:
 
 
 def stored() -> dict:
-    """Read what has been measured before."""
+    """Read the stored measurements."""
     return json.loads(DATA.read_text()) if DATA.is_file() else {"scenes": {}}
 
 
@@ -176,7 +176,7 @@ def store(data: dict) -> None:
 
 
 def main(wanted: list[str]) -> None:
-    """Measure what is wanted, all of it unless told."""
+    """Measure the requested scenes, by default all."""
     if wanted == ["rockframe"]:
         data = stored()
         for name, found in data["scenes"].items():
@@ -193,7 +193,7 @@ def main(wanted: list[str]) -> None:
             continue
         found = measure(name)
         data = stored()
-        data["stepping_alone"] = stepping_alone()
+        data["stepping_alone"] = time_of_stepping_alone()
         data["scenes"][name] = found
         data["motion"] = {"description": repr(motion()), "output_step": OUTPUT_STEP}
         store(data)

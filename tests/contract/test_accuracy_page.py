@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from pages import DIGITS, said, table
+from pages import DIGITS, numbers_in, table
 from records import record_path
 
 import rockframe as rf
@@ -79,12 +79,12 @@ def least_overturning(system, accuracy, low):
 
 
 def test_thresholds_of_overturning():
-    pads, rigid = said(
+    pads, rigid = numbers_in(
         PAGE,
         "overturns it, # m/s² on the pads above ($\\beta=20$, $\\xi=0.10$) and # m/s² on rigid",
     )
-    fast_pads, fast_rigid = said(PAGE, "is # too high on pads and # too low on rigid ground")
-    pads_off, rigid_off = said(PAGE, '(`"standard"`: # too high and # too low).')
+    fast_pads, fast_rigid = numbers_in(PAGE, "is # too high on pads and # too low on rigid ground")
+    pads_off, rigid_off = numbers_in(PAGE, '(`"standard"`: # too high and # too low).')
     for system, value, low, offs in (
         (ON_PADS, pads, 17.6, {"fast": fast_pads, "standard": pads_off}),
         (ON_RIGID_GROUND, rigid, 19.2, {"fast": -fast_rigid, "standard": -rigid_off}),
@@ -108,8 +108,8 @@ def test_fast_on_coarse_records():
     record = rf.GroundMotion.read(record_path("PEERSMD_CHICHI_TCU128-N.AT2"))
     samples = 1.5 * record.window("30 s", "90 s").si.horizontal.samples
     block = rf.Block(width="4 m", height="18 m", mass="99 t")
-    on_pads = said(PAGE, "errors of the history of #, #, # and # (there,")
-    on_rigid = said(PAGE, "with one step per sample, #, #, # and #. Choose")
+    on_pads = numbers_in(PAGE, "errors of the history of #, #, # and # (there,")
+    on_rigid = numbers_in(PAGE, "with one step per sample, #, #, # and #. Choose")
     for system, errors in ((rf.System(block, PADS), on_pads), (rf.System(block), on_rigid)):
         for every, error in zip((1, 2, 4, 8), errors, strict=True):
             motion = rf.GroundMotion.from_arrays((samples[::every], "m/s^2"), f"{0.005 * every} s")
@@ -119,7 +119,7 @@ def test_fast_on_coarse_records():
             )
             off = abs(fast.rotation - exact.rotation).max() / exact.peak_rotation
             assert float(off) == pytest.approx(error, rel=DIGITS), (every, system)
-    residual, history = said(
+    residual, history = numbers_in(
         PAGE, "record at 40 ms the residual is # and the error of the history #. It"
     )
     assert float(fast.energy_residual) == pytest.approx(residual, rel=DIGITS)

@@ -3,7 +3,7 @@
 import json
 import re
 
-from pages import DOCS, read, said, table
+from pages import DOCS, numbers_in, read, table
 
 TREE = re.compile(r"```\{toctree\}\n(.*?)```", re.DOTALL)
 
@@ -42,27 +42,27 @@ def test_numbers_match_other_pages_and_data():
     ((_, pads, *_),) = rows = table(
         "validation_speed.md", "| rigid ground | pads | soil | cascade | coupled |"
     )
-    assert said("index.md", "{grid-item-card} # times faster") == [float(pads)]
+    assert numbers_in("index.md", "{grid-item-card} # times faster") == [float(pads)]
     leads = [float(cell) for cell in rows[0]]
-    assert said("index.md", "# to # times in five scenes") == [min(leads), max(leads)]
-    (proved, of) = said("index.md", "{grid-item-card} # of # proved")
+    assert numbers_in("index.md", "# to # times in five scenes") == [min(leads), max(leads)]
+    (proved, of) = numbers_in("index.md", "{grid-item-card} # of # proved")
     proofs = data("proofs")
     assert of == proofs["blocks"]
     assert proved == sum(
         count for verdict, count in proofs["verdicts"].items() if verdict != "undecided"
     )
     assert proofs["contradicted by reference"] == proofs["fifty digits"]["outside"] == []
-    (share,) = said("index.md", "{grid-item-card} # of verdicts")
-    (held_out,) = said("validation_granite.md", "and # on tests held out (both specimens)")
+    (share,) = numbers_in("index.md", "{grid-item-card} # of verdicts")
+    (held_out,) = numbers_in("validation_granite.md", "and # on tests held out (both specimens)")
     assert share == round(held_out, 2)
 
 
 def test_readme_states_same_numbers():
     readme = (DOCS.parent / "README.md").read_text(encoding="utf-8")
     words = " ".join(readme.split())
-    low, high = said("index.md", "# to # times in five scenes")
-    (share,) = said("index.md", "{grid-item-card} # of verdicts")
-    proved, of = said("index.md", "{grid-item-card} # of # proved")
+    low, high = numbers_in("index.md", "# to # times in five scenes")
+    (share,) = numbers_in("index.md", "{grid-item-card} # of verdicts")
+    proved, of = numbers_in("index.md", "{grid-item-card} # of # proved")
     assert f"{low:g} to {high:g} times faster than SciPy" in words
     assert f"{share:g} of the verdicts" in words
     assert f"verdicts of {proved:g} of {of:g} random blocks" in words

@@ -6,7 +6,7 @@ import sys
 
 import numpy as np
 import pytest
-from pages import DOCS, said, table
+from pages import DOCS, numbers_in, table
 
 import rockframe as rf
 
@@ -43,7 +43,7 @@ def test_deviations_from_straight_lines():
 
 
 def test_the_default_length_of_free_vibration():
-    (periods,) = said(PAGE, r"every mode is at most a hundredth: # periods with $\zeta=0.05$")
+    (periods,) = numbers_in(PAGE, r"every mode is at most a hundredth: # periods with $\zeta=0.05$")
     still = rf.GroundMotion.from_arrays(([0.0, 1.0, 0.0], "m/s^2"), "0.01 s")
     floor = still.through_storeys(["2 s"], 0.05)
     assert (len(floor) - 3) * 0.01 == pytest.approx(2.0 * periods, abs=0.1)

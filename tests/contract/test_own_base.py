@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 import xarray as xr
-from own_example import FILE, as_before, example
-from plainly import plainly
+from plain_python import plain_python
 from scipy.optimize import minimize
+from user_examples import FILE, example, restored_registrations
 
 import rockframe as rf
 from rockframe import extension as ext
@@ -210,7 +210,7 @@ class TestMechanics:
         """In stacks in plain Python; alone, the law is compiled."""
         given = getattr(request.node, "callspec", None)
         scene = "alone" if given is None else given.params.get("scene", "alone")
-        with nullcontext() if scene == "alone" else plainly():
+        with nullcontext() if scene == "alone" else plain_python():
             yield
 
     @runs_in_every_scene
@@ -314,7 +314,7 @@ class TestMechanics:
 
     def test_energy_balances_with_landings_on_custom_ground(self, pads):
         """Stage 1 lands on pads under the cap; its energies are those of a larger mass."""
-        with as_before(), plainly():
+        with restored_registrations(), plain_python():
             rf.register(Stilts)
             system = rf.System(
                 BLOCK, *pads.simpler(), CAP, Stilts(frequency_ratio=10), coupling="cascade"
@@ -355,9 +355,9 @@ class TestMechanics:
 def test_compiled_and_uncompiled_runs_agree(pads, scene):
     """Alone whole runs do; coupled what is observed along a run, of all equations of motion."""
     system = in_scene(pads, scene)
-    with nullcontext() if scene == "alone" else plainly(advance):
+    with nullcontext() if scene == "alone" else plain_python(advance):
         compiled = system.simulate(PULSE, duration="0.8 s")
-    with plainly():
+    with plain_python():
         plain = system.simulate(PULSE, duration="0.8 s")
     assert max(float(compiled[name][-1]) for name in SETS) > 0.0
     for name in ("rotation", *SETS, "peak_rotation", "left_reaction"):
@@ -381,7 +381,7 @@ def test_code_cache_is_separate_for_each_module_name(tmp_path, monkeypatch):
     for name in ("law_as_one", "law_as_another"):
         (tmp_path / f"{name}.py").write_text(text)
         law = importlib.import_module(name).Law
-        files.append(store.module_file(as_before, "as is", [law]))
+        files.append(store.module_file(restored_registrations, "as is", [law]))
     assert files[0] != files[1]
 
 
@@ -511,7 +511,7 @@ def column(**changed):
 class TestRegistration:
     @pytest.fixture(autouse=True)
     def restored(self):
-        with as_before():
+        with restored_registrations():
             yield
 
     def test_registered_base_works_in_scenes(self):
@@ -644,7 +644,7 @@ class TestRegistration:
         rf.register(Unseen, columns=[column(name=name, unit=ext.Unit.NEWTON) for name in names])
         soil = Unseen(frequency_ratio=10, friction=0.01)
         system = rf.System(BLOCK, *pads.simpler(), CAP, soil, coupling="cascade")
-        with plainly():
+        with plain_python():
             response = system.simulate(PULSE, duration="0.2 s", outputs="friction_demand")
         assert set(names) < set(response.variables)
         assert response.attrs["cautions"] == "none"

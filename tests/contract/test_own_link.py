@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from plainly import plainly
+from plain_python import plain_python
 
 import rockframe as rf
 from rockframe import extension as ext
@@ -32,7 +32,7 @@ def example():
 
 def test_rope_runs_and_energy_balances(example):
     system = rf.System(BLOCK, PADS, example.Rope(**POINTS, reach="0.1 m"))
-    with plainly():  # beside links of other laws it is compiled
+    with plain_python():  # beside links of other laws it is compiled
         run = system.simulate(PULSE, free_vibration="1 s")
     assert float(run.energy_residual) < 1e-8
     assert float(run.peak_restrainer_force[0]) > 0.0
@@ -42,7 +42,7 @@ def test_rope_runs_and_energy_balances(example):
 @pytest.mark.long
 def test_rope_with_negligible_hardening_matches_restrainer(example):
     rope = example.Rope(**POINTS, reach="1e6 m")
-    with plainly():
+    with plain_python():
         runs = [
             rf.System(BLOCK, PADS, one).simulate(PULSE, duration="0.4 s", accuracy="reference")
             for one in (rope, rf.Restrainer(**POINTS))
@@ -79,7 +79,7 @@ def test_page_names_existing_files():
 def test_links_of_several_laws_work_in_one_scene(example, entries):
     rope, tie = example.Rope(**POINTS, reach="1 m", name="rope"), rf.Restrainer(**POINTS)
     load = rf.Load(at=("0 m", "3 m"), vertical="2 kN")
-    with plainly(*entries):
+    with plain_python(*entries):
         found = rf.System(BLOCK, PADS, rope, tie, load).simulate(
             PULSE, free_vibration="1 s", outputs=("energy",)
         )
@@ -88,7 +88,7 @@ def test_links_of_several_laws_work_in_one_scene(example, entries):
     assert float(found.peak_restrainer_force.min()) > 0.0
     # each beside one that is never taut moves as it does alone
     idle = tie.replace(slack="1 km")
-    with plainly():
+    with plain_python():
         alone, beside = (
             rf.System(BLOCK, PADS, rope, *others).simulate(PULSE, free_vibration="0.5 s")
             for others in ((), (idle,))

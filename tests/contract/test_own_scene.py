@@ -8,8 +8,8 @@ from typing import ClassVar
 import numpy as np
 import pytest
 import xarray as xr
-from own_example import SCENE_FILE, TABLES, as_before, example
-from plainly import plainly
+from plain_python import plain_python
+from user_examples import SCENE_FILE, TABLES, example, restored_registrations
 
 import rockframe as rf
 from rockframe import extension as ext
@@ -214,7 +214,7 @@ class TestStudies:
 @pytest.mark.skipif(not COMPILED, reason="this run does without compilation")
 def test_compiled_and_uncompiled_runs_agree(system):
     compiled = system.simulate(PULSE, duration="1.5 s")
-    with plainly():
+    with plain_python():
         plain = system.simulate(PULSE, duration="1.5 s")
     for name in ("rotation", "slip", "peak_rotation"):
         np.testing.assert_allclose(compiled[name], plain[name], rtol=1e-9, atol=1e-12)
@@ -238,7 +238,7 @@ def column(**changed):
 class TestRegistration:
     @pytest.fixture(autouse=True)
     def restored(self):
-        with as_before():
+        with restored_registrations():
             yield
 
     @pytest.fixture
@@ -405,7 +405,7 @@ class TestRegistration:
 class TestDiagnostics:
     @pytest.fixture(autouse=True)
     def restored(self):
-        with as_before():
+        with restored_registrations():
             yield
 
     @pytest.mark.parametrize(

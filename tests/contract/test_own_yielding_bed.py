@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from plainly import plainly
+from plain_python import plain_python
 
 import rockframe as rf
 from rockframe import extension as ext
@@ -70,7 +70,7 @@ def test_static_moment_converges_to_closed_form(bed, monkeypatch, load):
 
 
 @pytest.mark.parametrize("damping_ratio", [pytest.param(0.0, marks=pytest.mark.long), 0.05])
-@plainly()
+@plain_python()
 def test_energies_balance_while_springs_yield_lift_and_land(bed, monkeypatch, damping_ratio):
     monkeypatch.setattr(bed, "SPRINGS", 6)
     response = rf.System(WALL, soil(bed, 0.6, damping_ratio)).simulate(
@@ -87,7 +87,7 @@ def test_energies_balance_while_springs_yield_lift_and_land(bed, monkeypatch, da
 def test_springs_that_cannot_yield_match_elastic_bed(bed, monkeypatch):
     """Of many springs, at small settlement: the bed in closed form is their limit."""
     monkeypatch.setattr(bed, "SPRINGS", 64)
-    with plainly():
+    with plain_python():
         many = rf.System(WALL, soil(bed, 1e-6, 0.0)).simulate(noise(), duration="0.4 s")
         stiffness = WEIGHT / (2.0 * HALF_WIDTH**2 * SETTLEMENT)
         winkler = rf.WinklerSoil(stiffness=f"{stiffness} Pa", damping_ratio=0.0)

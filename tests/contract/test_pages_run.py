@@ -9,8 +9,8 @@ import shutil
 from pathlib import Path
 
 import pytest
+from console_session import run_console
 from records import record_path
-from typed import type_in
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [
@@ -51,7 +51,7 @@ def test_all_snippets_of_page_run(page, tmp_path, monkeypatch, capsys, request):
                 Path(named[1]).write_text(snippet, encoding="utf-8")
             continue
         if language == "console":
-            type_in(snippet, capsys, monkeypatch)
+            run_console(snippet, capsys, monkeypatch)
             continue
         exec(snippet, names)  # noqa: S102
         if shown:

@@ -8,7 +8,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import xarray as xr
-from plainly import plainly
+from plain_python import plain_python
 
 import rockframe as rf
 from rockframe.command.files.scenes import read_scene
@@ -233,5 +233,7 @@ def test_every_part_supports_every_capability(name, capability, tmp_path):
     many = capability in (certificate, critical_scale, certified_report)
     if many and not COMPILED and name not in ("stiff wall", "frame"):
         pytest.skip("many runs of scenes that are slow in plain Python")
-    with plainly() if name == MIXED else nullcontext():  # its equations take longest to compile
+    with (
+        plain_python() if name == MIXED else nullcontext()
+    ):  # its equations take longest to compile
         capability(name, tmp_path)

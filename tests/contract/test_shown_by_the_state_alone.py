@@ -6,7 +6,7 @@ state left there may be shown of another one.
 
 import numpy as np
 import pytest
-from plainly import plainly
+from plain_python import plain_python
 
 import rockframe as rf
 from rockframe.dynamics.protocol import Start
@@ -67,7 +67,7 @@ def run(request):
     parts = [part for part in SCENES[request.param] if not isinstance(part, dict)]
     options = [part for part in SCENES[request.param] if isinstance(part, dict)]
     model = rf.System(*parts, **dict(*options)).assembly.model
-    with plainly():
+    with plain_python():
         return model, integrate(
             model, Start(), PULSE.si, LEVELS["standard"], duration=1.2, output_step=0.06,
             keep_steps=True,
@@ -77,7 +77,7 @@ def run(request):
 def shown(model, run, order):
     memory, row = memory_at_outputs(run)
     ground = PULSE.si.horizontal.at(run.time)
-    with plainly():
+    with plain_python():
         return observe_states(
             model, run.mode[order], run.state[order], memory, row[order],
             np.column_stack([ground, np.zeros_like(ground)])[order],
@@ -95,7 +95,7 @@ def test_columns_do_not_depend_on_earlier_states(run):
 
 def test_energies_do_not_depend_on_earlier_states(run):
     model, trajectory = run
-    with plainly():
+    with plain_python():
         expected = energies_of(model, trajectory)
         shown(model, trajectory, np.array([len(trajectory.time) // 2]))
         np.testing.assert_array_equal(energies_of(model, trajectory), expected)
@@ -107,7 +107,7 @@ def test_samples_at_step_ends_match_their_states(run):
     events = trajectory.events.time
     times = np.concatenate([trajectory.time, events, events])
     ground = PULSE.si.horizontal.at(times)
-    with plainly():
+    with plain_python():
         _, found = observe_run(
             model, trajectory, (), np.column_stack([ground, np.zeros_like(ground)])
         )
@@ -124,7 +124,7 @@ def test_first_sample_follows_all_events_at_start():
     )
     stack = rf.Stack(STATUE, BLOCK, interfaces=[rf.RigidGround()])
     for parts in ((BLOCK,), (BLOCK, rf.RigidGround(friction=0.6)), (stack,), (FRAME,)):
-        with plainly():
+        with plain_python():
             response = rf.System(*parts).simulate(push, outputs="energy")
         assert response.event_time[0] == 0.0
         assert response.contact_state[0] == response.contact_state[1]

@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from pages import DOCS, said, table
+from pages import DOCS, numbers_in, table
 
 PAGE = "validation_speed.md"
 HEAD = '| part | `"fast"`: a step | the run | `"standard"`: a step | the run | steps |'
@@ -24,7 +24,7 @@ def test_ratios_are_those_measured():
 
 
 def test_a_slack_restrainer_adds_no_steps():
-    (most,) = said(PAGE, "A restrainer that remains slack adds no step but # at its events")
+    (most,) = numbers_in(PAGE, "A restrainer that remains slack adds no step but # at its events")
     for ground in ("rigid ground", "pads"):
         for level in MEASURED[f"restrainer, slack, {ground}"].values():
             assert 0 <= level["steps with"] - level["steps without"] <= most

@@ -5,7 +5,7 @@ import re
 import warnings
 
 import pytest
-from pages import read, said, table
+from pages import numbers_in, read, table
 
 import rockframe as rf
 from rockframe.errors import ModelWarning
@@ -86,11 +86,13 @@ def test_documented_energies_are_reproduced():
     """The numbers of "Energy" and of "Impact and restraint", on the same block and pads."""
     words = "of 4.85 m by 19.4 m and 600 t on pads of"
     assert words in " ".join(read("theory/energy.md").split())
-    separations, landings, leading, centre = said(
+    separations, landings, leading, centre = numbers_in(
         "theory/energy.md",
         "# separations and # landings, and a drift of # (`leading-corner`) and # (`centre`)",
     )
-    dissipated, most = said("theory/energy.md", "re-pinnings dissipate # J of # MJ in the same run")
+    dissipated, most = numbers_in(
+        "theory/energy.md", "re-pinnings dissipate # J of # MJ in the same run"
+    )
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)  # a restitution of one
         elastic = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0, restitution=1)
@@ -114,7 +116,7 @@ def test_documented_energies_are_reproduced():
     assert float(run.repinning_energy[-1]) == pytest.approx(dissipated, rel=0.01)
     assert float(run.kinetic_energy.max()) == pytest.approx(1e6 * most, rel=0.01)
 
-    lost, put_in = said(
+    lost, put_in = numbers_in(
         "theory/impact_and_restraint.md", "loses # J by re-pinning, of # MJ supplied by the ground"
     )
     shaken = OPTIONS["contact-state"].simulate(

@@ -1,4 +1,4 @@
-"""Certificates against what they vouch for: verdicts, margins and errors of peaks."""
+"""Certificates of verdicts, margins and errors of peaks against reference runs."""
 
 from functools import lru_cache
 
@@ -30,14 +30,14 @@ def pool():
 
 @lru_cache
 def certified(number, largest=np.inf):
-    """Return a scene of these, a scale well off the edge of its verdict, and its run."""
+    """Return a scene of the pool, a scale away from the boundary of its verdict, and its run."""
     case = pool()[number]
     scale = min(strength(case), largest)
     return case, scale, case.certified(scale)
 
 
 def cascade(width, height, mass, cap, stiffness, ratio, amplitude, frequency):
-    """Return a slender frame on a light cap, whose pads bounce on what the soil carries over."""
+    """Return a slender frame on a light cap, whose pads bounce under the motion of the cap."""
     system = rf.System(
         rf.Block(width=f"{width} m", height=f"{height} m", mass=f"{mass} t"),
         rf.TwoSpringSupport(frequency_ratio=ratio, damping_ratio=0.1),
@@ -81,7 +81,7 @@ def exact_peak(name):
 
 @pytest.mark.parametrize(
     ("name", "accuracy"),
-    # of both cascades one by tight tolerances
+    # of the two cascades one by tight tolerances
     [
         ("re-engagement within a step", "standard"),
         ("re-engagement within a step", "reference"),
@@ -91,7 +91,7 @@ def exact_peak(name):
     ],
 )
 def test_peak_error_estimate_includes_error_common_to_all_tolerances(name, accuracy):
-    """A tighter tolerance alone leaves the hand-over and the record's intervals as they are."""
+    """A tighter tolerance alone does not change the hand-over and the record's intervals."""
     system, motion = HARD[name]
     run = system.simulate(motion, accuracy=accuracy, certify=True, **REST)
     error = abs(exact_peak(name) - float(run.peak_relative_rotation))
@@ -99,7 +99,7 @@ def test_peak_error_estimate_includes_error_common_to_all_tolerances(name, accur
     assert not flattered(error, estimate)
 
 
-# the last is a scene of two bodies, whose certificate takes longest
+# the last scene has two bodies; its certificate takes longest
 NUMBERS = [
     pytest.param(number, marks=[pytest.mark.long] * (number == COUNT - 1))
     for number in range(COUNT)
@@ -115,7 +115,7 @@ def test_an_estimate_is_at_most_ten_times_too_small(number):
 
 @pytest.mark.parametrize("number", NUMBERS)
 def test_clean_certificates_hold_within_their_margin(number):
-    """Against nudges inside what is stated, and scales inside the margin."""
+    """Nudges and scales within the stated margins do not change the verdict."""
     case, scale, run = certified(number)
     assert clean(run)
     fell, margin = bool(run.overturned), float(run.verdict_margin)

@@ -1,8 +1,8 @@
-"""What a tolerance promises: requested against achieved error over random scenes.
+"""Requested against achieved error over random scenes.
 
 The achieved error is that of all coordinates and rates along time, each over its own
 largest size, against a run at 1e-13. Scenes in which a change of the motion by 1e-9 grows more
-than a hundredfold have no error that a tolerance could promise; they are left out, and counted.
+than a hundredfold have no error that a tolerance can bound; they are omitted and counted.
 """
 
 import os
@@ -26,7 +26,7 @@ NUDGE, GROWTH = 1e-9, 1e2
 
 @dataclass(frozen=True)
 class Outcome:
-    """Of one run: its error, over the tolerance, and how far its events are off [s]."""
+    """Error of one run over the tolerance, and error of its event times [s]."""
 
     kind: str
     tolerance: float
@@ -58,7 +58,7 @@ def system(kind, rng):
 
 
 def excitation(block, rng):
-    """Smoothed noise of 0.5 to 5 times what uplifts a block on rigid ground."""
+    """Return smoothed noise of 0.5 to 5 times the uplift acceleration on rigid ground."""
     smooth = int(rng.integers(2, 30))
     noise = rng.normal(size=int(rng.integers(200, 800)))
     values = np.convolve(noise, np.ones(smooth) / smooth, "same")
@@ -69,7 +69,7 @@ def excitation(block, rng):
 
 
 def outcomes(kind, rng):
-    """Run one scene; give its outcomes, or none where it is chaotic or does not move."""
+    """Run one scene; return its outcomes, or None if it is chaotic or does not move."""
     scene = system(kind, rng)
     motion = excitation(scene.parts.block.si, rng)
     equations, duration = scene.setting.compile(), motion.si.duration
@@ -96,25 +96,27 @@ def outcomes(kind, rng):
     growth = error(run(TIGHT, motion.scaled(1.0 + NUDGE).si)) / NUDGE
     if growth > GROWTH:
         return None
-    found = []
+    outcomes_of_scene = []
     for tolerance in TOLERANCES:
-        # the step limit of the levels is not what is measured here
+        # the step limit of the levels is not measured here
         other = run(rf.Accuracy(rtol=tolerance, steps_per_period=6.0), ground)
         off = np.nan
         if len(other.events.time) == len(exact.events.time):
             off = np.abs(other.events.time - exact.events.time).max(initial=0.0)
         bound = other.step_count > 2 * len(motion)
-        found.append(Outcome(kind, tolerance, error(other) / tolerance, bound, float(off)))
-    return found
+        outcomes_of_scene.append(
+            Outcome(kind, tolerance, error(other) / tolerance, bound, float(off))
+        )
+    return outcomes_of_scene
 
 
 @pytest.fixture(scope="module")
 def measured():
     rng = np.random.default_rng(2026)
     tried = [outcomes(KINDS[k % len(KINDS)], rng) for k in range(SCENES)]
-    calm = [found for found in tried if found is not None]
+    calm = [outcomes_found for outcomes_found in tried if outcomes_found is not None]
     assert len(calm) >= 0.75 * SCENES
-    return [outcome for found in calm for outcome in found]
+    return [outcome for outcomes_found in calm for outcome in outcomes_found]
 
 
 def share(values):
@@ -129,8 +131,8 @@ def test_error_rarely_exceeds_ten_times_tolerance(measured):
 def test_tolerance_bound_error_is_within_factor_of_ten(measured):
     """Elsewhere the samples of the motion make steps so short that the error is smaller.
 
-    On rigid ground it is smaller anyway: little happens between impacts, and the tolerance is
-    kept where the rotation is a twentieth of its largest size.
+    On rigid ground it is smaller anyway: motion between impacts is smooth, and the tolerance
+    holds where the rotation is a twentieth of its largest size.
     """
     ruled = [o for o in measured if o.bound_by_tolerance and o.kind != "rigid ground"]
     assert len(ruled) > 0.3 * len(measured)

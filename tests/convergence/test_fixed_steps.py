@@ -16,7 +16,7 @@ SETTLED = 3
 
 
 def record(peak: float = 3.5) -> rf.GroundMotion:
-    """Return five seconds at 10 ms, with kinks at the samples as every record has them."""
+    """Return five seconds at 10 ms, with kinks at the samples like every record."""
     noise = np.random.default_rng(4).normal(size=(2, 501))
     across, up = (np.convolve(row, np.hanning(41) / 20.0, "same") for row in noise)
     return rf.GroundMotion.from_arrays(
@@ -112,7 +112,7 @@ def slope(error: np.ndarray) -> float:
 
 @pytest.mark.parametrize(
     "scene",
-    # equations that nothing else compiles for fixed steps
+    # no other test compiles these equations for fixed steps
     [
         pytest.param(one, marks=[pytest.mark.long] * (one in ("stack", "coupled", "cascade")))
         for one in SCENES
@@ -210,7 +210,7 @@ def test_fast_is_stable(frequency_ratio, damping_ratio):
     assert float(abs(fast.rotation - exact.rotation).max()) < 0.01 * float(exact.peak_rotation)
 
 
-# under samples so coarse that the ground's slope is another one in each step
+# with samples so coarse that the ground's slope changes in each step
 COARSE = {
     "rigid ground": rf.System(block()),
     "wall": rf.System(block(), rf.RearWall(side="left", restitution=-0.5)),

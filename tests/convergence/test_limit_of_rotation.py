@@ -1,4 +1,4 @@
-"""The limit of the rotation is found where the rotation only touches it inside a step."""
+"""The limit of rotation is found even where the rotation only touches it within a step."""
 
 from dataclasses import replace
 
@@ -30,7 +30,7 @@ def run(limit, accuracy):
 def test_a_limit_just_below_the_peak_is_found(accuracy):
     free = run(1.0, accuracy)
     assert free.status is Status.COMPLETED
-    # from the peak down to here the rotation takes a small part of a step
+    # the rotation is above this share of its peak for a small part of a step
     for share in 1e-9, 1e-7, 1e-5:
         met = run(free.peak_rotation * (1.0 - share), accuracy)
         assert met.status is Status.OVERTURNED

@@ -1,8 +1,7 @@
-"""What changes nothing in the problem changes nothing in the result but its error.
+"""Refinement of samples and steps changes results by no more than their error.
 
-The same straight lines with more samples, and steps forced to be shorter, are the same problem:
-no scene, and nothing that happens between the samples, may depend on them by more than the error
-of the level of accuracy.
+The same straight lines with more samples, and shorter steps, are the same problem: no result may
+depend on them by more than the error of the level of accuracy.
 """
 
 import numpy as np
@@ -63,7 +62,7 @@ def run(name, accuracy, parts=1):
 
 
 def difference(one, other):
-    """Return the largest difference of two histories over the peak, while both stand."""
+    """Return the largest difference of two histories over the peak, before either overturns."""
     end = min(float(one.time[-1]), float(other.time[-1]))
     for each in (one, other):
         if each.overturned:
@@ -73,7 +72,7 @@ def difference(one, other):
     return np.abs(a - b).max() / np.abs(a).max()
 
 
-# errors of one step grow through impacts, least on rigid ground
+# errors of steps grow through impacts, least on rigid ground
 ALLOWED = {"standard": 1e-5, "reference": 1e-8}
 
 
@@ -90,7 +89,7 @@ def test_resampling_piecewise_linear_motion_changes_nothing(name, level):
 
 @pytest.mark.parametrize(
     "name",
-    # those of two bodies take longest
+    # scenes of two bodies take longest
     [
         pytest.param(name, marks=[pytest.mark.long] * (name in ("coupled", "cascade")))
         for name in SCENES

@@ -1,13 +1,13 @@
-"""Compiled and plain runs are the same source, and give the same numbers to the last bit.
+"""Compiled and plain runs share their source and give the same numbers to the last bit.
 
-So do steps that call the equations and steps into which they are compiled.
+So do steps that call the equations and steps with the equations compiled into them.
 """
 
 from functools import partial
 
 import numpy as np
 import pytest
-from plainly import plainly
+from plain_python import plain_python
 
 import rockframe as rf
 from rockframe.compiled import COMPILED, bind
@@ -62,7 +62,7 @@ SECOND_LOOKS = {
     "fast on pads", "fast on soil", "coupled, leading corner", "cascade, leading corner",
     "fast, cascade",
 }  # fmt: skip
-"""Of whose equations another scene compiles most."""
+"""Scenes whose equations are mostly compiled by another scene."""
 
 
 @pytest.mark.parametrize(
@@ -73,7 +73,7 @@ def test_stacks_match_with_and_without_compilation(name):
     stack, base, accuracy = STACKS[name]
     system = rf.System(stack, base)
     compiled = system.simulate(SHORT, accuracy=accuracy, outputs=["energy"])
-    with plainly():
+    with plain_python():
         plain = system.simulate(SHORT, accuracy=accuracy, outputs=["energy"])
     for variable, values in compiled.variables.items():
         np.testing.assert_array_equal(values, plain.variables[variable], err_msg=variable)
@@ -95,7 +95,7 @@ def test_compiled_and_uncompiled_runs_are_identical(name, monkeypatch):
             integrate, "equations_of", partial(equations_of, compiled_in=compiled_in)
         )
         runs[compiled_in] = system.simulate(motion, accuracy=accuracy, outputs=["energy"])
-    with plainly():
+    with plain_python():
         plain = system.simulate(motion, accuracy=accuracy, outputs=["energy"])
     for compiled in runs.values():
         assert plain.variables.keys() == compiled.variables.keys()
@@ -106,7 +106,7 @@ def test_compiled_and_uncompiled_runs_are_identical(name, monkeypatch):
 
 
 def test_time_of_uncompiled_steps_is_counted(monkeypatch):
-    """After some seconds it pays to compile the equations into the steps."""
+    """After some seconds the equations are compiled into the steps."""
     system = rf.System(BLOCK)
     (own,) = bind((march_by_tolerance,), InlinedEquations(system.assembly.model.system))
     monkeypatch.setattr(equations, "is_worth_calling", lambda _: False)

@@ -1,4 +1,4 @@
-"""What every run must keep to, however extreme its scene."""
+"""Bounds that every run must keep, however extreme its scene."""
 
 from dataclasses import dataclass
 
@@ -6,20 +6,20 @@ import numpy as np
 from extremes.scenes import Scene
 
 RESIDUAL = {"standard": 1e-5, "reference": 1e-8}
-"""Largest imbalance of the energies, over the largest of them."""
+"""Largest energy imbalance over the largest energy."""
 
 ENDS = ("completed", "overturned", "toppled")
-"""How a run may end."""
+"""Allowed ends of a run."""
 
 STEPS_PER_EVENT = 40
 LEAST_STEPS = 10_000
 STEPS_PER_PERIOD = {"standard": 100, "reference": 400}
-"""Steps allowed: so many per radian-th of the fastest motion, per sample and per event."""
+"""Numbers of steps allowed per radian of the fastest motion, per sample and per event."""
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """How a run went, over its bounds."""
+    """Measures of a run relative to its bounds."""
 
     end: str
     residual: float
@@ -45,7 +45,7 @@ class Verdict:
 def steps_allowed(scene: Scene, events: int, accuracy: str) -> int:
     """Return the bound of the number of steps, rejected ones included.
 
-    Explicit steps follow the fastest motion, and dashpots beyond critical the faster for it.
+    Explicit steps follow the fastest motion, the more so with supercritical dashpots.
     """
     pads = scene.frequency_ratio * (1.0 + 2.0 * scene.damping_ratio)
     # a light cap between hard pads and the soil moves faster than either alone
@@ -60,7 +60,7 @@ def steps_allowed(scene: Scene, events: int, accuracy: str) -> int:
 
 
 def judge(scene: Scene, accuracy: str) -> Verdict:
-    """Run a scene and compare with the bounds."""
+    """Run a scene and compare it with the bounds."""
     response = scene.run(accuracy)
     values = [
         response[name].values
@@ -77,4 +77,4 @@ def judge(scene: Scene, accuracy: str) -> Verdict:
 
 
 UNDEFINED = frozenset({"first_uplift_time", "overturning_time", "uplift_angle"})
-"""Results that are NaN where what they tell of did not happen."""
+"""Results that are NaN if their event did not happen."""

@@ -1,4 +1,4 @@
-"""Write the table of the page "Extremes": every subject's cases, failures and worst numbers.
+"""Write the table of the page "Extremes": cases, failures and worst numbers of every subject.
 
 From the root of the repository: ``python tests/extremes/grid.py docs/validation_extremes.txt``.
 """
@@ -17,7 +17,7 @@ HEAD = ("subject", "runs", "failures", *(f"imbalance, {a}" for a in RESIDUAL), "
 
 
 def rows(count: int) -> Iterator[tuple[str, ...]]:
-    """Run all scenes; give a row per subject."""
+    """Run all scenes; return a row per subject."""
     for subject in SUBJECTS:
         failures, steps = 0, 0.0
         worst = dict.fromkeys(RESIDUAL, 0.0)

@@ -1,6 +1,6 @@
-"""Scenes at the extremes of what can be asked: one pool of them per subject.
+"""Scenes with extreme parameters, one pool per subject.
 
-A scene is drawn from ranges that engineers use, except for what its subject sends to an
+A scene is drawn from ranges used in practice, except for the parameter that its subject makes
 extreme. Runs last for some swings of the block, but no longer than PERIODS of the fastest
 motion, so that the hardest bases cost as much as the softest.
 """
@@ -25,7 +25,7 @@ SAMPLES = 201
 
 @dataclass(frozen=True)
 class Scene:
-    """A block, what it stands on and what shakes it, in SI units or as ratios."""
+    """A block, its base and its ground motion, in SI units or as ratios."""
 
     base: str = "pads"
     radius: float = 5.0
@@ -104,7 +104,7 @@ class Scene:
         )
 
     def run(self, accuracy: str):
-        """Simulate; warnings tell where a model is stretched and are no failure."""
+        """Simulate; warnings about the validity of the model are no failure."""
         theta = float(np.arctan(1.0 / self.slenderness))
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ModelWarning)
@@ -134,7 +134,7 @@ def shake(kind: str, count: int, rng: np.random.Generator) -> tuple[np.ndarray, 
 
 
 def usual(rng: np.random.Generator) -> Scene:
-    """Draw a scene from ranges that engineers use."""
+    """Draw a scene from ranges used in practice."""
     return Scene(
         base=str(rng.choice(BASES)),
         radius=float(10.0 ** rng.uniform(-0.3, 1.3)),
@@ -197,7 +197,7 @@ SUBJECTS: dict[str, Extreme] = {
     "contact that grazes": _with(
         base=_one_of("pads", "soil", "coupled"),
         signal=_fixed("constant"),
-        # weightless but for rounding, or for a part in a million
+        # weightless up to rounding, or to a millionth
         vertical=_one_of(-1.0, -0.999999, -1.000001),
         peak=_one_of(0.0, 1e-6, 1e-3),
         start=_one_of(0.0, 1e-9, 1e-3),
@@ -240,7 +240,7 @@ SUBJECTS: dict[str, Extreme] = {
 
 
 def scenes(subject: str, count: int) -> Iterator[Scene]:
-    """Return the first scenes of a subject's endless, fixed list."""
+    """Return the first scenes of a subject's infinite fixed list."""
     for number in range(count):
         rng = np.random.default_rng([list(SUBJECTS).index(subject), number])
         yield SUBJECTS[subject](usual(rng), rng)

@@ -1,4 +1,4 @@
-"""Contact changes that once followed one another without end."""
+"""Scenes that once had endless contact changes."""
 
 import numpy as np
 import pytest
@@ -14,13 +14,13 @@ HELD_AGAIN = [
     (2.6060301507537686, 13.873873873873872),
     (3.0, 12.372372372372372),
 ]
-"""Scales of the motion and frequency ratios; found among 200 000 runs."""
+"""Scales of the motion and frequency ratios, found among 200 000 runs."""
 SLIP_FOR_A_MOMENT = [
     (2.7152542372881356, 19.214428857715433),
     (2.7627118644067794, 16.80160320641283),
     (2.9050847457627116, 18.541082164328657),
 ]
-"""The same of sliding contacts that last for less than a fixed step."""
+"""The same for sliding contacts shorter than a fixed step."""
 
 
 def shaking(scale):
@@ -31,18 +31,18 @@ def shaking(scale):
 def runs(slenderness, scale, frequency_ratio):
     block = rf.Block.from_size(radius="3 m", slenderness=slenderness, mass="50 t")
     pads = rf.TwoSpringSupport(frequency_ratio=frequency_ratio, damping_ratio=0.1)
-    found = {
+    runs_found = {
         level: rf.System(block, pads).simulate(shaking(scale), free_vibration="2 s", accuracy=level)
         for level in ("fast", "standard", "reference")
     }
-    for level, run in found.items():
+    for level, run in runs_found.items():
         assert run.status == 0
         assert run.sizes["event"] < 60
-        apart = abs(run.peak_rotation / found["reference"].peak_rotation - 1.0)
-        assert apart < (2e-3 if level == "fast" else 1e-7)
-    assert found["reference"].energy_residual < 1e-10
-    assert found["standard"].energy_residual < 1e-7
-    return found
+        difference = abs(run.peak_rotation / runs_found["reference"].peak_rotation - 1.0)
+        assert difference < (2e-3 if level == "fast" else 1e-7)
+    assert runs_found["reference"].energy_residual < 1e-10
+    assert runs_found["standard"].energy_residual < 1e-7
+    return runs_found
 
 
 @pytest.mark.parametrize(("scale", "frequency_ratio"), HELD_AGAIN)
@@ -52,14 +52,14 @@ def test_a_corner_that_would_be_held_again_at_once_does_not_leave(scale, frequen
 
 @pytest.mark.parametrize(("scale", "frequency_ratio"), SLIP_FOR_A_MOMENT)
 def test_short_slip_within_step_ends_in_time(scale, frequency_ratio):
-    found = runs(3.0, scale, frequency_ratio)
-    lasting = [time for run in found.values() for time in times_of_slips(run)]
+    runs_found = runs(3.0, scale, frequency_ratio)
+    lasting = [time for run in runs_found.values() for time in times_of_slips(run)]
     assert lasting
     assert max(lasting) > 1e-4
 
 
 def times_of_slips(run):
-    """Return how long each slip lasts between separation into sliding contact and its end."""
+    """Return the duration of each slip from separation into sliding contact to its end."""
     kinds, states = run.event_kind.to_numpy(), run.contact_state_after.to_numpy()
     slips = np.flatnonzero((kinds[:-1] == 1) & (states[:-1] != 3) & (kinds[1:] == 4))
     times = run.event_time.to_numpy()
@@ -79,12 +79,12 @@ stiffness and damping ratio of the soil."""
 FAR_FROM_THE_ROOT = [
     ("coupled", 3, 4.908, 13.85, 0.1651, 3924.0, 3.591, 9.047, 2.325e7, 0.5007),
 ]
-"""One of which an event was taken for found where its guard was still positive."""
+"""A scene in which an event was located where its guard was still positive."""
 BY_ROUNDING = (
     "coupled", 1, 5.904439798154963, 50.33506474945864, 0.205806381471432, 4333.677323920404,
     3.312061875043419, 9.079241722453189, 122799777.09683603, 0.4518113413673902,
 )  # fmt: skip
-"""One in which a guard stood below zero by what it changes within the rounding of time."""
+"""A scene in which a guard was negative by its change within the rounding of time."""
 
 
 def stack(coupling, ratio, damping_ratio, mass, width, height, stiffness, soil_damping):
@@ -128,7 +128,7 @@ def test_ends_do_not_chatter_at_one_instant(case):
 
 @pytest.mark.long
 def test_rounding_of_time_makes_no_events():
-    """Hundreds of contact changes on hard pads, none of which follows another without end."""
+    """Hundreds of contact changes on hard pads, but no endless sequence."""
     coupling, number, scale, *parts = BY_ROUNDING
     system, motion = stack(coupling, *parts), in_both_directions(number).scaled(scale)
     fast = system.simulate(motion, accuracy="fast", second_look=False)

@@ -1,4 +1,4 @@
-"""Every subject's first scenes keep to the bounds; ROCKFRAME_EXTREMES=20 takes 20 times as many."""
+"""First scenes of every subject keep the bounds; ROCKFRAME_EXTREMES=20 runs 20 times as many."""
 
 import os
 
@@ -44,18 +44,18 @@ def test_combined_extremes_stay_within_bounds(seed, subjects):
 
 
 def test_scenes_cover_all_options_and_ranges():
-    drawn = [scene for subject in SUBJECTS for scene in scenes(subject, COUNT)]
-    assert {scene.base for scene in drawn} == set(BASES)
-    assert {scene.restraint for scene in drawn} == set(RULES)
-    assert {scene.separation for scene in drawn} == {"displacement", "pressure"}
-    assert {scene.rotation for scene in drawn} == {"finite", "small"}
-    assert max(scene.frequency_ratio for scene in drawn) > 1e3
-    assert max(scene.soil_ratio for scene in drawn) > 500.0
-    assert max(scene.slenderness for scene in drawn) > 20.0
+    drawn_scenes = [scene for subject in SUBJECTS for scene in scenes(subject, COUNT)]
+    assert {scene.base for scene in drawn_scenes} == set(BASES)
+    assert {scene.restraint for scene in drawn_scenes} == set(RULES)
+    assert {scene.separation for scene in drawn_scenes} == {"displacement", "pressure"}
+    assert {scene.rotation for scene in drawn_scenes} == {"finite", "small"}
+    assert max(scene.frequency_ratio for scene in drawn_scenes) > 1e3
+    assert max(scene.soil_ratio for scene in drawn_scenes) > 500.0
+    assert max(scene.slenderness for scene in drawn_scenes) > 20.0
 
 
 def test_verdict_lists_every_broken_bound(monkeypatch):
-    """A run that cannot be finished in its steps is no success."""
+    """A run that exceeds its number of steps counts as a failure."""
     verdict = judge(Scene(peak=0.5), "standard")
     assert verdict.failures == []
     assert verdict.steps > 100
@@ -71,7 +71,7 @@ def test_verdict_lists_every_broken_bound(monkeypatch):
 
 @pytest.mark.parametrize("stiffness", ["2 TPa", "20 TPa", "2e15 Pa", "2e20 Pa"])
 def test_statics_on_nearly_rigid_soil_match_rigid_ground(stiffness):
-    """Rotations of the soil are below what rounding leaves of those of the block."""
+    """Rotations of the soil are below the rounding of those of the block."""
     block = rf.Block(width="1 m", height="4 m", mass="10 t")
     pads = rf.TwoSpringSupport(frequency_ratio=15, damping_ratio=0.05)
     soil = rf.WinklerSoil(stiffness=stiffness, damping_ratio=0.2)

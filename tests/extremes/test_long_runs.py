@@ -1,4 +1,4 @@
-"""Runs over ten thousand cycles and of an hour: what adds up, adds up to little."""
+"""Runs over ten thousand cycles and of an hour accumulate little error."""
 
 import math
 import tracemalloc
@@ -28,7 +28,7 @@ SCENES = {
 def test_ten_thousand_lossless_cycles_conserve_energy(name):
     parts, options, share = SCENES[name]
     system = rf.System(*parts, **options)
-    # Housner's period, which pads only lengthen; half as many cycles again to be sure
+    # Housner's period, which pads only lengthen; with half as many cycles again as a margin
     period = 4.0 * math.acosh(1.0 / (1.0 - share)) / BLOCK.si.frequency
     run = system.simulate(
         duration=f"{2.0 * CYCLES * period!r} s",
@@ -40,7 +40,7 @@ def test_ten_thousand_lossless_cycles_conserve_energy(name):
     # two landings a cycle
     assert int(run.impact_count) >= 2 * CYCLES
     assert float(run.energy_residual) < 1e-6
-    # the last swing is as wide as the first, so that little went anywhere else
+    # the last swing is as large as the first: little energy is lost
     assert float(run.peak_rotation) == pytest.approx(share * THETA, rel=1e-5)
 
 
@@ -67,5 +67,5 @@ def test_one_hour_record_runs_in_bounded_memory(parts):
     assert int(run.status) in (0, 1)
     assert float(run.attrs["solver_end_time"]) > 3000.0
     assert float(run.energy_residual) <= 1e-5
-    # no histories: a copy or two of the motion, and the events
+    # without histories: one or two copies of the motion, and the events
     assert most < 6 * noise.nbytes

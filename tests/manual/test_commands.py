@@ -1,4 +1,4 @@
-"""The commands of the manual and of the README are those that are tried before a change lands."""
+"""The commands of the manual and of the README are tested before each change."""
 
 import re
 import shlex
@@ -17,7 +17,7 @@ SETTING_UP = ("python3 -m venv .venv", "pip install")
 
 
 def commands():
-    """Return all commands of blocks marked as shell, with the page that they stand on."""
+    """Return all commands of shell blocks, with their page."""
     for page in [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))]:
         for block in BLOCK.findall(page.read_text(encoding="utf-8")):
             for line in block.splitlines():
@@ -31,11 +31,11 @@ def spoken(command):
 
 
 def test_every_command_is_tried():
-    """By .ci/run, which takes those of the README from there, or here."""
+    """By .ci/run, which reads those of the README from there, or by these tests."""
     tried = f"{TRIED}\n{README}".replace(".venv/bin/", "")
-    found = list(commands())
-    assert len(found) > 10
-    for page, command in found:
+    all_commands = list(commands())
+    assert len(all_commands) > 10
+    for page, command in all_commands:
         if command.startswith(("python -c", *ASK_THE_NETWORK, *SETTING_UP)):
             continue
         program, *words = spoken(command)

@@ -1,9 +1,9 @@
-"""Every public name says what it takes, what it gives and what it raises."""
+"""Every public name documents its arguments, results and exceptions."""
 
 import inspect
 
 import pytest
-from pages import listed
+from pages import reference_names
 
 import rockframe as rf
 
@@ -48,8 +48,8 @@ def test_every_public_name_is_documented(name):
 
 
 def test_every_public_name_has_a_page():
-    """The lists of the reference are what pages are made of, each name once."""
-    shown = listed()
+    """The reference lists each public name exactly once."""
+    shown = reference_names()
     assert len(shown) == len(set(shown)) > 100
     public = {name for name in rf.__all__ if name not in (*PACKAGES, "__version__")}
     for package in ("plot", "export", "codes", "errors", "measures"):
@@ -82,7 +82,7 @@ def test_parameters_are_described():
 
 
 def inherits(function):
-    """Tell how many first arguments are the object or the class."""
+    """Return the number of leading arguments that are the object or the class."""
     first = next(iter(inspect.signature(function).parameters), "")
     return int(first in ("self", "cls", "kind", "motion", "made", "suite"))
 
@@ -99,7 +99,7 @@ def test_return_values_are_described():
 
 
 def test_array_docs_state_their_shape():
-    """Of what is an array, of arguments and results; datasets tell their dimensions."""
+    """Array arguments and results state their shapes; datasets state their dimensions."""
     missing = [
         f"{name}: {one.name} : {one.type}"
         for name, function in ALL.items()
@@ -111,7 +111,7 @@ def test_array_docs_state_their_shape():
 
 
 def test_functions_with_quantities_document_raises():
-    """Whoever takes a quantity refuses one of another kind."""
+    """Functions with a quantity argument refuse quantities of another kind."""
     missing = [
         name
         for name, function in ALL.items()

@@ -1,4 +1,4 @@
-"""The manual on a phone and on a wide screen: no equation is cut, no page is wider than the screen.
+"""On a phone and on a wide screen no equation of the manual is cut and no page is too wide.
 
 A browser measures the pages that have equations, each in a frame of the width of a screen.
 """
@@ -19,7 +19,7 @@ SITE = Path(os.environ.get("ROCKFRAME_SITE", ROOT / "docs" / "_build" / "html"))
 BROWSER = which("chromium") or which("google-chrome")
 PHONE, DESKTOP = 400, 1280
 LARGEST_SHARE = 0.02
-"""Of displayed equations that still have to scroll on a wide screen; measured 1 of 270."""
+"""Largest share of displayed equations that scroll on a wide screen; measured 1 of 270."""
 pytestmark = [
     pytest.mark.skipif(
         not (SITE / "index.html").is_file(), reason=f"the manual has not been built in {SITE}"
@@ -60,7 +60,7 @@ async function measured(page, width) {
 
 
 class Site(http.server.SimpleHTTPRequestHandler):
-    """The manual, with a page that measures the others and hands in what it found."""
+    """Serves the manual, with a page that measures the others and posts the results."""
 
     page, found, done = "", None, None
 

@@ -1,6 +1,6 @@
-"""The manual as it was built: nothing comes from elsewhere, and search finds what people look for.
+"""The built manual: no page loads anything from elsewhere, and search finds common words.
 
-The folder is ``docs/_build/html``, or what the environment variable ``ROCKFRAME_SITE`` names.
+The folder is ``docs/_build/html``, or that of the environment variable ``ROCKFRAME_SITE``.
 """
 
 import json
@@ -23,7 +23,7 @@ pytestmark = pytest.mark.skipif(
 
 
 class Loaded(HTMLParser):
-    """What a page loads by itself when it is opened."""
+    """Collects the addresses that a page loads when it is opened."""
 
     def __init__(self, text):
         super().__init__()
@@ -31,19 +31,19 @@ class Loaded(HTMLParser):
         self.feed(text)
 
     def handle_starttag(self, tag, attrs):
-        given = {name: value or "" for name, value in attrs}
+        attributes = {name: value or "" for name, value in attrs}
         if tag == "link":
-            kinds = set(given.get("rel", "").lower().split())
+            kinds = set(attributes.get("rel", "").lower().split())
             wanted = {"href"} if kinds & LOADING_LINKS else set()
         else:
             wanted = LOADED_BY
-        self.addresses += [given[name] for name in wanted if name in given]
-        self.addresses += urls_in_css(given.get("style", ""))
+        self.addresses += [attributes[name] for name in wanted if name in attributes]
+        self.addresses += urls_in_css(attributes.get("style", ""))
 
 
 def urls_in_css(text):
-    found = re.findall(r"url\(\s*['\"]?([^'\")]+)", text)
-    return found + re.findall(r"@import\s+['\"]([^'\"]+)", text)
+    urls = re.findall(r"url\(\s*['\"]?([^'\")]+)", text)
+    return urls + re.findall(r"@import\s+['\"]([^'\"]+)", text)
 
 
 def pages():
@@ -68,13 +68,13 @@ def test_files_loaded_by_pages_exist():
 
 
 def test_pages_do_not_reveal_build_machine():
-    """A warning of a script would stand there with its file: those wanted are printed as text."""
+    """A warning of a script appears with its file name; intended ones are printed as text."""
     sources = SITE.joinpath("_sources").rglob("*.txt")
     for page in [*pages(), *sources, *SITE.rglob("*.ipynb")]:
         text = page.read_text(encoding="utf-8")
         assert f"{ROOT}{os.sep}" not in text, page.relative_to(SITE)
         assert not re.search(r"\.py:\d+: \w*Warning: ", text), page.relative_to(SITE)
-        if "gallery" in page.parts:  # what is said of compiling depends on the machine
+        if "gallery" in page.parts:  # messages about compilation depend on the machine
             assert "rockframe compiles what" not in text, page.relative_to(SITE)
 
 

@@ -1,4 +1,4 @@
-"""Checks that every scene must pass, whatever it stands on."""
+"""Checks that every scene must pass on any base."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ OF_HISTORIES = [row.name for row in FORCE_SCALARS]
 
 
 def check_flight(response, *, within):
-    """The time in flight, and the number of flights, are those between the events."""
+    """Check time and number of flights against the events."""
     time = np.concatenate([[0.0], response.event_time.values])
     end = np.append(time[1:], response.attrs["solver_end_time"])
     after = response.contact_state_after.values
@@ -29,13 +29,13 @@ def check_flight(response, *, within):
 
 
 def stored_energy(model, mode, state):
-    """Return a model's stored energy, and the size of its parts."""
+    """Return a model's stored energy, and the magnitude of its parts."""
     kinetic, gravity, elastic, from_rest = model.system.energies(int(mode), state)
     return kinetic + gravity + from_rest, max(abs(kinetic), abs(gravity), abs(elastic))
 
 
 def check_energy_at_events(scenario, accuracy, *, stop_at_overturning):
-    """Energy never rises at an event, and the memory tells how much went."""
+    """Check that energy never rises at an event, and that the memory holds the loss."""
     model = scenario.system.setting.compile()
     start = scenario.initial.si
     run = integrate(
@@ -51,7 +51,7 @@ def check_energy_at_events(scenario, accuracy, *, stop_at_overturning):
     for i in range(len(run.events.time)):
         before, size = stored_energy(model, run.events.mode_before[i], run.events.state_before[i])
         after, _ = stored_energy(model, run.events.mode_after[i], run.events.state_after[i])
-        # a rigid block's impact is found to 1e-15 of theta, and its energy there to that
+        # a rigid block's impact is located to 1e-15 of theta, and its energy accordingly
         slack = 1e-11 * size + 1e-14 * GRAVITY * scenario.radius
         assert after <= before + slack
         change = lost[i + 1] - lost[i]
@@ -73,7 +73,7 @@ def assert_same_scalars(one, other):
 
 
 def check_output_step(scenario, step):
-    """The output step changes nothing but the samples."""
+    """Check that the output step changes nothing but the samples."""
     own = scenario.run()
     other = scenario.run(output_step=step)
     none = scenario.run(outputs=None)

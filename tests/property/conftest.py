@@ -1,4 +1,4 @@
-"""Random scenes may go where the model warns that it is no longer valid."""
+"""Random scenes may leave the range of validity of the model, which warns."""
 
 from pathlib import Path
 

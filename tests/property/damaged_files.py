@@ -5,7 +5,7 @@ import re
 from hypothesis import strategies as st
 from unit.motion.format_samples import SAMPLES
 
-HEADER = 6_000  # byte: numbers are replaced where headers stand
+HEADER = 6_000  # byte: numbers are replaced in the headers
 
 FRAGMENTS = [
     *(b"", b" ", b"\n", b"\r", b"\t", b",", b";", b".", b"-", b"+", b"E", b"D", b"#", b"|"),
@@ -52,10 +52,10 @@ def _repeat(data: bytes, here: float, there: float, piece: bytes) -> bytes:
 
 
 def _renumber(data: bytes, here: float, there: float, piece: bytes) -> bytes:
-    found = list(re.finditer(rb"\d+", data[:HEADER]))
-    if not found:
+    numbers_found = list(re.finditer(rb"\d+", data[:HEADER]))
+    if not numbers_found:
         return data
-    match = found[int(here * (len(found) - 1))]
+    match = numbers_found[int(here * (len(numbers_found) - 1))]
     number = NUMBERS[int(there * (len(NUMBERS) - 1))]
     return data[: match.start()] + number + data[match.end() :]
 
@@ -77,14 +77,14 @@ KINDS = [
     _exchange_headers,
 ]
 
-# half of the places near the top, where the headers are
+# half of the positions near the top, in the headers
 PLACES = st.one_of(st.floats(0.0, 0.1), st.floats(0.0, 1.0))
 PIECES = st.one_of(st.sampled_from(FRAGMENTS), st.binary(min_size=1, max_size=12))
 DAMAGE = st.lists(st.tuples(st.sampled_from(KINDS), PLACES, PLACES, PIECES), min_size=1, max_size=4)
 
 
 def damaged(data: bytes, damage) -> bytes:
-    """Do to a file what a draw of DAMAGE says."""
+    """Apply a draw of DAMAGE to a file."""
     for step, here, there, piece in damage:
         data = step(data, here, there, piece)
     return data

@@ -1,10 +1,10 @@
-"""Random scenes for the property tests, in ranges that engineers use.
+"""Random scenes for the property tests, in ranges used in practice.
 
 R0 0.5 to 20 m, H/B 1 to 8, beta 8 to 60, xi 0 to 0.5, every restraint rule, finite and
 small rotation; sine pulses of 0.2 to 1.5 g and 0.5 to 4 Hz, with a vertical pulse of up to
-half of that or without. Pads that cannot hold the block upright are left out.
+half of that or without. Pads that cannot hold the block upright are excluded.
 
-On soil: a rocking stiffness of 1.3 to 100 times what holds the body upright, damping ratio
+On soil: a rocking stiffness of 1.3 to 100 times the least for stability, damping ratio
 0 to 0.5, both rules of separation; caps of 1 to 1.6 times the block's width, 0 to 0.2 times
 its height and 0.01 to 0.5 times its mass.
 """
@@ -84,8 +84,8 @@ class Scenario:
         return self.base == "rigid" or 0.75 * self.beta**2 * sine * tangent > 1.0
 
     def run(self, **options):
-        given = {"free_vibration": f"{self.free!r} s", "initial": self.initial, **options}
-        return self.system.simulate(self.motion, **given)
+        arguments = {"free_vibration": f"{self.free!r} s", "initial": self.initial, **options}
+        return self.system.simulate(self.motion, **arguments)
 
 
 CASE = Scenario(
@@ -100,11 +100,11 @@ CASE = Scenario(
     cycles=1.0,
     vertical=0.3,
 )
-"""A scene on pads to change in one respect."""
+"""A scene on pads, to be changed in one respect."""
 
 
 def _tidy(low, high):
-    # decimal fractions: short in a report, and no subnormal curiosities
+    # decimal fractions: short in a report, never subnormal
     return st.integers(round(1000 * low), round(1000 * high)).map(lambda n: n / 1000.0)
 
 
@@ -126,7 +126,7 @@ def _ranges(starts):
 
 
 def scenarios(bases=("rigid", *RULES), starts=True):
-    """Return random scenes on the bases named."""
+    """Return random scenes on the named bases."""
     built = st.builds(
         Scenario,
         base=st.sampled_from(bases),
@@ -146,7 +146,7 @@ class SoilScenario(Scenario):
     """A scene on soil; `base` is the restraint rule, beta and xi are those of the pads."""
 
     scene: str = "soil"  # one of SOIL_SCENES
-    firmness: float = 4.0  # (2/3) k0 b^3 over m g h, of all that stands on the soil
+    firmness: float = 4.0  # (2/3) k0 b^3 over m g h of all bodies on the soil
     soil_xi: float = 0.1
     separation: str = "displacement"
     cap_width: float = 1.2  # over the block's
@@ -195,7 +195,7 @@ class SoilScenario(Scenario):
         return rf.System(*parts, restraint=self.base, rotation=self.rotation, **options)
 
     def stands_upright(self):
-        """Whether soil and pads in a row hold the block, with something to spare."""
+        """Whether soil and pads in series hold the block, with a margin."""
         flexibility = 1.0 / self.firmness
         if self.scene in ("coupled", "cascade"):
             tangent = 1.0 / self.slenderness

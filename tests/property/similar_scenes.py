@@ -1,4 +1,4 @@
-"""Random scenes of every kind, with a motion and how they are run, for runs in another size."""
+"""Random scenes of every kind with motion and arguments, for runs in another size."""
 
 import math
 from dataclasses import replace
@@ -15,40 +15,40 @@ import rockframe as rf
 
 def usual(base, rng):
     """Draw a block on a base, or on pads, cap and soil."""
-    drawn = replace(scenes.usual(rng), base=base)
-    start = drawn.start * math.atan(1.0 / drawn.slenderness)
-    asked = {
-        "duration": f"{drawn.duration!r} s",
+    scene = replace(scenes.usual(rng), base=base)
+    start = scene.start * math.atan(1.0 / scene.slenderness)
+    arguments = {
+        "duration": f"{scene.duration!r} s",
         "initial": rf.InitialState(rotation=f"{start!r} rad"),
-        "overturning": "continue" if drawn.continues else "stop",
+        "overturning": "continue" if scene.continues else "stop",
     }
-    return drawn.system, drawn.motion, asked
+    return scene.system, scene.motion, arguments
 
 
 def of_part(part, rng):
-    """Draw walls, frames, tendons, stacks, of which some are on pads that are too soft."""
+    """Draw walls, frames, tendons, stacks; some are on pads that are too soft."""
     while True:
         try:
-            return *random_parts.drawn(part, rng), {}
+            return *random_parts.draw_scene(part, rng), {}
         except rf.errors.AssemblyError:
             continue
 
 
 def slides(draw, rng):
     """Draw a block that slides and rocks."""
-    drawn = draw(rng)
-    start = rf.InitialState(rotation=f"{drawn.rotation!r} rad")
-    return drawn.system, drawn.motion, {"free_vibration": "1.0 s", "initial": start}
+    scene = draw(rng)
+    start = rf.InitialState(rotation=f"{scene.rotation!r} rad")
+    return scene.system, scene.motion, {"free_vibration": "1.0 s", "initial": start}
 
 
 def tied(rng):
-    """Draw one to three blocks with ties, of which some are too hard to stand."""
+    """Draw one to three blocks with ties; some ties prevent a position of rest."""
     while True:
         try:
-            system, motion, asked = tied_runs.drawn(int(rng.integers(1_000_000)))
+            system, motion, arguments = tied_runs.draw_scene(int(rng.integers(1_000_000)))
         except rf.errors.RockframeError:
             continue
-        return system, motion, {name: one for name, one in asked.items() if name != "accuracy"}
+        return system, motion, {name: one for name, one in arguments.items() if name != "accuracy"}
 
 
 def held(rng):
@@ -56,7 +56,7 @@ def held(rng):
     while True:
         try:
             return _held(rng)
-        except rf.errors.AssemblyError:  # it falls by what pulls at it
+        except rf.errors.AssemblyError:  # its loads make it fall
             continue
 
 
@@ -65,8 +65,8 @@ def _held(rng):
     height, mass = width * float(rng.uniform(1.0, 6.0)), float(10.0 ** rng.uniform(1.0, 5.0))
     weight, theta = GRAVITY * mass, math.atan(width / height)
     size = {"width": f"{width!r} m", "height": f"{height!r} m", "mass": f"{mass!r} kg"}
-    beside = float(rng.uniform(-0.1, 0.1)) * width
-    block = rf.Block(**size, centre_of_mass=(f"{0.4 * height!r} m", f"{beside!r} m"))
+    eccentricity = float(rng.uniform(-0.1, 0.1)) * width
+    block = rf.Block(**size, centre_of_mass=(f"{0.4 * height!r} m", f"{eccentricity!r} m"))
     if rng.random() < 0.3:
         block = rf.FrameEquivalent(**size, shape_factor=float(rng.uniform(1.0, 3.0)))
     on = str(rng.choice(["rigid", "pads", "soil", "cap"]))
@@ -111,11 +111,11 @@ def _held(rng):
     start = {"rotation": f"{0.5 * theta * float(rng.uniform(-1.0, 1.0))!r} rad"}
     if on == "pads":
         start["vertical_velocity"] = "0.1 m/s"
-    asked = {"free_vibration": "1.0 s", "points": {"top": ("0.2 m", f"{height!r} m")},
+    arguments = {"free_vibration": "1.0 s", "points": {"top": ("0.2 m", f"{height!r} m")},
              "output_step": "0.01 s"}  # fmt: skip
     if rng.random() < 0.5:
-        asked["initial"] = rf.InitialState(**start)
-    return system, motion, asked
+        arguments["initial"] = rf.InitialState(**start)
+    return system, motion, arguments
 
 
 DRAWN = {
@@ -130,4 +130,4 @@ DRAWN = {
     "ties": tied,
     "held": held,
 }
-"""By its kind, what draws a scene: its system, its motion, and the arguments of its run."""
+"""Functions by kind that draw a scene: system, motion and arguments of its run."""

@@ -1,4 +1,4 @@
-"""Archives made to harm: refused soon and with little memory, and nothing is written."""
+"""Malicious archives are refused quickly, with little memory, and nothing is written."""
 
 import gzip
 import io
@@ -56,7 +56,7 @@ def folder(tmp_path_factory):
 
 
 def read_all(data: bytes) -> str:
-    """Read it as a suite: that, or a RecordError, soon and with little memory."""
+    """Read a file as a suite, or get a RecordError, quickly and with little memory."""
     suite = error = None
     peak = 0
 
@@ -71,7 +71,7 @@ def read_all(data: bytes) -> str:
             peak = tracemalloc.get_traced_memory()[1]
             tracemalloc.stop()
 
-    longest = 2.0 * LONGEST  # tracing costs as much again
+    longest = 2.0 * LONGEST  # tracing doubles the time
     assert processor_time(read, longest) < longest
     assert peak < MOST_MEMORY
     assert error is None or len(str(error)) < 2_500
@@ -121,7 +121,7 @@ def zip_bomb(count: int, size: int) -> bytes:
 
 
 def overlapping() -> bytes:
-    """Many entries of the contents that all point to the same packed file."""
+    """An archive with many directory entries for the same compressed file."""
     data = zip_bomb(1, 8 * 2**20)
     end = data.rindex(b"PK\x05\x06")
     start = int.from_bytes(data[end + 16 : end + 20], "little")
@@ -133,7 +133,7 @@ def overlapping() -> bytes:
 
 
 def many_entries() -> bytes:
-    """A list of contents as long as the file allows."""
+    """An archive with the longest possible directory."""
     data = zipped(("a", b""))
     end = data.rindex(b"PK\x05\x06")
     start = int.from_bytes(data[end + 16 : end + 20], "little")
@@ -145,7 +145,7 @@ def many_entries() -> bytes:
 
 
 def lying_size() -> bytes:
-    """A packed file that says it is small and is not."""
+    """A compressed file that states too small a size."""
     data = bytearray(zip_bomb(1, 64 * 2**20))
     for mark, offset in ((b"PK\x03\x04", 22), (b"PK\x01\x02", 24)):
         place = data.rindex(mark) + offset
@@ -154,7 +154,7 @@ def lying_size() -> bytes:
 
 
 def long_tar_name() -> bytes:
-    """A name that announces gigabytes, behind which there are zeros packed by gzip."""
+    """A tar header that announces a name of gigabytes, followed by gzipped zeros."""
     info = tarfile.TarInfo("x")
     info.type, info.size = tarfile.GNUTYPE_LONGNAME, 2**31
     packer = zlib.compressobj(9, wbits=31)
@@ -164,7 +164,7 @@ def long_tar_name() -> bytes:
 
 
 def sparse_tar() -> bytes:
-    """A sparse file, which claims to be large and holds nothing."""
+    """A sparse file of large size without content."""
     info = tarfile.TarInfo("a.AT2")
     info.type, info.size = tarfile.GNUTYPE_SPARSE, 0
     head = bytearray(info.tobuf(tarfile.GNU_FORMAT))
@@ -210,7 +210,7 @@ def test_decompression_bombs_are_refused(folder, name, tmp_path):
     path = tmp_path / "bomb"
     path.write_bytes(data)
     for read in (rf.GroundMotion.read, rf.read_suite):
-        # thousands of files take their time, even if there is nothing in them
+        # thousands of files take long even when empty
         longest = 5.0 * LONGEST if (name, read) == ("many members", rf.read_suite) else LONGEST
 
         def refused(read=read):

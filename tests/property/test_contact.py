@@ -1,4 +1,4 @@
-"""What contact may and may not do, over random scenes.
+"""Rules of contact over random scenes.
 
 Ranges: see `property.scenarios`.
 """
@@ -58,9 +58,9 @@ def test_runs_end_completed_or_overturned(scenario):
 
 
 def test_landing_whose_hold_lifts_corner_again_does_not_chatter():
-    """Far beyond overturning the hold would throw the corner up, in a series without end.
+    """Far beyond overturning the hold would throw the corner up in an endless series.
 
-    It acts only while the corner presses, and the block falls flat.
+    It acts only while the corner presses, so that the block falls flat.
     """
     scenario = Scenario(
         base="leading-corner",

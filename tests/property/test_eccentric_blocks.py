@@ -1,4 +1,4 @@
-"""Blocks whose centre of mass is beside the middle of their base: mirror images, energy, limits."""
+"""Blocks with an eccentric centre of mass: mirror images, energy, limits."""
 
 from dataclasses import dataclass, replace
 
@@ -26,17 +26,17 @@ class Eccentric(SoilScenario):
 
     eccentricity: float = 0.3  # over half the width
     level: float = 0.45  # of the centre of mass, over the height
-    told: bool = False  # that the block starts upright, though it leans at rest
+    starts_upright: bool = False  # the block starts upright, though it leans at rest
 
     @property
     def block(self):
         size = super().block.si
-        beside = self.sign * self.eccentricity * size.half_width
+        offset = self.sign * self.eccentricity * size.half_width
         return rf.Block(
             width=f"{size.width!r} m",
             height=f"{size.height!r} m",
             mass=f"{self.mass!r} kg",
-            centre_of_mass=(f"{self.level * size.height!r} m", f"{beside!r} m"),
+            centre_of_mass=(f"{self.level * size.height!r} m", f"{offset!r} m"),
         )
 
     @property
@@ -50,13 +50,13 @@ class Eccentric(SoilScenario):
     @property
     def initial(self):
         given = super().initial
-        return given if self.told or self.start else given.replace(rotation=None)
+        return given if self.starts_upright or self.start else given.replace(rotation=None)
 
     @property
     def points(self):
         size = self.block.si
-        beside = self.sign * 0.5 * size.half_width
-        return {"shelf": (f"{beside!r} m", f"{0.7 * size.height!r} m")}
+        offset = self.sign * 0.5 * size.half_width
+        return {"shelf": (f"{offset!r} m", f"{0.7 * size.height!r} m")}
 
 
 CASE = Eccentric(**vars(PADS_CASE), firmness=30.0, cap_width=1.3)
@@ -70,9 +70,9 @@ def every(**changes):
 
 
 def begun_and_shaken():
-    """Return scenes that start in all ways, by all rules."""
+    """Return scenes with all kinds of start, under all rules."""
     yield from every()
-    yield from every(told=True, peak=0.35, eccentricity=-0.15)
+    yield from every(starts_upright=True, peak=0.35, eccentricity=-0.15)
     yield from every(start=0.4, rate=-0.3, peak=0.3)
     for rule in RULES:
         for scene in SCENES[1:]:
@@ -80,7 +80,7 @@ def begun_and_shaken():
 
 
 def test_mirrored_scene_gives_mirrored_response():
-    """In the bed's part in contact up to rounding, and then up to the third event."""
+    """Up to rounding, as the bed's contact is measured from the left, up to the third event."""
     events, leans = 0, []
     for scenario in begun_and_shaken():
         one, other = (
@@ -132,7 +132,7 @@ def test_energies_balance():
 
 def test_energy_never_rises_at_an_event():
     for scenario in every():
-        if scenario.scene != "cascade":  # of which each stage has a ground of its own
+        if scenario.scene != "cascade":  # where each stage has its own ground
             check_energy_at_events(scenario, "reference", stop_at_overturning=False)
 
 

@@ -1,4 +1,4 @@
-"""The energy audit over random scenes, and what no event may do.
+"""Energy balances over random scenes, and bounds of energy at events.
 
 Ranges: see `property.scenarios`.
 """
@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from benchmarks.tied_runs import drawn as drawn_tied
+from benchmarks.tied_runs import draw_scene as draw_tied
 from hypothesis import example, given, settings
 from property.checks import check_energy_at_events
 from property.scenarios import GRAVITY, RULES, Scenario, scenarios
@@ -68,7 +68,7 @@ def energy_scale(response):
     )
 )
 @example(
-    # upright at every event and at the end: the largest energies stand in between
+    # upright at every event and at the end: the largest energies occur in between
     Scenario(
         base="leading-corner",
         radius=1.051,
@@ -101,7 +101,7 @@ def test_energy_balances(scenario):
     ],
 )
 def test_energy_residual_is_relative_to_largest_term_of_run(scene):
-    """Not only of the instants of events and of the end, where little may be stored."""
+    """The scale is not only that of events and of the end, where little energy may be stored."""
     excitation = {"peak": 0.2, "frequency": 0.5, "cycles": 0.5, "vertical": 0.0}
     scenario = Scenario(**{"xi": 0.0, "rotation": "finite", **excitation, **scene})
     response = scenario.run(outputs="energy", output_step="1 ms")
@@ -112,7 +112,7 @@ def test_energy_residual_is_relative_to_largest_term_of_run(scene):
     imbalance = np.abs(stored + gone - supplied).max()
     largest = max(np.abs(stored).max(), np.abs(supplied).max(), np.abs(gone).max())
     assert imbalance / largest > 1e-10
-    # the samples between the steps can only add to the imbalance
+    # samples between the steps can only increase the imbalance
     assert response.energy_residual.item() <= 2.0 * imbalance / largest
 
 
@@ -121,7 +121,7 @@ def test_energy_residual_is_relative_to_largest_term_of_run(scene):
 @example(Scenario(base="contact-state", beta=20.0, xi=0.1, rotation="finite", vertical=0.0, **HARD))
 @settings(max_examples=60, deadline=None)
 def test_energy_balances_in_the_histories(scenario):
-    """At every sample: what is stored, dissipated and lost is what came in."""
+    """At every sample stored, dissipated and lost energy equal the input."""
     response = scenario.run(outputs="energy", output_step="5 ms", accuracy="reference")
     stored = sum(response[f"{kind}_energy"].values for kind in ("kinetic", "potential", "elastic"))
     gone = sum(response[f"{kind}_energy"].values for kind in ("dissipated", "impact", "repinning"))
@@ -147,12 +147,12 @@ def test_losses_only_grow(scenario):
     slack = 1e-9 * energy_scale(response)
     assert (response.kinetic_energy.values >= 0.0).all()
     assert (response.elastic_energy.values >= 0.0).all()
-    # after a flight an end may slide, which dissipates as well
+    # after a flight an end may slide, which also dissipates
     if scenario.base == "rigid" or (scenario.xi == 0.0 and response.flight_count.item() == 0):
         np.testing.assert_allclose(response.dissipated_energy.values, 0.0, atol=slack)
     if scenario.base in ("rigid", "centre") or scenario.rotation == "small":
         pinned = response.flight_count.item() == 0
-        # a slip that has come to zero is stopped: its energy is a rounding squared
+        # a slip that has reached zero is stopped: its energy is a rounding error squared
         lost = response.repinning_energy.values
         assert not pinned or (lost <= 1e-24 * energy_scale(response)).all()
 
@@ -160,7 +160,7 @@ def test_losses_only_grow(scenario):
 @given(scenarios())
 @settings(max_examples=60, deadline=None)
 def test_energy_never_rises_at_an_event(scenario):
-    # a corner that ends sliding is set on its level, from as far off as the run is accurate
+    # a corner that ends sliding is set on its level, to within the accuracy of the run
     check_energy_at_events(scenario, "reference", stop_at_overturning=False)
 
 
@@ -211,7 +211,7 @@ def test_a_block_left_alone_comes_to_rest(rule):
 def test_energy_residual_does_not_depend_on_motion_strength(base):
     """In full contact a tenth of the motion makes a hundredth of the energies, and of the errors.
 
-    The springs' energy at rest stays what it is; over that the residual would vanish.
+    The springs' energy at rest does not scale; relative to it the residual would vanish.
     """
     excitation = {"frequency": 1.5, "cycles": 2.0, "vertical": 0.4, "xi": 0.1, "rotation": "small"}
     size = {"radius": 5.0, "slenderness": 4.0, "beta": 20.0}
@@ -229,8 +229,8 @@ def test_energy_residual_does_not_depend_on_motion_strength(base):
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 @pytest.mark.parametrize("number", [47, 295])
 def test_each_loss_never_decreases_on_mixed_bases(number):
-    """On pads out of flight, beside rigid bases: the hold is a part of the blow then."""
-    system, motion, _ = drawn_tied(number)
+    """On pads after flight, next to rigid bases, the hold is part of the impact."""
+    system, motion, _ = draw_tied(number)
     response = system.simulate(motion, outputs="energy", output_step="1 ms", second_look=False)
     for name in ("impact_energy", "repinning_energy"):
         steps = np.diff(response[name].values)

@@ -1,4 +1,4 @@
-"""Energies balance in every scene, under every rule, free and forced, with what lifts lifting."""
+"""Energies balance in every scene on soil, under every rule, free and forced, with uplift."""
 
 from itertools import product
 

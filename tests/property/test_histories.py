@@ -1,12 +1,12 @@
-"""Histories of random scenes of all kinds, as far as they have to agree with one another.
+"""Consistency of histories of random scenes of all kinds.
 
-Velocities are the rates of displacements between events; peaks are nowhere less than histories;
-elongations move with the bodies.
+Velocities are the rates of displacements between events; peaks are not exceeded by histories;
+elongations follow the bodies.
 """
 
 import numpy as np
 import pytest
-from benchmarks.random_parts import PARTS, drawn
+from benchmarks.random_parts import PARTS, draw_scene
 
 import rockframe as rf
 from rockframe.errors import AssemblyError
@@ -17,7 +17,7 @@ pytestmark = [
 ]
 
 SEEDS = range(7000, 7010)
-FINER = 40  # samples of a run in one of its motion
+FINER = 40  # output samples per sample of the motion
 RATES = {
     "rotation": "angular_velocity",
     "vertical_displacement": "vertical_velocity",
@@ -39,13 +39,13 @@ def scenes(seed):
     rng = np.random.default_rng(seed)
     for part in PARTS:
         try:
-            system, motion = drawn(part, rng)
-        except AssemblyError:  # on pads that are too soft for it
+            system, motion = draw_scene(part, rng)
+        except AssemblyError:  # the pads are too soft to stand on
             continue
         yield part, system, motion
     for part in TIED:
         on = part.removeprefix("friction on ")
-        _, motion = drawn("friction on pads", rng)
+        _, motion = draw_scene("friction on pads", rng)
         base = rf.RigidGround(friction=rng.uniform(0.05, 1.0))
         if on == "pads":
             base = rf.TwoSpringSupport(frequency_ratio=rng.uniform(8.0, 40.0), damping_ratio=0.1)
@@ -64,9 +64,9 @@ def runs(seed):
             run = system.simulate(
                 motion, output_step=f"{step / FINER} s", points={"p": ("0.1 m", "0.5 m")}
             )
-        except AssemblyError:  # nothing stands so, on pads that are too soft for it
+        except AssemblyError:  # the pads are too soft to stand on
             continue
-        if int(run.status) <= 2:  # came to its end
+        if int(run.status) <= 2:  # reached its end
             yield name, run, step
 
 
@@ -81,24 +81,26 @@ def test_histories_agree(seed):
         seen |= {*RATES, *RATES.values(), *PEAKS} & {*run}
         time = run.time.to_numpy()
         width = step / FINER
-        # forces bend where the motion of the ground does, and at events
+        # forces have kinks at those of the ground motion and at events
         bends = np.concatenate([run.event_time, np.arange(0.0, time[-1] + step, step)])
         away = np.abs(time[1:-1, None] - bends).min(axis=1) > 2.1 * width
         away &= np.abs(time[2:] - time[:-2] - 2.0 * width) < 1e-9
         for place, rate in RATES.items():
             if place in run and rate in run:
-                found = (rows(run[place])[:, 2:] - rows(run[place])[:, :-2]) / (2.0 * width)
-                given = rows(run[rate])
-                curved = np.abs(np.diff(given, 2))  # what a difference leaves out, six times
-                size = max(np.abs(given).max(), 1e-6)  # [m/s] or [rad/s]: less is rounding
-                error = np.abs(found - given[:, 1:-1]) - curved - 1e-6 * size
+                differences = (rows(run[place])[:, 2:] - rows(run[place])[:, :-2]) / (2.0 * width)
+                rates = rows(run[rate])
+                curvature = np.abs(
+                    np.diff(rates, 2)
+                )  # six times the error of the central difference
+                size = max(np.abs(rates).max(), 1e-6)  # [m/s] or [rad/s]: less is rounding
+                error = np.abs(differences - rates[:, 1:-1]) - curvature - 1e-6 * size
                 assert (error[:, away] <= 1e-3 * size).all(), (name, seed, place)
-        stands = ~(time > run.attrs["overturning_time"])
+        before_overturning = ~(time > run.attrs["overturning_time"])
         for peak, history in PEAKS.items():
-            # peaks leave out the moments in which friction stops a new held point
+            # peaks exclude the instants at which friction stops a new held point
             stops = peak == "peak_base_shear" and "slip" in run
             if peak in run and history in run and not stops:
-                most = np.abs(rows(run[history])[:, stands]).max(axis=1)
+                most = np.abs(rows(run[history])[:, before_overturning]).max(axis=1)
                 assert (np.atleast_1d(run[peak]) >= (1.0 - 1e-3) * most - 1e-9).all(), (name, peak)
         if "restrainer_elongation" in run:
             moves = np.abs(np.diff(run.rotation)) > 1e-6

@@ -1,4 +1,4 @@
-"""Inclined bases: mirror images, level ones, balanced energies, ways to files and back."""
+"""Inclined bases: mirror images, the level limit, energy balances, file round trips."""
 
 import json
 import math
@@ -45,13 +45,13 @@ TURNED_ROUND = (
 )
 
 
-def block(beside=0.0):
-    return rf.Block(width="0.8 m", height="3 m", mass="5 t", eccentricity=f"{beside} m")
+def block(eccentricity=0.0):
+    return rf.Block(width="0.8 m", height="3 m", mass="5 t", eccentricity=f"{eccentricity} m")
 
 
-def scene(name, inclination=None, beside=0.0):
+def scene(name, inclination=None, eccentricity=0.0):
     parts, options = SCENES[name]
-    return rf.System(block(beside), *parts, inclination=inclination, **options)
+    return rf.System(block(eccentricity), *parts, inclination=inclination, **options)
 
 
 @pytest.fixture(scope="module", params=SCENES)
@@ -69,10 +69,10 @@ def response(system):
     return system.simulate(RECORD, free_vibration="1 s", outputs=OUTPUTS, accuracy="reference")
 
 
-def assert_close(found, wanted, name):
+def assert_close(values, expected, name):
     """Compare to nine digits: rest is found by a search, whose last bits are not mirrored."""
-    size = np.abs(wanted[np.isfinite(wanted)]).max()
-    np.testing.assert_allclose(found, wanted, rtol=1e-9, atol=1e-9 * size, err_msg=name)
+    size = np.abs(expected[np.isfinite(expected)]).max()
+    np.testing.assert_allclose(values, expected, rtol=1e-9, atol=1e-9 * size, err_msg=name)
 
 
 def test_mirrored_scene_gives_mirrored_response(name, response):
@@ -98,10 +98,10 @@ def test_energy_balances_on_slope(system, response):
     balance = (stored + lost - response.input_energy).values
     size = float(response.kinetic_energy.max())
     assert np.abs(balance - balance[0]).max() < 1e-6 * size
-    # the ground puts in nothing once it stands still, though gravity along the base goes on
+    # the ground does no work once still, though gravity along the base continues
     still = response.time.values > RECORD.si.duration + 1e-9
     assert np.ptp(response.horizontal_displacement.values[still]) > 1e-6
-    if system.setting.model != "cascade":  # whose second stage is shaken by the first
+    if system.setting.model != "cascade":  # its second stage is excited by the first
         assert np.ptp(response.input_energy.values[still]) < 1e-7 * size
 
 
@@ -116,7 +116,7 @@ def test_block_stays_at_rest_on_still_slope(system):
         if one in run and f"static_{one}" in at_rest:
             force = at_rest[f"static_{one}"].item()
             np.testing.assert_allclose(run[one].values, force, rtol=1e-8)
-    if system.setting.model != "cascade":  # of which moment_rotation holds the coupled one
+    if system.setting.model != "cascade":  # moment_rotation takes a cascade as coupled
         held = system.moment_rotation(([rest], "rad")).restoring_moment.item()
         assert abs(held) < 1e-9 * 5e3 * 9.81 * 3.0
 

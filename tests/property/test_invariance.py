@@ -1,4 +1,4 @@
-"""What must not change a result: units, mass, output step, order, and numbers never asked for."""
+"""Results do not depend on units, mass, output step, order or omitted outputs."""
 
 import math
 
@@ -48,7 +48,7 @@ def test_the_peak_is_not_below_any_sample(scenario):
     largest = np.abs(response.rotation.values).max()
     peak = response.peak_rotation.item()
     assert peak >= largest * (1.0 - 1e-9)
-    # and not far above the highest sample: the rotation between samples is a parabola
+    # and not far above the highest sample, as rotation is a parabola between samples
     speed = np.abs(response.angular_velocity.values).max()
     assert peak <= largest + 1e-3 * speed + 1e-15
 

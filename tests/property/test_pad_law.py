@@ -1,6 +1,6 @@
-"""No pad that its law lets press is without a force: N = max(0, k(delta - y) - c y') below delta.
+"""Pads bear a force where their law requires it: N = max(0, k(delta - y) - c y') below delta.
 
-Judged from the states of random runs on pads, alone, coupled and by cascade, with horizontal and
+Checked at the states of random runs on pads, alone, coupled and by cascade, with horizontal and
 vertical motion, squat and slender blocks, light and heavy dashpots.
 """
 
@@ -40,7 +40,7 @@ def scene(kind, rule, rng):
     parts = [block, pads]
     if kind != "pads":
         width, height = block.si.width, block.si.height
-        # of what holds block and cap upright
+        # over the least for stability of block and cap
         stiffness = rng.uniform(4.0, 30.0) * 1.5 * 14e3 * 9.81 * height / (0.5 * width) ** 3
         parts += [
             rf.CushionCap(height=f"{0.15 * width} m", mass="4 t"),
@@ -56,7 +56,7 @@ def block_on_pads(kind, system):
 
 
 def free_forces(kind, model, run):
-    """Return law's force in weights at each free corner below its pad's level, at each sample."""
+    """Return the law's force in weights at each free corner below its pad's level, by sample."""
     system = model.system
     body, pads = block_on_pads(kind, system)
     gravity = 9.80665
@@ -64,13 +64,13 @@ def free_forces(kind, model, run):
     for mode in np.unique(run.mode):
         contact = system.body_mode(int(mode), 0).contact
         free[mode] = [left for left in (True, False) if corner_contact(contact, left) == RELAXING]
-    found = []
+    forces = []
     for mode, state in zip(run.mode, run.state, strict=True):
         for left in free[mode]:
             line = body.base_line_at(system.state_of(0, state))
             if pads.corner(left, line).pressed > 0.0:
-                found.append(pads.reaction(RELAXING, left, line, ()) / gravity)
-    return found
+                forces.append(pads.reaction(RELAXING, left, line, ()) / gravity)
+    return forces
 
 
 @pytest.mark.parametrize("rule", RULES)

@@ -1,4 +1,4 @@
-"""Whatever bytes a file holds: a motion or a RecordError, soon and with little memory.
+"""Any bytes give a motion or a RecordError, quickly and with little memory.
 
 ``ROCKFRAME_FUZZ=20`` runs twenty times as many examples; with
 ``--hypothesis-show-statistics`` pytest says how many were read and how many refused.
@@ -37,7 +37,7 @@ TIMES = float(os.environ.get("ROCKFRAME_FUZZ", "1"))
 LONGEST = 1.0  # s of processor time for one file
 MOST_MEMORY = 200e6  # byte
 MOST_NUMBERS = 60
-REAL = {  # and how to ask for it
+REAL = {  # and the arguments of reading it
     "NIS090.AT2": {},
     "COSMOS_AK.BMR.BNZ_2018_us1000hyfh.V2c": {},
     "CSMIP_IV1979_ce01336p_CHAN01.V2": {},
@@ -71,7 +71,7 @@ ODD_ARGUMENTS = st.fixed_dictionaries(
         "time_step": st.just("0.01 s"),
     },
 )
-# half of the files as they should be asked for, so that the reader comes to its numbers
+# half of the files with their right arguments, so that the reader reaches the numbers
 ARGUMENTS = st.just({}) | ODD_ARGUMENTS
 
 
@@ -82,7 +82,7 @@ def examples(count: int) -> settings:
 
 
 def resident_peak() -> float:
-    """The most memory that the process ever had [byte]; 0 where the system does not tell."""
+    """Return the peak memory of the process [byte]; 0 where the system does not report it."""
     if sys.platform == "win32":
         return 0.0
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
@@ -90,7 +90,7 @@ def resident_peak() -> float:
 
 
 def check(path, data: bytes, *, packed: bool = False, **given) -> str:
-    """Read it and see that nothing but a motion or a RecordError comes of it; say which."""
+    """Check that reading gives only a motion or a RecordError; return which."""
     path.write_bytes(data)
     before = resident_peak()
     error = motion = None
@@ -105,7 +105,9 @@ def check(path, data: bytes, *, packed: bool = False, **given) -> str:
     assert processor_time(read, LONGEST) < LONGEST
     assert resident_peak() - before < MOST_MEMORY
     if error is not None:
-        assert str(path.parent) in str(error)  # of the record, or of the response beside it
+        assert str(path.parent) in str(
+            error
+        )  # of the record, or of the response in the same folder
         assert len(str(error)) < 2_500
         lines = data.count(b"\n") + data.count(b"\r") + 1
         assert error.line is None or error.path != str(path) or 1 <= error.line <= lines
@@ -113,7 +115,7 @@ def check(path, data: bytes, *, packed: bool = False, **given) -> str:
     assert len(motion) >= 2
     assert abs(motion.si.horizontal.samples).max() < float("inf")
     assert motion.history
-    if path.suffix != ".nc":  # what is stored is what was stored
+    if path.suffix != ".nc":  # the round trip preserves the data
         assert 1e-6 <= motion.si.time_step <= 10.0
         assert packed or motion.metadata["source_file"] == path.name
     return "read"
@@ -121,7 +123,7 @@ def check(path, data: bytes, *, packed: bool = False, **given) -> str:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """With the libraries loaded, which takes longer than any file."""
+    """Return a folder after loading the libraries, which takes longer than any file."""
     path = tmp_path_factory.mktemp("fuzz")
     (path / "s.xml").write_text(station_xml(), encoding="utf-8")
     for name, data in (("s.nc", netcdf(path)), ("s.mseed", miniseed())):
@@ -132,7 +134,7 @@ def folder(tmp_path_factory):
 
 
 class Files(dict):
-    """Files by a short name; a failing example shows no bytes of theirs."""
+    """Files by a short name, so that a failing example shows no bytes."""
 
     def __repr__(self) -> str:
         return f"<{len(self)} files>"
@@ -140,12 +142,12 @@ class Files(dict):
 
 @pytest.fixture(scope="module")
 def undamaged(folder):
-    """Name, bytes and what to ask for of a file of every format."""
+    """Return name, bytes and arguments of a file of every format."""
     held = Files(
         {key: (one.name, one.data, {"component": one.component}) for key, one in SAMPLES.items()}
     )
-    for key, (name, make, asked) in BINARY.items():
-        held[key] = (name, make(folder), asked)
+    for key, (name, make, arguments) in BINARY.items():
+        held[key] = (name, make(folder), arguments)
     return held
 
 
@@ -217,7 +219,7 @@ def test_arbitrary_netcdf_files_are_read_or_refused(folder, sizes, variables, at
     path = folder / "made.nc"
     with netCDF4.Dataset(path, "w") as file:
         for name, size in zip(("time", "interval", "power"), sizes, strict=True):
-            file.createDimension(name, size)  # none is an unlimited one
+            file.createDimension(name, size)  # none is unlimited
         file.setncatts(attributes)
         for name, (kind, shape, about) in variables.items():
             variable = file.createVariable(name, kind, shape)

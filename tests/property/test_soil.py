@@ -38,7 +38,7 @@ pytestmark = [pytest.mark.wide, pytest.mark.property]
 
 CASE = SoilScenario(**vars(PADS_CASE), firmness=30.0, cap_width=1.3)
 ONE_MODEL = ("soil", "cap and soil", "coupled")
-"""Scenes of one set of equations; the cascade has two."""
+"""Scenes with one set of equations; the cascade has two."""
 every_kind = pytest.mark.parametrize(
     ("scene", "rule", "separation"),
     [(scene, rule, kind) for scene in SOIL_SCENES for rule in RULES for kind in SEPARATIONS],
@@ -46,7 +46,7 @@ every_kind = pytest.mark.parametrize(
 
 
 def widths(scenario):
-    """Return the width of what stands on the soil, and all weight on it."""
+    """Return the width of the body on the soil, and the total weight."""
     size, mass = scenario.block.si, scenario.mass
     if scenario.scene == "soil":
         return size.width, mass * GRAVITY
@@ -85,7 +85,7 @@ def test_energy_balances(scenario):
 @pytest.mark.parametrize("rotation", ["finite", "small"])
 @pytest.mark.parametrize("forced", [True, False])
 def test_energy_balances_in_fixed_scenes(scene, rule, separation, rotation, forced):
-    """Uplift of block and cap, and flights of both, shaken and free."""
+    """Block and cap both uplift and fly, forced and free."""
     scenario = replace(CASE, scene=scene, base=rule, separation=separation, rotation=rotation)
     if forced:
         scenario = replace(scenario, peak=0.7, vertical=1.4, frequency=2.0, cycles=4.0)
@@ -109,7 +109,7 @@ def test_energy_balances_in_fixed_scenes(scene, rule, separation, rotation, forc
 
 
 def balance_of(response):
-    """What is stored, dissipated and lost, less what came in, at every sample."""
+    """Return stored, dissipated and lost energy less the input, at every sample."""
     kinds = ("kinetic", "potential", "elastic", "dissipated", "impact", "repinning")
     return sum(response[f"{kind}_energy"].values for kind in kinds) - response.input_energy.values
 
@@ -124,7 +124,7 @@ def test_energy_balances_in_the_histories(scenario):
 
 @given(soil_scenarios())
 @example(
-    # nothing burns but rounding: no sample may make more of it
+    # nothing dissipates but rounding, which no sample may exceed
     SoilScenario(
         base="centre", radius=13.1, slenderness=5.771, beta=8.783, xi=0.0, rotation="finite",
         peak=0.2, frequency=0.5, cycles=1.0, vertical=0.0, scene="cap and soil",
@@ -236,7 +236,7 @@ def test_pads_on_a_cap_never_pull(scenario):
 
 @given(soil_scenarios())
 @example(
-    # the cap lets go of the soil where its dashpots would pull, and grips it, without end
+    # the cap endlessly separates where its dashpots would pull, and re-engages
     SoilScenario(
         base="centre", radius=3.207, slenderness=5.705, beta=42.98, xi=0.465, rotation="small",
         peak=1.478, frequency=3.855, cycles=2.5, vertical=0.484, scene="coupled",
@@ -269,7 +269,7 @@ def test_runs_end_completed_or_overturned(scenario):
 
 @given(soil_scenarios())
 @example(
-    # overturned, and stopped; what the block would have done next is no part of the run
+    # the run stops at overturning
     SoilScenario(
         base="contact-state", radius=0.5, slenderness=1.348, beta=34.532, xi=0.0,
         rotation="finite", peak=1.238, frequency=1.126, cycles=0.5, vertical=0.0, start=0.0,
@@ -283,7 +283,7 @@ def test_flight_time_is_time_between_flight_events(scenario):
 
 @given(soil_scenarios())
 @example(
-    # the last end of the cap leaves the soil: once, and its landing is an event again
+    # the last end of the cap leaves the soil once; its landing is another event
     SoilScenario(
         base="contact-state", radius=6.727, slenderness=1.0, beta=8.0, xi=0.0, rotation="small",
         peak=0.827, frequency=0.515, cycles=2.5, vertical=0.0, start=0.067, scene="coupled",
@@ -330,7 +330,7 @@ def test_finer_tolerances_do_not_change_a_short_run(scenario):
 
 
 def assert_mirrored(one, other, count=None):
-    """Up to rounding: the bed's part in contact is measured from its left end."""
+    """Up to rounding, as the contact of the bed is measured from its left end."""
     assert set(one.variables) == set(other.variables)
     rows = {"time": slice(count), "event": slice(0 if count is not None else None)}
     one, other = one.isel(rows), other.isel(rows)
@@ -356,7 +356,7 @@ def assert_mirrored(one, other, count=None):
 @given(soil_scenarios())
 @example(replace(CASE, scene="soil", base="leading-corner", start=0.3))
 @example(
-    # upright, the cap leans to neither side yet
+    # upright, the cap leans to neither side
     SoilScenario(
         base="leading-corner", radius=0.5, slenderness=1.0, beta=8.0, xi=0.004,
         rotation="finite", peak=0.471, frequency=1.032, cycles=0.5, vertical=0.0, rate=-0.001,
@@ -406,7 +406,7 @@ def test_a_mirrored_record_gives_the_mirrored_response(scene, rule, separation):
 @every_kind
 @pytest.mark.parametrize("xi", [0.0, 0.2])
 def test_purely_vertical_motion_causes_no_rotation(scene, rule, separation, xi):
-    """Shaken up and down only, off the soil and back, neither block nor cap ever turns."""
+    """Under vertical motion with flights neither block nor cap ever rotates."""
     system = replace(CASE, scene=scene, base=rule, separation=separation, xi=xi, soil_xi=xi).system
     t = np.arange(201) * 0.01
     upwards = 15.0 * np.sin(2.0 * np.pi * t)
@@ -424,7 +424,7 @@ def test_purely_vertical_motion_causes_no_rotation(scene, rule, separation, xi):
     assert set(response.contact_state.values.tolist()) == {FULL, FLIGHT}
 
 
-# what must not change a result ------------------------------------------------------------------
+# invariances ------------------------------------------------------------------------------------
 
 
 @given(soil_scenarios(), st.sampled_from(["0.3 ms", "3 ms", "10 ms", "0.7 s", "100 s"]))

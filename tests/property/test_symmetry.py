@@ -1,4 +1,4 @@
-"""The mirror image of a scene responds with the mirror image of the response, bit for bit."""
+"""The mirror image of a scene has the mirror image of its response, bit for bit."""
 
 import numpy as np
 import pytest
@@ -122,7 +122,7 @@ def test_a_mirrored_record_gives_the_mirrored_response(base, seed):
 @pytest.mark.parametrize("base", RULES)
 @pytest.mark.parametrize("xi", [0.0, 0.2])
 def test_purely_vertical_motion_causes_no_rotation(base, xi):
-    """Shaken up and down only, off its pads and back, the block never turns."""
+    """Under vertical motion with flights the block never rotates."""
     system = Scenario(base=base, peak=1.0, vertical=0.0, **{**CASE, "xi": xi}).system
     t = np.arange(401) * 0.01
     upwards = 15.0 * np.sin(2.0 * np.pi * t)

@@ -3,7 +3,7 @@
 Sizes of Table 2, cap H/20 high, pads xi = 0.10, soil xi_s = 0.20. The paper gives no width and no
 mass of the cap: here it is as wide and as deep as the plan, 4 m, and of concrete, 2500 kg/m^3.
 
-Run by hand, with the file of the record TCU128 N, this prints the tables of the manual's page
+Run as a script, with the file of the record TCU128 N, this prints the tables of the manual's page
 "Validation: frames on soil": ``python tests/published/frames.py PEERSMD_CHICHI_TCU128-N.AT2``.
 """
 
@@ -33,7 +33,7 @@ SHAPE_FACTORS = {
 }
 ROTATION = 0.10  # at the start of the free response [rad]
 DURATION = 20.0  # of the free response [s]
-LEAST_PEAK = 0.02  # swings that are smaller are not counted [rad]
+LEAST_PEAK = 0.02  # smaller swings are not counted [rad]
 GRID = 0.05  # of scale factors
 ROUNDS = 25  # of which the fastest is timed
 GRAVITY = 9.81
@@ -94,8 +94,8 @@ def tcu128(path):
 class Free:
     """A free response, swing by swing.
 
-    A swing lies between two passages of the upright position. One that the end of the run cuts is
-    left out, and so are those after the first whose peak is below `LEAST_PEAK`.
+    A swing lies between two passages of the upright position. A swing cut by the end of the run is
+    excluded, and so are all from the first whose peak is below `LEAST_PEAK`.
     """
 
     time: np.ndarray
@@ -168,7 +168,7 @@ class Free:
 
 
 def free(system):
-    """Let a system go from 0.10 rad."""
+    """Release a system from 0.10 rad."""
     run = system.simulate(
         duration=f"{DURATION} s",
         initial=rf.InitialState(rotation=f"{ROTATION} rad"),
@@ -178,7 +178,7 @@ def free(system):
 
 
 def free_from_the_soil(floors, beta, k0, shape="printed"):
-    """Return total of a cascade whose first stage has the initial rotation, and its second stage.
+    """Return total and second stage of a cascade whose first stage has the initial rotation.
 
     The acceleration of the cap's top comes from differences of its path in steps of 2 ms.
     """
@@ -219,7 +219,7 @@ def free_from_the_soil(floors, beta, k0, shape="printed"):
 
 @dataclass(frozen=True)
 class Shaken:
-    """Peaks of rotation [rad] and of |y| [m], and what the run says of itself."""
+    """Peaks of rotation [rad] and of |y| [m], and attributes of the run."""
 
     rotation: float
     vertical: float
@@ -238,7 +238,7 @@ def shaken(system, motion):
 
 
 def overturns(system, motion, factor=1.0):
-    """Tell whether the scaled motion overturns a system, in its course or in 10 s of rest after."""
+    """Tell whether the scaled motion overturns a system, during it or in 10 s after it."""
     run = system.simulate(motion.scaled(factor), free_vibration="10 s", outputs=None)
     return bool(run.overturned)
 
@@ -261,15 +261,15 @@ def overturning_factor(system, motion, *, step=GRID, most=15.0):
     return high
 
 
-# The cascade beside the coupled model ---------------------------------------------------------
+# The cascade against the coupled model --------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class Beside:
-    """A cascade beside the coupled model of the same scene; pairs in this order.
+    """A cascade and the coupled model of the same scene; pairs in this order.
 
-    `ratios` are of the cascade's measures over those of the coupled model, `seconds` those of the
-    fastest of some runs without histories, infinite if none was asked for.
+    `ratios` are the cascade's measures over those of the coupled model, `seconds` the times of the
+    fastest of some runs without histories, infinite if none was requested.
     """
 
     ratios: tuple[float, ...]
@@ -368,11 +368,11 @@ def print_soils(motion):
 def print_factors(motion):
     print(f"\nTCU128: least factor found that overturns, grid {GRID}, then bisection to 1 %")
     for shape, floors, beta in itertools.product(SHAPE_FACTORS, FLOORS, BETAS):
-        found = [
+        factors = [
             overturning_factor(scene(floors, beta, coupling, shape=shape), motion)
             for coupling in COUPLINGS
         ]
-        print(f"| {shape} | {floors} | {beta} |", *(f"{factor:.4g} |" for factor in found))
+        print(f"| {shape} | {floors} | {beta} |", *(f"{factor:.4g} |" for factor in factors))
 
 
 def print_caps(motion):

@@ -1,7 +1,7 @@
-"""The paper's Eqs. (2), (3), (12), (13c) and (15): as printed, and as mechanics has them.
+"""The paper's Eqs. (2), (3), (12), (13c) and (15), printed and corrected.
 
-The judge is Newton and Euler, written out here with vectors and a rotation matrix: no
-Lagrangian, no levers, and nothing taken from rockframe. Every equation is a sum of terms that
+They are tested against Newton's and Euler's equations, written here with vectors and a rotation
+matrix: no Lagrangian, no levers, and nothing from rockframe. Every equation is a sum of terms that
 must vanish. Its *imbalance* is that sum over the largest term, at the accelerations and the
 reactions that Newton and Euler give for a random state.
 """
@@ -104,7 +104,7 @@ def cases(contact):
 
 
 def newton_euler(case, contact):
-    """Solve for the accelerations and the horizontal reaction; give them and the pad forces."""
+    """Solve for accelerations and horizontal reaction; return them and the pad forces."""
     cosine, sine = math.cos(case.alpha), math.sin(case.alpha)
     turn = np.array([[cosine, sine], [-sine, cosine]])  # clockwise
     at_rest = {LEFT: np.array([-case.b, -case.h]), RIGHT: np.array([case.b, -case.h])}
@@ -144,7 +144,7 @@ def imbalance(terms):
     return abs(math.fsum(terms)) / max(abs(term) for term in terms)
 
 
-# The equations, with `printed` the set of misprints that are left in ------------------------
+# The equations; `printed` is the set of misprints to leave in --------------------------------
 
 
 def eq_12a(q, y_acc, alpha_acc, printed):
@@ -323,11 +323,11 @@ def test_impact_law_holds_with_inertia_about_corner(reading, holds):
         assert math.isclose(loss, printed_loss, rel_tol=1e-12) is holds
 
 
-# Energy: without damping and ground motion it must stay -------------------------------------------
+# Energy is conserved without damping and ground motion -------------------------------------------
 
 
 def accelerations(equations, case, printed):
-    """Solve the paper's pair for y'' and alpha'', both of which stand in it linearly."""
+    """Solve the paper's pair of equations, linear in y'' and alpha'', for these."""
     result = []
     for equation, place in zip(equations, (0, 1), strict=True):
         at_zero = math.fsum(equation(case, 0.0, 0.0, printed))

@@ -41,7 +41,7 @@ class State:
         return self.h + self.b * self.a
 
     def accelerations(self):
-        """Vertical and angular, from the pressure summed over the part in contact."""
+        """Return vertical and angular acceleration by integration of the pressure."""
         start = -(self.delta - self.y) / self.a
         half = 0.5 * (self.b - start)
         s, weights = 0.5 * (self.b + start) + half * NODES, half * WEIGHTS
@@ -56,8 +56,8 @@ class State:
 
 def states():
     rng = np.random.default_rng(7)
-    found = []
-    while len(found) < STATES:
+    states_found = []
+    while len(states_found) < STATES:
         theta, radius, mu = rng.uniform(0.15, 0.46), rng.uniform(2, 12), rng.uniform(1.5, 3.5)
         b, h = radius * math.sin(theta), radius * math.cos(theta)
         omega = rng.uniform(10, 40) * math.sqrt(mu / (1 + mu) * G / radius)
@@ -71,12 +71,14 @@ def states():
         if not -b < -(delta - y) / a < b:
             continue
         spin, speed = rng.uniform(-0.2, 0.2) * theta, rng.uniform(-0.15, 0.15) * omega * delta
-        found.append(State(b, h, radius**2 / mu, k, c, a, y, spin, speed, *rng.uniform(-3, 3, 2)))
-    return found
+        states_found.append(
+            State(b, h, radius**2 / mu, k, c, a, y, spin, speed, *rng.uniform(-3, 3, 2))
+        )
+    return states_found
 
 
 def psi(q):
-    """The corrected sums, Psi_1 to Psi_6."""
+    """Return the corrected sums, Psi_1 to Psi_6."""
     b, h, a, y, d = q.b, q.h, q.a, q.y, q.delta
     gap = d - y
     return {
@@ -123,7 +125,7 @@ def test_corrected_equations_hold():
 
 
 def printed_19b_inertia(q, sums):
-    """I_M + m b h a: the first-order part is half of what it must be."""
+    """I_M + m b h a: the first-order part is half of the right value."""
     terms = turning(q, sums)
     terms["inertia"] *= (q.inertia + q.h**2 + q.b * q.h * q.a) / (q.inertia + q.reach**2)
     return list(terms.values())
@@ -135,12 +137,12 @@ def printed_19b_rate(q, sums):
 
 
 def printed_19e(q, sums):
-    """-b y where the sum has +b y."""
+    """-b y instead of +b y."""
     return vertical(q, sums | {3: sums[3] - 2 * q.b * q.y})
 
 
 def printed_19f(q, sums):
-    """Terms of delta and y that do not belong together."""
+    """Inconsistent terms of delta and y."""
     h, a, y, d = q.h, q.a, q.y, q.delta
     gap = d - y
     printed = (h * d**2 + 2 * h * d * y) / (2 * a) + h * y**2 / (2 * a**2)
@@ -150,7 +152,7 @@ def printed_19f(q, sums):
 
 
 def printed_19h(q, sums):
-    """The whole bed's rocking stiffness where half of it bears."""
+    """The rocking stiffness of the whole bed instead of half of it."""
     extra = q.b * (q.b**2 / 3 - q.h * q.delta) * q.a
     return list(turning(q, sums | {6: sums[6] + extra}).values())
 

@@ -1,7 +1,7 @@
-"""The paper's frames (section 4.2, Tables 1 and 2), printed beside ours.
+"""The paper's frames (section 4.2, Tables 1 and 2), printed and computed.
 
-Slabs of 0.12 m, infill walls of 0.15 m, square plans. The space proportions come out to the
-printed digit, the masses too; the printed shape factors cannot come from Eq. (22).
+Slabs of 0.12 m, infill walls of 0.15 m, square plans. Space proportions and masses agree
+to the printed digit; the printed shape factors cannot follow from Eq. (22).
 """
 
 import math
@@ -78,7 +78,7 @@ def every(rows):
 
 
 def shape_factors_by_kind(frame):
-    """Return the shape factor that each kind of member would have alone."""
+    """Return the shape factor of each kind of member alone."""
     table = frame.members_table()
     sums = table[["mass", "inertia_about_middle"]].groupby("kind").sum()
     return frame.si.radius**2 * sums.mass / sums.inertia_about_middle
@@ -98,7 +98,7 @@ def test_table_1_row_4_as_printed_has_another_space_proportion():
 
 
 def test_only_sections_of_row_1_correct_table_1_row_4():
-    """Of the column widths and beam heights in the table one pair alone gives 0.123."""
+    """Only one pair of the table's column widths and beam heights gives 0.123."""
     sizes = (0.25, 0.30, 0.35, 0.40)
     fitting = [
         (column, beam)
@@ -123,7 +123,7 @@ def test_the_shape_factor_by_eq_22(row):
 
 @every([row for row in ALL if row.printed_mu < 1.0])
 def test_a_printed_shape_factor_below_one_is_impossible(row):
-    """It would put the mass, on the average, beyond R0 from the middle."""
+    """It would place the mass, on average, beyond R0 from the middle."""
     needed = row.frame().si.radius / math.sqrt(row.printed_mu)
     assert needed > math.hypot(0.5 * row.width, 0.5 * row.height)
     with pytest.warns(ModelWarning, match="not physical"):

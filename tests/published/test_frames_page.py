@@ -1,4 +1,4 @@
-"""The cascade beside the coupled model: what the page "Validation: frames on soil" says of it."""
+"""The cascade against the coupled model, as the page "Validation: frames on soil" reports it."""
 
 import math
 
@@ -22,7 +22,7 @@ LABELS = {"printed": PRINTED, "Eq. (22)": HONEST}
 
 
 def check_steps(cells, steps):
-    # to one in a hundred: rounding, which differs between machines, moves a few
+    # to one in a hundred, as rounding differs between machines
     expected = [int("".join(cell.split())) for cell in cells]
     np.testing.assert_allclose(steps, expected, rtol=0.01)
 

@@ -1,4 +1,4 @@
-"""Granite blocks on a shake table: the fit, and what the page says of the fitted blocks."""
+"""Granite blocks on a shake table: the fit, and the numbers of the page."""
 
 import json
 
@@ -7,7 +7,7 @@ import pytest
 from benchmarks import granite_fit as fit
 from benchmarks.granite_blocks import ANGLES, Shaking, Shape, overturns, verdicts
 from benchmarks.granite_programme import SPECIMENS, VARIABLE, programme_path, read_programme
-from pages import DOCS, said, table
+from pages import DOCS, numbers_in, table
 from scipy.special import expit
 
 import rockframe as rf
@@ -47,11 +47,11 @@ def test_fit_recovers_known_block_from_its_verdicts():
     assert 15 < fell.sum() < 45
     tried = np.array([verdicts(tuple(pair), shakings) for pair in pairs.tolist()])
     groups = np.arange(60) // 3
-    found = fit.Search.of(pairs, tried, groups, fell).best()
-    assert found.shape.radius == truth.radius
-    assert found.shape.restitution == truth.restitution
-    assert found.shape.angle == pytest.approx(truth.angle, rel=0.06)
-    assert found.spread < 0.06
+    fitted = fit.Search.of(pairs, tried, groups, fell).best()
+    assert fitted.shape.radius == truth.radius
+    assert fitted.shape.restitution == truth.restitution
+    assert fitted.shape.angle == pytest.approx(truth.angle, rel=0.06)
+    assert fitted.spread < 0.06
 
 
 def confusion():
@@ -59,30 +59,30 @@ def confusion():
 
 
 def test_sentences_agree_with_tables_and_data():
-    told = confusion()
-    for cells in told.values():
+    confusions = confusion()
+    for cells in confusions.values():
         hits, missed, false, stood = map(int, cells[:4])
         right = (hits + stood) / (hits + missed + false + stood)
         assert cells[4].split()[0] == f"{right:.3f}"
         balanced = 0.5 * (hits / (hits + missed) + stood / (false + stood))
         assert cells[5].split()[0] == f"{balanced:.3f}"
-    reached = said(
+    reached = numbers_in(
         PAGE, "The blocks reach # on the tests that they were fitted to, and # on tests held out"
     )
     names = ("block, all tests", "block, held out")
-    assert reached == [float(told["both", name][4].split()[0]) for name in names]
-    falls = said(PAGE, "the first did # times, the second # times")
-    assert falls == [sum(map(int, told[one, names[0]][:2])) for one in ("1", "2")]
-    kept = json.loads((DOCS / "data" / "granite.json").read_text(encoding="utf-8"))
+    assert reached == [float(confusions["both", name][4].split()[0]) for name in names]
+    falls = numbers_in(PAGE, "the first did # times, the second # times")
+    assert falls == [sum(map(int, confusions[one, names[0]][:2])) for one in ("1", "2")]
+    stored = json.loads((DOCS / "data" / "granite.json").read_text(encoding="utf-8"))
     middle = {
-        name: sum(one["tests"] for one in kept[name] if 0.1 <= one["predicted"] < 0.9)
+        name: sum(one["tests"] for one in stored[name] if 0.1 <= one["predicted"] < 0.9)
         for name in ("ensemble", "regressed")
     }
-    tests = sum(one["tests"] for one in kept["ensemble"])
+    tests = sum(one["tests"] for one in stored["ensemble"])
     sentence = "They leave # of # outcomes between 0.1 and 0.9, the regression #."
-    assert said(PAGE, sentence) == [middle["ensemble"], tests, middle["regressed"]]
+    assert numbers_in(PAGE, sentence) == [middle["ensemble"], tests, middle["regressed"]]
     for name in middle:
-        assert all(one["low"] < one["predicted"] < one["high"] for one in kept[name])
+        assert all(one["low"] < one["predicted"] < one["high"] for one in stored[name])
 
 
 def test_documented_verdicts_of_fitted_blocks_are_reproduced():
@@ -93,17 +93,17 @@ def test_documented_verdicts_of_fitted_blocks_are_reproduced():
     shakings = [Shaking.by(motion) for motion in programme.motions]
     peak, velocity = programme.peaks()
     features = np.column_stack([np.log(peak), np.log(velocity / peak)])
-    kept = json.loads((DOCS / "data" / "granite.json").read_text(encoding="utf-8"))["specimens"]
-    told = confusion()
+    stored = json.loads((DOCS / "data" / "granite.json").read_text(encoding="utf-8"))["specimens"]
+    confusions = confusion()
     for specimen in SPECIMENS:
         fell = programme.fell[specimen]
         coefficients = fit.regression(features, fell)
         by = {
-            "block, all tests": overturns(Shape(**kept[str(specimen)]["shape"]), shakings),
+            "block, all tests": overturns(Shape(**stored[str(specimen)]["shape"]), shakings),
             "regression, all tests": fit.regressed(coefficients, features) > 0.5,
         }
         for name, verdict in by.items():
-            cells = told[str(specimen), name]
+            cells = confusions[str(specimen), name]
             assert list(map(str, fit.Confusion.of(verdict, fell))) == cells[:4]
             assert f"{fit.accuracy(verdict, fell):.3f}" == cells[4].split()[0]
             assert f"{fit.balanced_accuracy(verdict, fell):.3f}" == cells[5].split()[0]

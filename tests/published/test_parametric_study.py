@@ -10,7 +10,7 @@ import itertools
 import numpy as np
 import pytest
 import xarray as xr
-from pages import said
+from pages import numbers_in
 
 import rockframe as rf
 
@@ -81,7 +81,7 @@ def test_standard_and_reference_agree(standard, reference):
 
 
 def test_documented_errors_of_accuracy_levels_are_reproduced():
-    """The page "Accuracy", with the paper's gravity."""
+    """The numbers of the page "Accuracy", with the paper's gravity."""
     page, gravity = "guide/accuracy.md", "9.81 m/s^2"
     runs = {
         level: study(accuracy=level, gravity=gravity).stack(case=list(AXES))
@@ -95,12 +95,12 @@ def test_documented_errors_of_accuracy_levels_are_reproduced():
         abs(runs[level].peak_relative_rotation - exact.peak_relative_rotation)
         for level in ("fast", "standard")
     )
-    (most,) = said(page, 'with `"fast"` by at most #,')
+    (most,) = numbers_in(page, 'with `"fast"` by at most #,')
     assert float(fast.max()) == pytest.approx(most, rel=0.05)
-    (most,) = said(page, 'with `"standard"` by at most #.')
+    (most,) = numbers_in(page, 'with `"standard"` by at most #.')
     assert float(standard.max()) == pytest.approx(most, rel=0.05)
-    (fast_residual,) = said(page, 'With `"fast"` it is at most # in the 108 runs.')
-    residuals = said(page, "in the 108 runs at most # (standard) and # (reference).")
+    (fast_residual,) = numbers_in(page, 'With `"fast"` it is at most # in the 108 runs.')
+    residuals = numbers_in(page, "in the 108 runs at most # (standard) and # (reference).")
     for level, most in zip(runs, (fast_residual, *residuals), strict=True):
         assert float(runs[level].energy_residual.max()) == pytest.approx(most, rel=0.05)
 
@@ -127,9 +127,9 @@ def test_sweep_is_bitwise_identical_to_single_runs(accuracy):
     single = study(accuracy=accuracy)
     assert swept.status.size == 108
     for name, values in single.data_vars.items():
-        found = swept[name].transpose(*values.dims)
-        assert found.dtype == values.dtype, name
-        assert found.values.tobytes() == np.ascontiguousarray(values).tobytes(), name
+        swept_values = swept[name].transpose(*values.dims)
+        assert swept_values.dtype == values.dtype, name
+        assert swept_values.values.tobytes() == np.ascontiguousarray(values).tobytes(), name
 
 
 @pytest.fixture(scope="module")
@@ -156,7 +156,7 @@ def test_overturning_comes_sooner_with_slenderness(runs):
 def test_slender_block_on_pads_overturns_within_the_pulse(runs):
     # "the overturning response may occur after the end of excitation (H/B = 6.0 in Fig. 11)":
     # with the corrected equations the block of Fig. 11 (R0 = 5, beta = 20) overturns in the
-    # pulse, at its first swing. On rigid ground it does what the paper says.
+    # pulse, at its first swing. On rigid ground it behaves as in the paper.
     times = runs.overturning_time.sel(radius=5, slenderness=6, frequency_ratio=20)
     np.testing.assert_allclose(times, [0.6614, 0.6629, 0.6658, 0.6712], atol=5e-5)
     rigid = rf.System(

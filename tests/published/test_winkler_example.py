@@ -1,8 +1,8 @@
 """The paper's frames on pads, cap and soil (sections 4.3 and 5, Figs. 19, 20, 22, 23).
 
-The figures are not readable to numbers; checked are the statements of the text, each in a test of
-its own: "held" or "refuted" says what becomes of it. All with the printed shape factors and with
-those of Eq. (22), by cascade (Eq. 20) and coupled. Measures and cap: `frames.py`; the cascade
+The figures are not readable to numbers; the statements of the text are checked, each in its
+own test, as "held" or "refuted". All use the printed shape factors and those of Eq. (22), by
+cascade (Eq. 20) and coupled. Measures and cap: `frames.py`; the cascade
 gives the initial rotation to its second stage unless a test says otherwise.
 """
 
@@ -510,8 +510,8 @@ def test_height_and_soft_pads_lower_critical_factors():
             (HONEST, "cascade"): [False, False],  # the first stage overturns anyway
             (HONEST, "coupled"): [True, True],
         }
-        found = [bool(one[2] > one[0]) for one in (low, high)]
-        assert found == stiff_is_safer[shape, coupling]
+        stiff_is_safer_found = [bool(one[2] > one[0]) for one in (low, high)]
+        assert stiff_is_safer_found == stiff_is_safer[shape, coupling]
 
 
 # Conclusions, section 5 -----------------------------------------------------------------------

@@ -7,9 +7,9 @@ DIGITS = 50
 
 
 class ExactRun:
-    """A block of Housner under straight lines between samples, from rest.
+    """A Housner block from rest under a motion that is linear between samples.
 
-    It has no end of small bounces: it is followed to a sample before them.
+    Small bounces do not end in rest: runs are compared up to a sample before them.
     """
 
     def __init__(self, block, across, up=None, step=0.0625, degree=30, until=None):
@@ -24,7 +24,7 @@ class ExactRun:
         return self.block.right if side > 0 else self.block.left
 
     def run(self):
-        """Keep the state at every sample."""
+        """Run and store the state at every sample."""
         with mpmath.workdps(DIGITS):
             across, up = ([mpmath.mpf(v) for v in row] for row in (self.across, self.up))
             state, side, gravity = [mpmath.mpf(0)] * 2, 0, mpmath.mpf(self.block.gravity)
@@ -75,15 +75,19 @@ class ExactRun:
     def rock(self, side, state, along, weight, now, end):
         a, rates = self.polynomial(side, state, along, weight)
         left = end - now
-        # without the zeros at the start of a motion that has just left the ground
-        skipped = next(k for k, each in enumerate(a) if each)
-        row = [float(each * left**k) for k, each in enumerate(a)][skipped:]
-        while abs(row[-1]) < 1e-25 * max(abs(each) for each in row) and len(row) > 2:
+        # leave out leading zeros: the block has just left the ground
+        skipped = next(k for k, coefficient in enumerate(a) if coefficient)
+        row = [float(coefficient * left**k) for k, coefficient in enumerate(a)][skipped:]
+        while abs(row[-1]) < 1e-25 * max(abs(coefficient) for coefficient in row) and len(row) > 2:
             row.pop()
         roots = np.roots(row[::-1])
         real = [r.real for r in roots if abs(r.imag) < 1e-9 * abs(r) and 0.0 < r.real <= 1.0]
         if not real:
-            return end, side, [mpmath.polyval(each[::-1], left) for each in (a, rates)]
+            return (
+                end,
+                side,
+                [mpmath.polyval(coefficient[::-1], left) for coefficient in (a, rates)],
+            )
         root = mpmath.mpf(min(real)) * left
         for _ in range(6):
             root -= mpmath.polyval(a[::-1], root) / mpmath.polyval(rates[::-1], root)

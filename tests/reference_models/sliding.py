@@ -1,4 +1,4 @@
-"""Random blocks that slide and rock, by the package and by the reference model."""
+"""Random blocks that slide and rock, in the package and in the reference model."""
 
 import math
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ SKIPPED = ("OVERTURNING", "TOPPLED")
 
 @dataclass(frozen=True)
 class Scene:
-    """A system, its motion and its start; the reference model of the same."""
+    """A system, its motion, its initial rotation and its reference model."""
 
     system: rf.System
     motion: rf.GroundMotion
@@ -31,11 +31,11 @@ def draw(rng):
     """Draw a scene."""
     width = rng.uniform(0.3, 2.0)
     height = width * math.exp(rng.uniform(math.log(0.5), math.log(6.0)))
-    beside = float(rng.choice([0.0, rng.uniform(-0.2, 0.2)])) * width
+    eccentricity = float(rng.choice([0.0, rng.uniform(-0.2, 0.2)])) * width
     rises = float(rng.choice([0.5, rng.uniform(0.3, 0.6)])) * height
     block = rf.Block(
         width=f"{width!r} m", height=f"{height!r} m", mass="1 t",
-        centre_of_mass=(f"{rises!r} m", f"{beside!r} m"),
+        centre_of_mass=(f"{rises!r} m", f"{eccentricity!r} m"),
     )  # fmt: skip
     slender = min(block.si.left, block.si.right) / rises
     static = float(rng.choice([rng.uniform(0.05, 1.2), slender * rng.uniform(0.7, 1.6)]))
@@ -88,7 +88,7 @@ def draw_on_base(rng):
 
 
 def draw_ties(rng, block):
-    """Draw one to three ties of a block of 1 t, and their models."""
+    """Draw one to three ties of a block of 1 t, and their reference models."""
     body, parts, models = block.si, [], []
     width, rises = body.width, body.centre_height
     for number in range(int(rng.integers(1, 4))):
@@ -120,18 +120,25 @@ def draw_ties(rng, block):
                 compression=rod <= 0.25, name=f"tie {number}", **rest,
             )
         )  # fmt: skip
-        beside = body.eccentricity
+        eccentricity = body.eccentricity
         models.append(
             Tie(
-                (on[0] - beside, up - rises), (to[0] - beside, to_up), stiffness, damping, slack,
-                preload, strength, bool(kind == 2), rod <= 0.25,
+                (on[0] - eccentricity, up - rises),
+                (to[0] - eccentricity, to_up),
+                stiffness,
+                damping,
+                slack,
+                preload,
+                strength,
+                bool(kind == 2),
+                rod <= 0.25,
             )
-        )  # fmt: skip
+        )
     return parts, models
 
 
 def draw_wall(rng, block):
-    """Draw an elastic wall behind a block of 1 t, and its model."""
+    """Draw an elastic wall behind a block of 1 t, and its reference model."""
     body, side = block.si, float(rng.choice([-1.0, 1.0]))
     up = 2.0 * body.centre_height * rng.uniform(0.3, 1.0)
     stiffness = GRAVITY * body.width / body.centre_height**2 * 10.0 ** rng.uniform(0.5, 3.0)
@@ -146,7 +153,7 @@ def draw_wall(rng, block):
 
 
 def draw_tied(rng, draw=draw, links=draw_ties):
-    """Draw a scene on level ground, or on a level base, with ties, in which the block stands."""
+    """Draw a scene on level ground with ties that do not tip the block."""
     scene = None
     while scene is None:
         scene = with_ties(draw(rng), rng, links)
@@ -159,7 +166,7 @@ def draw_tied_on_base(rng):
 
 
 def draw_walled(rng):
-    """Draw a scene on level ground before an elastic wall."""
+    """Draw a scene on level ground with an elastic wall behind the block."""
     return draw_tied(rng, draw, draw_wall)
 
 
@@ -168,24 +175,24 @@ def draw_walled_on_base(rng):
     return draw_tied(rng, draw_on_base, draw_wall)
 
 
-def with_ties(drawn, rng, links=draw_ties):
-    """Return a scene with ties beside; None on a slope, or if they tip the block."""
-    if not drawn.system.options.slope.level:
+def with_ties(without_ties, rng, links=draw_ties):
+    """Return a scene with added ties; None on a slope or if they tip the block."""
+    if not without_ties.system.options.slope.level:
         return None
-    block, *others = drawn.system.parts.structural()
+    block, *others = without_ties.system.parts.structural()
     parts, models = links(rng, block)
     try:
-        system = rf.System(block, *others, *parts, restraint=drawn.system.restraint)
+        system = rf.System(block, *others, *parts, restraint=without_ties.system.restraint)
         system.equilibrium()
     except rf.errors.AssemblyError:
         return None
-    model = drawn.model
+    model = without_ties.model
     model.tied = models
-    return Scene(system, drawn.motion, drawn.rotation, model)
+    return Scene(system, without_ties.motion, without_ties.rotation, model)
 
 
 def ground_of(system, motion):
-    """Times, and the ground's acceleration along and normal to the base, with its gravity."""
+    """Return gravity, times, and ground accelerations along and normal to the base."""
     end, slope = STEP * (SAMPLES - 1), system.options.slope
     times = np.append(STEP * np.arange(SAMPLES), [end + 1e-9, end + REST_OF_IT + 1.0])
     across = np.append(motion.si.horizontal.samples, [0.0, 0.0])
@@ -198,7 +205,7 @@ def ground_of(system, motion):
 
 
 def model_on_base(system, motion):
-    """The reference model of a scene on pads or on a bed, per unit mass."""
+    """Return the reference model of a scene on pads or on a bed, per unit mass."""
     gravity, times, along, normal = ground_of(system, motion)
     body, support = system.setting.body, system.setting.support
     mass = body.mass
@@ -213,10 +220,10 @@ def model_on_base(system, motion):
         base = slipping_block.Bed(support.stiffness / mass, support.damping / mass, width)
         base.sunk = gravity / (width * base.stiffness)
         fast = math.sqrt(width * base.stiffness)
-    given = system.setting
+    setting = system.setting
     return slipping_block.Block(
         body.half_width, body.centre_height, body.inertia / mass,
-        given.friction.static, given.friction.kinetic, gravity,
+        setting.friction.static, setting.friction.kinetic, gravity,
         str(system.restraint), base, times, along, normal,
         tuple(system.setting.overturning_angles),
         longest=0.05 / fast,
@@ -224,7 +231,7 @@ def model_on_base(system, motion):
 
 
 def model_of(system, motion):
-    """The reference model of a scene."""
+    """Return the reference model of a scene."""
     gravity, times, along, normal = ground_of(system, motion)
     body = system.setting.body
     ground = system.parts.ground.si
@@ -236,7 +243,7 @@ def model_of(system, motion):
 
 
 def compare(scene):
-    """Run both: the difference of the peaks over theta and over the peak slip, and the events."""
+    """Run both; return the differences of the peaks of rotation and slip, and the events."""
     initial = rf.InitialState(rotation=f"{scene.rotation!r} rad") if scene.rotation else None
     run = scene.system.simulate(
         scene.motion, free_vibration=f"{REST_OF_IT} s", accuracy="reference", initial=initial,
@@ -248,24 +255,24 @@ def compare(scene):
         start = np.zeros(6)
         start[1], start[2] = run.vertical_displacement[0], run.rotation[0]
         start[0] = run.horizontal_displacement[0]
-    found = scene.model.simulate(start, total)
+    reference = scene.model.simulate(start, total)
     ours = [
         (float(t), EventKind(int(k)).name)
         for t, k in zip(run.event_time.values, run.event_kind.values, strict=True)
-        # a tie of the reference model that has yielded up to the start is unloaded there
+        # the reference model unloads yielded ties at the start without an event
         if t > 0.0 or k != EventKind.RESTRAINER_UNLOADING
     ]
     theta = float(run.overturning_angle)
-    peak = abs(float(run.peak_rotation) - found["peak"]) / theta
-    slip = abs(float(run.peak_slip) - found["peak_slip"])
+    peak = abs(float(run.peak_rotation) - reference["peak"]) / theta
+    slip = abs(float(run.peak_slip) - reference["peak_slip"])
     return {
         "ours": ours,
-        "theirs": found["events"],
+        "theirs": reference["events"],
         "peak": peak,
         "slip": slip,
         "slips": float(run.peak_slip),
         "overturned": bool(run.overturned),
-        "overturned there": found.get("fell", found.get("overturned")),
+        "overturned there": reference.get("fell", reference.get("overturned")),
         "end": duration,
         "balance": float(run.energy_residual),
         "rotates": float(run.peak_rotation) / theta,

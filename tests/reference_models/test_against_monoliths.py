@@ -14,14 +14,14 @@ from reference_models.monoliths import rigid_block, two_spring
 import rockframe as rf
 
 AGREEMENT = 1e-7  # of theta
-TIGHT = {"rtol": 1e-10, "atol": 1e-12}  # leaves the monoliths an error of some 1e-11
+TIGHT = {"rtol": 1e-10, "atol": 1e-12}  # gives the monoliths an error of about 1e-11
 GRAVITY = 9.80665
 RULES = ("contact-state", "leading-corner", "centre")
 CONTACTS = ("full", "left", "right", "flight")
 
 
 def pulse_between_samples(motion):
-    """The analytic pulse as a function of time, with its breakpoints."""
+    """Return the analytic pulse as a function of time, with its breakpoints."""
 
     def acceleration(t):
         return -9.81 * math.sin(2.0 * math.pi * t) if t <= 1.0 else 0.0
@@ -68,7 +68,7 @@ def assert_same_on_pads(ours, theirs, theta):
     assert np.mean(names == theirs.contact[held]) > 0.995  # samples at an event may differ
 
 
-def monolith_on_pads(block, beta, xi, *, rule="contact-state", rotation="finite", **given):
+def monolith_on_pads(block, beta, xi, *, rule="contact-state", rotation="finite", **options):
     return two_spring.simulate(
         half_width=0.5 * block.width.m_as("m"),
         half_height=0.5 * block.height.m_as("m"),
@@ -78,9 +78,9 @@ def monolith_on_pads(block, beta, xi, *, rule="contact-state", rotation="finite"
         restraint=rule,
         rotation=rotation,
         gravity=GRAVITY,
-        initial=given.pop("initial", (0.0, 0.0, 0.0, 0.0)),
+        initial=options.pop("initial", (0.0, 0.0, 0.0, 0.0)),
         **TIGHT,
-        **given,
+        **options,
     )
 
 
@@ -92,7 +92,7 @@ PULSES = (
 @pytest.mark.parametrize(
     ("radius", "slenderness", "beta", "xi", "rule"),
     [
-        # each rule in two of them, or in one, and each of them once
+        # each rule in one or two scenes, and each scene once
         pytest.param(*pulse, rule, marks=[pytest.mark.long] * ((number + place) % 3 > 0))
         for number, pulse in enumerate(PULSES)
         for place, rule in enumerate(RULES)

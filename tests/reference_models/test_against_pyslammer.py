@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from plainly import plainly
+from plain_python import plain_python
 
 import rockframe as rf
 
@@ -15,17 +15,17 @@ pytestmark = [
     pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
 ]
 NAMES = ("Northridge_1994_PAC-175", "Coalinga_1983_PVB-045", "Nisqually_2001_UNR-058")
-"""Records that come with it."""
+"""Return the records that pySLAMMER contains."""
 
 GRAVITY = 9.80665
 SLOPE, FRICTION = 0.2, 0.3
 FINER = 30
-"""Parts of each interval of the record: pySLAMMER's slips begin and end at samples. With far more
-of them its slips below 1e-5 m/s would count."""
+"""Subdivision of each interval of the record, as pySLAMMER's slips begin and end at samples. With a
+much finer one its slips below 1e-5 m/s would matter."""
 
 
 def downhill(samples, step):
-    """Return a motion along the slope, with no part normal to it."""
+    """Return a motion along the slope without a normal component."""
     c, s = math.cos(SLOPE), math.sin(SLOPE)
     return rf.GroundMotion.from_arrays(
         (c * samples, "m/s^2"), f"{step!r} s", vertical=(s * samples, "m/s^2")
@@ -46,7 +46,7 @@ def test_slip_down_a_slope(name, records):
     along = samples * (3.0 / np.abs(samples).max())
     block = rf.Block(width="2 m", height="1 m", mass="1 t")
     system = rf.System(block, rf.RigidGround(friction=FRICTION), inclination=f"{SLOPE} rad")
-    with plainly():
+    with plain_python():
         run = system.simulate(downhill(along, step), accuracy="reference", outputs=None)
     coarse = step * np.arange(len(along))
     fine = np.linspace(0.0, coarse[-1], FINER * (len(along) - 1) + 1)

@@ -1,4 +1,4 @@
-"""The cascade against two hand-written integrations, one on the moving top of the other."""
+"""The cascade against two hand-written integrations in sequence."""
 
 import numpy as np
 from benchmarks.five_scenes import OUTPUT_STEP, motion, scenes

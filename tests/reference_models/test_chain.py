@@ -1,4 +1,4 @@
-"""Chains of bodies: beside two bodies solved by hand, and the reference model of stacks."""
+"""Chains of bodies against two bodies solved by hand and the reference model of stacks."""
 
 import json
 from dataclasses import replace
@@ -27,7 +27,7 @@ OF_UPPER = np.array([.1, .01, .1, .01, .05, .05, .5, .1, .5, .1, .3, .3])  # fmt
 
 @pytest.fixture(scope="module")
 def pair():
-    """A block on pads on a cap on soil, as solved by hand and as a chain."""
+    """Return a block on pads on a cap on soil, solved by hand and as a chain."""
     parts = (
         rf.Block(width="1 m", height="4 m", mass="4 t"),
         rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1),
@@ -38,13 +38,13 @@ def pair():
     return system_of(*both), bare_chain(both)
 
 
-def standing(rng, base, corners: int, size: int) -> Mode:
+def draw_body_mode(rng, base, corners: int, size: int) -> Mode:
     contact = int(rng.integers(corners)) + size * int(rng.integers(corners))
     one_end = base.is_held(contact, True) != base.is_held(contact, False)
     return Mode(contact, int(rng.integers(3)), bool(one_end and rng.random() < 0.4))
 
 
-def close(ours, theirs, share: float) -> bool:
+def agree(ours, theirs, share: float) -> bool:
     ours, theirs = np.array(ours), np.array(theirs)
     return bool(np.abs(ours - theirs).max() <= share * np.abs(theirs).max())
 
@@ -54,8 +54,8 @@ def states(pair):
     by_hand, chain = pair
     rng = np.random.default_rng(3)
     for _ in range(STATES):
-        upper = standing(rng, by_hand.upper.base, 5, CORNER)
-        lower = standing(rng, by_hand.lower.base, 2, 2)
+        upper = draw_body_mode(rng, by_hand.upper.base, 5, CORNER)
+        lower = draw_body_mode(rng, by_hand.lower.base, 2, 2)
         mode = by_hand.with_body_mode(by_hand.with_body_mode(0, 0, upper), 1, lower)
         ours = chain.with_body_mode(chain.with_body_mode(0, 0, upper), 1, lower)
         assert (chain.body_mode(ours, 0), chain.body_mode(ours, 1)) == (upper, lower)
@@ -67,21 +67,21 @@ def test_accelerations_match_two_body_solution(pair):
     by_hand, chain = pair
     for state, mode, ours, ground in states(pair):
         slope = by_hand.accelerate(mode, state, ground)
-        assert close(chain.accelerate(ours, state, ground), slope, 1e-12)
-        assert close(chain.energies(ours, state), by_hand.energies(mode, state), 1e-12)
+        assert agree(chain.accelerate(ours, state, ground), slope, 1e-12)
+        assert agree(chain.energies(ours, state), by_hand.energies(mode, state), 1e-12)
 
 
 def test_guards_match_two_body_solution(pair):
     by_hand, chain = pair
-    # those of the cap, whose ends have one each
+    # guards of the cap, one at each end
     lower = [0, CORNER_GUARDS, *range(2 * CORNER_GUARDS, GUARDS)]
-    places = np.array([*range(GUARDS), *(GUARDS + one for one in lower)])
+    places = np.array([*range(GUARDS), *(GUARDS + guard for guard in lower)])
     for state, mode, ours, ground in states(pair):
         slope = by_hand.accelerate(mode, state, ground)
         theirs = by_hand.guards_in(mode, state, slope, ground)
-        found = chain.guards_in(ours, state, slope, ground)
-        assert np.allclose(np.array(found.values)[places], theirs.values, rtol=1e-10, atol=1e-10)
-        assert np.allclose(np.array(found.changes)[places], theirs.changes, rtol=1e-9, atol=1e-9)
+        guards = chain.guards_in(ours, state, slope, ground)
+        assert np.allclose(np.array(guards.values)[places], theirs.values, rtol=1e-10, atol=1e-10)
+        assert np.allclose(np.array(guards.changes)[places], theirs.changes, rtol=1e-9, atol=1e-9)
 
 
 def test_impulse_responses_match_two_body_solution(pair):
@@ -90,15 +90,17 @@ def test_impulse_responses_match_two_body_solution(pair):
     for state, mode, ours, _ in states(pair):
         for k in (0, 1):
             if k == 1 and by_hand.lower.is_free(by_hand.body_mode(mode, 1)):
-                continue  # there are no impulses of a base that does not touch
-            given = rng.normal(size=3)
-            one, other = state.copy(), state.copy()
-            theirs = by_hand.response(k, mode, *given, one)
-            found = chain.response(k, ours, *given, other)
-            assert close(found[:3], theirs[:3], 1e-11)
-            by_hand.respond(k, mode, theirs, one)
-            chain.respond(k, ours, found, other)
-            assert close(other[:-1], one[:-1], 1e-11)  # a cap that is held has no sway of its own
+                continue  # a base without contact has no impulses
+            position_and_shares = rng.normal(size=3)
+            their_state, our_state = state.copy(), state.copy()
+            theirs = by_hand.response(k, mode, *position_and_shares, their_state)
+            response = chain.response(k, ours, *position_and_shares, our_state)
+            assert agree(response[:3], theirs[:3], 1e-11)
+            by_hand.respond(k, mode, theirs, their_state)
+            chain.respond(k, ours, response, our_state)
+            assert agree(
+                our_state[:-1], their_state[:-1], 1e-11
+            )  # a held cap has no independent sway
 
 
 def test_observed_columns_match_two_body_solution(pair):
@@ -114,7 +116,7 @@ def test_observed_columns_match_two_body_solution(pair):
     for state, mode, ours, ground in states(pair):
         slope = by_hand.accelerate(mode, state, ground)
         theirs = by_hand.observe(mode, state, slope, ground, memory)
-        assert close(
+        assert agree(
             np.array(chain.observe(ours, state, slope, ground, memory))[places], theirs, 1e-10
         )
 
@@ -135,15 +137,15 @@ def test_unknown_base_law_raises(pair):
 
 
 if COMPILED:
-    from reference_models.stacks.comparing import compared, model_of, rotations, run_chain
-    from reference_models.stacks.drawing import draw
+    from reference_models.stacks.comparison import compare_scene, model_of, rotations, run_chain
+    from reference_models.stacks.random_scenes import draw
 
     # the reference model takes most of a minute to compile
     @pytest.mark.long
     @pytest.mark.parametrize(("bodies", "scenes"), [(1, 3), (2, 3), (3, 4), (5, 1), (8, 1)])
     def test_random_stacks_move_as_in_the_reference_model(bodies, scenes):
         for one in range(scenes):
-            found = compared(draw(np.random.default_rng([5, bodies, one]), bodies))
+            found = compare_scene(draw(np.random.default_rng([5, bodies, one]), bodies))
             assert found.difference < 1e-6, one
             assert found.run.energy_residual < 1e-8, one
 
@@ -158,8 +160,8 @@ if COMPILED:
     @pytest.mark.long
     def test_fast_and_standard_stay_near_reference_model():
         scene = draw(np.random.default_rng([77, 3, 5]), 3)
-        assert compared(scene, "fast").difference < 1e-2
-        assert compared(scene, "standard").difference < 1e-5
+        assert compare_scene(scene, "fast").difference < 1e-2
+        assert compare_scene(scene, "standard").difference < 1e-5
 
 
 def test_documented_comparison_matches_data():

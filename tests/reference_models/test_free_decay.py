@@ -1,4 +1,4 @@
-"""Free-decay tests made by independent integrations, with noise, and read back."""
+"""Free-decay records from independent integrations, with noise, and their identification."""
 
 import math
 from functools import cache
@@ -51,7 +51,7 @@ def pads(frequency_ratio=20.0, damping_ratio=0.1):
 
 
 def read_back(system, rotation, parameters, noise=0.0, seed=0, offset=0.003):
-    """Fit a record in degrees of a gauge with an offset and noise."""
+    """Fit a record in degrees, with gauge offset and noise."""
     record = rotation + offset + noise * np.random.default_rng(seed).normal(size=rotation.size)
     return rf.fit_free_decay(system, ((TIME, "s"), (np.degrees(record), "deg")), parameters)
 

@@ -1,4 +1,4 @@
-"""The reference model in maximal coordinates: own checks, and random scenes beside rockframe."""
+"""The reference model in maximal coordinates: own checks, and random scenes against rockframe."""
 
 import math
 import os
@@ -10,17 +10,17 @@ import pytest
 pytest.importorskip("numba")
 from reference_models.maximal import layout as at
 from reference_models.maximal import runge_kutta
-from reference_models.maximal.comparing import compare, run_reference
-from reference_models.maximal.drawing import VARIANTS, draw
+from reference_models.maximal.comparison import compare, run_reference
 from reference_models.maximal.excitation import HARMONIC
 from reference_models.maximal.forces import accelerate, rooms
 from reference_models.maximal.guards import total_rotation
+from reference_models.maximal.random_scenes import VARIANTS, draw
 from reference_models.maximal.running import kinetic, run, stored
 from reference_models.maximal.scene import GRAVITY, KINDS, Scene, mirrored, paces, parameters
 from reference_models.maximal.simulate import Excitation, simulate
 from reference_models.maximal.starting import start
 
-# its own code takes half a minute to compile, and the other programs are there in quick runs
+# its code takes half a minute to compile; quick runs have the other reference models
 pytestmark = [pytest.mark.reference_models, pytest.mark.long]
 
 SCENES = 8
@@ -79,7 +79,7 @@ def test_energies_balance(kind, separation, eccentricity):
     p = parameters(scene, 1e-13)
     z, contact, held = start(scene, p)
     room = rooms(p)
-    begun = kinetic(z, room[2]) + stored(z, contact, p, room)
+    start_energy = kinetic(z, room[2]) + stored(z, contact, p, room)
     history = simulate(scene, PULSE)
     _, _, states, _, events = run(
         history.time,
@@ -94,10 +94,12 @@ def test_energies_balance(kind, separation, eccentricity):
     )
     ended = kinetic(z, room[2]) + stored(z, contact, p, room)
     assert len(events) > 3
-    assert np.all(events[:, 4] > -1e-9 * begun)
+    assert np.all(events[:, 4] > -1e-9 * start_energy)
     lost = states[-1, 12] + events[:, 4].sum()
     supplied = states[-1, 13]
-    assert ended + lost - begun == pytest.approx(supplied, abs=1e-9 * (abs(lost) + abs(supplied)))
+    assert ended + lost - start_energy == pytest.approx(
+        supplied, abs=1e-9 * (abs(lost) + abs(supplied))
+    )
 
 
 def test_mirrored_motion():
@@ -123,7 +125,7 @@ def test_mirrored_eccentric_block_gives_mirrored_response(kind):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_eccentric_block_starts_in_equilibrium(kind):
-    """Closed statics against the accelerations of the equations of motion."""
+    """Closed-form statics against the accelerations of the equations of motion."""
     leans = []
     for number in range(60):
         scene = replace(draw(kind, 3, number, "eccentric"), start=0.0, start_rate=0.0, told=False)

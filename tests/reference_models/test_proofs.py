@@ -1,4 +1,4 @@
-"""Enclosures of proofs hold a run with 50 digits at every sample, and planted faults are caught."""
+"""Enclosures of proofs contain a 50-digit run at every sample; planted faults are caught."""
 
 import math
 
@@ -42,17 +42,19 @@ CASES = {
 }
 
 
-def numbers(block):
+def block_numbers(block):
     return rf.System(block, gravity="9.81 m/s^2").assembly.model.system
 
 
 @pytest.fixture(scope="module")
 def exact_runs():
-    return {name: ExactRun(numbers(block), a, u).run() for name, (block, a, u) in CASES.items()}
+    return {
+        name: ExactRun(block_numbers(block), a, u).run() for name, (block, a, u) in CASES.items()
+    }
 
 
 def enclosures(name, *, change=lambda block: block, **tolerances):
-    """Boxes at samples, by their numbers, of a course to its end or until it gives up."""
+    """Return the boxes at samples, by sample number, and the prover."""
     block, across, up = CASES[name]
     vertical = {} if up is None else {"vertical": (up, "m/s^2")}
     motion = rf.GroundMotion.from_arrays((across, "m/s^2"), f"{STEP} s", **vertical)
@@ -64,7 +66,7 @@ def enclosures(name, *, change=lambda block: block, **tolerances):
 
     far = OverturningAngles(math.inf, math.inf)
     with working_precision(BITS):
-        block = change(numbers(block))
+        block = change(block_numbers(block))
         inputs = Deviations.within(*(tolerances.get(one, 0.0) for one in SETS))
         problem = Problem.of(block, motion.si, Incline(0.0, 9.81), far, 1.0, inputs, 0.05)
         prover = RockingProver(problem, callback, [] if inputs.exact else inputs.centred())
@@ -74,7 +76,7 @@ def enclosures(name, *, change=lambda block: block, **tolerances):
     return boxes, prover
 
 
-def holds(boxes, run):
+def all_enclosed(boxes, run):
     """Whether every box holds the exact state, to the digits of the balls."""
     with mpmath.workdps(DIGITS), working_precision(BITS):
         for interval, (side, box) in boxes.items():
@@ -90,19 +92,19 @@ def holds(boxes, run):
 def test_enclosures_contain_fifty_digit_run(name, exact_runs):
     boxes, prover = enclosures(name)
     assert prover.impacts == exact_runs[name].impacts > 2
-    assert holds(boxes, exact_runs[name])
+    assert all_enclosed(boxes, exact_runs[name])
     assert max(float(box[0].rad()) for _, box in boxes.values()) < 1e-13
     assert DIGITS * math.log2(10.0) > BITS
 
 
-def member(name, kind, by):
-    """Run a member of a set of which one number is off."""
+def run_of_member(name, kind, by):
+    """Return the run of a member of a set, with one number changed."""
     block, across, up = CASES[name]
-    block = numbers(block)
+    block = block_numbers(block)
     if kind == "scale":
-        # products of floats, so that the scale of each sample is off by a rounding more
+        # products of floats: the scale of each sample has one more rounding error
         return ExactRun(block, *(row if row is None else row * (1.0 + by) for row in (across, up)))
-    return ExactRun(changed(block, by, kind), across, up)
+    return ExactRun(with_change(block, by, kind), across, up)
 
 
 @pytest.mark.parametrize("tolerance", [1e-9, pytest.param(1e-6, marks=pytest.mark.long)])
@@ -114,36 +116,36 @@ def test_set_enclosures_contain_run_with_perturbed_parameter(name, kind, toleran
     boxes, prover = enclosures(name, **{kind: tolerance})
     assert prover.impacts > 2
     for share in (-0.999, 0.6):
-        assert holds(boxes, member(name, kind, share * tolerance).run())
-    assert not holds(boxes, member(name, kind, 40.0 * tolerance).run())
+        assert all_enclosed(boxes, run_of_member(name, kind, share * tolerance).run())
+    assert not all_enclosed(boxes, run_of_member(name, kind, 40.0 * tolerance).run())
 
 
 def test_set_enclosures_contain_run_with_all_parameters_perturbed():
     by = 0.9e-7
     boxes, _ = enclosures("another motion", restitution=1e-7, scale=1e-7, angle=1e-7)
-    block = changed(changed(numbers(SYMMETRIC), -by, "restitution"), by, "angle")
-    assert holds(boxes, ExactRun(block, CASES["another motion"][1] * (1.0 - by)).run())
+    block = with_change(with_change(block_numbers(SYMMETRIC), -by, "restitution"), by, "angle")
+    assert all_enclosed(boxes, ExactRun(block, CASES["another motion"][1] * (1.0 - by)).run())
 
 
 @pytest.mark.parametrize("kind", ["scale", "angle"])
 def test_omitted_deviation_within_step_is_caught(kind, monkeypatch):
     right = flow.Deviations.of
 
-    def wrong(sign, **given):
-        return right(sign, **{name: each for name, each in given.items() if name != kind})
+    def wrong(sign, **deviations):
+        return right(sign, **{name: value for name, value in deviations.items() if name != kind})
 
     monkeypatch.setattr(flow.Deviations, "of", wrong)
     boxes, _ = enclosures("symmetric", **{kind: 1e-7})
-    assert not holds(boxes, member("symmetric", kind, 0.9e-7).run())
+    assert not all_enclosed(boxes, run_of_member("symmetric", kind, 0.9e-7).run())
 
 
 def test_set_enclosures_contain_members_that_uplift_early():
-    # without what they rise until then the set would begin at rest
+    # without their rise until then the set would begin at rest
     boxes, _ = enclosures("symmetric", scale=1e-4)
     first = min(boxes, key=lambda interval: (boxes[interval][0] == 0, interval))
     for share in (-0.999, 0.0, 0.999):
-        run = member("symmetric", "scale", share * 1e-4).run()
-        assert holds({first: boxes[first]}, run)
+        run = run_of_member("symmetric", "scale", share * 1e-4).run()
+        assert all_enclosed({first: boxes[first]}, run)
 
 
 def test_set_enclosures_contain_impacts_on_both_sides_of_sample(monkeypatch):
@@ -153,15 +155,15 @@ def test_set_enclosures_contain_impacts_on_both_sides_of_sample(monkeypatch):
     assert max(boxes) > sample
     struck = set()
     for share in (-0.999, -0.3, 0.3, 0.9):
-        run = ExactRun(changed(numbers(SYMMETRIC), share * tolerance), across, None).run()
-        there = boxes.pop(sample)  # there all are told as though they had struck
-        assert holds(boxes, run)
-        boxes[sample] = there
+        run = ExactRun(with_change(block_numbers(SYMMETRIC), share * tolerance), across, None).run()
+        box = boxes.pop(sample)  # its box holds all members as if they had struck
+        assert all_enclosed(boxes, run)
+        boxes[sample] = box
         struck.add(run.sides[sample])
     assert struck == {-1, 1}
 
 
-def changed(block, by, number="restitution"):
+def with_change(block, by, number="restitution"):
     left, right = (
         corner._replace(**{number: getattr(corner, number) + by})
         for corner in (block.left, block.right)
@@ -169,17 +171,19 @@ def changed(block, by, number="restitution"):
     return block._replace(left=left, right=right)
 
 
-def caught(name, run, **changes):
-    """Whether a fault is seen: the exact run is outside, or nothing is proved."""
+def is_caught(name, run, **changes):
+    """Whether a fault is detected: the exact run is outside, or nothing is proved."""
     try:
         boxes, _ = enclosures(name, **changes)
     except Undecided:
         return True
-    return not holds(boxes, run)
+    return not all_enclosed(boxes, run)
 
 
 def test_a_restitution_that_is_a_little_wrong_is_caught(exact_runs):
-    assert caught("symmetric", exact_runs["symmetric"], change=lambda block: changed(block, 1e-12))
+    assert is_caught(
+        "symmetric", exact_runs["symmetric"], change=lambda block: with_change(block, 1e-12)
+    )
 
 
 def test_a_wrong_sign_is_caught(exact_runs, monkeypatch):
@@ -190,7 +194,7 @@ def test_a_wrong_sign_is_caught(exact_runs, monkeypatch):
         return sine, cosine, [*angle[:5], -angle[5], *angle[6:]]
 
     monkeypatch.setattr(flow, "_series", wrong)
-    assert caught("symmetric", exact_runs["symmetric"])
+    assert is_caught("symmetric", exact_runs["symmetric"])
 
 
 def test_a_remainder_that_is_left_out_is_caught(exact_runs, monkeypatch):
@@ -201,7 +205,7 @@ def test_a_remainder_that_is_left_out_is_caught(exact_runs, monkeypatch):
         return [each * 0 for each in bounds], waves, 7
 
     monkeypatch.setattr(flow, "majorants", wrong)
-    assert caught("symmetric", exact_runs["symmetric"])
+    assert is_caught("symmetric", exact_runs["symmetric"])
 
 
 def test_rounding_to_the_wrong_side_is_caught(exact_runs, monkeypatch):
@@ -209,7 +213,7 @@ def test_rounding_to_the_wrong_side_is_caught(exact_runs, monkeypatch):
     too_small = lambda power: magnitude(ball(2) ** (ball(power - 8) / 4))  # noqa: E731
     monkeypatch.setattr(flow, "_root_power", too_small)
     flow.majorants.cache_clear()
-    assert caught("symmetric", exact_runs["symmetric"])
+    assert is_caught("symmetric", exact_runs["symmetric"])
     flow.majorants.cache_clear()
 
 
@@ -221,7 +225,7 @@ def test_radii_that_are_forgotten_are_caught(exact_runs, monkeypatch):
         return new._replace(remainder=[each.mid() for each in new.remainder])
 
     monkeypatch.setattr(SetOfStates, "image", wrong)
-    assert caught("symmetric", exact_runs["symmetric"])
+    assert is_caught("symmetric", exact_runs["symmetric"])
 
 
 def test_unpredicted_impact_leaves_verdict_undecided(monkeypatch):
@@ -231,9 +235,9 @@ def test_unpredicted_impact_leaves_verdict_undecided(monkeypatch):
 
 
 def test_an_impact_that_is_missed_is_caught(exact_runs, monkeypatch):
-    def blind(prover, ground, step, *, ends_at_impact):
+    def step_without_impact(prover, ground, step, *, ends_at_impact):
         return flow.advance(prover.states, prover.corner, ground, step)
 
     monkeypatch.setattr(RockingProver, "_predict_impact", lambda *arguments: None)
-    monkeypatch.setattr(RockingProver, "_make_step", blind)
-    assert caught("symmetric", exact_runs["symmetric"])
+    monkeypatch.setattr(RockingProver, "_make_step", step_without_impact)
+    assert is_caught("symmetric", exact_runs["symmetric"])

@@ -1,7 +1,7 @@
-"""Proofs on pads hold a run with 50 digits at every sample, and planted faults are caught.
+"""Enclosures of proofs on pads contain a 50-digit run at every sample; planted faults are caught.
 
-The run writes Newton's and Euler's laws down with the force that holds the base, and integrates
-by extrapolation of the midpoint rule, which has nothing in common with the prover's series.
+The run integrates Newton's and Euler's equations with the force that holds the base, by
+extrapolation of the midpoint rule, independently of the prover's series.
 """
 
 from functools import cache, partial
@@ -43,7 +43,7 @@ SKEW = rf.Block(width="0.5 m", height="1.4 m", mass="2 t", centre_of_mass=("0.65
 EVEN = rf.Block.from_size(radius="0.7 m", slenderness=3, mass="1 t")
 SOFT = rf.TwoSpringSupport(frequency_ratio=8, damping_ratio=0.1, restitution=0.8)
 FIRM = rf.TwoSpringSupport(frequency_ratio=14, damping_ratio=0.06)
-NOWHERE = (0.0,) * 6
+NO_OFFSET = (0.0,) * 6
 CASES = {
     "small rotation": (EVEN, SOFT, "centre", "small", 0.7 * ACROSS, 4.0 * UP),
     "held at the centre": (EVEN, FIRM, "centre", "finite", ACROSS, None),
@@ -122,7 +122,7 @@ class ExactRun:
         return [one[k] + (one[k + 1] - one[k]) * share for one in (self.across, self.up)]
 
     def moved(self, k, begin, length, columns=COLUMNS):
-        """Extrapolate the midpoint rule (Gragg) to a step of no length."""
+        """Extrapolate the midpoint rule (Gragg) to step length zero."""
         rows = []
         for column in range(1, columns + 1):
             n = 2 * column
@@ -143,11 +143,11 @@ class ExactRun:
         return rows[-1][-1]
 
     def guards(self, state):
-        found = {}
+        guards = {}
         for name, contact in self.contact.items():
             level, speed, _ = self.place(name, state)
             force = self.press(name, state)
-            found |= {
+            guards |= {
                 TOUCHES: {(name, "force"): force},
                 RELAXES: {(name, "level"): self.rest - level, (name, "slack"): -force},
                 CLEAR: {(name, "gap"): level - self.rest},
@@ -156,7 +156,7 @@ class ExactRun:
                     (name, "speed"): speed,
                 },
             }[contact]  # fmt: skip
-        return found
+        return guards
 
     def run(self):
         for k in range(KNOTS):
@@ -180,7 +180,7 @@ class ExactRun:
         return self
 
     def root(self, k, begin, length, guard):
-        """Find where a guard falls to zero: within a bracket, roughly, then by the secant rule."""
+        """Find where a guard falls to zero: bracketed at low precision, then by the secant rule."""
 
         def value(at, columns=COLUMNS):
             return self.guards(self.moved(k, begin, at, columns))[guard]
@@ -193,15 +193,15 @@ class ExactRun:
                 lambda at: value(at, ROUGH_COLUMNS), (low, high), solver="anderson",
                 tol=1e-16, maxsteps=60, verify=False,
             )  # fmt: skip
-        beside = at + length * MP.mpf("1e-10")
-        before, now = value(at), value(beside)
-        while abs(beside - at) > length * MP.mpf("1e-40"):
-            at, beside = beside, beside - now * (beside - at) / (now - before)
-            before, now = now, value(beside)
-        return beside, guard
+        offset = at + length * MP.mpf("1e-10")
+        before, now = value(at), value(offset)
+        while abs(offset - at) > length * MP.mpf("1e-40"):
+            at, offset = offset, offset - now * (offset - at) / (now - before)
+            before, now = now, value(offset)
+        return offset, guard
 
     def switch(self, guard, ground):
-        """Change the contact; give the guards that are zero now."""
+        """Change the contact; return the guards that are now zero."""
         (name, kind), was, pin = guard, self.contact[guard[0]], self.pin()
         held, other = bool(self.holds()), "left" if guard[0] == "right" else "right"
         if held:
@@ -250,7 +250,7 @@ class ExactRun:
         self.state[3] += impulse * lever / inertia
 
 
-def begun(case):
+def initial_state(case):
     block, pads, restraint, rotation, across, up = CASES[case]
     system = rf.System(block, pads, restraint=restraint, rotation=rotation, gravity="9.81 m/s^2")
     vertical = None if up is None else (up, "m/s^2")
@@ -261,33 +261,33 @@ def begun(case):
 
 
 @cache
-def exact(case, beside=NOWHERE):
-    system, _, _, state, across, up = begun(case)
+def exact(case, offset=NO_OFFSET):
+    system, _, _, state, across, up = initial_state(case)
     with mpmath.workdps(DIGITS):
-        start = [mpmath.mpf(float(a)) + mpmath.mpf(b) for a, b in zip(state, beside, strict=True)]
+        start = [mpmath.mpf(float(a)) + mpmath.mpf(b) for a, b in zip(state, offset, strict=True)]
         return ExactRun(system, start, across, up).run()
 
 
-def outside(case, prepare=None, beside=NOWHERE):
-    """Follow a proof over the samples; count those that lie outside of it."""
-    system, motion, mode, state, *_ = begun(case)
+def check_enclosures(case, prepare=None, offset=NO_OFFSET):
+    """Follow a proof over the samples; count exact states outside its enclosures."""
+    system, motion, mode, state, *_ = initial_state(case)
     seen = []
     with working_precision(BITS):
-        one = pad_prover(
+        prover = pad_prover(
             system.assembly.model.system, mode, state, motion, system.assembly.options.slope,
             system.assembly.setting.overturning_angles,
             callback=lambda k, contacts, box: seen.append(box),
         )  # fmt: skip
         if prepare is not None:
-            prepare(one)
+            prepare(prover)
         stopped = None
         try:
-            while one.k < KNOTS and one.overturning_time is None:
-                one._to_next_knot()
+            while prover.k < KNOTS and prover.overturning_time is None:
+                prover._to_next_knot()
         except Undecided as why:
             stopped = str(why)
         missed = 0
-        for box, (place, contacts) in zip(seen, exact(case, beside).seen, strict=False):
+        for box, (place, contacts) in zip(seen, exact(case, offset).seen, strict=False):
             with mpmath.workdps(DIGITS):
                 sway = place[5] if TOUCHES not in contacts.values() else mpmath.mpf(0)
                 numbers = [place[0], place[3], place[1], place[4], sway]
@@ -298,7 +298,7 @@ def outside(case, prepare=None, beside=NOWHERE):
                     a.overlaps(ball(text) + near) for a, text in zip(box, texts, strict=True)
                 )
     return SimpleNamespace(
-        missed=missed, seen=len(seen), prover=one, stopped=stopped, last=seen[-1]
+        missed=missed, seen=len(seen), prover=prover, stopped=stopped, last=seen[-1]
     )
 
 
@@ -307,44 +307,44 @@ def outside(case, prepare=None, beside=NOWHERE):
     [pytest.param(case, marks=[pytest.mark.long] * (k != 1)) for k, case in enumerate(CASES)],
 )
 def test_enclosures_contain_fifty_digit_run(case):
-    found = outside(case)
-    assert found.stopped is None
-    assert found.missed == 0
-    assert found.seen == KNOTS or found.prover.overturning_time is not None
-    assert max(float(one.rad()) for one in found.last) < 1e-15
+    check = check_enclosures(case)
+    assert check.stopped is None
+    assert check.missed == 0
+    assert check.seen == KNOTS or check.prover.overturning_time is not None
+    assert max(float(one.rad()) for one in check.last) < 1e-15
 
 
 @pytest.mark.long
 def test_all_contacts_occur():
-    kinds = {one for case in CASES for one in exact(case, NOWHERE).kinds}
+    kinds = {one for case in CASES for one in exact(case, NO_OFFSET).kinds}
     assert {(TOUCHES, "force"), (RELAXES, "level"), (CLEAR, "gap"), (LEAVES, "force")} <= kinds
-    seen = [contacts for case in CASES for _, contacts in exact(case, NOWHERE).seen]
+    seen = [contacts for case in CASES for _, contacts in exact(case, NO_OFFSET).seen]
     assert any(TOUCHES not in contacts.values() for contacts in seen)
 
 
-BESIDE = (2e-10, -1e-10, 0.0, 3e-10, 1e-9, 0.0)
+OFFSET = (2e-10, -1e-10, 0.0, 3e-10, 1e-9, 0.0)
 
 
-def widened(one):
-    """Start from a box whose corner is the start beside."""
+def widen_start(prover):
+    """Start from a box with the offset start at its corner."""
     radii = np.array([2e-10, 3e-10, 1e-10, 1e-9, 0.0])
-    one.states = one.states._replace(spread=radii / one.weights)
+    prover.states = prover.states._replace(spread=radii / prover.weights)
 
 
 def test_box_enclosures_contain_run_from_its_corner():
-    found = outside("skew, held by contact", widened, BESIDE)
-    assert found.stopped is None
-    assert found.missed == 0
-    assert found.seen > KNOTS // 2
-    assert max(float(one.rad()) for one in found.last) < 1e-3
+    check = check_enclosures("skew, held by contact", widen_start, OFFSET)
+    assert check.stopped is None
+    assert check.missed == 0
+    assert check.seen > KNOTS // 2
+    assert max(float(one.rad()) for one in check.last) < 1e-3
 
 
 JUMP = 16  # the sample at which the ground jumps
 
 
-def about_a_jump(moved):
-    """Follow a set, or one of its members, that lands just before the ground jumps."""
-    lands = 0.25655462079917534  # by the proof for the centre
+def states_after_jump(change):
+    """Return the states after the ground jumps just after a landing."""
+    lands = 0.25655462079917534  # from the proof for the centre
     system = rf.System(EVEN, FIRM, gravity="9.81 m/s^2")
     start = rf.InitialState(rotation="0.1 rad")
     still = rf.GroundMotion.from_arrays(([0.0, 0.0], "m/s^2"), "1 s")
@@ -353,14 +353,14 @@ def about_a_jump(moved):
     pieces = np.zeros((JUMP + 2, 6))
     pieces[JUMP] = [-400.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     motion = Motion(Signal(lands * (1 + 1e-11) / JUMP, np.append(pieces[:, 0], 0.0), pieces))
-    one = pad_prover(
+    prover = pad_prover(
         system.assembly.model.system, mode, state, motion, system.assembly.options.slope,
         system.assembly.setting.overturning_angles,
     )  # fmt: skip
-    moved(one)
+    change(prover)
     for _ in range(JUMP + 1):
-        one._to_next_knot()
-    return one.states.box(one.weights)
+        prover._to_next_knot()
+    return prover.states.box(prover.weights)
 
 
 def test_landings_on_both_sides_of_ground_jump_are_enclosed():
@@ -374,9 +374,9 @@ def test_landings_on_both_sides_of_ground_jump_are_enclosed():
         one.states = one.states._replace(centre=[a + ball(float(b)) for a, b in shifts])
 
     with working_precision(BITS):
-        box = about_a_jump(widen)
+        box = states_after_jump(widen)
         for signs in ((1, 1, 1, 1, 0), (1, -1, 1, -1, 0), (-1, 1, -1, 1, 0), (-1, -1, -1, -1, 0)):
-            state = about_a_jump(partial(move, np.array(signs)))
+            state = states_after_jump(partial(move, np.array(signs)))
             assert all(a.overlaps(b) for a, b in zip(box, state, strict=True))
 
 
@@ -406,10 +406,10 @@ def test_possible_lift_off_before_landing_is_undecided(restraint):
             one._enclose_change(ground, ball(0.1), box, law.Guard("gap", True), 1.0)
 
 
-def short_series(one):
-    """End the series so early that what they leave out is all that counts."""
-    one.margin = -70
-    one._set_margin = lambda *_: None
+def short_series(prover):
+    """Truncate the series so early that the remainder dominates."""
+    prover.margin = -70
+    prover._set_margin = lambda *_: None
 
 
 def sign_of_the_ground(monkeypatch):
@@ -425,10 +425,10 @@ def sign_of_the_ground(monkeypatch):
 def dropped_remainder(monkeypatch):
     old = prover.enclose_motion
 
-    def course(*given):
-        found = old(*given)
+    def course(*arguments):
+        motion = old(*arguments)
         nothing = [0.0] * 7 + [(0.0, 0.0)] * 3 + [0.0] * 2
-        return found._replace(left_out=type(found.left_out)(*nothing))
+        return motion._replace(left_out=type(motion.left_out)(*nothing))
 
     monkeypatch.setattr(prover, "enclose_motion", course)
 
@@ -456,10 +456,10 @@ def damping_off(monkeypatch):
 def rounded_inwards(monkeypatch):
     old = flow.StateSet.image
 
-    def mapped(self, *given):
-        return old(self, *given)._replace(spread=np.zeros(law.SIZE))
+    def image(self, *arguments):
+        return old(self, *arguments)._replace(spread=np.zeros(law.SIZE))
 
-    monkeypatch.setattr(flow.StateSet, "image", mapped)
+    monkeypatch.setattr(flow.StateSet, "image", image)
 
 
 def restitution_off(monkeypatch):
@@ -486,9 +486,9 @@ FAULTS = {
 def test_a_planted_fault_is_caught(fault, monkeypatch):
     plant, prepare = FAULTS[fault]
     if prepare is not None:
-        assert outside("held at the centre", prepare).missed == 0
+        assert check_enclosures("held at the centre", prepare).missed == 0
     plant(monkeypatch)
-    assert outside("held at the centre", prepare).missed > 0
+    assert check_enclosures("held at the centre", prepare).missed > 0
 
 
 def test_a_derivative_that_is_left_out_is_caught(monkeypatch):
@@ -500,4 +500,4 @@ def test_a_derivative_that_is_left_out_is_caught(monkeypatch):
         return powers, defect
 
     monkeypatch.setattr(flow, "_variation", variation)
-    assert outside("skew, held by contact", widened, BESIDE).missed > 0
+    assert check_enclosures("skew, held by contact", widen_start, OFFSET).missed > 0

@@ -1,4 +1,4 @@
-"""Chains on rigid bases: one body as Housner's, impacts of two as in the reference model."""
+"""Chains on rigid bases: one body against Housner's, impacts of two against the reference model."""
 
 import math
 
@@ -37,8 +37,8 @@ EQUAL = Pair(Body.uniform(1.0, 2.0, 1.0), Body.uniform(1.0, 2.0, 1.0))
 ENDS = {"none": 0, "left": 1, "right": 2, "both": 3}
 
 
-def alone(block):
-    """Return a block on rigid ground: as Housner's, and as a chain of one body."""
+def housner_and_chain(block):
+    """Return a block on rigid ground, as Housner's block and as a chain of one body."""
     setting = assemble((block,)).setting
     law = setting.load.law(setting.body.mass)
     one = ChainBody(law, rigid_numbers(law), 1.0, 0.0, 0.0)
@@ -49,18 +49,24 @@ def model_of(pair: Pair):
     """Return two blocks on rigid bases, per unit mass of the upper one."""
     links, measure = [], pair.upper.mass
     offset = pair.offset + pair.upper.beside - pair.lower.beside
-    for one, beside in ((pair.upper, offset), (pair.lower, 0.0)):
+    for body_data, shift in ((pair.upper, offset), (pair.lower, 0.0)):
         body = rigid_body(
-            left=one.half_width + one.beside, right=one.half_width - one.beside,
-            height=one.below, inertia=one.inertia / measure, restraint=0, small_rotation=False,
+            left=body_data.half_width + body_data.beside,
+            right=body_data.half_width - body_data.beside,
+            height=body_data.below,
+            inertia=body_data.inertia / measure,
+            restraint=0,
+            small_rotation=False,
             gravity=pair.gravity,
-        )  # fmt: skip
-        links.append(ChainBody(body, rigid_numbers(body), one.mass / measure, one.above, beside))
+        )
+        links.append(
+            ChainBody(body, rigid_numbers(body), body_data.mass / measure, body_data.above, shift)
+        )
     return chain_model(links, measure)
 
 
-def landing(pair: Pair, place, speed, touching):
-    """Let two bodies that touch go on; give pattern, number of those admissible, and speeds."""
+def impact_by_chain(pair: Pair, place, speed, touching):
+    """Return the pattern after an impact, the number of admissible ones, and velocities."""
     model, (lower, upper) = model_of(pair), (pair.lower, pair.upper)
     system, state, memory = model.system, np.zeros(12), np.zeros(len(model.memory))
     cosine, sine = math.cos(place[2]), math.sin(place[2])
@@ -75,39 +81,48 @@ def landing(pair: Pair, place, speed, touching):
         moving @ along - (between @ normal) * speed[2], speed[0],
     )  # fmt: skip
     weight = {"joint": 1, "ground": 4}
-    closed = sum(weight[key] * ENDS[end] for key, some in touching.items() for end in some)
+    closed = sum(
+        weight[key] * ENDS[end] for key, ends_touching in touching.items() for end in ends_touching
+    )
     flying = system.with_bearing_corners(0, 0, 0)
-    had = system.energies(flying, state).kinetic
-    assert 2.0 * had * upper.mass == pytest.approx(pair.masses @ speed**2, rel=1e-11)
+    energy_before = system.energies(flying, state).kinetic
+    assert 2.0 * energy_before * upper.mass == pytest.approx(pair.masses @ speed**2, rel=1e-11)
     new = system.choose_bearing_corners(flying, closed, 0, 0, state, STILL, memory)
-    after = system.energies(new, state).kinetic
-    assert memory[IMPACT_LOSS] == pytest.approx(had - after, abs=1e-12 * had)
+    energy_after = system.energies(new, state).kinetic
+    assert memory[IMPACT_LOSS] == pytest.approx(
+        energy_before - energy_after, abs=1e-12 * energy_before
+    )
     work = system.workspace()
-    six = [
+    velocities = [
         work[k * BODY_STRIDE + i] if i >= 0 else sum(state[6 + 2 * j] for j in range(k, 2))
         for k in (1, 0)
         for i in (at.SPEED_X, at.SPEED_Y, -1)
     ]
-    kept = HELD_PLACE + 2
-    taken = int(memory[kept + CHOSEN_CORNERS])
+    start = HELD_PLACE + 2
+    chosen = int(memory[start + CHOSEN_CORNERS])
     bears = {number: name for name, number in ENDS.items()}
-    pattern = Pattern(bears[taken >> 2], bears[taken & 3])
-    return pattern, int(memory[kept + ADMISSIBLE_COUNT]), np.array(six), after / had
+    pattern = Pattern(bears[chosen >> 2], bears[chosen & 3])
+    return (
+        pattern,
+        int(memory[start + ADMISSIBLE_COUNT]),
+        np.array(velocities),
+        energy_after / energy_before,
+    )
 
 
 def test_chain_of_one_body_matches_housner_block():
     rng = np.random.default_rng(1)
-    impacts = compared = one = 0
+    impacts = compared = number = 0
     while compared < 30:
-        one += 1
+        number += 1
         width, height = rng.uniform(0.3, 2.0), rng.uniform(2.0, 6.0)
-        aside = rng.uniform(-0.1, 0.1) * width if one % 3 == 0 else 0.0
-        middle = (f"{0.5 * height} m", f"{aside} m")
-        setting, model = alone(
+        eccentricity = rng.uniform(-0.1, 0.1) * width if number % 3 == 0 else 0.0
+        middle = (f"{0.5 * height} m", f"{eccentricity} m")
+        setting, model = housner_and_chain(
             rf.Block(width=f"{width} m", height=f"{height} m", mass="1 t", centre_of_mass=middle)
         )
         start, motion = Start(), None
-        if one % 5 == 4:
+        if number % 5 == 4:
             start = Start(0.5 * setting.overturning_angle)
         else:
             times = np.arange(0.0, 3.0, 0.01)
@@ -118,16 +133,18 @@ def test_chain_of_one_body_matches_housner_block():
                 (across, "m/s^2"), "0.01 s", vertical=(up, "m/s^2")
             ).si
         housner, ours = (
-            integrate(each, start, motion, accuracy_of("reference"), duration=6.0, output_step=0.05)
-            for each in (setting.compile(), model)
+            integrate(
+                model_run, start, motion, accuracy_of("reference"), duration=6.0, output_step=0.05
+            )
+            for model_run in (setting.compile(), model)
         )
         if (ours.events.memory[:, HELD_PLACE + 1 + ADMISSIBLE_COUNT] != 1.0).any():
-            continue  # the corner does not press, and may part: Housner's block is held
+            continue  # a corner that does not press may separate: Housner's block is held
         compared += 1
-        assert ours.status == housner.status, one
-        assert len(ours.events.time) == len(housner.events.time), one
-        apart = np.abs(ours.state[:, 0] - housner.state[:, 0])
-        assert apart.max() < 1e-9 * np.abs(housner.state[:, 0]).max() + 1e-15, one
+        assert ours.status == housner.status, number
+        assert len(ours.events.time) == len(housner.events.time), number
+        difference = np.abs(ours.state[:, 0] - housner.state[:, 0])
+        assert difference.max() < 1e-9 * np.abs(housner.state[:, 0]).max() + 1e-15, number
         assert ours.energy_residual < 1e-9
         impacts += len(ours.events.time)
     assert impacts > 300
@@ -135,7 +152,7 @@ def test_chain_of_one_body_matches_housner_block():
 
 @pytest.mark.parametrize("slenderness", [1.5, 3.0, 8.0])
 def test_impact_of_one_body_has_housner_restitution(slenderness):
-    _, model = alone(rf.Block(width="1 m", height=f"{slenderness} m", mass="1 t"))
+    _, model = housner_and_chain(rf.Block(width="1 m", height=f"{slenderness} m", mass="1 t"))
     system, state, memory = model.system, np.zeros(6), np.zeros(len(model.memory))
     mode = system.with_bearing_corners(0, 2, 0)
     state[3] = -1.0
@@ -157,7 +174,7 @@ def test_landings_of_two_equal_blocks_in_exact_numbers(before, after, rates, ene
     phase = Phase(EQUAL, before, 0.0)
     place = phase.placed(np.zeros(phase.size))
     speed = phase.motions(0.0, 0.0)[0] @ np.full(phase.size, -1.0)
-    pattern, admissible, six, share = landing(EQUAL, place, speed, ALL)
+    pattern, admissible, six, share = impact_by_chain(EQUAL, place, speed, ALL)
     assert (pattern, admissible) == (after, 1)
     assert (six[2], six[5]) == pytest.approx(rates, abs=1e-14)
     assert share == pytest.approx(energy, abs=1e-14)
@@ -165,13 +182,13 @@ def test_landings_of_two_equal_blocks_in_exact_numbers(before, after, rates, ene
 
 @pytest.mark.long
 def test_random_impacts_of_two_blocks():
-    """As in the reference model, and as seldom without one admissible pattern."""
+    """Outcomes match the reference model, also where not exactly one pattern is admissible."""
     rng, others = np.random.default_rng(5), dict.fromkeys(KINDS, 0)
     for kind in KINDS:
         for number in range(250):
             pair, place, speed, touching = draw_impact(rng, kind)
             theirs = strike(pair, pair.offset, place, speed, touching)
-            pattern, admissible, six, _ = landing(pair, place, speed, touching)
+            pattern, admissible, six, _ = impact_by_chain(pair, place, speed, touching)
             assert admissible == theirs.admissible, (kind, number)
             others[kind] += admissible != 1
             size = np.abs(speed).max()
@@ -183,7 +200,7 @@ def test_random_impacts_of_two_blocks():
 
 
 def changes():
-    """What changes where bodies lie or what loads them."""
+    """Return functions that change positions or loads of bodies."""
     return {
         "places": lambda system, state, work: write_kinematics(system, 0, state, work),
         "loads": lambda system, state, work: set_inertia_loads(system, 0.1, 0.2, work),
@@ -214,7 +231,7 @@ def test_elimination_is_invalidated_when_positions_or_loads_change(change):
 
 
 def column(count):
-    """Return the equations of equal blocks upon one another, and the mode in which all stand."""
+    """Return the equations of a stack of equal blocks, and the mode and state of rest."""
     stone, block = rf.RigidGround(friction=0.3), rf.Block(width="1 m", height="1 m", mass="1 t")
     model = rf.System(rf.Stack(*[block] * count, interfaces=[stone] * (count - 1)), stone)
     model = model.assembly.model
@@ -232,7 +249,7 @@ def test_cached_forces_are_valid_only_for_same_mode_state_and_ground():
     assert not system.forces_are_valid(slips, state, ground)
     assert not system.forces_are_valid(standing, moved, ground)
     assert not system.forces_are_valid(standing, state, Ground(0.5, 0.2))
-    large = 2**60  # beyond which floats do not tell modes apart
+    large = 2**60  # beyond it floats do not distinguish modes
     system.find_forces(standing, state, ground)
     note = system.solved_inputs()
     note[0], note[1] = large >> 32, 0.0
@@ -241,15 +258,15 @@ def test_cached_forces_are_valid_only_for_same_mode_state_and_ground():
 
 
 def test_resting_bodies_act_as_ground_for_bodies_above():
-    """The motion is that of which all forces are solved for, of one that rocks on two at rest."""
+    """A block that rocks on two at rest moves as if all forces were solved for."""
     system, standing, state = column(3)
     rocks = system.with_bearing_corners(standing, 0b111101, 0)
     state[ROTATION], state[system.coordinates() + ROTATION] = 0.02, -0.3
     ground = Ground(0.7, -0.2)
-    every = np.array(system.find_forces(rocks, state, ground))
-    found = np.array(system.accelerate(rocks, state, ground))
+    full = np.array(system.find_forces(rocks, state, ground))
+    reduced = np.array(system.accelerate(rocks, state, ground))
     assert not system.forces_are_valid(rocks, state, ground)
-    assert np.abs(every[: system.coordinates()]).max() > 1.0
-    np.testing.assert_allclose(found, every, rtol=1e-12, atol=1e-12)
+    assert np.abs(full[: system.coordinates()]).max() > 1.0
+    np.testing.assert_allclose(reduced, full, rtol=1e-12, atol=1e-12)
     at_rest = np.array(system.accelerate(standing, state * 0.0, ground))
     np.testing.assert_array_equal(at_rest, 0.0 * at_rest)

@@ -1,4 +1,4 @@
-"""The reference model of two rigid blocks on rigid ground, by itself."""
+"""The reference model of two rigid blocks on rigid ground: exact values, limits, balances."""
 
 import math
 from dataclasses import replace
@@ -9,17 +9,17 @@ import sympy as sp
 from reference_models.monoliths import rigid_block
 from reference_models.rigid_pair.choices import (
     ALL,
+    choose_pattern,
     complementary,
     patterns,
     projected,
     strike,
-    yield_to,
 )
-from reference_models.rigid_pair.compare import compared
-from reference_models.rigid_pair.count_impacts import KINDS, counted, draw_impact, draw_pair
-from reference_models.rigid_pair.drawing import draw, have_records, pieces_for
+from reference_models.rigid_pair.compare import compare_scene
+from reference_models.rigid_pair.count_impacts import KINDS, count_impacts, draw_impact, draw_pair
 from reference_models.rigid_pair.ground import harmonic, still
 from reference_models.rigid_pair.pair import GRAVITY, Body, Pair, Pattern, Phase
+from reference_models.rigid_pair.random_scenes import draw, pieces_for, records_available
 from reference_models.rigid_pair.simulate import simulate
 
 pytestmark = pytest.mark.reference_models
@@ -32,7 +32,7 @@ TOGETHER, UPPER = Pattern("right", "both"), Pattern("both", "right")
 
 
 def landing(pair, pattern, rate):
-    """Let the bodies land upright."""
+    """Return positions and velocities of bodies that land upright."""
     phase = Phase(pair, pattern, pair.offset)
     place = phase.placed(np.zeros(phase.size))
     speed = phase.motions(0.0, 0.0)[0] @ np.full(phase.size, rate)
@@ -57,12 +57,12 @@ def landing(pair, pattern, rate):
 )  # fmt: skip
 def test_landings_in_exact_numbers(pair, before, rate, after, rates, energy):
     place, speed = landing(pair, before, rate)
-    found = strike(pair, pair.offset, place, speed, ALL)
-    assert found.pattern == after
-    assert found.admissible == 1
-    assert found.motion[[2, 5]] == pytest.approx(rates, abs=1e-14)
-    whole = 0.5 * pair.masses @ speed**2
-    assert 1.0 - found.lost / whole == pytest.approx(energy, rel=1e-13)
+    outcome = strike(pair, pair.offset, place, speed, ALL)
+    assert outcome.pattern == after
+    assert outcome.admissible == 1
+    assert outcome.motion[[2, 5]] == pytest.approx(rates, abs=1e-14)
+    energy_before = 0.5 * pair.masses @ speed**2
+    assert 1.0 - outcome.lost / energy_before == pytest.approx(energy, rel=1e-13)
 
 
 def test_exact_landing_rates_follow_from_angular_momentum():
@@ -71,7 +71,7 @@ def test_exact_landing_rates_follow_from_angular_momentum():
     half, one = sp.Rational(1, 2), sp.Integer(1)
     inertia = third * (half**2 + one)
     first, second = sp.symbols("first second")
-    # places of the centres of mass, from the left corners that all turns about
+    # positions of the centres of mass from the left corners, the centres of rotation
     lower, upper, arm = (half, one), (half, 3 * one), (half, one)
 
     def across(rate, place):
@@ -90,10 +90,10 @@ def test_exact_landing_rates_follow_from_angular_momentum():
     after = about(upper, speed) + inertia * second
     after += about(lower, across(first, lower)) + inertia * first
     solved = sp.solve([after - total, about(arm, speed) + inertia * second - own], [first, second])
-    found = strike(EQUAL, 0.0, *landing(EQUAL, UPPER, -1), ALL)
-    assert found.pattern == ("left", "left")
-    rates = [float(solved[one]) for one in (first, second)]
-    assert found.motion[[2, 5]] == pytest.approx(rates, abs=1e-14)
+    impact = strike(EQUAL, 0.0, *landing(EQUAL, UPPER, -1), ALL)
+    assert impact.pattern == ("left", "left")
+    rates = [float(solved[rate]) for rate in (first, second)]
+    assert impact.motion[[2, 5]] == pytest.approx(rates, abs=1e-14)
 
 
 @pytest.mark.parametrize(
@@ -113,10 +113,10 @@ def test_first_accelerations_in_exact_numbers(pair, shares):
     phase = Phase(pair, Pattern("both", "both"), pair.offset)
     place = phase.placed(np.zeros(0))
     for across, (ground, joint, *rates) in shares.items():
-        found = yield_to(phase, place, np.zeros(6), ALL, across, 0.0)
-        assert found.pattern == (ground, joint)
-        assert found.admissible == 1
-        assert found.motion[[2, 5]] == pytest.approx(rates, abs=1e-13)
+        outcome = choose_pattern(phase, place, np.zeros(6), ALL, across, 0.0)
+        assert outcome.pattern == (ground, joint)
+        assert outcome.admissible == 1
+        assert outcome.motion[[2, 5]] == pytest.approx(rates, abs=1e-13)
 
 
 @pytest.mark.parametrize(
@@ -137,47 +137,50 @@ def test_patterns_that_follow_a_jump_of_the_ground_acceleration(pair, at, before
     phase = Phase(pair, Pattern("both", "both"), pair.offset)
     place = phase.placed(np.zeros(0))
     for across, wanted in ((at * (1 - 1e-6), before), (at * (1 + 1e-6), after)):
-        found = yield_to(phase, place, np.zeros(6), ALL, across, 0.0)
-        assert (found.pattern, found.admissible) == (wanted, 1)
+        outcome = choose_pattern(phase, place, np.zeros(6), ALL, across, 0.0)
+        assert (outcome.pattern, outcome.admissible) == (wanted, 1)
 
 
 # equations -------------------------------------------------------------------------------------
 
 
 def euler_lagrange(pair: Pair, pattern: Pattern):
-    """Write Lagrange's equations from the energies, by symbolic differentiation."""
+    """Derive Lagrange's equations from the energies by symbolic differentiation."""
     phase = Phase(pair, pattern, pair.offset)
     t, across, up = sp.symbols("t across up")
     q = [sp.Function(f"q{i}")(t) for i in range(phase.size)]
     exact = sp.nsimplify
 
-    def spun(angle, point):
-        x, y = (exact(one, rational=True) for one in point)
+    def turned(angle, point):
+        x, y = (exact(lower, rational=True) for lower in point)
         return x * sp.cos(angle) + y * sp.sin(angle), y * sp.cos(angle) - x * sp.sin(angle)
 
     ground, joint = pattern
     turn = q[2] if ground == "none" else q[0] if ground != "both" else sp.Integer(0)
     if ground == "none":
-        one = (q[0], q[1])
+        lower = (q[0], q[1])
     else:
         end = "left" if ground == "both" else ground
-        one = tuple(-c for c in spun(turn, phase.seats.ground[end]))
+        lower = tuple(-c for c in turned(turn, phase.seats.ground[end]))
     if joint == "none":
-        two, other = tuple(q[-3:-1]), q[-1]
+        upper, upper_rotation = tuple(q[-3:-1]), q[-1]
     else:
         end = "left" if joint == "both" else joint
-        other = turn if joint == "both" else q[-1]
-        base, lever = spun(turn, phase.seats.below[end]), spun(other, phase.seats.above[end])
-        two = tuple(a + b - c for a, b, c in zip(one, base, lever, strict=True))
+        upper_rotation = turn if joint == "both" else q[-1]
+        base, lever = (
+            turned(turn, phase.seats.below[end]),
+            turned(upper_rotation, phase.seats.above[end]),
+        )
+        upper = tuple(a + b - c for a, b, c in zip(lower, base, lever, strict=True))
     masses = [exact(float(value), rational=True) for value in pair.masses]
-    places = [*one, turn, *two, other]
+    places = [*lower, turn, *upper, upper_rotation]
     kinetic = sum(m * sp.diff(x, t) ** 2 / 2 for m, x in zip(masses, places, strict=True))
     weights = sum(
         m * (across * x + (exact(pair.gravity, rational=True) + up) * y)
-        for m, x, y in ((masses[0], *one), (masses[3], *two))
+        for m, x, y in ((masses[0], *lower), (masses[3], *upper))
     )
     lagrangian = kinetic - weights
-    rates = [sp.diff(one, t) for one in q]
+    rates = [sp.diff(lower, t) for lower in q]
     equations = [
         sp.diff(sp.diff(lagrangian, rate), t) - sp.diff(lagrangian, place)
         for place, rate in zip(q, rates, strict=True)
@@ -185,8 +188,8 @@ def euler_lagrange(pair: Pair, pattern: Pattern):
     plain = [sp.symbols(f"a{i} v{i} p{i}") for i in range(len(q))]
     for place, (a, v, p) in zip(q, plain, strict=True):
         equations = [
-            one.subs(sp.diff(place, t, 2), a).subs(sp.diff(place, t), v).subs(place, p)
-            for one in equations
+            lower.subs(sp.diff(place, t, 2), a).subs(sp.diff(place, t), v).subs(place, p)
+            for lower in equations
         ]
     flat = [symbol for trio in plain for symbol in trio]
     return phase, sp.lambdify([*flat, across, up], equations)
@@ -213,13 +216,13 @@ def test_accelerations_satisfy_lagranges_equations(pattern):
         place = phase.placed(q)
         jac, _ = phase.motions(place[2], place[5])
         speed = jac @ rates
-        found, full = phase.accelerate(place[2], place[5], speed[2], speed[5], across, up)
-        flat = [one for trio in zip(found, rates, q, strict=True) for one in trio]
+        second_rates, full = phase.accelerate(place[2], place[5], speed[2], speed[5], across, up)
+        flat = [one for trio in zip(second_rates, rates, q, strict=True) for one in trio]
         assert residual(*flat, across, up) == pytest.approx(np.zeros(phase.size), abs=1e-11)
         size = 1e-5
         ahead, back = (phase.placed(q + way * size * rates) for way in (1.0, -1.0))
         assert (ahead - back) / (2.0 * size) == pytest.approx(speed, abs=1e-8)
-        bent = jac @ found + (ahead - 2.0 * place + back) / size**2
+        bent = jac @ second_rates + (ahead - 2.0 * place + back) / size**2
         assert full == pytest.approx(bent, abs=2e-4)
 
 
@@ -227,12 +230,12 @@ def test_ends_at_rest_share_the_weights():
     pair = SMALLER
     phase = Phase(pair, Pattern("both", "both"), pair.offset)
     place = phase.placed(np.zeros(0))
-    found = phase.pressures(place, phase.needed(np.zeros(6), 0.2, 0.0))
+    pressures = phase.pressures(place, phase.needed(np.zeros(6), 0.2, 0.0))
     # moments of weight and inertia about the left end of each base
-    assert found["joint", "right"] == pytest.approx(0.25 * (0.25 - 0.2 * 0.5) / 0.5)
+    assert pressures["joint", "right"] == pytest.approx(0.25 * (0.25 - 0.2 * 0.5) / 0.5)
     moment = 1.0 * (0.5 - 0.2 * 1.0) + 0.25 * (0.6 - 0.2 * 2.5)
-    assert found["ground", "right"] == pytest.approx(moment / 1.0)
-    assert found["ground", "left"] + found["ground", "right"] == pytest.approx(1.25)
+    assert pressures["ground", "right"] == pytest.approx(moment / 1.0)
+    assert pressures["ground", "left"] + pressures["ground", "right"] == pytest.approx(1.25)
 
 
 # limits ----------------------------------------------------------------------------------------
@@ -284,7 +287,7 @@ def test_halves_of_a_column_rock_as_one_body():
 
 @pytest.mark.long
 def test_decaying_rocking_ends_in_rest():
-    """Impacts of a block alone accumulate: the sum of their spans is finite."""
+    """The intervals between impacts of a block alone have a finite sum."""
     half = Body.uniform(0.5, 1.0, 500.0)
     run = simulate(
         Pair(half, half), [still(0.0, 20.0)], 0.1, start=(Pattern("right", "both"), [0.05], [0.0])
@@ -331,7 +334,7 @@ def test_tolerance_does_not_matter():
 
 @pytest.mark.long
 def test_falling_ground_leaves_bodies_in_flight():
-    """Jolted upwards and then dropped faster than they fall, they fly, land and rest."""
+    """The ground jolts up and then drops faster than free fall: the bodies fly, land and rest."""
     pieces = harmonic(0.3, -14.0, 2.0, 1, free=1.0)
     run = simulate(ROUGH, pieces, 0.01, quickest=0.5)
     assert any(event.kind == "flight" for event in run.events)
@@ -340,9 +343,9 @@ def test_falling_ground_leaves_bodies_in_flight():
 
 
 @pytest.mark.long
-@pytest.mark.skipif(not have_records(), reason="recorded motions are not there")
+@pytest.mark.skipif(not records_available(), reason="recorded motions are not available")
 def test_pulling_hinge_that_would_close_at_once_is_held():
-    """Opposite senses of rocking: let go, a light upper block would come down on the lower one."""
+    """Opposite senses of rocking: a released light upper block would land on the lower one."""
     scene = draw(np.random.default_rng([11, 29]))
     pieces, period = pieces_for(scene.motion)
     run = simulate(scene.pair, pieces, 0.01, quickest=period)
@@ -372,9 +375,9 @@ def test_random_scenes_uplift_and_overturn():
     "number", [2, 11, *(pytest.param(one, marks=pytest.mark.long) for one in (0, 13))]
 )
 def test_rockframe_matches_reference_model(number):
-    found = compared(draw(np.random.default_rng([11, number])))
-    assert found.same_verdict
-    assert found.difference < 1e-8
+    comparison = compare_scene(draw(np.random.default_rng([11, number])))
+    assert comparison.same_verdict
+    assert comparison.difference < 1e-8
 
 
 # impacts ---------------------------------------------------------------------------------------
@@ -383,7 +386,7 @@ def test_rockframe_matches_reference_model(number):
 @pytest.mark.long
 def test_number_of_admissible_patterns():
     rng = np.random.default_rng(5)
-    found = {kind: counted(rng, kind, 400) for kind in KINDS}
+    found = {kind: count_impacts(rng, kind, 400) for kind in KINDS}
     for kind in KINDS[:2]:
         assert found[kind] == {"admissible": {1: 400}, "single as complementary": 400}
     assert set(found[KINDS[2]]["admissible"]) == {0, 1}

@@ -1,4 +1,4 @@
-"""A rocking frame against its columns and its beam as bodies of their own."""
+"""A rocking frame against separate bodies for its columns and beam."""
 
 import numpy as np
 import pytest
@@ -46,7 +46,7 @@ def test_accelerations_reactions_and_impacts_match_separate_bodies():
         total = number * si.mass + 1e3 * beam
         forces = [total * seen["horizontal_reaction"], total * seen["vertical_reaction"]]
         np.testing.assert_allclose(forces, feet, rtol=1e-11, atol=1e-11 * total * GRAVITY)
-        # energies, and the works of ground and gravity by them
+        # energies, and the works of ground and gravity
         energies = model.system.energies(mode, state)
         moving = bodies.velocities(angle, rate, side)
         assert total * energies.kinetic == pytest.approx(0.5 * moving**2 @ bodies.mass, rel=1e-12)
@@ -88,7 +88,7 @@ def test_tendon_forces_match_separate_bodies():
         assert slope[0] == pytest.approx(found, rel=1e-11, abs=1e-11)
         forces = [total * seen["horizontal_reaction"], total * seen["vertical_reaction"]]
         np.testing.assert_allclose(forces, feet, rtol=1e-10, atol=1e-11 * total * GRAVITY)
-        # with no acceleration of the ground and no rate: the moment that holds it there
+        # static moment that holds the frame at this rotation
         still, _ = bodies.acceleration(angle, 0.0, side, Ground(0.0, 0.0), GRAVITY, loads)
         held = system.moment_rotation([f"{angle} rad"]).restoring_moment.item()
         corner = model.system.rocking.right.inertia * total

@@ -14,7 +14,7 @@ from reference_models.sliding import (
 
 pytestmark = [pytest.mark.wide, pytest.mark.reference_models, pytest.mark.filterwarnings("ignore")]
 
-# on corner and base, with flights, on slopes, let go tilted, and overturning; each takes a second
+# on corner and base, with flights, on slopes, released tilted, and overturning; a second each
 SCENES = (2, 4, 8, 11, 15, 21, 33)
 
 
@@ -31,45 +31,47 @@ TIED_ON_BASES = (
 )  # fmt: skip
 
 
-def few(numbers, *kept):
-    """Leave all others, which take longer, to the long run."""
-    return [pytest.param(one, marks=[pytest.mark.long] * (one not in kept)) for one in numbers]
+def mark_others_long(numbers, *kept):
+    """Return the numbers, marked long but for those kept."""
+    return [
+        pytest.param(number, marks=[pytest.mark.long] * (number not in kept)) for number in numbers
+    ]
 
 
-@pytest.mark.parametrize("number", few(TIED, 16, 22, 30))
+@pytest.mark.parametrize("number", mark_others_long(TIED, 16, 22, 30))
 def test_random_scenes_with_ties(number):
-    check(compare(draw_tied(np.random.default_rng([40, number]))))
+    assert_agreement(compare(draw_tied(np.random.default_rng([40, number]))))
 
 
-@pytest.mark.parametrize("number", few(TIED_ON_BASES, 1, 3))
+@pytest.mark.parametrize("number", mark_others_long(TIED_ON_BASES, 1, 3))
 def test_random_scenes_with_ties_on_pads_and_beds(number):
-    check(compare(draw_tied_on_base(np.random.default_rng([41, number]))))
+    assert_agreement(compare(draw_tied_on_base(np.random.default_rng([41, number]))))
 
 
 @pytest.mark.parametrize("number", [2, 5])
 def test_random_scenes_before_elastic_walls(number):
-    check(compare(draw_walled(np.random.default_rng([50, number]))))
+    assert_agreement(compare(draw_walled(np.random.default_rng([50, number]))))
 
 
-@pytest.mark.parametrize("number", few((1, 9), 1))
+@pytest.mark.parametrize("number", mark_others_long((1, 9), 1))
 def test_random_scenes_before_elastic_walls_on_pads_and_beds(number):
-    check(compare(draw_walled_on_base(np.random.default_rng([51, number]))))
+    assert_agreement(compare(draw_walled_on_base(np.random.default_rng([51, number]))))
 
 
 @pytest.mark.parametrize("number", SCENES)
 def test_random_scenes(number):
-    check(compare(draw(np.random.default_rng([30, number]))))
+    assert_agreement(compare(draw(np.random.default_rng([30, number]))))
 
 
-@pytest.mark.parametrize("number", few(ON_BASES, 2, 10, 18, 20))
+@pytest.mark.parametrize("number", mark_others_long(ON_BASES, 2, 10, 18, 20))
 def test_random_scenes_on_pads_and_beds(number):
-    check(compare(draw_on_base(np.random.default_rng([31, number]))))
+    assert_agreement(compare(draw_on_base(np.random.default_rng([31, number]))))
 
 
-def check(found):
-    assert [kind for _, kind in found["ours"]] == [kind for _, kind in found["theirs"]]
-    assert found["peak"] <= 1e-6
-    assert found["slip"] <= 1e-6 * max(found["slips"], 1e-3)
-    assert found["balance"] <= 1e-8
-    times = np.array([[t for t, _ in found[one]] for one in ("ours", "theirs")])
+def assert_agreement(comparison):
+    assert [kind for _, kind in comparison["ours"]] == [kind for _, kind in comparison["theirs"]]
+    assert comparison["peak"] <= 1e-6
+    assert comparison["slip"] <= 1e-6 * max(comparison["slips"], 1e-3)
+    assert comparison["balance"] <= 1e-8
+    times = np.array([[t for t, _ in comparison[program]] for program in ("ours", "theirs")])
     np.testing.assert_allclose(times[0], times[1], rtol=0.0, atol=1e-6)

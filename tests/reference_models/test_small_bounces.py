@@ -1,4 +1,4 @@
-"""Small bounces that are bounded together: members of a set, each run alone, keep the bounds."""
+"""Bounds of small bounces contain the separate runs of members of a set."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ HEIGHT, SPEED = 1e-6, 1e-3
 
 
 def ground(first, last, other=0.0):
-    """Accelerations along straight lines from one value to another, with vertical ones."""
+    """Return accelerations, linear from one value to another, with vertical ones."""
     across = np.concatenate([np.linspace(first, last, 21), np.full(5, last)])
     up = other * np.sin(np.arange(across.size))
     return rf.GroundMotion.from_arrays((across, "m/s^2"), f"{STEP} s", vertical=(up, "m/s^2"))
@@ -37,7 +37,7 @@ GROUNDS = {
 }
 
 
-def settled(block, motion):
+def follow_bounces_of(block, motion):
     system = rf.System(block, gravity="9.81 m/s^2")
     assembly = system.assembly
     with working_precision(106):
@@ -45,12 +45,12 @@ def settled(block, motion):
             assembly.model.system, motion.si, assembly.options.slope,
             assembly.setting.overturning_angles, 1.0, Deviations(), 0.1,
         )  # fmt: skip
-        found = follow_bounces(problem, Instant(0, ball(0)), ball(HEIGHT), ball(SPEED))
-    return system, found
+        result = follow_bounces(problem, Instant(0, ball(0)), ball(HEIGHT), ball(SPEED))
+    return system, result
 
 
-def members(system, motion, until):
-    """Run members of the set to a time; give their states there."""
+def final_states_of_members(system, motion, until):
+    """Run members of the set to a time; yield their states there."""
     for rotation in (-HEIGHT, -0.3 * HEIGHT, 0.0, HEIGHT):
         for rate in (-SPEED, -0.1 * SPEED, 0.2 * SPEED, 0.9999 * SPEED):
             run = system.simulate(
@@ -70,19 +70,19 @@ def members(system, motion, until):
 @pytest.mark.parametrize("shaking", GROUNDS)
 def test_every_member_rests_or_uplifts_within_bounds(name, shaking):
     motion = GROUNDS[shaking]
-    system, found = settled(BLOCKS[name], motion)
-    assert found is not None
-    instant = found.instant if isinstance(found, UpliftState) else found
+    system, result = follow_bounces_of(BLOCKS[name], motion)
+    assert result is not None
+    instant = result.instant if isinstance(result, UpliftState) else result
     until = instant.interval * STEP + float(instant.elapsed)
-    states = list(members(system, motion, until))
-    if isinstance(found, UpliftState):
+    states = list(final_states_of_members(system, motion, until))
+    if isinstance(result, UpliftState):
         assert shaking.startswith("it lifts")
         for state in states:
-            for one, value in zip(found.box, state, strict=True):
+            for one, value in zip(result.box, state, strict=True):
                 assert float(one.lower()) - 1e-12 <= value <= float(one.upper()) + 1e-12
-        # bounds, and no more than a few times what there is
+        # bounds are at most a few times the exact spread
         spread = max(abs(rate) for _, rate in states)
-        assert float(found.box[1].abs_upper()) < 4.0 * spread
+        assert float(result.box[1].abs_upper()) < 4.0 * spread
     else:
         assert until < 1.0
         assert set(states) == {(0.0, 0.0)}
@@ -92,17 +92,17 @@ def test_overestimated_bounce_losses_are_caught(monkeypatch):
     motion, block = GROUNDS["strong to one side"], BLOCKS["symmetric"]
     right = bounces._Bounds.restitution
     monkeypatch.setattr(bounces._Bounds, "restitution", property(lambda of: right.fget(of) / 3))
-    system, instant = settled(block, motion)
+    system, instant = follow_bounces_of(block, motion)
     until = instant.interval * STEP + float(instant.elapsed)
-    assert any(state != (0.0, 0.0) for state in members(system, motion, until))
+    assert any(state != (0.0, 0.0) for state in final_states_of_members(system, motion, until))
 
 
 def test_rotations_are_bounded_as_slow_ground_lifts_block():
-    """The ground takes three times 1/p to lift a block that it has nearly lifted at the start."""
+    """The ground needs three times 1/p to lift a block on the verge of uplift."""
     system = rf.System(BLOCKS["symmetric"], gravity="9.81 m/s^2")
-    assembly, lasts = system.assembly, "1.6 s"
+    assembly, duration = system.assembly, "1.6 s"
     verge = -9.81 * float(np.tan(assembly.model.system.right.angle))
-    motion = rf.GroundMotion.from_arrays(([0.9995 * verge, verge], "m/s^2"), lasts)
+    motion = rf.GroundMotion.from_arrays(([0.9995 * verge, verge], "m/s^2"), duration)
     with working_precision(106):
         problem = Problem.of(
             assembly.model.system, motion.si, assembly.options.slope,
@@ -112,35 +112,40 @@ def test_rotations_are_bounded_as_slow_ground_lifts_block():
         bounds = bounces._Bounds(problem, ball(0), speed)
         for halvings in range(4, 8):  # no bounds hold over longer windows
             span = window / 2**halvings
-            found = bounds.after_window(problem.ground(0).at(UNIT * span), span)
+            bound = bounds.after_window(problem.ground(0).at(UNIT * span), span)
             run = system.simulate(
                 motion, duration=f"{float(span)} s", accuracy="reference",
                 initial=rf.InitialState(rotation="0 rad", angular_velocity="0.01 rad/s"),
             )  # fmt: skip
-            assert 0.4 * found.height < float(run.peak_rotation) <= found.height
+            assert 0.4 * bound.height < float(run.peak_rotation) <= bound.height
 
 
 def test_members_before_impact_use_speed_before_impact(monkeypatch):
-    system, seen = rf.System(BLOCKS["symmetric"], gravity="9.81 m/s^2"), []
+    system, speeds = rf.System(BLOCKS["symmetric"], gravity="9.81 m/s^2"), []
     assembly = system.assembly
-    monkeypatch.setattr(rocking, "follow_bounces", lambda *given: seen.append(float(given[3])))
+    monkeypatch.setattr(
+        rocking, "follow_bounces", lambda *arguments: speeds.append(float(arguments[3]))
+    )
     with working_precision(106):
         problem = Problem.of(
             assembly.model.system, GROUNDS["still"].si, assembly.options.slope,
             assembly.setting.overturning_angles, 1.0, Deviations(), 0.1,
         )  # fmt: skip
-        one = rocking.RockingProver(problem)
-        one.start(0.0, SPEED)
+        prover = rocking.RockingProver(problem)
+        prover.start(0.0, SPEED)
         # all members strike within two and a half samples from now
         at = ball(0, 2.5 * STEP)
-        one.last_impact = ImpactEnclosure(one.states, at, ball(HEIGHT), ball(2 * SPEED))
+        prover.last_impact = ImpactEnclosure(prover.states, at, ball(HEIGHT), ball(2 * SPEED))
         for _ in range(3):
-            one.states, one.just_lifted = one.states._replace(centre=[ball(0), ball(0.1)]), True
-            one._follow_rocking()
-            one.states = one.states._replace(centre=[ball(HEIGHT), ball(SPEED)])
-            one._settle_bounces(lift=True)
-    assert min(seen[:2]) >= 2 * SPEED
-    assert seen[2] < 1.1 * SPEED
+            prover.states, prover.just_lifted = (
+                prover.states._replace(centre=[ball(0), ball(0.1)]),
+                True,
+            )
+            prover._follow_rocking()
+            prover.states = prover.states._replace(centre=[ball(HEIGHT), ball(SPEED)])
+            prover._settle_bounces(lift=True)
+    assert min(speeds[:2]) >= 2 * SPEED
+    assert speeds[2] < 1.1 * SPEED
 
 
 def test_jumping_ground_is_detected_and_widens_speed_bound():
@@ -167,7 +172,7 @@ def test_jumping_ground_is_detected_and_widens_speed_bound():
         bounds = bounces._Bounds(straight, ball(HEIGHT), ball(SPEED))
         assert bounds.after_jump(0) is bounds
         after = bounds.after_jump(last).remaining_speed - ball(SPEED)
-        # 0.5 m/s^2 are gone at once: the speed that falling through the height may then add
+        # 0.5 m/s^2 vanish at once: a fall through the height may then add this speed
         corner = straight.right
         assert after**2 >= 2 * HEIGHT * corner.ratio * 0.5
         assert after**2 < 4 * HEIGHT * corner.ratio * 0.5

@@ -1,7 +1,7 @@
 """Bodies on a Winkler bed, and blocks on pads on a cap, against independent integrations.
 
-The coupled monolith takes its equations from a Lagrangian that is differentiated
-symbolically, the bed's resultants from quadrature; neither shares code with the package.
+The coupled monolith differentiates a Lagrangian symbolically and integrates the bed by quadrature;
+neither model shares code with the package.
 """
 
 import numpy as np
@@ -14,7 +14,7 @@ import rockframe as rf
 pytestmark = pytest.mark.wide
 
 AGREEMENT = 1e-7  # of theta
-TIGHT = {"rtol": 1e-10, "atol": 1e-12}  # leaves the monoliths an error of some 1e-11
+TIGHT = {"rtol": 1e-10, "atol": 1e-12}  # gives the monoliths an error of about 1e-11
 GRAVITY = 9.80665
 RULES = ("contact-state", "leading-corner", "centre")
 CONTACTS = np.array(("full", "left", "right", "flight"))
@@ -72,11 +72,11 @@ def on_soil(rule, rotation, separation, motion, start, **run):
     return system.simulate(motion, initial=initial, accuracy="reference", **run)
 
 
-def monolith_on_soil(rule, rotation, separation, start, **given):
+def monolith_on_soil(rule, rotation, separation, start, **options):
     return winkler.simulate(
         **BLOCK, bed_stiffness=SOIL["stiffness"], bed_damping=SOIL["damping"],
         separation=separation, restraint=rule, rotation=rotation, gravity=GRAVITY,
-        initial=(start, None, 0.0, 0.0), **TIGHT, **given,
+        initial=(start, None, 0.0, 0.0), **TIGHT, **options,
     )  # fmt: skip
 
 
@@ -96,8 +96,8 @@ def compare_on_soil(ours, theirs):
     assert float(ours.flight_time) == pytest.approx(theirs.flight_time, abs=1e-6)
 
 
-# with the pressure rule and pivots that change with the contact the package and the
-# monolith follow different conventions, see the manual; both agree where pivots do not
+# with the pressure rule and pivots that change with the contact, the package and the
+# monolith use different conventions (see the manual); both agree where pivots do not change
 SEPARATIONS = [("displacement", rule) for rule in RULES] + [
     ("pressure", rule) for rule in ("leading-corner", "centre")
 ]
@@ -158,12 +158,12 @@ def stacked(rule, motion, start, beta=15, xi=0.1, **run):
     return system.simulate(motion, initial=initial, accuracy="reference", **run)
 
 
-def monolith_stacked(rule, start, beta=15, xi=0.1, **given):
+def monolith_stacked(rule, start, beta=15, xi=0.1, **options):
     return coupled.simulate(
         **BLOCK, **CAP, frequency_ratio=beta, damping_ratio=xi,
         bed_stiffness=SOIL["stiffness"], bed_damping=SOIL["damping"], restraint=rule,
         gravity=GRAVITY, initial=(None, 0.0, None, start, 0.0, 0.0, 0.0, 0.0),
-        **TIGHT, **given,
+        **TIGHT, **options,
     )  # fmt: skip
 
 

@@ -1,4 +1,4 @@
-"""The reference model of stacks: beside that of one or two bodies, and by itself."""
+"""The reference model of stacks, against that of one or two bodies and by balances."""
 
 from dataclasses import replace
 
@@ -6,22 +6,22 @@ import numpy as np
 import pytest
 
 pytest.importorskip("numba")
-from reference_models.maximal.drawing import draw as draw_known
 from reference_models.maximal.excitation import HARMONIC
-from reference_models.maximal.motions import both
+from reference_models.maximal.motions import build_motions
+from reference_models.maximal.random_scenes import draw as draw_known
 from reference_models.maximal.scene import Scene as Known
 from reference_models.maximal.simulate import Excitation
 from reference_models.maximal.simulate import simulate as simulate_known
-from reference_models.stacks.drawing import draw
+from reference_models.stacks.contact import COMPLETED
 from reference_models.stacks.forces import accelerate
+from reference_models.stacks.from_maximal import as_stack
 from reference_models.stacks.impulses import jump, relate
-from reference_models.stacks.paired import as_stack
+from reference_models.stacks.random_scenes import draw
 from reference_models.stacks.scene import GRAVITY, Bed, Body, Pads, Scene, mirrored, stack_of
 from reference_models.stacks.simulate import simulate
-from reference_models.stacks.standing import COMPLETED
-from reference_models.stacks.starting import placed, rest_of
+from reference_models.stacks.starting import rest_of, state_at
 
-# tests of a reference model, which changes seldom
+# tests of a reference model that rarely changes
 pytestmark = [pytest.mark.reference_models, pytest.mark.long]
 
 SCENES = {"plain": 24, "eccentric": 8}
@@ -32,21 +32,21 @@ def pulse(peak: float = 4.0, vertical: float = 2.0) -> Excitation:
     return Excitation.pulse(HARMONIC, 1.0 / 64.0, 64, 1.0, 0.0, peak, vertical)
 
 
-def block(width: float, height: float, **given) -> Body:
+def block(width: float, height: float, **options) -> Body:
     mass = 2000.0 * width * height
     inertia = mass * (width**2 + height**2) / 12.0
-    return Body(mass, inertia, 0.5 * width, 0.5 * height, 0.5 * height, **given)
+    return Body(mass, inertia, 0.5 * width, 0.5 * height, 0.5 * height, **options)
 
 
 def pads(bodies, frequency: float = 60.0, share: float = 0.1, eps: float = 0.6) -> tuple[Pads, ...]:
-    """Return pads of the same frequency and damping ratio under the load of each."""
+    """Return pads with the same frequency and damping ratio under each load."""
     loads = np.cumsum([body.mass for body in bodies])
     return tuple(Pads(0.5 * m * frequency**2, share * m * frequency, eps) for m in loads)
 
 
-def stack(count: int, **given) -> Scene:
+def stack(count: int, **options) -> Scene:
     bodies = tuple(block(1.2 + 0.1 * k, 2.0 - 0.1 * k) for k in range(count))
-    return Scene(bodies, pads(bodies), rotation=0.1, **given)
+    return Scene(bodies, pads(bodies), rotation=0.1, **options)
 
 
 @pytest.mark.parametrize("kind", COLUMNS)
@@ -56,7 +56,7 @@ def test_one_or_two_bodies_match_maximal_coordinates_model(kind, variant):
         known = replace(draw_known(kind, 1, number, variant), separation="displacement")
         if known.small:
             continue
-        motion = both(known.motion)[1]
+        motion = build_motions(known.motion)[1]
         one, other = simulate_known(known, motion), simulate(as_stack(known), motion)
         assert other.status == one.status, number
         assert len(other.events) == len(one.events), number
@@ -109,7 +109,7 @@ def test_mirrored_motion(offsets):
 
 def test_bodies_in_flight_fall():
     numbers = stack_of(stack(3), 1e-13)
-    z, standing, room = placed(numbers, np.zeros(3), 2.0 * numbers.settlement)
+    z, standing, room = state_at(numbers, np.zeros(3), 2.0 * numbers.settlement)
     assert not standing.hold.any()
     assert z[1] == pytest.approx(2.0 * numbers.settlement.sum(), rel=1e-12)
     accelerate(z, 0.3, 0.5, numbers, standing, room)
@@ -118,12 +118,12 @@ def test_bodies_in_flight_fall():
 
 
 def places(scene: Scene, q: np.ndarray) -> np.ndarray:
-    """Return x, y and angle of all bodies that are held at the middles of their bases.
+    """Return x, y and angle of all bodies, held at the middles of their bases.
 
-    `q` are rotations and heights of the centres of mass on what carries them.
+    `q` holds rotations and heights of the centres of mass relative to their supports.
     """
     n = len(scene.bodies)
-    angle, corner, found = 0.0, np.zeros(2), np.zeros(3 * n, dtype=q.dtype)
+    angle, corner, coordinates = 0.0, np.zeros(2), np.zeros(3 * n, dtype=q.dtype)
     for k in range(n - 1, -1, -1):
         body, turn = scene.bodies[k], q[2 * k]
         across = body.offset + body.height * np.sin(turn) + body.eccentricity * np.cos(turn)
@@ -131,11 +131,11 @@ def places(scene: Scene, q: np.ndarray) -> np.ndarray:
         along, normal = (np.cos(angle), -np.sin(angle)), (np.sin(angle), np.cos(angle))
         centre = [corner[i] + across * along[i] + up * normal[i] for i in range(2)]
         angle = angle + turn
-        found[3 * k : 3 * k + 3] = *centre, angle
+        coordinates[3 * k : 3 * k + 3] = *centre, angle
         # the middle of the deck, over that of the base
         along, normal = (np.cos(angle), -np.sin(angle)), (np.sin(angle), np.cos(angle))
         corner = [centre[i] - body.eccentricity * along[i] + body.top * normal[i] for i in range(2)]
-    return found
+    return coordinates
 
 
 def jacobian(scene: Scene, q: np.ndarray) -> np.ndarray:
@@ -145,7 +145,7 @@ def jacobian(scene: Scene, q: np.ndarray) -> np.ndarray:
 
 @pytest.fixture
 def moving():
-    """Return three eccentric blocks in motion, all their pads pressed, and minimal coordinates."""
+    """Return three moving eccentric blocks in full contact, and their minimal coordinates."""
     bodies = (
         block(0.8, 1.5, offset=0.05, eccentricity=0.03), block(1.0, 1.5, offset=-0.1),
         block(1.6, 1.0, eccentricity=0.1),
@@ -153,7 +153,7 @@ def moving():
     scene = Scene(bodies, pads(bodies, 20.0), rule="centre")
     numbers = stack_of(scene, 1e-13)
     angles = np.array([0.004, -0.006, 0.003])
-    z, standing, room = placed(numbers, angles, np.array([-0.002, 0.001, 0.003]))
+    z, standing, room = state_at(numbers, angles, np.array([-0.002, 0.001, 0.003]))
     assert standing.hold.all()
     relate(z, numbers, room)
     q, rates = np.zeros(6), np.array([0.3, 0.1, -0.2, -0.15, 0.25, 0.05])
@@ -163,7 +163,7 @@ def moving():
 
 
 def test_accelerations_follow_from_virtual_work(moving):
-    """Minimal coordinates, differentiated numerically: J' (M a - F) = 0 with a = J q'' + J' q'."""
+    """Virtual work in minimal coordinates: J' (M a - F) = 0 with a = J q'' + J' q', J numerical."""
     scene, numbers, z, standing, room, q, rates = moving
     accelerate(z, 0.7, -0.4, numbers, standing, room)
     jac, mass = jacobian(scene, q), 1.0 / numbers.inverse[:9]
@@ -199,7 +199,7 @@ def test_an_impact_acts_on_all_bodies(moving):
 
 
 def test_a_corner_that_would_be_held_again_at_once_does_not_leave():
-    """Without that rule it would leave and be held thousands of times at one instant."""
+    """Without that rule it would separate and re-engage thousands of times at one instant."""
     samples = 4.0 * 2.3246231155778894 * np.sin(0.314 * np.arange(120))
     known = Known("pads", radius=3.0, slenderness=4.5, beta=12.816816816816818)
     history = simulate(as_stack(known), Excitation.record(0.02, samples))
@@ -209,9 +209,9 @@ def test_a_corner_that_would_be_held_again_at_once_does_not_leave():
 
 @pytest.mark.parametrize("firm", [1.0, 2.0])
 def test_three_bodies_on_firm_pads_converge_to_one_body(firm):
-    """Three blocks on pads so stiff that they stay together, beside one of their size."""
+    """Three blocks on very stiff pads against one block of their total size."""
     third, whole = block(1.0, 1.0), block(1.0, 3.0)
-    below = pads([whole], 30.0, eps=1.0)[0]  # an impact would act on the lowest block alone
+    below = pads([whole], 30.0, eps=1.0)[0]  # an impact would act on the lowest block only
     stiff = Pads(firm * 2e3 * below.stiffness, firm * 2e1 * below.damping, 0.6)
     bodies = (third, third, replace(third, top=0.5))
     three = Scene(bodies, (stiff, stiff, below), rule="centre", free=1.0)
@@ -226,11 +226,11 @@ def test_random_scenes_uplift_and_overturn():
     ends = []
     for number in (*range(6), 7, 13):  # some rest, some rock, and the last overturns
         scene = draw(np.random.default_rng([5, number]))
-        history = simulate(scene, both(scene.motion)[1], 1e-11)
+        history = simulate(scene, build_motions(scene.motion)[1], 1e-11)
         assert abs(history.imbalance) < 1e-9
         ends.append((bool(history.events), history.overturned))
     assert 2 <= sum(uplifted for uplifted, _ in ends) <= 7
-    assert 1 <= sum(fallen for _, fallen in ends) <= 2
+    assert 1 <= sum(overturned for _, overturned in ends) <= 2
 
 
 def test_tolerance_does_not_matter():

@@ -14,7 +14,7 @@ TIME_STEP, DURATION = 0.05, 1.5
 
 
 def compare(number):
-    """Return how far both are apart over the peak, the balance of energies, and what happens."""
+    """Return difference over the peak, energy balance and events of both programs."""
     rng = np.random.default_rng([60, number])
     width = rng.uniform(0.4, 1.5)
     height = width * rng.uniform(1.5, 5.0)
@@ -22,7 +22,7 @@ def compare(number):
     stiffness = GRAVITY * width / height**2 * 10.0 ** rng.uniform(0.0, 2.0)
     preload = float(rng.choice([0.0, rng.uniform(0.0, 1.0)])) * GRAVITY
     noise = rng.normal(size=16) * rng.uniform(0.5, 4.0) * GRAVITY * width / height
-    moved = np.array([0.0, *noise, 0.0])
+    acceleration = np.array([0.0, *noise, 0.0])
     start = float(rng.choice([0.0, 1.0]) * rng.uniform(-0.5, 0.5) * math.atan2(width, height))
     system = rf.System(
         rf.Block(width=f"{width!r} m", height=f"{height!r} m", mass="1 kg"),
@@ -32,7 +32,7 @@ def compare(number):
         ),
     )  # fmt: skip
     run = system.simulate(
-        rf.GroundMotion.from_arrays((moved, "m/s^2"), f"{TIME_STEP} s"),
+        rf.GroundMotion.from_arrays((acceleration, "m/s^2"), f"{TIME_STEP} s"),
         initial=rf.InitialState(rotation=f"{start!r} rad") if start else None,
         accuracy="reference", output_step="10 ms", duration=f"{DURATION} s", outputs=("energy",),
     )  # fmt: skip
@@ -40,8 +40,10 @@ def compare(number):
     ties = [tendon.Tendon(b + at, b - at, stiffness, preload)]
     block = tendon.Block(b, h, (b * b + h * h) / 3.0, GRAVITY, ties)
     times = np.append(run.time.values, DURATION)
-    found = tied_rigid_block.simulate(block, moved, TIME_STEP, start, times, limit=block.theta)
-    ours, theirs = run.rotation.values, found.rotation[:-1]
+    reference = tied_rigid_block.simulate(
+        block, acceleration, TIME_STEP, start, times, limit=block.theta
+    )
+    ours, theirs = run.rotation.values, reference.rotation[:-1]
     both = ~np.isnan(ours) & ~np.isnan(theirs)
     return {
         "number": number,
@@ -49,14 +51,14 @@ def compare(number):
         / max(float(np.abs(ours[both]).max()), 1e-3),
         "energy_residual": float(run.energy_residual),
         "events": len(run.event_time),
-        "overturned": (bool(run.overturned), found.overturned),
+        "overturned": (bool(run.overturned), reference.overturned),
     }
 
 
 @pytest.mark.parametrize("number", [2, 5, 6, 11])
 def test_random_blocks_with_a_tendon(number):
-    found = compare(number)
-    assert found["difference"] < 1e-9
-    assert found["energy_residual"] < 1e-9
-    assert found["overturned"][0] == found["overturned"][1]
-    assert found["events"] > 1
+    comparison = compare(number)
+    assert comparison["difference"] < 1e-9
+    assert comparison["energy_residual"] < 1e-9
+    assert comparison["overturned"][0] == comparison["overturned"][1]
+    assert comparison["events"] > 1

@@ -91,16 +91,16 @@ def by_package(scene: dict):
         body, restitution=(eps, eps), stiffness=0.5 * fast**2, damping=damping, load=1.0
     )
     links = []
-    for one in scene["ties"]:
-        (x, y), (anchor_x, anchor_y), k = one["point"], one["anchor"], one["stiffness"]
+    for tie in scene["ties"]:
+        (x, y), (anchor_x, anchor_y), k = tie["point"], tie["anchor"], tie["stiffness"]
         law = Tie(
-            k, one["damping"], one["slack"] - one["preload"] / k, one["strength"] / k,
-            float(one["brittle"]), float(one["compression"]),
+            k, tie["damping"], tie["slack"] - tie["preload"] / k, tie["strength"] / k,
+            float(tie["brittle"]), float(tie["compression"]),
         )  # fmt: skip
         links.append(
             ChainLink(
                 0, (x, y), GROUND, (0.0, 0.0), (x - anchor_x, y + h - anchor_y),
-                LinkNumbers(law, k, one["damping"], (1e-3,)),
+                LinkNumbers(law, k, tie["damping"], (1e-3,)),
             )
         )  # fmt: skip
     model = chain_model([ChainBody(body, base, 1.0, h, 0.0)], 1.0, [AtRest(0.0, 0.0)], (), links)
@@ -114,7 +114,7 @@ def by_package(scene: dict):
 
 
 def by_hand(scene: dict, height: float, times):
-    """Run it by the monolith."""
+    """Run a scene by the monolith."""
     b, h = scene["half_width"], scene["half_height"]
     omega = math.sqrt(0.75 * GRAVITY / math.hypot(b, h))
     return two_spring.simulate(
@@ -122,7 +122,7 @@ def by_hand(scene: dict, height: float, times):
         frequency_ratio=scene["vertical_rate"] / omega, damping_ratio=scene["damping_ratio"],
         restitution=scene["restitution"], time_step=TIME_STEP, acceleration=scene["motion"],
         duration=scene["duration"], initial=(scene["rotation"], height, 0.0, 0.0),
-        sample_times=times, steps_per_period=20.0, tied=[ties.Tie(**one) for one in scene["ties"]],
+        sample_times=times, steps_per_period=20.0, tied=[ties.Tie(**tie) for tie in scene["ties"]],
     )  # fmt: skip
 
 
@@ -133,7 +133,7 @@ def compared() -> list:
         scene = draw(number)
         run = by_package(scene)
         if EventKind.PIVOT_CHANGE in run.events.kind:
-            continue  # an end slides out of flight, by a rule that the monolith has not
+            continue  # the monolith lacks the rule by which an end slides out of flight
         theirs = by_hand(scene, float(run.state[0, 1]), run.time)
         found.append((number, run, theirs))
     return found
@@ -147,7 +147,7 @@ def test_rotations_match_monolith(compared):
         count = min(len(ours), int(np.sum(~np.isnan(theirs.rotation))))
         gap = np.abs(ours[:count] - theirs.rotation[:count]).max() / np.abs(ours).max()
         differences[number] = float(gap)
-    assert {one: gap for one, gap in differences.items() if gap > AGREES} == {}
+    assert {tie: gap for tie, gap in differences.items() if gap > AGREES} == {}
     assert np.median(list(differences.values())) < 1e-9
 
 
@@ -155,14 +155,14 @@ def test_tie_events_match_monolith_and_energy_balances(compared):
     kinds = Counter()
     for number, run, theirs in compared:
         shown = run.events.kind[run.events.kind >= EventKind.RESTRAINER_SLACK]
-        ours = Counter(EventKind(one).name for one in shown)
-        said = Counter(SAME[one.kind].name for one in theirs.events if one.kind in SAME)
+        ours = Counter(EventKind(tie).name for tie in shown)
+        their_counts = Counter(SAME[tie.kind].name for tie in theirs.events if tie.kind in SAME)
         assert theirs.energy_residual < 1e-10, number
         assert run.energy_residual < 1e-8, number
-        broken = sum(one.state == ties.BROKEN for one in theirs.ties)
+        broken = sum(tie.state == ties.BROKEN for tie in theirs.ties)
         kinds += ours + Counter(broken=broken)
         del ours["RESTRAINER_FRACTURE"]
-        # what starts stretched beyond its strength is unloaded, or broken, at the start
+        # a tie stretched beyond its strength at the start is unloaded, or broken, there
         for name in ("RESTRAINER_SLACK", "RESTRAINER_TAUT"):
-            assert abs(ours[name] - said[name]) <= 1, number
-    assert min(kinds[one] for one in ("broken", *(SAME[k].name for k in SAME))) > 3
+            assert abs(ours[name] - their_counts[name]) <= 1, number
+    assert min(kinds[tie] for tie in ("broken", *(SAME[k].name for k in SAME))) > 3

@@ -27,7 +27,7 @@ def draw(number: int) -> dict:
     for _ in range(int(rng.integers(1, 4))):
         side = 1.0 if rng.random() < 0.5 else -1.0
         up = height * rng.uniform(0.1, 1.0)
-        # stiff enough to hold, and not so that it cannot be seen
+        # stiff enough to hold, but with visible elongation
         stiffness = GRAVITY * width / height**2 * 10.0 ** rng.uniform(0.0, 3.0)
         stretch = 0.1 * width * rng.uniform(0.1, 1.0)
         rod, kind = rng.random() < 0.25, rng.integers(3)
@@ -51,11 +51,11 @@ def draw(number: int) -> dict:
     }  # fmt: skip
 
 
-def scene_of(drawn: dict) -> tuple[rf.System, rf.GroundMotion]:
-    """Return the scene of a mass of 1 kg."""
-    block = rf.Block(width=f"{drawn['width']!r} m", height=f"{drawn['height']!r} m", mass="1 kg")
+def scene_of(scene: dict) -> tuple[rf.System, rf.GroundMotion]:
+    """Return the package's scene of a block of 1 kg."""
+    block = rf.Block(width=f"{scene['width']!r} m", height=f"{scene['height']!r} m", mass="1 kg")
     parts = []
-    for one in drawn["ties"]:
+    for one in scene["ties"]:
         kept = {
             "slack": f"{one['slack']!r} m" if one["slack"] else None,
             "strength": f"{one['strength']!r} N" if math.isfinite(one["strength"]) else None,
@@ -72,38 +72,38 @@ def scene_of(drawn: dict) -> tuple[rf.System, rf.GroundMotion]:
             )
         )  # fmt: skip
     motion = rf.GroundMotion.from_arrays(
-        (np.array(drawn["motion"]), "m/s^2"), time_step=f"{TIME_STEP} s"
+        (np.array(scene["motion"]), "m/s^2"), time_step=f"{TIME_STEP} s"
     )
     return rf.System(block, *parts), motion
 
 
-def by_hand(drawn: dict, times: np.ndarray, **options) -> tied_rigid_block.Found:
-    """Run it by hand."""
-    b, h = 0.5 * drawn["width"], 0.5 * drawn["height"]
+def by_hand(scene: dict, times: np.ndarray, **options) -> tied_rigid_block.Result:
+    """Run a scene by the hand-written equation."""
+    b, h = 0.5 * scene["width"], 0.5 * scene["height"]
     some = [
         ties.Tie(
             (one["on"][0], one["on"][1] - h), one["to"], one["stiffness"], one["damping"],
             one["slack"], 0.0, one["strength"], one["brittle"], one["compression"],
         )
-        for one in drawn["ties"]
+        for one in scene["ties"]
     ]  # fmt: skip
     block = tied_rigid_block.Block(b, h, (b * b + h * h) / 3.0, GRAVITY, some)
     return tied_rigid_block.simulate(
-        block, drawn["motion"], TIME_STEP, drawn["rotation"], times, limit=block.theta, **options
+        block, scene["motion"], TIME_STEP, scene["rotation"], times, limit=block.theta, **options
     )
 
 
 def compare(number: int, **options) -> dict | None:
-    """Return how far both are apart over the peak, and their events; None where it flies."""
-    drawn = draw(number)
-    system, motion = scene_of(drawn)
-    start = rf.InitialState(rotation=f"{drawn['rotation']!r} rad") if drawn["rotation"] else None
+    """Return the difference over the peak, and the events; None for a scene with flight."""
+    scene = draw(number)
+    system, motion = scene_of(scene)
+    start = rf.InitialState(rotation=f"{scene['rotation']!r} rad") if scene["rotation"] else None
     run = system.simulate(
         motion, initial=start, accuracy="reference", output_step="10 ms", duration=f"{DURATION} s",
         overturning="stop", outputs=("energy",),
     )  # fmt: skip
-    # on beyond the instant at which ours overturned
-    theirs = by_hand(drawn, np.append(run.time.values, DURATION), **options)
+    # also beyond the instant at which ours overturned
+    theirs = by_hand(scene, np.append(run.time.values, DURATION), **options)
     kinds = Counter(EventKind(int(one)).name for one in run.event_kind.values)
     if theirs.lifted or kinds["SEPARATION"]:
         return None
@@ -121,20 +121,20 @@ def compare(number: int, **options) -> dict | None:
 
 
 @pytest.fixture(scope="module")
-def compared() -> list[dict]:
+def comparisons() -> list[dict]:
     return [found for number in SCENES if (found := compare(number)) is not None]
 
 
-def test_rotations_match_handwritten_equation(compared):
-    assert len(compared) == len(SCENES)
-    off = {one["number"]: one["difference"] for one in compared if one["difference"] > AGREES}
+def test_rotations_match_handwritten_equation(comparisons):
+    assert len(comparisons) == len(SCENES)
+    off = {one["number"]: one["difference"] for one in comparisons if one["difference"] > AGREES}
     assert off == {}
-    assert np.median([one["difference"] for one in compared]) < 1e-9
+    assert np.median([one["difference"] for one in comparisons]) < 1e-9
 
 
-def test_verdicts_match_handwritten_equation_and_energy_balances(compared):
+def test_verdicts_match_handwritten_equation_and_energy_balances(comparisons):
     kinds = Counter()
-    for one in compared:
+    for one in comparisons:
         assert one["energy_residual"] < 1e-8, one["number"]
         assert one["overturned"][0] == one["overturned"][1], one["number"]
         kinds += one["events"]
@@ -145,7 +145,7 @@ def test_verdicts_match_handwritten_equation_and_energy_balances(compared):
 @pytest.mark.parametrize(
     ("anchored", "stands", "falls"),
     [
-        (False, (1.0, 3.62), (3.67,)),  # falls from 3.644 g on, scanned in steps of 0.02
+        (False, (1.0, 3.62), (3.67,)),  # overturns from 3.644 g on, scanned in steps of 0.02
         (True, (1.085,), (1.0,)),  # from 0.984 to 1.064 g
     ],
 )

@@ -1,15 +1,15 @@
-"""A stack of which both bases have states and variables of their own.
+"""A stack whose two bases both have their own states and variables.
 
-Those do nothing here: each variable grows at a rate of its own, and no end changes its state.
-So all else is as without them, although modes go beyond sixteen bits. That stacks on bases with
-variables are compiled to the same numbers is tested with the example of a base of one's own.
+They have no effect here: each variable grows at its own rate, and no end changes its state. All
+other results are as without them, although modes exceed sixteen bits. The example of a user's base
+tests that stacks on bases with variables give the same numbers when compiled.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 import pytest
-from plainly import plainly
+from plain_python import plain_python
 
 from rockframe.dynamics.base_numbers import BaseNumbers, pads_numbers, pads_over
 from rockframe.dynamics.body import LEADING_CORNER
@@ -24,13 +24,13 @@ from rockframe.solve.integrate import integrate
 from rockframe.solve.observe import memory_at_outputs, observe_states
 
 RATES = (3.0, 5.0)
-"""Of the upper base's variable and of the lower one's [s^-1]."""
+"""Growth rates of the variables of the upper and the lower base [s^-1]."""
 CAP_MASS = 0.4
 
 
 @point_law
 class AgeingPad(NamedTuple):
-    """An elastic pad that remembers how long it has stood, in a unit of its own."""
+    """An elastic pad with its age as a variable, in a unit of its own."""
 
     stiffness: float
     damping: float
@@ -77,7 +77,7 @@ class AgeingPad(NamedTuple):
 
 
 def aged(base: BaseNumbers, name: str, rate: float) -> BaseNumbers:
-    """Return pads that age."""
+    """Return pads with age."""
     law = AgeingPad(*base.law.law, rate)
     columns = [Column(f"{side}_{name}") for side in ("left", "right")]
     return pads_over(law, base, columns=columns, variable_scales=[1.0])
@@ -128,18 +128,18 @@ def test_each_base_of_stack_has_own_variables_and_states():
         lambda pads: aged(pads, "age_above", RATES[0]),
         lambda pads: aged(pads, "age_below", RATES[1]),
     )
-    with plainly():
+    with plain_python():
         expected, run = shaken(plain), shaken(model)
-        before, found = observed(plain, expected), observed(model, run)
+        plain_histories, histories = observed(plain, expected), observed(model, run)
     assert len(expected.events.time) > 4
     np.testing.assert_allclose(run.events.time, expected.events.time, atol=1e-9)
-    for name, history in before.items():
+    for name, history in plain_histories.items():
         np.testing.assert_allclose(
-            found[name], history, atol=1e-7 * (1e-9 + np.abs(history).max()), err_msg=name
+            histories[name], history, atol=1e-7 * (1e-9 + np.abs(history).max()), err_msg=name
         )
     for name, rate in zip(("age_above", "age_below"), RATES, strict=True):
         for side in ("left", "right"):
-            np.testing.assert_allclose(found[f"{side}_{name}"], rate * run.time, rtol=1e-12)
+            np.testing.assert_allclose(histories[f"{side}_{name}"], rate * run.time, rtol=1e-12)
     assert run.mode.max() > np.iinfo(np.int16).max
     for body in range(2):
         np.testing.assert_array_equal(

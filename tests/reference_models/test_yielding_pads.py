@@ -1,4 +1,4 @@
-"""Pads that yield, the example of a base of one's own, against a hand-written integration.
+"""Yielding pads, the example of a user's base, against a hand-written integration.
 
 The monolith shares no code with the package, nor with the example. Histories of the rotation
 must agree to 1e-7 of the overturning angle, plastic sets to 1e-7 of the settlement.
@@ -9,13 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from own_example import example
 from reference_models.monoliths import two_spring, yielding_pads
+from user_examples import example
 
 import rockframe as rf
 
 AGREEMENT = 1e-7
-TIGHT = {"rtol": 1e-10, "atol": 1e-12}  # leaves the monoliths an error of some 1e-11
+TIGHT = {"rtol": 1e-10, "atol": 1e-12}  # gives the monoliths an error of about 1e-11
 GRAVITY = 9.80665
 STEP = 0.02
 SMOOTH = np.ones(5) / 5.0
@@ -118,7 +118,7 @@ HAPPENS = {
     "with vertical motion, contact-state": {"yield": 2, "engage": 2, "press": 1, "land": 3},
     "overturning": {"yield": 4, "leave": 2, "land": 2},
 }
-"""How often, at least, what each scene is for; none means never."""
+"""Least number of each scene's characteristic events; none means never."""
 
 
 SECOND_LOOKS = ("pulse", "across", "with vertical motion, contact-state")
@@ -163,16 +163,16 @@ def test_histories_and_sets(example_pads, name):
 
 
 def test_a_landing_makes_pads_yield():
-    """The scenes have corners that come down, and yield before they leave again."""
+    """The scenes have corners that land, and yield before they separate again."""
     scene = SCENES["pulse"]
     events = scene.monolith(np.linspace(0.0, scene.duration, 11)).events
     last: dict[str, str] = {}
-    found = 0
+    count = 0
     for _, kind, corner in events:
-        found += kind == "yield" and last.get(corner) == "land"
+        count += kind == "yield" and last.get(corner) == "land"
         if kind in ("land", "leave"):
             last[corner] = kind
-    assert found >= 1
+    assert count >= 1
 
 
 @pytest.mark.parametrize("rule", [pytest.param("centre", marks=pytest.mark.long), "contact-state"])
@@ -181,13 +181,13 @@ def test_monolith_with_strong_pads_matches_elastic_monolith(rule):
     scene = Scene(radius=3.0, slenderness=3.0, xi=0.05, rough=(9.0, 3.0, 26))
     times = np.linspace(0.0, scene.duration, 301)
     block = scene.block
-    given = {
+    options = {
         "half_width": 0.5 * block.width.m_as("m"), "half_height": 0.5 * block.height.m_as("m"),
         "frequency_ratio": scene.beta, "damping_ratio": scene.xi, "restraint": rule,
         "gravity": GRAVITY, "duration": scene.duration, "sample_times": times, **scene.drive,
     }  # fmt: skip
-    elastic = two_spring.simulate(shape_factor=3.0, **given)
-    ours = yielding_pads.simulate(strength=1e9, hardening=0.1, **given)
+    elastic = two_spring.simulate(shape_factor=3.0, **options)
+    ours = yielding_pads.simulate(strength=1e9, hardening=0.1, **options)
     assert ours.count("land") == elastic.landing_count >= 1
     difference = np.nanmax(np.abs(ours.rotation - elastic.rotation))
     assert difference <= 1e-9 * math.atan(1.0 / 3.0)

@@ -1,4 +1,4 @@
-"""Random blocks before walls, by the package and by a program of their own."""
+"""Random blocks before walls, in the package and in an independent program."""
 
 import numpy as np
 from reference_models.monoliths import wall_block
@@ -8,7 +8,7 @@ import rockframe as rf
 GRAVITY = 9.80665
 
 
-def drawn(seed):
+def draw_scene(seed):
     """Return a random block, wall, motion and start."""
     rng = np.random.default_rng(seed)
     height = rng.uniform(1.0, 12.0)
@@ -30,7 +30,7 @@ def drawn(seed):
 
 def compare(seed):
     """Return the largest difference of rotation over theta, and both runs."""
-    block, wall, noise, step, start = drawn(seed)
+    block, wall, noise, step, start = draw_scene(seed)
     system = rf.System(block, wall)
     corner = system.setting.body
     side = 1.0 if str(wall.side) == "left" else -1.0
@@ -43,7 +43,7 @@ def compare(seed):
         theta, np.hypot(distance, corner.centre_height), corner.gyration_square_about(distance),
         float(wall.restitution), side * noise, step, gravity=GRAVITY, start=(start * theta, 0.0),
     )  # fmt: skip
-    held = ~np.isnan(theirs.rotation)
-    count = min(int(held.sum()), ours.sizes["time"])
-    apart = np.abs(side * ours.rotation.to_numpy()[:count] - theirs.rotation[:count]).max()
-    return apart / theta, ours, theirs
+    known = ~np.isnan(theirs.rotation)
+    count = min(int(known.sum()), ours.sizes["time"])
+    difference = np.abs(side * ours.rotation.to_numpy()[:count] - theirs.rotation[:count]).max()
+    return difference / theta, ours, theirs

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
-from pages import read, said
+from pages import numbers_in, read
 from unit.certified import (
     BLOCK,
     NAMES,
@@ -89,9 +89,9 @@ def test_certificate_sentence_matches_its_numbers():
         scaled = f"scaled {'up' if flip > 1.0 else 'down'} by {100.0 * abs(flip - 1.0):.3g} %"
         nearest = f"with another verdict is {flip:.6g}."
         # the flip is said once, wherever it is known, and none where it is not
-        said = (scaled in text) + (nearest in text)
-        assert said == (0 if math.isnan(flip) else 1), text
-        assert ("another verdict is" in text) + ("scaled" in text) == said, text
+        numbers_in = (scaled in text) + (nearest in text)
+        assert numbers_in == (0 if math.isnan(flip) else 1), text
+        assert ("another verdict is" in text) + ("scaled" in text) == numbers_in, text
         doubt = text.startswith("Near the boundary: ")
         assert doubt or (found.converged and found.robust), text
         assert doubt != (" also with " in text)
@@ -401,11 +401,11 @@ def test_changes_at_the_reach_are_counted_as_tried():
 
 def test_documentation_matches_certification_constants():
     page = "guide/tradeoff.md"
-    assert said(page, "at most `rf.Certification(runs=...)`, # unless given") == [200]
-    assert said(page, "steps # times shorter than they were on average") == [SHORTER]
-    assert said(page, "three with every interval of the motion divided into #, # and #") == list(
-        DIVISIONS
-    )
+    assert numbers_in(page, "at most `rf.Certification(runs=...)`, # unless given") == [200]
+    assert numbers_in(page, "steps # times shorter than they were on average") == [SHORTER]
+    assert numbers_in(
+        page, "three with every interval of the motion divided into #, # and #"
+    ) == list(DIVISIONS)
     assert "is three times the largest difference of their peaks" in read(page).replace("\n  ", " ")
     assert SAFETY == 3.0
-    assert said(page, "down to `certificate_resolution`, # %") == [100.0 * RESOLUTION]
+    assert numbers_in(page, "down to `certificate_resolution`, # %") == [100.0 * RESOLUTION]

@@ -6,7 +6,7 @@ import numpy as np
 import pint
 import pytest
 import xarray as xr
-from plainly import plainly
+from plain_python import plain_python
 
 import rockframe as rf
 from rockframe.errors import SchemaError, SolverWarning
@@ -273,7 +273,7 @@ def test_restrainers_missing_from_a_run_become_gaps(tmp_path):
         ties = [rf.Tendon(stiffness="1 MN/m", name=name) for name in names]
         return rf.System(BLOCK, *ties).simulate(PULSE)
 
-    with plainly():
+    with plain_python():
         runs = [tied("west"), tied("west", "east"), tied("east")]
     joined = rf.concat(runs, histories=True)
     assert joined.restrainer.values.tolist() == ["west", "east"]
@@ -296,7 +296,7 @@ def test_joined_sweeps_with_gaps_equal_the_whole_sweep(tmp_path):
         asked = {"accuracy": "fast", "outputs": ["rotation"], "duration": "0.2 s"}
         return rf.sweep(drums, PULSE, count=counts, **asked)
 
-    with plainly():
+    with plain_python():
         parts, whole = [swept(2), swept(3, 1)], swept(2, 3, 1)
     joined = rf.concat(parts, "count", histories=True)
     for name in ("overturned", "peak_body_slip", "peak_body_rotation", "rotation", "status"):

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from plainly import plainly
+from plain_python import plain_python
 
 import rockframe as rf
 from rockframe.command.files.scenes import read_scene
@@ -117,7 +117,7 @@ def test_links_of_all_kinds_share_compiled_code(base):
 
 def test_work_of_a_load_is_potential_energy_with_restrainers():
     slack = rf.Restrainer(on=("-1 m", "6 m"), to=("-3 m", "6 m"), stiffness="1 MN/m", slack="9 m")
-    with plainly():
+    with plain_python():
         alone, beside = (
             rf.System(BLOCK, LOAD, *links).simulate(PULSE, duration="0.8 s", outputs=("energy",))
             for links in ((), (slack,))

@@ -1,9 +1,9 @@
-"""Rocking bodies by Newton and Euler in maximal coordinates, with an own treatment of events.
+"""Rocking bodies by Newton and Euler in maximal coordinates, with an independent event search.
 
-Each body has the coordinates (x, y, angle) of its centre of mass; what holds it horizontally is a
+Each body has the coordinates (x, y, angle) of its centre of mass; it is held horizontally by a
 constraint with a Lagrange multiplier, and contact forces follow from the places and speeds of the
 corners. The laws are those of the manual; nothing of ``rockframe`` is used to integrate them.
 
-The functions are compiled by numba and kept beside the sources. Numba does not notice that a
-function changed which another file calls: after an edit remove ``__pycache__``.
+The functions are compiled by numba and cached beside the sources. Numba does not notice changes of
+functions called from other files: remove ``__pycache__`` after an edit.
 """

@@ -1,4 +1,4 @@
-"""Resultants of the bed by Gauss's quadrature on the part of the base that bears."""
+"""Resultants of the bed by Gauss's quadrature over the bearing part of the base."""
 
 import math
 
@@ -55,15 +55,15 @@ def bed_pressure(z, p, s):
 
 @within
 def no_suction(p):
-    """Tell whether the part of the base where dashpots would pull is cut off."""
+    """Tell whether parts of the base where dashpots would pull separate."""
     return p[NO_SUCTION] > 0.5 and p[BED_DAMPING] > 0.0
 
 
 @within
 def bearing(contact, z, p):
-    """Return the ends of the part that bears: that is down, and pushes if suction is excluded.
+    """Return the ends of the bearing part: below the bed's level, and pressed without suction.
 
-    Which end is cut off belongs to the contact state, so that forces are smooth within it.
+    The contact state says which end is cut off, so that forces are smooth within a state.
     """
     start, end = down(contact, z, p)
     if not no_suction(p) or not (contact[CUT_START] or contact[CUT_END]):
@@ -77,7 +77,7 @@ def bearing(contact, z, p):
 
 @within
 def end_pressures(contact, z, p):
-    """Return the pressures at both ends of the part that is down, over the static one."""
+    """Return the pressures at both ends of the part below the bed's level, over the static one."""
     start, end = down(contact, z, p)
     scale = p[BED_STIFFNESS] * p[BED_SETTLEMENT]
     return bed_pressure(z, p, start)[2] / scale, bed_pressure(z, p, end)[2] / scale
@@ -85,7 +85,7 @@ def end_pressures(contact, z, p):
 
 @within
 def cut_off(contact, z, p, noise):
-    """Note which ends are cut off; what stands within `noise` of zero stays as it is."""
+    """Record which ends are cut off; pressures within `noise` of zero change nothing."""
     if not no_suction(p):
         return
     first, last = end_pressures(contact, z, p)
@@ -97,7 +97,7 @@ def cut_off(contact, z, p, noise):
 
 @within
 def resultants(contact, z, p):
-    """Return force and generalised force on the rotation of what bears."""
+    """Return force and generalised force on the rotation from the bearing part."""
     start, end = bearing(contact, z, p)
     middle, half = 0.5 * (start + end), 0.5 * (end - start)
     force = moment = 0.0
@@ -125,6 +125,6 @@ def bed_energy(contact, z, p):
     for i in range(3):
         weight = 5.0 / 9.0 if i != 1 else 8.0 / 9.0
         u, rate, _, _ = bed_pressure(z, p, middle + (i - 1.0) * _GAUSS * half)
-        # outside the bearing part the springs' power is dissipated, inside that of the dashpots
+        # springs dissipate outside the bearing part, dashpots inside
         power += weight * half * rate * (p[BED_DAMPING] * rate - p[BED_STIFFNESS] * u)
     return energy, power

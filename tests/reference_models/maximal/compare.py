@@ -19,9 +19,9 @@ if __package__ in (None, ""):
     sys.path.insert(0, str(HERE.parents[2]))
     sys.path.append(str(ROOT))
 
-from reference_models.maximal.comparing import LEVELS, Outcome, compare  # noqa: E402
-from reference_models.maximal.drawing import VARIANTS  # noqa: E402
-from reference_models.maximal.motions import have_records  # noqa: E402
+from reference_models.maximal.comparison import LEVELS, Outcome, compare  # noqa: E402
+from reference_models.maximal.motions import records_available  # noqa: E402
+from reference_models.maximal.random_scenes import VARIANTS  # noqa: E402
 from reference_models.maximal.scene import KINDS  # noqa: E402
 
 DATA = ROOT / "docs" / "data"
@@ -29,69 +29,71 @@ LABELS = ("agrees", "chaos", "sensitive", "by tolerance", "disagrees", "apart")
 
 
 def main() -> None:
-    """Run the comparison that the command line asks for."""
+    """Run the comparison requested on the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--scenes", type=int, default=1000)
     parser.add_argument("--first", type=int, default=0, help="number of the first scene")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", nargs="+", choices=KINDS, default=list(KINDS))
     parser.add_argument("--replay", type=int, nargs="+", help="numbers of scenes to repeat")
-    parser.add_argument("--limit", type=float, help="of agreement, in the place of the level's")
+    parser.add_argument("--limit", type=float, help="of agreement, instead of the level's")
     parser.add_argument("--variants", nargs="+", choices=VARIANTS, default=[VARIANTS[0]])
     parser.add_argument("--levels", nargs="+", choices=LEVELS, default=["tight"])
     parser.add_argument("--json", type=Path)
-    given = parser.parse_args()
-    if not have_records():
-        print("no recorded motions (set ROCKFRAME_RECORDS): sums of sines in their place")
+    options = parser.parse_args()
+    if not records_available():
+        print("no recorded motions (set ROCKFRAME_RECORDS): sums of sines instead")
     tables = []
-    for variant in given.variants:
-        for kind in given.only:
-            tables += _compared(kind, variant, given)
-    if not given.replay:
-        usual = given.variants == [VARIANTS[0]] and given.levels == ["tight"]
-        path = given.json or DATA / f"maximal_oracle{'' if usual else '_levels'}.json"
+    for variant in options.variants:
+        for kind in options.only:
+            tables += _compare_kind(kind, variant, options)
+    if not options.replay:
+        usual = options.variants == [VARIANTS[0]] and options.levels == ["tight"]
+        path = options.json or DATA / f"maximal_oracle{'' if usual else '_levels'}.json"
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(json.dumps(tables, indent=1) + "\n")
 
 
-def _compared(kind: str, variant: str, given: argparse.Namespace) -> list[dict]:
+def _compare_kind(kind: str, variant: str, options: argparse.Namespace) -> list[dict]:
     """Compare scenes of one kind, and give a table for each level."""
-    numbers = given.replay or range(given.first, given.first + given.scenes)
-    begun = time.perf_counter()
-    scenes = [_one(kind, number, variant, given) for number in numbers]
-    print(f"{kind} {variant}: {time.perf_counter() - begun:.0f} s")
+    numbers = options.replay or range(options.first, options.first + options.scenes)
+    start_time = time.perf_counter()
+    scenes = [_compare_scene(kind, number, variant, options) for number in numbers]
+    print(f"{kind} {variant}: {time.perf_counter() - start_time:.0f} s")
     tables = []
     for outcomes in zip(*scenes, strict=True):
-        tables.append(_summary(kind, variant, given, outcomes))
+        tables.append(_summary(kind, variant, options, outcomes))
         print("   ", _line(tables[-1]), flush=True)
         for outcome in outcomes:
-            if outcome.label != "agrees" or given.replay:
-                print("       ", _words(outcome), flush=True)
+            if outcome.label != "agrees" or options.replay:
+                print("       ", _describe(outcome), flush=True)
     print("    scenes with:", ", ".join(f"{k} {v}" for k, v in tables[-1]["seen"].items()))
     return tables
 
 
-def _one(kind: str, number: int, variant: str, given: argparse.Namespace) -> list[Outcome]:
+def _compare_scene(
+    kind: str, number: int, variant: str, options: argparse.Namespace
+) -> list[Outcome]:
     try:
-        return compare(kind, given.seed, number, variant, given.levels, given.limit)
-    except Exception as problem:  # a scene that breaks a program is a finding too
+        return compare(kind, options.seed, number, variant, options.levels, options.limit)
+    except Exception as problem:  # a scene that breaks a program is reported too
         words = f"{type(problem).__name__}: {problem}"
         return [
             Outcome(
-                kind, given.seed, number, level, "disagrees", 1.0, 1.0, 0.0, 1.0, (False, False),
+                kind, options.seed, number, level, "disagrees", 1.0, 1.0, 0.0, 1.0, (False, False),
                 (-1, -1), note=words,
             )
-            for level in given.levels
+            for level in options.levels
         ]  # fmt: skip
 
 
 def _summary(
-    kind: str, variant: str, given: argparse.Namespace, outcomes: Sequence[Outcome]
+    kind: str, variant: str, options: argparse.Namespace, outcomes: Sequence[Outcome]
 ) -> dict:
     agreeing = [o for o in outcomes if o.label == "agrees"]
     level = outcomes[0].level
-    table = {"kind": kind, "variant": variant, "level": level, "seed": given.seed}
-    table |= {"records": have_records(), "scenes": len(outcomes)}
+    table = {"kind": kind, "variant": variant, "level": level, "seed": options.seed}
+    table |= {"records": records_available(), "scenes": len(outcomes)}
     table |= {label: sum(o.label == label for o in outcomes) for label in LABELS}
     table["worst_agreeing"] = max(
         (max(o.difference, o.rise_difference) for o in agreeing), default=0
@@ -105,7 +107,7 @@ def _summary(
     table["peaks_far"] = [o.number for o in far]
     table["peaks_far_told"] = [o.number for o in far if o.told]
     table["told"] = sum(o.told for o in outcomes)
-    table["limit"] = given.limit or LEVELS[level].agrees
+    table["limit"] = options.limit or LEVELS[level].agrees
     seen = [name for o in outcomes for name in o.seen]
     table["seen"] = {name: seen.count(name) for name in sorted(set(seen))}
     table["beyond"] = [o.plain() for o in outcomes if o.label not in ("agrees", "apart")]
@@ -122,7 +124,7 @@ def _line(table: dict) -> str:
     )
 
 
-def _words(outcome: Outcome) -> str:
+def _describe(outcome: Outcome) -> str:
     growth = " ".join(f"{value:.1e}" for value in outcome.growth)
     return (
         f"{outcome.level} {outcome.kind} --seed {outcome.seed} --replay {outcome.number}: "

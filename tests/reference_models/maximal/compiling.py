@@ -3,6 +3,6 @@
 from numba import njit
 
 compiled = njit(cache=True, error_model="numpy", no_cfunc_wrapper=True)
-"""What Python calls, too."""
+"""For functions that Python also calls."""
 within = njit(error_model="numpy", no_cfunc_wrapper=True, no_cpython_wrapper=True)
-"""What compiled functions alone call: a way in from Python takes longer to compile than most do."""
+"""For functions called by compiled ones only: an entry from Python would cost most compile time."""

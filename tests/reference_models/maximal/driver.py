@@ -9,6 +9,7 @@ from .compiling import compiled
 from .events import due
 from .excitation import ground
 from .forces import has_lower
+from .guard_search import SAMPLES, earliest, sample_guards
 from .guards import evaluate, noise_levels
 from .impulses import tidy
 from .layout import (
@@ -32,7 +33,6 @@ from .layout import (
 )
 from .rigid_switches import place_hinged
 from .runge_kutta import rates, step
-from .watching import SAMPLES, earliest, sample_guards
 
 TIME, STEP, STOP, PACE, LONGEST = range(5)
 
@@ -49,13 +49,13 @@ def advance(clock, stops, pieces, motion, z, contact, held, p, room, largest, st
     stops : ndarray, shape (n,)
         Times at which steps end: output times and kinks of the motion.
     pieces : ndarray, shape (n - 1,)
-        Which part of the motion holds between two stops.
+        The part of the motion that applies between two stops.
     motion : tuple of ndarray
         See `excitation.ground`.
     z, contact, held, p : ndarray
         State, contact, held points, parameters; the state is changed.
     room : tuple of ndarray
-        Room for what `forces.accelerate` needs.
+        Work arrays of `forces.accelerate`.
     largest : ndarray
         Greatest size of each variable so far, changed.
     states : ndarray, shape (n, STATES)
@@ -64,7 +64,7 @@ def advance(clock, stops, pieces, motion, z, contact, held, p, room, largest, st
     Returns
     -------
     tuple
-        How it ended, and the guard if a switch is due.
+        Status of the end, and the guard if a switch is due.
     """
     out, guards, noise = np.zeros(10), np.zeros(GUARDS), np.zeros(GUARDS)
     armed = np.zeros(GUARDS, dtype=np.bool_)
@@ -73,14 +73,14 @@ def advance(clock, stops, pieces, motion, z, contact, held, p, room, largest, st
     slopes, samples = np.zeros((13, STATES)), np.zeros((SAMPLES + 1, GUARDS))
     t, i, pace = clock[TIME], int(clock[STOP]), clock[PACE]
     h = min(clock[STEP], 0.05 / pace)
-    look_afresh = True
-    found, where = -1, 0.0
+    restart = True
+    fired_guard, where = -1, 0.0
     noise_levels(z, p, noise)
     if has_lower(p):
         cut_off(contact, z, p, noise[CUT_GUARDS])
     while i < stops.size - 1:
         piece, goal = pieces[i], stops[i + 1]
-        if look_afresh:
+        if restart:
             gx, gy = ground(t, piece, motion[0], motion[1], motion[2])
             evaluate(z, gx, gy, contact, held, p, room, out, guards)
             slot = due(z, contact, p, room, guards, noise)
@@ -90,7 +90,7 @@ def advance(clock, stops, pieces, motion, z, contact, held, p, room, largest, st
             for j in range(GUARDS):
                 armed[j] = armed[j] or guards[j] > noise[j]
             rates(t, z, piece, motion, contact, held, p, room, out, first)
-            look_afresh = False
+            restart = False
         for j in range(STATES):
             largest[j] = max(largest[j], abs(z[j]))
             scale[j] = p[TOLERANCE] * largest[j]
@@ -98,22 +98,22 @@ def advance(clock, stops, pieces, motion, z, contact, held, p, room, largest, st
         h = min(h, clock[LONGEST])
         ends = h >= rest * (1.0 - 1e-12)
         take = rest if ends else min(h, 0.5 * rest)
-        if found >= 0:
+        if fired_guard >= 0:
             take = where
         elif take < 1e-15 * max(1.0, t) and not ends:
             return TOO_SMALL, -1
         worst = step(
             t, take, z, first, piece, motion, contact, held, p, room, out, slopes, scale, new
         )
-        if found >= 0:
+        if fired_guard >= 0:
             z[:] = new
             clock[TIME], clock[STEP], clock[STOP] = t + take, h, i
-            if found == LIMIT_GUARD:
+            if fired_guard == LIMIT_GUARD:
                 states[i + 1] = z
-                return OVERTURNED, found
+                return OVERTURNED, fired_guard
             if int(p[KIND]) != RIGID:
                 tidy(z, contact, held, p, room)
-            return FIRED, found
+            return FIRED, fired_guard
         if not worst <= 1.0:
             h = take * (0.2 if not worst < 1e8 else max(0.2, 0.9 * worst ** (-0.125)))
             continue
@@ -121,19 +121,19 @@ def advance(clock, stops, pieces, motion, z, contact, held, p, room, largest, st
         sample_guards(
             t, take, z, first, new, last, piece, motion, contact, held, p, room, out, inner, samples
         )
-        found, where = earliest(
+        fired_guard, where = earliest(
             t, take, z, first, piece, motion, contact, held, p, room, out, slopes, scale, trial,
             guards, armed, noise, samples,
         )  # fmt: skip
-        if found == -2:
-            # a guard that stood at zero is negative at the first look: look closer
-            found = -1
+        if fired_guard == -2:
+            # a guard that was zero is negative at the first sample: take shorter steps
+            fired_guard = -1
             h = take / SAMPLES
             if take < 1e-9 / pace:
                 clock[TIME], clock[STEP], clock[STOP] = t, h, i
                 return FIRED, int(where)
             continue
-        if found >= 0:
+        if fired_guard >= 0:
             continue
         z[:] = new
         t = goal if ends else t + take
@@ -149,7 +149,7 @@ def advance(clock, stops, pieces, motion, z, contact, held, p, room, largest, st
         if ends:
             i += 1
             states[i] = z
-            look_afresh = True
+            restart = True
             noise_levels(z, p, noise)
     clock[TIME], clock[STEP], clock[STOP] = t, h, i
     return COMPLETED, -1
@@ -157,7 +157,7 @@ def advance(clock, stops, pieces, motion, z, contact, held, p, room, largest, st
 
 @compiled
 def typical_sizes(p):
-    """Return the least sizes that the error of each variable is measured against."""
+    """Return the smallest reference sizes for the error of each variable."""
     sizes = np.ones(STATES)
     for k in range(2):
         level = p[HALF_HEIGHT] if k == 1 else p[LOWER_HEIGHT]

@@ -1,4 +1,4 @@
-"""From a guard that has fallen through zero to the switch that it stands for."""
+"""Maps a guard that has fallen through zero to its switch."""
 
 import math
 
@@ -115,7 +115,7 @@ def _bed_event(slot, z, contact, held, p, room):
 
 
 def _disturbed(z, contact, p, room, noise):
-    """Let a sliding corner or end fly if something has given it another speed."""
+    """Let a sliding corner or end fly if an impulse has changed its speed."""
     if p[MASS] > 0.0 and contact[HOLD] == SLIDING:
         i = 0 if contact[LEFT] == SLIDES else 1
         relative(z, p, room[0], room[1])
@@ -137,7 +137,7 @@ def _disturbed(z, contact, p, room, noise):
 def due(z, contact, p, room, guards, noise):
     """Return the guard whose switch is due at this instant, or -1.
 
-    That is one that is negative, or that stands at zero and falls.
+    A switch is due if its guard is negative, or zero and falling.
     """
     for k in range(LEAD_GUARD):
         if guards[k] < -noise[k]:

@@ -1,7 +1,7 @@
-"""The ground's acceleration: straight lines between samples, or formulas of pulses.
+"""Ground acceleration: linear between samples, or an analytic pulse.
 
-On an inclined base the axes are along it and normal to it, and the part of gravity along it acts
-as an acceleration of the ground that lasts.
+On an inclined base the axes are along it and normal to it, and gravity along it acts as a constant
+ground acceleration.
 """
 
 import math
@@ -29,7 +29,7 @@ def _level(t, piece, shape, across, upwards):
     t : float
         Time.
     piece : int
-        Which interval between samples; -1 where the ground is still.
+        Index of the interval between samples; -1 where the ground is still.
     shape : ndarray
         Kind; for a record its time step; for a pulse frequency or period, phase, and the
         amplitudes of both components; then cosine and sine of the inclination of the base, and

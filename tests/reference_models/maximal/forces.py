@@ -1,4 +1,4 @@
-"""Forces on the bodies and, with the multipliers of what holds them, their accelerations."""
+"""Forces on the bodies, constraint multipliers and accelerations."""
 
 import math
 
@@ -77,7 +77,7 @@ def inverse_masses(p, inverse):
 
 
 def rooms(p: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Return the room that the compiled functions work in."""
+    """Return the work arrays of the compiled functions."""
     room = (
         np.zeros(8),
         np.zeros((3, 6)),
@@ -100,7 +100,7 @@ def top_acceleration(p, z, out):
             out[1] - far * (a * out[2] + rate * rate) + aside * out[2],
         )
     sine, cosine = math.sin(a), math.cos(a)
-    # the middle stands far up and aside to the left of the centre of mass
+    # the middle of the top, from the centre of mass: `far` up, `aside` to the left
     return (
         out[0] + far * (cosine * out[2] - sine * rate * rate)
         + aside * (sine * out[2] + cosine * rate * rate),
@@ -124,14 +124,13 @@ def top_velocity(p, z):
 
 @compiled
 def accelerate(z, gx, gy, contact, held, p, room, out):
-    """Fill `out` with six accelerations, the two forces of the holds and what they do.
+    """Fill `out` with six accelerations, the two constraint forces and their gains.
 
-    The last two are the accelerations that unit forces give to what they keep: times the forces
-    they are how much the sliding corner would be pressed without them.
+    A gain is the acceleration that a unit force gives to the constrained point. Force times gain
+    says how much a sliding corner would be pressed without the force.
 
     Each multiplier is a horizontal force at a held point. It keeps the slip's acceleration at
-    zero where the point is held, and that of the sliding corner at what zero force on the corner
-    asks for where it slides.
+    zero where the point is held; where a corner slides it keeps the force on the corner at zero.
     """
     rel, rows, _, hold, keep, load = room
     small = is_small(p)

@@ -1,4 +1,4 @@
-"""Guards: functions that are positive as long as a contact state lasts."""
+"""Guard functions, positive as long as a contact state lasts."""
 
 import math
 
@@ -60,7 +60,7 @@ from .layout import (
 
 @compiled
 def total_rotation(z, p):
-    """Return the rotation on which overturning is judged."""
+    """Return the rotation that decides overturning."""
     if p[MASS] <= 0.0:
         return z[2]
     return z[2] + z[5] if int(p[KIND]) == CASCADE else z[5]
@@ -68,13 +68,13 @@ def total_rotation(z, p):
 
 @within
 def evaluate(z, gx, gy, contact, held, p, room, out, guards):
-    """Fill in the guards; `out` is room for accelerations."""
+    """Fill in the guards; `out` is a work array for accelerations."""
     guards[:] = 1.0
     rotation = total_rotation(z, p)
     guards[LIMIT_GUARD] = 1.0 - abs(rotation) / limit_of(p, rotation)
     if int(p[KIND]) == RIGID:
         if contact[HOLD] == RESTING:
-            # ground that moves to the right tips the block to the left
+            # ground acceleration to the right tips the block to the left
             b = p[HALF_WIDTH] + (p[ECCENTRICITY] if gx > 0.0 else -p[ECCENTRICITY])
             slope = limit_of(p, -gx) if is_small(p) else b / p[HALF_HEIGHT]
             guards[0] = ((p[GRAVITY] + gy) * slope - abs(gx)) / (p[GRAVITY] * slope)
@@ -162,7 +162,7 @@ def noise_levels(z, p, noise):
         level = 1e-13 + 1e-15 * (size * abs(z[2]) + abs(z[1])) / p[BED_SETTLEMENT]
         noise[BED_LEFT_GUARD] = noise[BED_LEFT_GUARD + 1] = level
         noise[LOWER_LEAD_GUARD] = 1e-14
-        # the place where the base leaves the bed is lost in rounding as the base becomes level
+        # the edge of the contact is uncertain by rounding when the base is nearly level
         blur = 1e-15 * size * abs(z[8]) / max(abs(z[2]), 1e-16)
         pressure = p[BED_DAMPING] * blur / (p[BED_STIFFNESS] * p[BED_SETTLEMENT])
         noise[CUT_GUARDS] = noise[CUT_GUARDS + 1] = min(1e-12 + pressure, 1e-6)

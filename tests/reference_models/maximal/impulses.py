@@ -1,4 +1,4 @@
-"""Impulses: the jumps of velocity where a point is held anew or a corner lands."""
+"""Impulses: jumps of velocity when a point becomes held or a corner lands."""
 
 import numpy as np
 
@@ -25,7 +25,7 @@ from .layout import (
 
 @within
 def solve_dense(matrix, right, n):
-    """Solve a small dense system in place; the solution stands in `right`."""
+    """Solve a small dense system in place; `right` becomes the solution."""
     for k in range(n):
         best = k
         for i in range(k + 1, n):
@@ -90,7 +90,7 @@ def jump(z, contact, held, p, room, left_lands, right_lands):
 
 @compiled
 def carry_over(z, before, contact, held, p, room):
-    """Let the base of a cascade's second stage jump with the top of the first one."""
+    """Add the velocity jump of the first stage's top to the second stage of a cascade."""
     if int(p[KIND]) != CASCADE:
         return
     vx, vy = top_velocity(p, z)
@@ -118,7 +118,7 @@ def lower_slip(z, held, p):
 
 @compiled
 def note_places(z, held, p, room):
-    """Note where the held points stand, so that drift can be taken away."""
+    """Store the positions of the held points, for the correction of drift."""
     rel, rows = room[0], room[1]
     small = is_small(p)
     held[LOWER_PLACE] = z[0] - sway(small, z[2], p[LOWER_HEIGHT], held[LOWER_POINT])[0]
@@ -128,7 +128,7 @@ def note_places(z, held, p, room):
 
 @compiled
 def tidy(z, contact, held, p, room):
-    """Take the drift of held points away, in place and in speed."""
+    """Remove the drift of held points from positions and speeds."""
     rel, rows = room[0], room[1]
     small = is_small(p)
     coupled = int(p[KIND]) == COUPLED

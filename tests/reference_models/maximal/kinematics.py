@@ -1,4 +1,4 @@
-"""Where the points of a base are, and how the coordinates of a block on a cap follow its own."""
+"""Positions of points of a base, and coordinates of a block relative to its cap."""
 
 import math
 
@@ -17,7 +17,7 @@ from .layout import (
 
 @compiled
 def height(small, r, angle, distance, level, side):
-    """Return height, its derivative by the angle, and the second one, of a point of the base.
+    """Return the height of a point of the base and its first two derivatives by the angle.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def sway(small, angle, level, point):
 
 @compiled
 def relative(z, p, rel, rows):
-    """Find place and speed of the block seen from what it stands on.
+    """Find position and velocity of the block relative to its base.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def relative(z, p, rel, rows):
         Parameters.
     rel : ndarray, shape (8,)
         Filled with the coordinates along the base, along its normal and the rotation, their
-        rates, and the parts of the first two accelerations that hold no acceleration. The first
+        rates, and the velocity-dependent parts of the first two accelerations. The first
         is measured from the middle of the cap.
     rows : ndarray, shape (3, 6)
         Filled with the derivatives of these coordinates by those of both bodies.

@@ -1,8 +1,8 @@
-"""Places in the arrays that describe a scene, its state and its contact.
+"""Indices of the arrays that describe a scene, its state and its contact.
 
 Body 0 is the lower one (a body or a cap on soil), body 1 the block on pads or on rigid ground.
 The state has twelve numbers: x, y, angle of body 0, of body 1, and their rates; then two works,
-what has been dissipated and what the ground has put in. Angles are clockwise, y is up, and all is
+the dissipated energy and the work of the ground. Angles are clockwise, y is up, and all is
 zero at rest.
 """
 
@@ -46,7 +46,7 @@ RULES = ("contact-state", "leading-corner", "centre")
 ) = range(28)
 PARAMETERS = 28
 
-# contact: places in the array of integers
+# contact: indices in the array of integers
 LOWER_HOLD, BED_LEFT, BED_RIGHT, HOLD, LEFT, RIGHT, CUT_START, CUT_END = range(8)
 CONTACTS = 8
 # how a body is held
@@ -54,7 +54,7 @@ FREE, HELD, SLIDING, RESTING = 0, 1, 2, 3
 # states of a corner or an end of a base
 CLEAR, RELAXING, TOUCHING, LEAVING, ENGAGING, SLIDES = 0, 1, 2, 3, 4, 5
 
-# held points: places in the array of floats
+# held points: indices in the array of floats
 LOWER_POINT, LOWER_PLACE, LOWER_SENSE, LOWER_LEAD, POINT, PLACE, SENSE, LEAD = range(8)
 
 # guards

@@ -1,4 +1,4 @@
-"""What happens when an end of the base on soil is raised, comes down or slides."""
+"""Switches of the base on soil: an end uplifts, lands or slides."""
 
 from .forces import end
 from .impulses import carry_over, jump, lower_slip, note_places
@@ -48,7 +48,7 @@ def lower_point(z, contact, held, p):
 
 
 def _hold(z, contact, held, p, room):
-    """Hold the body by the rule, all of the slip being stopped."""
+    """Hold the body by the restraint rule and stop its slip."""
     contact[LOWER_HOLD] = HELD
     held[LOWER_POINT] = lower_point(z, contact, held, p)
     jump(z, contact, held, p, room, False, False)
@@ -56,7 +56,7 @@ def _hold(z, contact, held, p, room):
 
 
 def end_rises(i, z, contact, held, p, room):
-    """An end that was down is raised."""
+    """An end uplifts."""
     other = 1 - i
     contact[BED_LEFT + i] = CLEAR
     w, _, _, speed = end(p, z, other)
@@ -70,7 +70,7 @@ def end_rises(i, z, contact, held, p, room):
 
 
 def end_lands(i, z, contact, held, p, room):
-    """An end that was raised comes down."""
+    """An end lands."""
     other = 1 - i
     if contact[LOWER_HOLD] != FREE:
         contact[BED_LEFT] = contact[BED_RIGHT] = TOUCHING
@@ -98,7 +98,7 @@ def end_lands(i, z, contact, held, p, room):
 
 
 def slide_ends(i, flies, z, contact, held, p, room):
-    """The sliding end flies, or its slip has come to an end."""
+    """The sliding end separates, or its slip ends."""
     if flies:
         contact[BED_LEFT + i] = CLEAR
         contact[LOWER_HOLD] = FREE

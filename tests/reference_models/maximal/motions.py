@@ -1,4 +1,4 @@
-"""Ground motions, for both programs from one description."""
+"""Ground motions of both programs, built from one description."""
 
 import os
 from functools import cache
@@ -17,8 +17,8 @@ _VARIABLE = "ROCKFRAME_RECORDS"
 _BESIDE = Path(__file__).resolve().parents[4] / "shared" / "records"
 
 
-def have_records() -> bool:
-    """Tell whether the recorded motions are there."""
+def records_available() -> bool:
+    """Tell whether the recorded motions are available."""
     return all((_folder() / name).is_file() for name in RECORDS)
 
 
@@ -32,7 +32,9 @@ def _samples(name: str) -> tuple[float, np.ndarray]:
     return si.time_step, si.horizontal.samples
 
 
-def both(motion: dict[str, Any], factor: float = 1.0) -> tuple[rf.GroundMotion | None, Excitation]:
+def build_motions(
+    motion: dict[str, Any], factor: float = 1.0
+) -> tuple[rf.GroundMotion | None, Excitation]:
     """Build a motion for rockframe and for the reference model.
 
     Parameters
@@ -40,7 +42,7 @@ def both(motion: dict[str, Any], factor: float = 1.0) -> tuple[rf.GroundMotion |
     motion : dict
         As drawn; its ``form`` is the key of one of the builders.
     factor : float
-        By which all accelerations are multiplied.
+        Factor on all accelerations.
 
     Returns
     -------
@@ -54,10 +56,10 @@ def both(motion: dict[str, Any], factor: float = 1.0) -> tuple[rf.GroundMotion |
         return _pulse(motion, factor)
     samples = _record(motion) if form == "record" else _sines(motion)
     step, across, upwards = samples[0], factor * samples[1], factor * samples[2]
-    given = rf.GroundMotion.from_arrays(
+    motion_built = rf.GroundMotion.from_arrays(
         (across, "m/s^2"), f"{step!r} s", vertical=(upwards, "m/s^2")
     )
-    return given, Excitation.record(step, across, upwards)
+    return motion_built, Excitation.record(step, across, upwards)
 
 
 def _pulse(motion: dict[str, Any], factor: float) -> tuple[rf.GroundMotion, Excitation]:
@@ -75,13 +77,13 @@ def _pulse(motion: dict[str, Any], factor: float) -> tuple[rf.GroundMotion, Exci
             made.append(rf.GroundMotion.ricker_wavelet(size, f"{scale!r} s", antisymmetric=odd))
         if motion["vertical"] == 0.0:
             break
-    given = made[0] if len(made) == 1 else made[0].with_vertical(made[1])
+    motion_built = made[0] if len(made) == 1 else made[0].with_vertical(made[1])
     kind = {"ricker": excitation.RICKER, "odd ricker": excitation.RICKER_ODD}.get(
         form, excitation.HARMONIC
     )
     phase = 0.5 * np.pi if form == "cosine" else 0.0
-    step, intervals = given.si.time_step, given.si.horizontal.samples.size - 1
-    return given, Excitation.pulse(kind, step, intervals, scale, phase, *peaks)
+    step, intervals = motion_built.si.time_step, motion_built.si.horizontal.samples.size - 1
+    return motion_built, Excitation.pulse(kind, step, intervals, scale, phase, *peaks)
 
 
 def _record(motion: dict[str, Any]) -> tuple[float, np.ndarray, np.ndarray]:

@@ -1,4 +1,4 @@
-"""What happens when a corner of the block leaves its pad, lands, is caught up or slides."""
+"""Switches of a corner on its pad: it separates, lands, re-engages or slides."""
 
 from .forces import accelerate, corner
 from .impulses import jump, note_places, slip
@@ -61,7 +61,7 @@ def pad_point(z, contact, held, p, room):
     return middle + b if right else middle - b
 
 
-def look(i, z, p, room):
+def corner_state(i, z, p, room):
     """Return level, speed and the force law at a corner."""
     relative(z, p, room[0], room[1])
     y, _, _, speed, force = corner(p, room[0], i)
@@ -81,7 +81,7 @@ def force_rises(i, z, gx, gy, contact, held, p, room, out):
 
 
 def hold(z, contact, held, p, room):
-    """Hold the block by the rule, all of the slip being stopped."""
+    """Hold the block by the restraint rule and stop its slip."""
     contact[HOLD] = HELD
     held[POINT] = pad_point(z, contact, held, p, room)
     jump(z, contact, held, p, room, False, False)
@@ -89,7 +89,7 @@ def hold(z, contact, held, p, room):
 
 
 def _apart(i, z, contact, p, room, noise):
-    y = look(i, z, p, room)[0]
+    y = corner_state(i, z, p, room)[0]
     off = p[DAMPING] == 0.0 or y / p[SETTLEMENT] - 1.0 >= -noise
     contact[LEFT + i] = CLEAR if off else RELAXING
 
@@ -97,10 +97,10 @@ def _apart(i, z, contact, p, room, noise):
 def leaves(i, z, gx, gy, contact, held, p, room, out, noise):
     """A touching corner leaves its pad."""
     other = 1 - i
-    gradual = abs(look(i, z, p, room)[2]) <= noise
+    gradual = abs(corner_state(i, z, p, room)[2]) <= noise
     _apart(i, z, contact, p, room, noise)
     if contact[LEFT + other] == TOUCHING:
-        _, speed, force = look(other, z, p, room)
+        _, speed, force = corner_state(other, z, p, room)
         if force <= noise and speed >= 0.0:
             _apart(other, z, contact, p, room, noise)
             contact[HOLD] = FREE
@@ -108,11 +108,11 @@ def leaves(i, z, gx, gy, contact, held, p, room, out, noise):
     if contact[LEFT + other] == LEAVING:
         contact[LEFT + other] = RELAXING
     if contact[LEFT + other] == ENGAGING:
-        # nothing presses any more, so that nothing is held
+        # no corner presses any more: no point is held
         contact[LEFT + other] = RELAXING
     if contact[LEFT + other] == TOUCHING:
         hold(z, contact, held, p, room)
-        force = look(i, z, p, room)[2]
+        force = corner_state(i, z, p, room)[2]
         if contact[LEFT + i] == RELAXING and (
             force > noise
             or (
@@ -137,12 +137,12 @@ def leaves(i, z, gx, gy, contact, held, p, room, out, noise):
 
 
 def _out_of_flight(i, limit, z, contact, held, p, room):
-    """Hold on one corner, only as far as its speed does not pass `limit`; tell if it is held."""
+    """Hold the block at one corner unless its speed would pass `limit`; tell whether it is held."""
     before = z.copy()
-    speed = look(i, z, p, room)[1]
+    speed = corner_state(i, z, p, room)[1]
     contact[LEFT + i] = TOUCHING
     hold(z, contact, held, p, room)
-    after = look(i, z, p, room)[1]
+    after = corner_state(i, z, p, room)[1]
     lever = sway(is_small(p), room[0][2], p[HALF_HEIGHT], held[POINT])[1]
     size = p[HALF_WIDTH] + p[HALF_HEIGHT]
     if after <= max(limit, speed) or abs(lever) <= LEAST_LEVER * size:
@@ -157,9 +157,9 @@ def _out_of_flight(i, limit, z, contact, held, p, room):
 
 
 def lands(i, z, contact, held, p, room):
-    """A clear corner comes down on its pad."""
+    """A clear corner lands on its pad."""
     other = 1 - i
-    y, speed, _ = look(other, z, p, room)
+    y, speed, _ = corner_state(other, z, p, room)
     both = contact[LEFT + other] == CLEAR and speed < 0.0
     both = both and abs(y / p[SETTLEMENT] - 1.0) < SAME
     if contact[HOLD] == FREE and not both:
@@ -170,8 +170,8 @@ def lands(i, z, contact, held, p, room):
         if both or contact[LEFT + other] == SLIDES:
             contact[LEFT + other] = TOUCHING
         hold(z, contact, held, p, room)
-    down = look(i, z, p, room)[1] < 0.0
-    other_down = both and look(other, z, p, room)[1] < 0.0
+    down = corner_state(i, z, p, room)[1] < 0.0
+    other_down = both and corner_state(other, z, p, room)[1] < 0.0
     jump(
         z,
         contact,
@@ -189,7 +189,7 @@ def caught_up(i, z, contact, held, p, room, noise):
     """A relaxing corner touches again, without an impact."""
     other = 1 - i
     if contact[HOLD] == FREE:
-        y = look(i, z, p, room)[0]
+        y = corner_state(i, z, p, room)[0]
         limit = p[STIFFNESS] / p[DAMPING] * (p[SETTLEMENT] - y) if p[DAMPING] > 0.0 else 0.0
         _out_of_flight(i, limit, z, contact, held, p, room)
         return
@@ -199,12 +199,12 @@ def caught_up(i, z, contact, held, p, room, noise):
     if contact[LEFT + other] == LEAVING:
         contact[LEFT + other] = RELAXING
     hold(z, contact, held, p, room)
-    if look(i, z, p, room)[2] < -noise:
+    if corner_state(i, z, p, room)[2] < -noise:
         contact[LEFT + i] = ENGAGING
 
 
 def clears(i, z, contact, held, p, room):
-    """A corner below its level passes it upwards."""
+    """A corner rises through the unloaded level of its pad."""
     other = 1 - i
     engaged = contact[LEFT + i] == ENGAGING
     contact[LEFT + i] = CLEAR
@@ -218,7 +218,7 @@ def clears(i, z, contact, held, p, room):
 
 
 def slide_stops(i, flies, z, contact, held, p, room, noise):
-    """The sliding corner flies, or its slip has come to an end."""
+    """The sliding corner separates, or its slip ends."""
     if flies:
         _apart(i, z, contact, p, room, noise)
         contact[HOLD] = FREE

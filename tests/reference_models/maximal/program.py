@@ -1,4 +1,4 @@
-"""The same scene through rockframe's public interface."""
+"""Runs a scene through rockframe's public interface."""
 
 import warnings
 from dataclasses import replace
@@ -8,7 +8,7 @@ import numpy as np
 import rockframe as rf
 
 from .layout import LIMIT
-from .motions import both
+from .motions import build_motions
 from .scene import Scene, parameters
 
 RTOL = 1e-12
@@ -19,12 +19,12 @@ def system_of(scene: Scene) -> rf.System:
     """Assemble the scene."""
     block = _block_of(scene)
     parts = [block]
-    given = {} if scene.restitution is None else {"restitution": scene.restitution}
+    restitution = {} if scene.restitution is None else {"restitution": scene.restitution}
     if scene.kind == "rigid":
-        parts.append(rf.RigidGround(**given))
+        parts.append(rf.RigidGround(**restitution))
     if scene.kind in ("pads", "cascade", "coupled"):
         parts.append(
-            rf.TwoSpringSupport(frequency_ratio=scene.beta, damping_ratio=scene.xi, **given)
+            rf.TwoSpringSupport(frequency_ratio=scene.beta, damping_ratio=scene.xi, **restitution)
         )
     if scene.kind in ("bed", "cascade", "coupled"):
         parts.append(
@@ -69,15 +69,15 @@ def _block_of(scene: Scene) -> rf.Block:
 
 def run_program(scene: Scene, factor: float = 1.0, accuracy: str | rf.Accuracy = TIGHT):
     """Run the scene with rockframe; `factor` multiplies motion and start."""
-    motion, _ = both(scene.motion, factor)
+    motion, _ = build_motions(scene.motion, factor)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         system = system_of(scene)
         limit = parameters(scene, RTOL)[LIMIT]
         leans = scene.eccentricity != 0.0 or scene.inclination != 0.0
-        told = scene.told or scene.start != 0.0 or not leans
+        explicit_start = scene.told or scene.start != 0.0 or not leans
         initial = rf.InitialState(
-            rotation=_in(factor * scene.start * limit, "rad") if told else None,
+            rotation=_in(factor * scene.start * limit, "rad") if explicit_start else None,
             angular_velocity=_in(factor * scene.start_rate * scene.frequency * limit, "rad/s"),
         )
         options = {"initial": initial, "accuracy": accuracy}
@@ -96,7 +96,7 @@ def _in(value: float, unit: str) -> str:
 
 
 def rows_at(times: np.ndarray, run) -> np.ndarray:
-    """Return the rows of a run at output times, -1 where there is none."""
+    """Return the row of a run at each output time, -1 for none."""
     have = run.time.values
     rows = np.searchsorted(have, times - 1e-9)
     rows = np.minimum(rows, have.size - 1)

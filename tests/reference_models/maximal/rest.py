@@ -1,7 +1,6 @@
-"""Static equilibrium of a body whose centre of mass is beside the middle of its base.
+"""Static equilibrium of a body with an eccentric centre of mass.
 
-By the resultant of what bears: where along the base it stands follows from the tilt, and it must
-stand under the weight.
+The tilt determines where the resultant of the base acts; at rest it acts under the weight.
 """
 
 import math
@@ -23,7 +22,7 @@ class NoRestError(Exception):
 
 @dataclass(frozen=True)
 class Rest:
-    """Angles of both bodies on what carries them, and heights of the middles of their bases."""
+    """Rotations of both bodies relative to their bases, and heights of the middles of the bases."""
 
     lower_angle: float = 0.0
     lower_height: float = 0.0
@@ -39,7 +38,7 @@ def lowered(small: bool, point: float, level: float, angle: float) -> float:
 
 
 def rest_of(scene: Scene, p: np.ndarray) -> Rest:
-    """Return where the bodies are at rest.
+    """Return the position of rest of the bodies.
 
     Raises
     ------
@@ -61,44 +60,44 @@ def _sizes(angle: float, small: bool) -> tuple[float, float]:
 
 
 def _pads_push(p: np.ndarray, sine: float) -> float:
-    """Return where the resultant of both pads stands, right of the middle."""
+    """Return the distance of the pads' resultant to the right of the middle."""
     b = p[at.HALF_WIDTH]
     return float(np.clip(b * b * sine / p[at.SETTLEMENT], -b, b))
 
 
 def _bed_push(p: np.ndarray, sine: float) -> tuple[float, float]:
-    """Return where the resultant of the bed stands, and the height of the middle of the base."""
+    """Return the distance of the bed's resultant to the right, and the height of the middle."""
     b, delta = p[at.LOWER_HALF_WIDTH], p[at.BED_SETTLEMENT]
     raised = b * abs(sine)
     if raised <= delta:
         return b * b * sine / (3.0 * delta), 0.0
-    # a triangle of pressure over the length that still bears
+    # triangular pressure over the bearing length
     length = 2.0 * b * math.sqrt(delta / raised)
     return math.copysign(b - length / 3.0, sine), (math.sqrt(raised) - math.sqrt(delta)) ** 2
 
 
-def _first_root(lack: Callable[[float], float], edge: float) -> float:
+def _first_root(residual: Callable[[float], float], edge: float) -> float:
     """Return the first angle on the way to `edge` where `lack` has risen to zero."""
     last = 0.0
     for share in np.linspace(0.0, edge, SHARES + 1)[1:]:
-        if lack(float(share)) > 0.0:
-            return brentq(lack, last, float(share), xtol=1e-300, rtol=1e-15)
+        if residual(float(share)) > 0.0:
+            return brentq(residual, last, float(share), xtol=1e-300, rtol=1e-15)
         last = float(share)
     raise NoRestError
 
 
 def _alone(scene: Scene, p: np.ndarray, lower: bool) -> tuple[float, float]:
     level = p[at.LOWER_HEIGHT if lower else at.HALF_HEIGHT]
-    beside = p[at.LOWER_ECCENTRICITY if lower else at.ECCENTRICITY]
+    eccentricity = p[at.LOWER_ECCENTRICITY if lower else at.ECCENTRICITY]
     b = p[at.LOWER_HALF_WIDTH if lower else at.HALF_WIDTH]
-    side = math.copysign(1.0, beside)
+    side = math.copysign(1.0, eccentricity)
 
-    def lack(angle: float) -> float:
+    def residual(angle: float) -> float:
         sine, cosine = _sizes(angle, scene.small)
         push = _bed_push(p, sine)[0] if lower else _pads_push(p, sine)
-        return side * ((push - beside) * cosine - level * sine)
+        return side * ((push - eccentricity) * cosine - level * sine)
 
-    angle = _first_root(lack, side * math.atan((b - side * beside) / level))
+    angle = _first_root(residual, side * math.atan((b - side * eccentricity) / level))
     return angle, _bed_push(p, _sizes(angle, scene.small)[0])[1] if lower else 0.0
 
 
@@ -107,11 +106,11 @@ def _both(scene: Scene, p: np.ndarray) -> Rest:
     b, h, e = p[at.HALF_WIDTH], p[at.HALF_HEIGHT], p[at.ECCENTRICITY]
     weight, cap = p[at.MASS], p[at.LOWER_MASS]
 
-    def lacks(angles: np.ndarray) -> np.ndarray:
+    def residuals(angles: np.ndarray) -> np.ndarray:
         tilt, angle = (float(each) for each in angles)
         lean, upright = math.sin(tilt), math.cos(tilt)
         sine, cosine = _sizes(angle, scene.small)
-        # the pads press by the weight's part along the normal, so that tilts count for more
+        # the pads carry only the normal component of the weight: tilts have more effect
         push = b * b * sine / (p[at.SETTLEMENT] * upright)
         point = (b * math.copysign(1.0, angle) if scene.rule == "leading-corner" else 0.0) - e
         slope = h if scene.small else h * cosine + point * sine
@@ -126,8 +125,8 @@ def _both(scene: Scene, p: np.ndarray) -> Rest:
         on_soil = weight * across - (weight + cap) * (under * turned - p[at.LOWER_HEIGHT] * sunk)
         return np.array([on_cap / h, on_soil / (weight * h)])
 
-    angles = root(lacks, np.array(_guess(scene, p)), tol=1e-15).x
-    if not np.max(np.abs(lacks(angles))) < 1e-12:
+    angles = root(residuals, np.array(_guess(scene, p)), tol=1e-15).x
+    if not np.max(np.abs(residuals(angles))) < 1e-12:
         raise NoRestError
     tilt, angle = (float(each) for each in angles)
     if b * abs(_sizes(angle, scene.small)[0]) > p[at.SETTLEMENT] * math.cos(tilt):
@@ -137,7 +136,7 @@ def _both(scene: Scene, p: np.ndarray) -> Rest:
 
 
 def _guess(scene: Scene, p: np.ndarray) -> tuple[float, float]:
-    """Return what small angles would be: the cap leans as if the block stood upright on it."""
+    """Return the angles for small rotation: the cap leans as if the block stood upright on it."""
     b, h, e = p[at.HALF_WIDTH], p[at.HALF_HEIGHT], p[at.ECCENTRICITY]
     both = p[at.MASS] + p[at.LOWER_MASS]
     level = (p[at.MASS] * (2.0 * p[at.LOWER_HEIGHT] + h) + p[at.LOWER_MASS] * p[at.TOP]) / both

@@ -26,7 +26,7 @@ LEAST_REBOUND = 1e-10
 
 @compiled
 def place_hinged(z, held, p):
-    """Put the centre of mass where the hinge says; take the drift away."""
+    """Place the centre of mass by the hinge; remove drift."""
     h = p[HALF_HEIGHT]
     side = 1.0 if held[POINT] > 0.0 else -1.0
     b = side * held[POINT]
@@ -51,7 +51,7 @@ def corner_place(p, side):
 
 
 def _holding(p, side, gx, gy):
-    """Return the moment, per mass, that brings the block back from a corner."""
+    """Return the restoring moment per mass about a corner."""
     b, h = side * corner_place(p, side), p[HALF_HEIGHT]
     if is_small(p):
         lean = (p[GRAVITY] + gy) * limit_of(p, side) + side * gx
@@ -60,7 +60,7 @@ def _holding(p, side, gx, gy):
 
 
 def start_rocking(z, gx, contact, held, p):
-    """The ground tips the block over the corner that it leaves behind."""
+    """The ground acceleration tips the block about its trailing corner."""
     contact[HOLD] = HELD
     held[POINT] = corner_place(p, 1.0 if gx < 0.0 else -1.0)
     z[5] = z[11] = 0.0
@@ -77,7 +77,7 @@ def impact(z, gx, gy, contact, held, p):
     z[11] *= p[RIGHT_RESTITUTION] if side > 0.0 else p[LEFT_RESTITUTION]
     inertia = p[INERTIA] + p[MASS] * (b * b + h * h)
     back = p[MASS] * _holding(p, side, gx, gy) / inertia
-    rests = _holding(p, -side, gx, gy) >= 0.0  # else the next bounce leaves over the other corner
+    rests = _holding(p, -side, gx, gy) >= 0.0  # else the next bounce is about the other corner
     if rests and back > 0.0 and 0.5 * z[11] * z[11] / back < LEAST_REBOUND * p[LIMIT]:
         contact[HOLD] = RESTING
         z[11] = 0.0

@@ -1,4 +1,4 @@
-"""The run: advance to an event, switch, and go on."""
+"""A run: advance to an event, switch, continue."""
 
 import numpy as np
 

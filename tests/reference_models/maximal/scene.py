@@ -1,4 +1,4 @@
-"""A scene in SI units, and the arrays that the equations of the reference model want."""
+"""A scene in SI units, and the arrays of the reference model's equations."""
 
 import math
 from dataclasses import dataclass, field, replace
@@ -14,12 +14,12 @@ KINDS = ("pads", "bed", "cascade", "coupled", "rigid")
 
 @dataclass(frozen=True)
 class Scene:
-    """A body, what it stands on, and how it is shaken; all in SI units or ratios.
+    """A body, its base and its ground motion, in SI units or ratios.
 
     `radius` and `slenderness` are those of a block whose centre of mass stands above the middle of
-    its base; `eccentricity` then moves it to the right. `told` says that a start at rotation zero
-    is meant, where the block would lean at rest. The base rises to the right by `inclination`;
-    rotations are relative to it.
+    its base; `eccentricity` then moves it to the right. `told` makes a start at rotation
+    zero explicit where the block would lean at rest. The base rises to the right by
+    `inclination`; rotations are relative to it.
     """
 
     kind: str
@@ -49,7 +49,7 @@ class Scene:
 
     @property
     def theta(self) -> float:
-        """Overturning angle of the block, were its centre of mass above the middle."""
+        """Overturning angle of the block without eccentricity."""
         return math.atan(1.0 / self.slenderness)
 
     @property
@@ -88,13 +88,13 @@ class Scene:
         level = (m * (thick + h) + 0.5 * cap * thick) / total
         inertia = self.inertia + m * (thick + h - level) ** 2 + self.cap_inertia
         inertia += cap * (level - 0.5 * thick) ** 2
-        # both are beside their common centre of mass, too
+        # both are eccentric to their common centre of mass, too
         inertia += m * cap / total * self.eccentricity**2
         return total, inertia, 0.5 * width, level
 
     @property
     def one_body_eccentricity(self) -> float:
-        """How far the centre of mass of block and cap is to the right of the cap's middle."""
+        """Distance of the centre of mass of block and cap to the right of the cap's middle."""
         if not self.has_cap:
             return self.eccentricity
         return self.mass * self.eccentricity / (self.mass + self.cap_mass)
@@ -106,7 +106,7 @@ class Scene:
 
     @property
     def eps(self) -> float:
-        """Restitution of a symmetric block, unless it is given."""
+        """Restitution, by default that of a symmetric block."""
         if self.restitution is not None:
             return self.restitution
         mu = self.shape_factor
@@ -122,7 +122,7 @@ class Scene:
     def rebounds(self) -> tuple[float, float]:
         """Return the restitutions of impacts on the left and on the right corner.
 
-        The default is that of angular momentum kept about the new corner: m v moves about the old
+        The default conserves angular momentum about the new corner: m v moves about the old
         corner, at a distance d from the foot of the centre of mass, when the new one at d' comes
         down.
         """
@@ -130,8 +130,8 @@ class Scene:
             return self.eps, self.eps
         left, right = self.half_width + self.eccentricity, self.half_width - self.eccentricity
         base = self.inertia + self.mass * self.half_height**2
-        kept = base - self.mass * left * right
-        return kept / (base + self.mass * left**2), kept / (base + self.mass * right**2)
+        retained = base - self.mass * left * right
+        return retained / (base + self.mass * left**2), retained / (base + self.mass * right**2)
 
 
 def parameters(scene: Scene, tolerance: float) -> np.ndarray:
@@ -157,7 +157,7 @@ def parameters(scene: Scene, tolerance: float) -> np.ndarray:
         p[at.SETTLEMENT] = scene.mass * weight / (2.0 * p[at.STIFFNESS])
     if scene.kind in ("bed", "cascade", "coupled"):
         _soil(scene, p)
-    # the centre of mass stands above an end of the base
+    # the centre of mass is above an end of the base
     p[at.LEFT_LIMIT] -= scene.inclination
     p[at.RIGHT_LIMIT] += scene.inclination
     p[at.LIMIT] = min(p[at.LEFT_LIMIT], p[at.RIGHT_LIMIT])
@@ -167,22 +167,22 @@ def parameters(scene: Scene, tolerance: float) -> np.ndarray:
 def _soil(scene: Scene, p: np.ndarray) -> None:
     m, inertia, b, level = scene.one_body()
     total = m
-    beside = scene.one_body_eccentricity
+    eccentricity = scene.one_body_eccentricity
     p[at.TOP] = scene.cap_height - level
     if scene.kind == "coupled":
         m, inertia, level = scene.cap_mass, scene.cap_inertia, 0.5 * scene.cap_height
         p[at.TOP] = level
-        beside = 0.0
+        eccentricity = 0.0
     if scene.kind == "bed":
-        p[at.LEFT_LIMIT] = math.atan((b + beside) / level)
-        p[at.RIGHT_LIMIT] = math.atan((b - beside) / level)
-    p[at.LOWER_ECCENTRICITY] = beside
+        p[at.LEFT_LIMIT] = math.atan((b + eccentricity) / level)
+        p[at.RIGHT_LIMIT] = math.atan((b - eccentricity) / level)
+    p[at.LOWER_ECCENTRICITY] = eccentricity
     p[at.LOWER_MASS], p[at.LOWER_INERTIA] = m, inertia
     p[at.LOWER_HALF_WIDTH], p[at.LOWER_HEIGHT] = b, level
     p[at.BED_STIFFNESS] = scene.soil_stiffness
     p[at.BED_SETTLEMENT] = total * p[at.GRAVITY] / (2.0 * b * scene.soil_stiffness)
-    whole = 2.0 * scene.soil_xi * math.sqrt(2.0 * b * scene.soil_stiffness * total)
-    p[at.BED_DAMPING] = whole / (2.0 * b)
+    bed_damping = 2.0 * scene.soil_xi * math.sqrt(2.0 * b * scene.soil_stiffness * total)
+    p[at.BED_DAMPING] = bed_damping / (2.0 * b)
 
 
 KINDS_NUMBER = {
@@ -201,8 +201,8 @@ def paces(scene: Scene, p: np.ndarray) -> float:
         light = 1.0 / p[at.MASS] + (1.0 / p[at.LOWER_MASS] if scene.kind == "coupled" else 0.0)
         rate = max(rate, math.sqrt(4.0 * p[at.STIFFNESS] * light) + 2.0 * p[at.DAMPING] * light)
     if p[at.BED_STIFFNESS] > 0.0:
-        whole = 2.0 * p[at.LOWER_HALF_WIDTH]
-        k, c = p[at.BED_STIFFNESS] * whole, p[at.BED_DAMPING] * whole
+        width = 2.0 * p[at.LOWER_HALF_WIDTH]
+        k, c = p[at.BED_STIFFNESS] * width, p[at.BED_DAMPING] * width
         light = 3.0 / p[at.LOWER_MASS]
         rate = max(rate, math.sqrt(k * light) + c * light)
     return rate

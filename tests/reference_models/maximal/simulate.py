@@ -15,7 +15,7 @@ TOLERANCE = 1e-13
 
 @dataclass(frozen=True)
 class Excitation:
-    """A motion as the equations want it."""
+    """A ground motion in the form of the equations."""
 
     step: float
     intervals: int
@@ -31,7 +31,7 @@ class Excitation:
 
     @classmethod
     def record(cls, step: float, across, upwards=None) -> "Excitation":
-        """Return straight lines between samples."""
+        """Return a motion that is linear between samples."""
         across = np.array(across, dtype=np.float64)
         upwards = np.zeros_like(across) if upwards is None else np.array(upwards, dtype=np.float64)
         shape = _shape(excitation.RECORD, step)
@@ -39,7 +39,7 @@ class Excitation:
 
     @classmethod
     def pulse(cls, kind, step, intervals, scale, phase, peak, vertical) -> "Excitation":
-        """Return a formula; `scale` is its frequency, or a wavelet's period."""
+        """Return an analytic pulse; `scale` is its frequency, or a wavelet's period."""
         shape = _shape(kind, scale, phase, peak, vertical)
         longest = 0.02 / scale if kind == excitation.HARMONIC else 0.01 * scale
         return cls(step, intervals, shape, np.zeros(2), np.zeros(2), longest)

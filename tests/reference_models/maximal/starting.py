@@ -1,4 +1,4 @@
-"""Where a scene starts: at rest, or at a rotation in vertical equilibrium."""
+"""Initial state of a scene: at rest, or at a rotation in vertical equilibrium."""
 
 import math
 
@@ -23,15 +23,17 @@ def start(scene: Scene, p: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarr
         _on_rigid_ground(p, z, contact, held, angle, rate)
         return z, contact, held
     rest = rest_on_slope(scene, p) if scene.inclination else rest_of(scene, p)
-    told = scene.told or angle != 0.0
+    explicit_start = scene.told or angle != 0.0
     if scene.kind == "bed":
-        height = _height_over_bed(p, angle) if told else rest.lower_height
-        _lower(scene, p, z, contact, held, angle if told else rest.lower_angle, height, rate)
+        height = _height_over_bed(p, angle) if explicit_start else rest.lower_height
+        _lower(
+            scene, p, z, contact, held, angle if explicit_start else rest.lower_angle, height, rate
+        )
         return z, contact, held
     if scene.kind in ("cascade", "coupled"):
         _lower(scene, p, z, contact, held, rest.lower_angle, rest.lower_height, 0.0)
     on_base, height = rest.angle, rest.height
-    if told:
+    if explicit_start:
         on_base = angle - rest.lower_angle
         height = _height_over_pads(p, on_base)
     _upper(scene, p, z, contact, held, on_base, height, rate)
@@ -39,9 +41,9 @@ def start(scene: Scene, p: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarr
 
 
 def rest_on_slope(scene: Scene, p: np.ndarray) -> Rest:
-    """Return the rest of bodies on an inclined base, with all of their bases pressed.
+    """Return the position of rest on an inclined base, with all bases in full contact.
 
-    It is found from the accelerations of the equations of motion, which must vanish.
+    All accelerations of the equations of motion vanish there.
 
     Raises
     ------
@@ -53,7 +55,7 @@ def rest_on_slope(scene: Scene, p: np.ndarray) -> Rest:
     pull, room, out = GRAVITY * math.sin(scene.inclination), rooms(p), np.zeros(10)
     sizes = [p[at.LIMIT], p[at.BED_SETTLEMENT]] * lower + [p[at.LIMIT], p[at.SETTLEMENT]] * upper
 
-    def placed(shares: np.ndarray) -> tuple[Rest, np.ndarray, np.ndarray, np.ndarray]:
+    def state_at(shares: np.ndarray) -> tuple[Rest, np.ndarray, np.ndarray, np.ndarray]:
         values = [float(value) for value in shares * np.array(sizes)]
         rest = Rest(*values) if lower else Rest(0.0, 0.0, *values)
         z, contact, held = np.zeros(at.STATES), np.zeros(at.CONTACTS, dtype=np.int64), np.zeros(8)
@@ -63,15 +65,15 @@ def rest_on_slope(scene: Scene, p: np.ndarray) -> Rest:
             _upper(scene, p, z, contact, held, rest.angle, rest.height, 0.0)
         return rest, z, contact, held
 
-    def lacks(shares: np.ndarray) -> np.ndarray:
-        accelerate(placed(shares)[1], pull, 0.0, *placed(shares)[2:], p, room, out)
+    def residuals(shares: np.ndarray) -> np.ndarray:
+        accelerate(state_at(shares)[1], pull, 0.0, *state_at(shares)[2:], p, room, out)
         return out[places]
 
-    found = root(lacks, np.full(len(sizes), -1e-6 * np.sign(scene.inclination)), tol=1e-15).x
-    rest, _, contact, _ = placed(found)
+    solution = root(residuals, np.full(len(sizes), -1e-6 * np.sign(scene.inclination)), tol=1e-15).x
+    rest, _, contact, _ = state_at(solution)
     bases = [at.BED_LEFT, at.BED_RIGHT] * lower + [at.LEFT, at.RIGHT] * upper
     pressed = all(contact[base] == at.TOUCHING for base in bases)
-    if not (pressed and np.max(np.abs(lacks(found))) < 1e-9 * GRAVITY):
+    if not (pressed and np.max(np.abs(residuals(solution))) < 1e-9 * GRAVITY):
         raise NoRestError
     return rest
 
@@ -91,7 +93,7 @@ def _bent(p: np.ndarray, angle: float) -> float:
 
 
 def _height_over_pads(p: np.ndarray, angle: float) -> float:
-    # of the middle of the base: the pads carry the weight
+    # of the middle of the base, where the pads carry the weight
     raised = p[at.HALF_WIDTH] * abs(_bent(p, angle))
     return 0.0 if raised <= p[at.SETTLEMENT] else raised - p[at.SETTLEMENT]
 
@@ -119,12 +121,12 @@ def _upper(scene: Scene, p, z, contact, held, angle, middle, rate) -> None:
     sway = lowered(scene.small, held[at.POINT], h, angle)
     rise = middle - (0.5 * h * angle**2 if scene.small else h * (1.0 - math.cos(angle))) - e * bent
     first = h if scene.small else h * math.cos(angle) + held[at.POINT] * math.sin(angle)
-    # a block that starts in flight has the sway that is given, which is none
+    # a block that starts in flight has no sway
     speed = first * rate if contact[at.HOLD] == at.HELD else 0.0
     z[4], z[5], z[9], z[11] = rise, angle, speed, rate
     if scene.kind != "coupled":
         return
-    # the cap's frame leans
+    # in the rotated frame of the cap
     tilt, far = z[2], p[at.TOP] + h + rise
     sine, cosine, less = math.sin(tilt), math.cos(tilt), 2.0 * math.sin(0.5 * tilt) ** 2
     z[3] = z[0] + far * sine + sway * cosine - e * less

@@ -1,9 +1,9 @@
-"""Hand-written integrations of the rocking equations, kept apart from the package.
+"""Hand-written integrations of the rocking equations, independent of the package.
 
-Nothing here imports the package. The modules state the mechanics anew, step with SciPy's
-DOP853 at tight tolerance, or with another of its methods, and find every contact change on the
-dense output. What they share is below: the ground motion, cut into smooth pieces, and the
-search for crossings.
+Nothing here imports the package. The modules state the mechanics independently, integrate by
+SciPy's DOP853 at tight tolerance, or by another of its methods, and find every contact change on
+the dense output. They share the ground motion, cut into smooth pieces, and the search for
+crossings.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from scipy.optimize import brentq
 EPS = float(np.finfo(float).eps)
 METHODS = {"DOP853": DOP853, "RK45": RK45, "LSODA": LSODA, "Radau": Radau}
 SIMULTANEOUS = 1e-9
-"""Crossings closer than this (seconds) belong to one instant."""
+"""Crossings closer than this [s] are simultaneous."""
 
 
 class _Samples:
@@ -50,7 +50,7 @@ class _Samples:
         return lambda t: np.interp(t, times, self.values)
 
 
-class _Given:
+class _Function:
     """A function of time, smooth between its breakpoints."""
 
     def __init__(self, function: Callable[[float], float]) -> None:
@@ -71,7 +71,7 @@ class _Given:
 
 
 class Pieces:
-    """Polynomials of fourth degree, one after another; add them in the order of time."""
+    """A sequence of polynomials of fourth degree, appended in order of time."""
 
     NODES = np.linspace(0.0, 1.0, 5)
     INVERSE = np.linalg.inv(np.vander(NODES))
@@ -135,17 +135,17 @@ class Drive:
         duration: float,
         restart_every_knot: bool,
     ) -> None:
-        def source(given):
-            if given is None:
+        def source(component):
+            if component is None:
                 return _None()
-            if isinstance(given, Pieces):
-                return given
-            if callable(given):
-                return _Given(given)
+            if isinstance(component, Pieces):
+                return component
+            if callable(component):
+                return _Function(component)
             if time_step is None:
                 msg = "a sampled acceleration needs its time_step"
                 raise ValueError(msg)
-            return _Samples(given, time_step)
+            return _Samples(component, time_step)
 
         self.sources = (source(acceleration), source(vertical))
         edges = {0.0, float(duration), *map(float, breakpoints)}
@@ -160,16 +160,16 @@ class Drive:
         self.edges = kept
 
     def pieces(self):
-        """Return (start, stop, horizontal, vertical) for one smooth piece after another."""
+        """Yield (start, stop, horizontal, vertical) of each smooth piece."""
         for start, stop in zip(self.edges[:-1], self.edges[1:], strict=True):
             yield start, stop, *(source.piece(start, stop) for source in self.sources)
 
 
 @dataclass
 class Guard:
-    """A quantity that is positive as long as nothing happens.
+    """A quantity that is positive until its event.
 
-    ``strict``: it cannot start a piece negative, unless the event is due at once.
+    ``strict``: if it starts a piece negative, the event is due at once.
     """
 
     kind: str
@@ -179,9 +179,9 @@ class Guard:
 
 
 def stepper(rhs, start, state, stop, *, max_step, rtol, atol, method="DOP853") -> OdeSolver:
-    """Set up a solver, mostly without its trial steps: the step is bounded anyway.
+    """Set up a solver, usually without trial steps for the first step, which is bounded anyway.
 
-    LSODA starts at first order; it is left to choose the step for that.
+    LSODA starts at first order and chooses its own first step.
     """
     first_step = None if method == "LSODA" else min(max_step, stop - start)
     return METHODS[method](
@@ -205,18 +205,18 @@ def polish(function: Callable[[float], float], left: float, right: float) -> flo
 
 
 def crossings(guards, values, rates, times, dense_values) -> list[float | None]:
-    """Find for each guard when it first falls through zero in this step.
+    """Return for each guard the time at which it first falls through zero in this step.
 
-    The sub-points are joined by each guard's own turning points, so that a dip between two
-    sub-points is seen too. ``dense_values(i, t)`` gives guard i and its rate at one time.
-    A guard counts from the moment it has been positive. The flags ``armed`` are renewed.
+    Each guard's turning points are added to the sub-points, so that a dip between two of them is
+    seen too. ``dense_values(i, t)`` gives guard i and its rate at one time.
+    A guard counts once it has been positive, as the flags ``armed`` record.
     """
-    found: list[float | None] = []
+    times_found: list[float | None] = []
     for i, guard in enumerate(guards):
         value, rate = values[i], rates[i]
         turning = np.nonzero(rate[:-1] * rate[1:] < 0.0)[0]
         if guard.armed and turning.size == 0 and value.min() > 0.0:
-            found.append(None)
+            times_found.append(None)
             continue
         points = list(zip(times, value, strict=True))
         for j in turning:
@@ -239,5 +239,5 @@ def crossings(guards, values, rates, times, dense_values) -> list[float | None]:
             armed = armed or point[1] > 0.0
             before = point
         guard.armed = armed
-        found.append(hit)
-    return found
+        times_found.append(hit)
+    return times_found

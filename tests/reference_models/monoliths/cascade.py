@@ -1,10 +1,9 @@
-"""A block on two springs on the top of a body on a Winkler bed: one after the other.
+"""A block on two springs on top of a body on a Winkler bed, integrated in sequence.
 
-The body, block and cap in one, answers the ground; the acceleration of its top, taken from
-the dense solution in polynomials of fourth degree that end where it is not smooth, is the
-ground of the block on its springs. The body's top must not jump: where the held point changes
-with the contact, the rates do, and a jump of the top's speed is more than an acceleration can
-say.
+The body, block and cap in one, responds to the ground. The acceleration of its top is taken from
+the dense solution, in polynomials of fourth degree that end where it is not smooth, and excites
+the block on its springs. The speed of the top must not jump, as it does where the held point
+changes with the contact: an acceleration cannot represent a jump.
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ def simulate(
     restart_every_knot: bool = True,
     **settings,
 ):
-    """Integrate both; give the total rotation at the samples and both results.
+    """Integrate both; return the total rotation at the samples and both results.
 
     ``body`` and ``block`` are arguments of :func:`winkler.simulate` and
     :func:`two_spring.simulate`, ``top`` is the height of the cap's top above the body's centre
@@ -61,7 +60,7 @@ def simulate(
     first = winkler.simulate(
         **body, time_step=time_step, acceleration=acceleration, watch=watch, **common
     )
-    # where a contact of the body changes its top's acceleration has a kink
+    # the acceleration of the top has a kink at each contact change of the body
     changes = [event.time for event in first.events]
     second = two_spring.simulate(
         **block, acceleration=across, vertical=up, breakpoints=changes, **common

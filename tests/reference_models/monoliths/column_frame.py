@@ -1,8 +1,8 @@
-"""Columns and a beam as separate bodies, and constraints that hold them together.
+"""Columns and a beam as separate bodies joined by constraints.
 
 Each column has three coordinates, x, y and a clockwise rotation, and so has the beam. While they
 rock to the right (side 1) constraints hold the lower right corner of each column to the ground, and
-its upper left one to the beam. What is left free is found by a singular value decomposition, and
+its upper left one to the beam. A singular value decomposition finds the remaining freedom, and
 the equations are projected on it. Nothing here knows of an equivalent column.
 """
 
@@ -15,18 +15,18 @@ class Bodies:
     def __init__(self, columns, b, height, centre, mass, inertia, beam):
         self.count, self.b, self.height, self.centre = columns, b, height, centre
         self.places = 3.0 * height * np.arange(columns)
-        # the inertia of the beam must make no difference: it stays level
+        # the beam stays level, so that its inertia has no effect
         weights = [mass, mass, inertia] * columns + [beam, beam, 7.0 * mass]
         self.mass = np.array(weights)
 
     def places_of(self, angle, side):
         """Centres of all columns and rotation, then of the beam, at a rotation."""
-        found = []
+        places = []
         for x in self.places:
             pivot = np.array([x + side * self.b, 0.0])
-            found += [*(pivot + turned([-side * self.b, self.centre], angle)), angle]
+            places += [*(pivot + turned([-side * self.b, self.centre], angle)), angle]
         top = turned([-2.0 * side * self.b, self.height], angle)
-        return np.array([*found, top[0] + side * self.b, top[1], 0.0])
+        return np.array([*places, top[0] + side * self.b, top[1], 0.0])
 
     def jacobian(self, angle, side):
         """Rows of the velocities of all held points, per rates of all coordinates."""
@@ -50,7 +50,7 @@ class Bodies:
         return np.array(rows)
 
     def velocities(self, angle, rate, side):
-        """Rates of all coordinates: of one freedom, found from the constraints alone."""
+        """Rates of all coordinates per unit of the one freedom that the constraints leave."""
         free = np.linalg.svd(self.jacobian(angle, side))[2][-1]
         return free * (rate / free[2])
 
@@ -95,14 +95,16 @@ class Bodies:
         applied[1::3] = -self.mass[1::3] * (gravity + ground[1])
         applied += loads
         free = self.velocities(angle, 1.0, side)
-        bent = np.linalg.pinv(jacobian, rcond=1e-10) @ -bend  # what the constraints ask at least
+        bent = (
+            np.linalg.pinv(jacobian, rcond=1e-10) @ -bend
+        )  # the minimum-norm solution of the constraints
         swing = free @ (applied - self.mass * bent) / (free @ (self.mass * free))
-        found = bent + swing * free
-        feet = (self.mass * found - applied).reshape(-1, 3)[:, :2].sum(axis=0)
-        return found[2], feet
+        accelerations = bent + swing * free
+        feet = (self.mass * accelerations - applied).reshape(-1, 3)[:, :2].sum(axis=0)
+        return accelerations[2], feet
 
     def after_impact(self, rate, side):
-        """Rate after the columns come down: the momenta along the new freedom are kept."""
+        """Rate after the columns land: the momentum along the new freedom is conserved."""
         before, free = self.velocities(0.0, rate, side), self.velocities(0.0, 1.0, -side)
         return free @ (self.mass * before) / (free @ (self.mass * free))
 

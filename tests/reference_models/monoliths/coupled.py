@@ -1,22 +1,22 @@
-"""A block on two springs on a cap on a Winkler bed, integrated for its own sake.
+"""A block on two springs on a cap on a Winkler bed, integrated independently.
 
 The six coordinates are those of the cap's centre (X, Y), the cap's rotation phi, and, in the
 cap's frame, the block's centre (xi along the cap, r along its normal) and its rotation psi
-relative to the cap. Kinetic energy and potential are written down once, in symbols, and
-Lagrange's equations follow by differentiation. Contact is put in by projection: while the cap
+relative to the cap. Kinetic and potential energy are symbolic, and Lagrange's
+equations follow by differentiation. Contact is imposed by projection: while the cap
 touches the soil X follows phi, while the block touches the cap xi follows psi,
 
     dX/dphi = h_c cos(phi) + e_c sin(phi),   dxi/dpsi = h cos(psi) + e sin(psi),
 
-with e_c and e the points held. Nothing of the reduced equations is worked out by hand.
+with e_c and e the points held. No reduced equation is derived by hand.
 
 The state is (coordinates, their rates, work of the dashpots, work of the ground); works and
 energies are per unit of the total mass until the result is written. A corner of the block is
 TOUCHING, RELAXING (free, but its spring is still below its free length) or CLEAR; an end of
-the cap is TOUCHING (below the bed's unloaded level) or CLEAR. What is said of two springs
-alone about a corner that has just left, or has just taken hold, holds here too. The jump of
-the rates when the other corner, or the soil, changes contact may take a relaxing corner from
-pull to pressure: it then takes hold at once, the force being a function of the state alone.
+the cap is TOUCHING (below the bed's unloaded level) or CLEAR. The rules of `two_spring`
+for a corner that has just left or re-engaged apply here too. When the other corner or the soil
+changes contact, the jump of the rates may take a relaxing corner from pull to pressure: it
+re-engages at once, as the force is a function of the state alone.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ PAIRS = [(i, j) for i in range(6) for j in range(i + 1)]
 
 @dataclass
 class Event:
-    """One change of contact, of side or of fate.
+    """One change of contact or of the leading corner, or an overturning.
 
     ``interface`` is "pads", "soil" or empty; ``before`` and ``after`` are
     (X, Y, phi, xi, r, psi) and their rates.
@@ -60,12 +60,12 @@ class Event:
 
 @dataclass
 class Result:
-    """Samples, events and the balance of energy of one run.
+    """Samples, events and energy balance of one run.
 
     ``rotation`` is the block's, phi + psi; ``cap_vertical``, ``cap_rotation``, ``pad_vertical``
     and ``pad_rotation`` are Y, phi, r and psi; ``cap_horizontal`` and ``slide`` are X and xi.
     ``horizontal`` and ``vertical`` are those of the block's centre of mass relative to the
-    ground, from its place at rest. ``rates`` holds the rates of (X, Y, phi, xi, r, psi), one
+    ground, from its position at rest. ``rates`` holds the rates of (X, Y, phi, xi, r, psi), one
     row each. Samples after the end of the run are NaN, the contacts there empty strings; at
     the instant of an event the samples are those after it. Energies are in joules.
     """
@@ -103,7 +103,7 @@ class Result:
 
 @functools.cache
 def lagrangian():
-    """Derive what Lagrange's equations need; give numerical functions for math and for numpy.
+    """Derive Lagrange's equations; return numerical functions for math and for numpy.
 
     ``equations`` gives the lower triangle of the mass matrix and the six sums of the terms
     quadratic in the rates and of the pull of a uniform field (ax, ay) on both bodies.
@@ -143,11 +143,11 @@ def lagrangian():
     entries = [sympy.simplify(mass[i, j]) for i, j in PAIRS]
     equations = [*entries, *(sympy.expand(one) for one in pull)]
     places = [*block, *velocity(block)]
-    given = (q, v, parameters)
+    symbols_given = (q, v, parameters)
     return {
         xp: (
-            sympy.lambdify((*given, ax, ay), equations, modules=name, cse=True),
-            sympy.lambdify(given, places, modules=name, cse=True),
+            sympy.lambdify((*symbols_given, ax, ay), equations, modules=name, cse=True),
+            sympy.lambdify(symbols_given, places, modules=name, cse=True),
         )
         for xp, name in ((math, "math"), (np, "numpy"))
     }
@@ -251,7 +251,7 @@ class _Run(March):
         return self.matrix(entries)
 
     def motion(self, t, z, xp=math):
-        """Accelerations, corners and ends, and the power the dashpots burn."""
+        """Accelerations, corners and ends, and the power dissipated by the dashpots."""
         q, v = z[:6], self.rates(z, xp)
         ax, ay = self.ground_x(t), self.ground_y(t)
         answers = self.functions[xp][0](q, v, self.parameters, ax, self.g + ay)
@@ -328,7 +328,7 @@ class _Run(March):
 
     # guards ---------------------------------------------------------------------------------
     def set_guards(self):
-        """Set what can end the present state, unarmed until it has been positive."""
+        """Set the guards of the present state, unarmed until they have been positive."""
         guards = []
         for name in "LR":
             where = "pads " + name
@@ -392,7 +392,7 @@ class _Run(March):
 
     # switches -------------------------------------------------------------------------------
     def repin(self, z, before):
-        """Project the whole momentum on the constraints of both contacts; give the loss."""
+        """Project the momentum on the constraints of both contacts; return the loss."""
         mass = self.mass(z)
         basis, _ = self.basis(z, before)
         after = basis @ np.linalg.solve(basis.T @ mass @ basis, basis.T @ mass @ before)
@@ -400,7 +400,7 @@ class _Run(March):
         return 0.5 * float(before @ mass @ before - after @ mass @ after)
 
     def strike(self, z, names):
-        """Apply the impulses of a landing along the cap's normal; give the loss, and if any."""
+        """Apply the normal impulses of a landing; return the loss and whether any acted."""
         corners = self.pads(z)
         falling = [name for name in names if corners[name][1] < 0.0]
         if not falling:
@@ -419,11 +419,11 @@ class _Run(March):
         return 0.5 * float(v @ mass @ v - after @ mass @ after), True
 
     def due(self, t, z, before=None, just_left=()):
-        """List the changes of contact that the present state asks for at once.
+        """List the changes of contact that are due in the present state.
 
-        ``before`` holds the corners' expressions of force ahead of a jump of the rates.
+        ``before`` holds the corners' force expressions before a jump of the rates.
         """
-        asked = []
+        changes = []
         accelerations, corners, ends, _ = self.motion(t, z)
         for name, corner in corners.items():
             rise, rate, *_ = corner
@@ -434,25 +434,25 @@ class _Run(March):
                 if name in self.grace and force < -margin:
                     continue
                 if force < -margin or (force <= margin and force_rate < 0.0):
-                    asked.append(("leave", where))
+                    changes.append(("leave", where))
             elif state == RELAXING:
                 if rate > 0.0 and self.delta - rise <= SIMULTANEOUS * rate:
-                    asked.append(("clear", where))
+                    changes.append(("clear", where))
                 elif rate <= 0.0:
-                    asked.append(("settle", where))
+                    changes.append(("settle", where))
                 elif before and before[name] <= 0.0 < force - margin and name not in just_left:
-                    asked.append(("engage", where))
+                    changes.append(("engage", where))
             elif rate < 0.0 and rise - self.delta <= SIMULTANEOUS * -rate:
-                asked.append(("land", where))
+                changes.append(("land", where))
         for name, end in ends.items():
             touches = self.bed.end[name] == TOUCHING
             sign = 1.0 if touches else -1.0
             if sign * end.rate > 0.0 and sign * end.depth <= SIMULTANEOUS * abs(end.rate):
-                asked.append(("leave" if touches else "land", "soil " + name))
-        return asked
+                changes.append(("leave" if touches else "land", "soil " + name))
+        return changes
 
-    def switch(self, t, z, asked):
-        """Carry out what has fired, and what that entails at the same instant."""
+    def switch(self, t, z, changes):
+        """Carry out the changes that fired, and those that follow at the same instant."""
         self.grace = {name for name in self.grace if self.pads(z)[name][2] <= 0.0}
         just_left: set[str] = set()
         for _ in range(CASCADE):
@@ -461,13 +461,13 @@ class _Run(March):
                 for interface in ("", "soil", "pads"):
                     names = "".join(
                         where.split(" ")[1]
-                        for what, where in asked
+                        for what, where in changes
                         if what == kind and where.split(" ")[0] == interface
                     )
-                    if (kind, interface + " " + names[:1]) in asked:
+                    if (kind, interface + " " + names[:1]) in changes:
                         self.enact(t, z, kind, interface, names, just_left)
-            asked = self.due(t, z, before, just_left)
-            if not asked:
+            changes = self.due(t, z, before, just_left)
+            if not changes:
                 break
         else:
             msg = f"contact does not settle at t = {float(t)!r}"
@@ -475,7 +475,7 @@ class _Run(March):
         self.set_guards()
 
     def enact(self, t, z, kind, interface, names, just_left):
-        """Carry out one change at one interface and note it."""
+        """Carry out one change at one interface and record it."""
         was, rates = tuple(self.contact.values()), np.array(self.rates(z))
         span = (*(float(one) for one in z[:6]), *(float(one) for one in rates))
         event = Event(float(t), kind, interface, names, was, was, span, span)
@@ -497,7 +497,7 @@ class _Run(March):
         self.events.append(event)
 
     def change(self, z, kind, interface, names, just_left):
-        """Return the named corners or ends their new state."""
+        """Return the new states of the named corners or ends."""
         for name in names:
             if interface == "soil":
                 self.bed.end[name] = TOUCHING if kind == "land" else CLEAR
@@ -562,8 +562,8 @@ def simulate(
     The pads are those of the block alone: frequency and damping ratio belong to its mass. The
     bed's stiffness and damping are per unit length of the cap's base. An initial Y of None is
     that at which the bed carries block and cap at rest, an initial r of None that at which the
-    pads carry the block. The block starts with ``xi = h sin(psi) + e (1 - cos(psi))``, or, in
-    flight, as if ``e`` were zero; the cap likewise. A free coordinate starts without rate.
+    pads carry the block. The block starts with ``xi = h sin(psi) + e (1 - cos(psi))``, in
+    flight with ``e = 0``; the cap likewise. A free coordinate starts with rate zero.
     """
     if overturning not in ("stop", "continue"):
         msg = f"unknown overturning {overturning!r}"

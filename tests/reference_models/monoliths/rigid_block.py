@@ -1,17 +1,17 @@
-"""Housner's rigid block on rigid ground, integrated for its own sake.
+"""Housner's rigid block on rigid ground, integrated independently.
 
 Mass is one. Signs: x right, y up, rotation clockwise. The state is (alpha, alpha', work of
 the ground). With s the sign of the rotation,
 
     alpha'' = -omega^2 [(1 + a_y/g) sin(theta s - alpha) + (a_x/g) cos(theta s - alpha)]
 
-and for small rotation sine and cosine give way to their argument and to one. At alpha = 0 the
-rate is multiplied by the restitution.
+and for small rotation sine and cosine become their argument and one. At alpha = 0 the rate is
+multiplied by the restitution.
 
-A block at rest starts when the equation of motion, at alpha = 0, drives it away from zero on
-either side: |a_x| > (g + a_y) tan(theta), or theta itself for small rotation. It comes to
-rest after an impact when the equation holds it on both sides and what is left of its rate
-would lift it by less than ``rest_rotation`` times theta.
+A block at rest starts when the equation of motion at alpha = 0 drives it away from zero on either
+side: |a_x| > (g + a_y) tan(theta), or theta itself for small rotation. It comes to
+rest after an impact when the equation holds it on both sides and its remaining rate would lift it
+by less than ``rest_rotation`` times theta.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ SUBDIVISIONS = 8
 
 @dataclass
 class Event:
-    """An impact, a start, a coming to rest, or an overturning; states are (alpha, alpha')."""
+    """An impact, a start, a rest or an overturning; states are (alpha, alpha')."""
 
     time: float
     kind: str
@@ -40,7 +40,7 @@ class Event:
 
 @dataclass
 class Result:
-    """Samples, events and the balance of energy of one run.
+    """Samples, events and energy balance of one run.
 
     Samples after the end of the run are NaN; at the instant of an event they are those after
     it. ``state`` is "rocking", "rest" or, after the end, an empty string.
@@ -99,7 +99,7 @@ class _Run:
         return self.radius, self.radius * left
 
     def place(self, alpha):
-        """Return x and y of the centre of mass from the block's place at rest."""
+        """Return x and y of the centre of mass from its position at rest."""
         side = 1.0 if alpha >= 0.0 else -1.0
         left = self.theta - abs(alpha)
         if self.finite:
@@ -229,7 +229,7 @@ def simulate(
         note(t, "topple", state)
 
     def first_lift(start, stop):
-        """When a resting block starts within a smooth piece, if it does."""
+        """Return the time at which a resting block starts within a smooth piece, or None."""
         if run.held(start) < 0.0:
             return start
         count = max(2, math.ceil((stop - start) / max_step) * SUBDIVISIONS + 1)
@@ -256,7 +256,7 @@ def simulate(
                 if lift is None or lift >= stop:
                     break
                 resting = False
-                # ground that sets off to the right leaves the block to tilt to the left
+                # ground acceleration to the right tilts the block to the left
                 run.side = -1 if run.ground_x(now) > 0.0 else 1
                 note(now, "start", (0.0, 0.0))
                 run.set_guards()

@@ -1,8 +1,8 @@
 """A block with Coulomb friction on rigid ground, in maximal coordinates, by SciPy.
 
-Shares nothing with the package: position and rotation of the centre of mass, forces at both
-corners from the constraints of a mode, modes found by trying all and keeping the first that is
-consistent, impacts by stepping through the impulse (Routh).
+Shares nothing with the package. Coordinates are position and rotation of the centre of mass;
+forces at both corners follow from the constraints of a mode; the first consistent mode of all is
+taken; impacts step through the impulse (Routh).
 """
 
 import math
@@ -17,12 +17,12 @@ TINY = 1e-9
 STOPPED = 1e-11
 REST = 1e-10  # rotation over that of unstable equilibrium
 MOST_EVENTS = 4000
-LONGEST = 0.005  # step, that no margin falls and rises again in one [s]
+LONGEST = 0.005  # longest step, so that no margin falls and rises again within one [s]
 
 
 @dataclass(frozen=True)
 class Mode:
-    """Corners that bear, and the sign of the slip."""
+    """The bearing corners, and the sign of the slip."""
 
     corners: str  # "", "R", "L" or "LR"
     slip: int
@@ -100,9 +100,9 @@ class Block:
                 m[-1, :3], f[-1] = tangent, bend
             else:
                 m[-1, -1], m[-1, 3 : 3 + n] = 1.0, mode.slip * self.kinetic
-        found = np.linalg.solve(m, f)
-        return found[:3], dict(zip(mode.corners, found[3 : 3 + n], strict=True)), (
-            found[-1] if n else 0.0
+        solution = np.linalg.solve(m, f)
+        return solution[:3], dict(zip(mode.corners, solution[3 : 3 + n], strict=True)), (
+            solution[-1] if n else 0.0
         )  # fmt: skip
 
     def corner_acceleration(self, which, z, a):
@@ -112,21 +112,21 @@ class Block:
 
     def margins(self, mode, z, ground):
         """Functions that are positive as long as the mode lasts, by name."""
-        found = {f"gap {c}": self.gap(c, z) for c in "RL" if c not in mode.corners}
-        found |= ties.guards_of(self.tied, self.seen_by_ties(z))
+        margins = {f"gap {c}": self.gap(c, z) for c in "RL" if c not in mode.corners}
+        margins |= ties.guards_of(self.tied, self.seen_by_ties(z))
         if not mode.corners:
-            return found
+            return margins
         _, normal, friction = self.forces(mode, z, ground)
-        found |= {f"press {c}": n for c, n in normal.items()}
+        margins |= {f"press {c}": n for c, n in normal.items()}
         if mode.slip == 0:
             most = self.static * sum(normal.values())
-            found |= {"friction +": most + friction, "friction -": most - friction}
+            margins |= {"friction +": most + friction, "friction -": most - friction}
         else:
-            found["slip"] = mode.slip * self.rates(mode.corners[-1], z)[0]
-        return found
+            margins["slip"] = mode.slip * self.rates(mode.corners[-1], z)[0]
+        return margins
 
     def next_mode(self, z, ground, gone, touching):
-        """The first mode that is consistent; `gone` is what has just ended."""
+        """Return the first consistent mode; `gone` is the contact that has just ended."""
         for mode in ORDER:
             if mode == gone or any(c not in touching for c in mode.corners):
                 continue
@@ -152,7 +152,7 @@ class Block:
         raise RuntimeError(msg)
 
     def impulse(self, which, z):
-        """Stop a corner: Routh's way through the impulse."""
+        """Stop a corner by stepping through the impulse (Routh)."""
         _, dr = self.corner(which, z[2])
         inverse = np.array([1.0, 1.0, 1.0 / self.inertia])
         normal, tangent = np.array([0.0, 1.0, dr[1]]), np.array([1.0, 0.0, dr[0]])
@@ -175,7 +175,7 @@ class Block:
         return np.array([*z[:3], *v])
 
     def land(self, mode, which, z, ground):
-        """An impact: the state and the mode behind it, and whether the block comes to rest."""
+        """Return state and mode after an impact, and whether the block comes to rest."""
         other = "L" if which == "R" else "R"
         both = abs(self.gap(other, z)) < 1e-11
         new = self.impulse(which, z)
@@ -189,13 +189,13 @@ class Block:
         if both and new_mode.corners in (which, "") and mode.corners == other:
             angle = math.atan2(self.right if which == "R" else self.left, self.height)
             slip, leans, still = new[3] - new[5] * self.height, new_mode, new.copy()
-            if slip**2 < REST * self.gravity * self.height:  # too low to be told
+            if slip**2 < REST * self.gravity * self.height:  # too low to resolve
                 still[3], slip = still[3] - slip, 0.0
                 leans = Mode(which, 0) if new_mode.corners else new_mode
             a = self.forces(leans, still, ground)[0]
             falls = -self.corner_acceleration(other, still, a)[1] / (self.left + self.right)
             if falls > 0.0 and new[5] ** 2 < 2.0 * falls * REST * angle:
-                # all bounces to come give the momentum upwards, and friction of that
+                # all later bounces together supply the vertical momentum, and its friction
                 most = self.kinetic * abs(z[4])
                 across = math.copysign(max(abs(z[3]) - most, 0.0), z[3]) if slip != 0.0 else 0.0
                 flat = np.array([z[0], self.height, 0.0, across, 0.0, 0.0])
@@ -211,7 +211,7 @@ class Block:
         return new, new_mode, False
 
     def simulate(self, rotation, duration, rtol=1e-11, stop=True):
-        """Integrate; gives peaks of rotation and slip, events, and the end."""
+        """Integrate; return peaks of rotation and slip, events, and the end."""
         a = rotation
         which = "R" if a > 0 else "L"
         r, _ = self.corner(which, a)
@@ -238,14 +238,14 @@ class Block:
                     self.events.append((t, "UPLIFT"))
                 elif mode.slip:
                     self.events.append((t, "SLIP"))
-            else:  # the ground may have jumped
+            else:  # the ground acceleration may have jumped
                 margins = self.margins(mode, z, ground)
                 own = [one for name, one in margins.items() if "tie" not in name]
                 if min(own, default=0.0) < -1e-7:
                     mode = self.changed(t, mode, None, z, ground)
             end = min(self.times[piece + 1], duration)
-            t, z, mode, found, slipped, fell = self.go(t, z, mode, piece, end, rtol)
-            peak, peak_slip = max(peak, found), max(peak_slip, slipped)
+            t, z, mode, largest, slipped, fell = self.go(t, z, mode, piece, end, rtol)
+            peak, peak_slip = max(peak, largest), max(peak_slip, slipped)
             if fell and stop:
                 break
             if max(len(self.events), passes) > MOST_EVENTS:
@@ -263,7 +263,7 @@ class Block:
         return z[0] + self.corner(which, z[2])[0][0] - d
 
     def changed(self, t, mode, gone, z, ground):
-        """Go on in another mode without an impact."""
+        """Change the mode without an impact."""
         touching = mode.corners
         new = self.next_mode(z, ground, gone, touching)
         if not new.corners:
@@ -287,7 +287,7 @@ class Block:
         def event(name):
             def margin(time, state):
                 at = time, *state
-                if at != last[0]:  # all events ask at the same places
+                if at != last[0]:  # all event functions are evaluated at the same points
                     last[:] = at, self.margins(mode, state, self.ground(time, piece))
                 return last[1][name]
 
@@ -306,10 +306,10 @@ class Block:
         ground = self.ground(t, piece)
         a = self.forces(mode, z, ground)[0]
         longest = LONGEST
-        if self.tied:  # nor of a tie
+        if self.tied:  # nor the change of a tie
             stiffest = max(math.sqrt(tie.stiffness) for tie in self.tied)
             longest = min(longest, 0.1 / stiffest)
-        for c in "RL":  # a corner that has just left comes back
+        for c in "RL":  # a corner that has just left returns
             if c not in mode.corners:
                 opens, closing = self.rates(c, z)[1], self.corner_acceleration(c, z, a)[1]
                 if opens > 0.0 > closing:
@@ -341,7 +341,7 @@ class Block:
             return t, z, mode, peak, max(slips), True
         name, ground = names[hit], self.ground(t, piece)
         if name[-1] == "turn" and self.stops(mode, z, ground):
-            name = "slip"  # the tie turns since the block stops
+            name = "slip"  # the tie reverses because the block stops
         z = self.tidied(mode, z)
         if name[0] == "tie":
             tie, kind = self.tied[name[1]], name[2]
@@ -352,7 +352,7 @@ class Block:
             if tie.state == ties.BROKEN and mode.corners:
                 shown = len(self.events)
                 mode = self.changed(t, mode, None, z, ground)
-                del self.events[shown:]  # it is the tie's
+                del self.events[shown:]  # a change of the tie
             return t, z, mode, peak, max(slips), False
         if name.startswith("gap"):
             which = name[-1]
@@ -374,13 +374,13 @@ class Block:
         return t, z, self.changed(t, mode, mode, z, ground), peak, max(slips), False
 
     def stops(self, mode, z, ground):
-        """Whether a block that slides on its whole base comes to a stop."""
+        """Whether a block that slides on its whole base stops."""
         if mode.corners != "LR" or not mode.slip or abs(z[3]) > STOPPED:
             return False
         return mode.slip * self.forces(mode, z, ground)[0][0] < 0.0
 
     def tidied(self, mode, z):
-        """Put the state back on the constraints that the steps have left by rounding."""
+        """Project the state on the constraints, from which rounding of steps has moved it."""
         if mode.corners == "LR":
             z[1], z[2], z[4], z[5] = self.height, 0.0, 0.0, 0.0
             if mode.slip == 0:

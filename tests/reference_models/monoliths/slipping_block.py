@@ -1,9 +1,9 @@
 """A block with Coulomb friction on two pads or on a bed, by SciPy; mass one.
 
 Shares nothing with the package. The state is (x, y, a, x', y', a') of the centre of mass, from
-where the block stands upright under its weight; clockwise rotations count as positive. The point
-of the base that the rule of restraint names is held by a force within the cone of friction, or
-slips against one on its edge. Pads and bed press with what their compression asks for.
+its position upright under the weight; clockwise rotations are positive. The point of the base
+selected by the restraint rule is held by a force within the friction cone, or slips against a
+force on its edge. The forces of pads and bed follow from their compression.
 """
 
 import math
@@ -33,19 +33,19 @@ class Pads:
         return self.contact[side] in ("touching", "engaging")
 
     def pressed(self, side, level, speed):
-        """What the pad would press with, and its rate for an acceleration of the corner."""
+        """Return the force law of the pad, and its rate for an acceleration of the corner."""
         return self.stiffness * (self.sunk - level) - self.damping * speed
 
     def forces(self, block, z):
-        found = []
+        pairs = []
         for side in "LR":
             level, speed, lever = block.corner(side, z)
             if self.contact[side] == "touching":
-                found.append((self.pressed(side, level, speed), lever))
-        return found
+                pairs.append((self.pressed(side, level, speed), lever))
+        return pairs
 
     def guards(self, block, z):
-        found = {}
+        guards = {}
         for side in "LR":
             level, speed, _ = block.corner(side, z)
             force, gap, now = (
@@ -54,18 +54,18 @@ class Pads:
                 self.contact[side],
             )
             if now == "touching":
-                found["leave", side] = force
+                guards["leave", side] = force
             elif now == "clear":
-                found["land", side] = gap
+                guards["land", side] = gap
             else:
-                found["clear", side] = -gap
-                found["turn", side] = -force if now in ("relaxing", "engaging") else force
+                guards["clear", side] = -gap
+                guards["turn", side] = -force if now in ("relaxing", "engaging") else force
                 if now == "leaving":
-                    found["back", side] = speed
-        return found
+                    guards["back", side] = speed
+        return guards
 
     def switch(self, block, kind, side, z):
-        """The event after a guard has fallen, or None."""
+        """Return the event of a fallen guard, or None."""
         now = self.contact[side]
         if kind == "leave" or (kind == "clear" and now == "engaging"):
             below = kind == "leave" and self.damping > 0.0
@@ -89,7 +89,7 @@ class Pads:
         return "touching" if self.pressed(side, level, speed) > 0.0 else "relaxing"
 
     def wait(self, block, event, side, z, a):
-        """Hold back what the new motion would undo at once."""
+        """Delay a change that the new motion would undo at once."""
         _, speed, _ = block.corner(side, z)
         rate = -self.stiffness * speed - self.damping * block.corner_acceleration(side, z, a)
         if event == "SEPARATION" and rate > 0.0 and self.contact[side] == "relaxing":
@@ -103,7 +103,7 @@ class Pads:
 
 @dataclass
 class Bed:
-    """Springs and dashpots along the base; what is above the level of the unloaded bed is free."""
+    """Springs and dashpots along the base; parts above the unloaded level are free."""
 
     stiffness: float
     damping: float
@@ -115,7 +115,7 @@ class Bed:
         return self.contact[side] == "touching"
 
     def forces(self, block, z):
-        """By Gauss's rule over the part that is down, where all is a polynomial."""
+        """By Gauss's rule over the bearing part, where all integrands are polynomials."""
         (l0, s0, m0), (l1, s1, m1) = block.corner("L", z), block.corner("R", z)
         u0, u1 = self.sunk - l0, self.sunk - l1
         first, last = 0.0, 1.0
@@ -125,14 +125,14 @@ class Bed:
             last = u0 / (u0 - u1) if u0 != u1 else 0.0
         if last <= first or not (self.held("L") or self.held("R")):
             return []
-        found = []
+        pairs = []
         for node, weight in GAUSS:
             p = first + 0.5 * (last - first) * (1.0 + node)
             pressure = self.stiffness * (u0 + p * (u1 - u0)) - self.damping * (s0 + p * (s1 - s0))
-            found.append(
+            pairs.append(
                 (0.5 * weight * (last - first) * self.width * pressure, m0 + p * (m1 - m0))
             )
-        return found
+        return pairs
 
     def guards(self, block, z):
         return {
@@ -190,7 +190,7 @@ class Block:
         )
 
     def corner(self, side, z):
-        """Level above its place upright, speed, and lever of a corner."""
+        """Level above the upright position, speed and lever of a corner."""
         d = self.half if side == "R" else -self.half
         c, s = math.cos(z[2]), math.sin(z[2])
         lever = self.height * s - d * c
@@ -205,7 +205,7 @@ class Block:
         return not (self.base.held("L") or self.base.held("R"))
 
     def point(self):
-        """How far the point that is held, or would be, is to the right of the middle."""
+        """Distance of the held (or slipping) point to the right of the middle."""
         if self.flies() or self.rule == "centre":
             return 0.0
         if self.rule == "leading-corner":
@@ -225,7 +225,7 @@ class Block:
         return z[3] - self.arm(z)[0] * z[5]
 
     def motion(self, z, ground):
-        """Accelerations, and the force along the base with what presses it."""
+        """Return the accelerations, the force along the base and the force that presses it."""
         forces = self.base.forces(self, z)
         pressing = sum(one for one, _ in forces)
         moment = sum(one * lever for one, lever in forces)
@@ -243,18 +243,18 @@ class Block:
         return (x, up, turning), h, pressing
 
     def guards(self, z, ground):
-        found = self.base.guards(self, z) | ties.guards_of(self.tied, self.seen_by_ties(z))
+        guards = self.base.guards(self, z) | ties.guards_of(self.tied, self.seen_by_ties(z))
         if self.rule == "leading-corner" and self.side and not self.flies():
-            found["pivot", ""] = self.side * z[2]
+            guards["pivot", ""] = self.side * z[2]
         if self.flies():
-            return found
+            return guards
         if self.slip:
-            # a slip that starts is not ended by rounding
-            found["slip", ""] = self.slip * self.slip_speed(z) + 1e-14
+            # rounding must not end a slip that starts
+            guards["slip", ""] = self.slip * self.slip_speed(z) + 1e-14
         else:
             _, h, pressing = self.motion(z, ground)
-            found["hold", ""] = self.static * max(pressing, 0.0) - abs(h)
-        return found
+            guards["hold", ""] = self.static * max(pressing, 0.0) - abs(h)
+        return guards
 
     def decide(self, z, ground, lets_go=False):
         """Hold the point, or let it slip."""
@@ -272,7 +272,7 @@ class Block:
             self.slip = -int(math.copysign(1, h))
 
     def impulse(self, side, z):
-        """Reduce the speed of a corner, Routh's way through the impulse."""
+        """Reduce the speed of a corner by stepping through the impulse (Routh)."""
         _, speed, lever = self.corner(side, z)
         if speed >= 0.0:
             return
@@ -300,7 +300,7 @@ class Block:
         z[3:] = v
 
     def tie_ends(self, i, kind, z, ground, t):
-        """Go on to the next state of a tie."""
+        """Change the state of a tie."""
         tie = self.tied[i]
         self.events.append((t, ties.event_of(tie, kind)))
         tie.switch(kind, self.seen_by_ties(z))
@@ -308,7 +308,7 @@ class Block:
             self.decide(z, ground)
 
     def fell(self, kind, side, z, ground, t):
-        """What a fallen guard changes."""
+        """Carry out the change of a fallen guard."""
         was, before = self.slip, self.place(z)
         if kind in ("hold", "slip"):
             if kind == "slip":
@@ -338,7 +338,7 @@ class Block:
         self.events.append((t, event))
 
     def simulate(self, z, duration, rtol=1e-11):
-        """Integrate from a state at rest; gives peaks of rotation and slip, and the events."""
+        """Integrate from a state at rest; return peaks of rotation and slip, and the events."""
         z = np.array(z, dtype=float)
         self.side = 0 if z[2] == 0.0 else int(math.copysign(1, z[2]))
         for tie in self.tied:
@@ -374,7 +374,7 @@ class Block:
             def event(name, piece=piece, last=last):
                 def guard(time, state):
                     at = time, *state
-                    if at != last[0]:  # all events ask at the same places
+                    if at != last[0]:  # all event functions are evaluated at the same points
                         last[:] = at, self.guards(state, self.ground(time, piece))
                     return last[1][name]
 

@@ -1,8 +1,8 @@
-"""A block on rigid ground with a tendon that is bent over the edges of its duct.
+"""A block on rigid ground with a tendon that bends over the edges of its duct.
 
-Per unit mass of the block; the tendon stands in the place of a tie. As the block rotates by alpha
-about a corner at the distance e from the duct, the mouths of the duct part by 2 e sin(alpha/2),
-which is what the tendon is stretched by.
+Per unit mass of the block; the tendon has the interface of a tie. As the block rotates by alpha
+about a corner at the distance e from the duct, the mouths of the duct separate by
+2 e sin(alpha/2), which stretches the tendon.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from . import tied_rigid_block
 
 @dataclass
 class Tendon:
-    """A tendon that holds, elastic, with a preload."""
+    """An elastic, unbreakable tendon with a preload."""
 
     to_left: float  # from the duct to the left corner
     to_right: float
@@ -25,7 +25,7 @@ class Tendon:
     side: int = 1  # of the corner that bears
 
     def begin(self, height: float, z) -> None:
-        """Begin: there is nothing to remember."""
+        """Begin: a tendon has no state."""
 
     def length(self, z):
         """Return the elongation, its derivatives, and its rate."""
@@ -39,11 +39,11 @@ class Tendon:
         return self.preload + self.stiffness * length
 
     def guards(self, number: int) -> list:
-        """Return what ends its state: nothing."""
+        """Return the guards of its state: none."""
         return []
 
     def turned(self, z) -> bool:
-        """Whether something has turned it: never."""
+        """Whether it has reversed: never."""
         return False
 
 
@@ -51,7 +51,7 @@ class Block(tied_rigid_block.Block):
     """A block with tendons."""
 
     def pulls(self, alpha: float, rate: float) -> tuple[float, float]:
-        """Return the tendons' moment on the rotation; they lift nothing."""
+        """Return the tendons' moment on the rotation; they exert no vertical force."""
         for one in self.ties:
             one.side = self.side
         return super().pulls(alpha, rate)

@@ -25,8 +25,8 @@ RTOL, ATOL = 1e-12, 1e-14
 
 
 @dataclass
-class Found:
-    """Samples and what happened; `lifted` if the bearing corner would have had to pull."""
+class Result:
+    """Samples and events; `lifted` if the bearing corner would have had to pull."""
 
     rotation: np.ndarray
     events: list[tuple[float, str]] = field(default_factory=list)
@@ -50,7 +50,7 @@ class Block:
         self.about = self.inertia + self.radius**2
 
     def place(self, alpha: float, rate: float) -> tuple[list[float], float, float]:
-        """Return rotation, rise and shift with their rates, and how the latter go with alpha."""
+        """Return rotation, rise and shift with their rates and their derivatives by alpha."""
         lean, s = self.theta * self.side - alpha, self.side
         up, along = self.radius * math.sin(lean), self.radius * math.cos(lean)
         x, y = s * self.b - up, along - self.h
@@ -92,12 +92,12 @@ class Block:
 def simulate(
     block: Block, acceleration: Sequence[float], time_step: float, rotation: float, times,
     limit: float = math.inf, longest_step: float = 0.01,
-) -> Found:  # fmt: skip
+) -> Result:  # fmt: skip
     """Follow a block from a rotation through a piecewise linear motion.
 
-    A rotation that passes zero twice within a step is not seen.
+    Two passages through zero within one step are not detected.
     """
-    found = Found(np.full(len(times), np.nan))
+    result = Result(np.full(len(times), np.nan))
     duration, last = float(times[-1]), len(acceleration) - 1
 
     def ground(t: float) -> float:
@@ -116,19 +116,19 @@ def simulate(
     while t < duration:
         end = next(edge for edge in edges if edge > t)
         if resting:
-            t, resting = _rest(block, ground, t, end, found, times)
+            t, resting = _rest(block, ground, t, end, result, times)
             alpha = rate = 0.0
             continue
         t, alpha, rate, resting = _rock(
-            block, ground, t, end, alpha, rate, found, times, limit, longest_step
+            block, ground, t, end, alpha, rate, result, times, limit, longest_step
         )
-        if found.overturned:
+        if result.overturned:
             break
-    return found
+    return result
 
 
-def _rest(block, ground, t, end, found, times):
-    """Wait until it starts; linear in time within an interval."""
+def _rest(block, ground, t, end, result, times):
+    """Rest until the block starts; loads are linear in time within an interval."""
     edge = end - 1e-13 * max(1.0, end)
     first, final = block.holds(ground(t), 0.0), block.holds(ground(edge), 0.0)
     start = end
@@ -142,13 +142,13 @@ def _rest(block, ground, t, end, found, times):
                 break
             low, high = (middle, high) if block.holds(ground(middle), 0.0) >= 0 else (low, middle)
         start = high
-        found.events.append((start, "uplift"))
+        result.events.append((start, "uplift"))
         block.holds(ground(start), 0.0)
-    found.rotation[(times >= t) & (times <= start)] = 0.0
+    result.rotation[(times >= t) & (times <= start)] = 0.0
     return start, start >= end
 
 
-def _rock(block, ground, t, end, alpha, rate, found, times, limit, longest_step):
+def _rock(block, ground, t, end, alpha, rate, result, times, limit, longest_step):
     """Rock until the next event or the end of an interval."""
     a0, a1 = ground(t), ground(end - 1e-13 * max(1.0, end))
     span = max(end - 1e-13 - t, 1e-300)
@@ -185,26 +185,26 @@ def _rock(block, ground, t, end, alpha, rate, found, times, limit, longest_step)
     )  # fmt: skip
     stop = float(run.t[-1])
     some = (times >= t) & (times <= stop)
-    found.rotation[some] = run.sol(times[some])[0] if some.any() else 0.0
+    result.rotation[some] = run.sol(times[some])[0] if some.any() else 0.0
     for at, z in zip(run.t, run.y.T, strict=True):
-        found.lifted |= block.press(z[0], z[1], ax(at), 0.0) < 0.0
+        result.lifted |= block.press(z[0], z[1], ax(at), 0.0) < 0.0
     alpha, rate = (float(one) for one in run.y[:, -1])
     if run.status != 1:
         return end, alpha, rate, False
     which = next(i for i, one in enumerate(run.t_events) if len(one))
     kind, tie = names[which]
-    found.events.append((stop, kind))
-    found.overturned = kind == "overturned"
-    if found.overturned:
+    result.events.append((stop, kind))
+    result.overturned = kind == "overturned"
+    if result.overturned:
         return stop, alpha, rate, False
     if tie is not None:
         place = block.place(alpha, rate)[0]
         tie.switch(kind, place)
-        # a block that stops turns all ties that yield, at once
+        # a block that stops reverses all yielding ties at once
         for other in block.ties if kind == "turn" else ():
             if other.state in (YIELDING, PRESSED) and abs(other.length(place)[2]) < STOPPED:
                 other.switch("turn", place)
-                found.events.append((stop, "turn"))
+                result.events.append((stop, "turn"))
         return stop, alpha, rate, False
     rate *= 1.0 - 2.0 * block.b**2 / block.about
     block.side = -side
@@ -212,7 +212,7 @@ def _rock(block, ground, t, end, alpha, rate, found, times, limit, longest_step)
     for one in block.ties:
         if one.turned(block.place(alpha, rate)[0]):
             one.switch("turn", block.place(alpha, rate)[0])
-            found.events.append((stop, "turn"))
+            result.events.append((stop, "turn"))
     restoring = side * block.swing(0.0, 0.0, ground(stop), 0.0)
     if restoring > 0.0 and rate**2 < 2.0 * restoring * REST * block.theta:
         keep = block.side

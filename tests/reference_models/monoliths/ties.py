@@ -36,14 +36,14 @@ class Tie:
     loss: float = 0.0
 
     def begin(self, height: float, z) -> None:
-        """Find the natural length, and the state at the start."""
+        """Set the natural length and the initial state."""
         self.set, self.loss = 0.0, 0.0
         dx, dy = self.point[0] - self.anchor[0], self.point[1] + height - self.anchor[1]
         self.height = height
         self.natural = math.hypot(dx, dy) + self.slack - self.preload / self.stiffness
         self.most = self.strength / self.stiffness
         x = self.length(z)[0] - self.natural
-        # a tie that has yielded on the way to the start is about to be unloaded there
+        # a tie that yielded on the way to the start begins to unload there
         if x > self.most:
             left = x - self.most + CLEAR * self.natural
             self.state, self.set = (BROKEN, 0.0) if self.brittle else (TAUT, left)
@@ -54,7 +54,7 @@ class Tie:
             self.state = TAUT if x > 0.0 or self.compression else SLACK
 
     def length(self, z, xp=math):
-        """Return length, its derivatives by rotation, height and place, rate and what bends it."""
+        """Return length, its derivatives by rotation, height and place, rate and curvature term."""
         alpha, y, x, alpha_dot, y_dot, x_dot = z[:6]
         sine, cosine = xp.sin(alpha), xp.cos(alpha)
         px, py = self.point
@@ -90,7 +90,7 @@ class Tie:
         return 0.5 * self.stiffness * x * x
 
     def lost_power(self, rate: float) -> float:
-        """Return what dashpot and yielding take."""
+        """Return the power dissipated by dashpot and yielding."""
         if self.state == BROKEN:
             return 0.0
         sign = {YIELDING: 1.0, PRESSED: -1.0}.get(self.state, 0.0)
@@ -98,7 +98,7 @@ class Tie:
         return self.damping * rate * rate + plastic
 
     def guards(self, number: int) -> list[Guard]:
-        """Return what can end the present state."""
+        """Return the guards of the present state."""
         kinds = {SLACK: ("taut",), YIELDING: ("turn",), PRESSED: ("turn",), BROKEN: ()}
         some = list(kinds.get(self.state, ()))
         if self.state == TAUT:
@@ -121,11 +121,11 @@ class Tie:
         }[kind]
 
     def switch(self, kind: str, z) -> None:
-        """Go on to the next state."""
+        """Change the state."""
         x = self.length(z)[0] - self.natural - self.set
         if kind == "turn":
             sign = 1.0 if self.state == YIELDING else -1.0
-            # clear of its strength, that rounding does not let it yield again
+            # below its strength by more than rounding, so that it does not yield again
             self.set += x - sign * self.most + sign * CLEAR * self.natural
             self.state = TAUT
         elif kind in ("yield", "press") and self.brittle:
@@ -136,7 +136,7 @@ class Tie:
             self.state = names[kind]
 
     def turned(self, z) -> bool:
-        """Whether something has turned a tie that yields."""
+        """Whether a yielding tie has reversed."""
         sign = {YIELDING: 1.0, PRESSED: -1.0}.get(self.state, 0.0)
         return bool(sign * self.length(z)[2] < -STILL)
 
@@ -149,42 +149,42 @@ EVENTS = {
     "press": "RESTRAINER_YIELD",
     "turn": "RESTRAINER_UNLOADING",
 }
-"""What results call the end of a state of a tie that does not break."""
+"""Names in results for the end of a state of an unbroken tie."""
 
 
 def event_of(tie, kind):
-    """Return what results call the end of a state, before the switch."""
+    """Return the name in results for the end of a state, before the switch."""
     return "RESTRAINER_FRACTURE" if kind in ("yield", "press") and tie.brittle else EVENTS[kind]
 
 
 def turn_others(ties, z):
-    """Unload ties that something has turned; give what results call that, once for each."""
-    found = []
+    """Unload reversed ties; return the event's name in results for each."""
+    kinds = []
     for tie in ties:
         if tie.turned(z):
-            found.append(event_of(tie, "turn"))
+            kinds.append(event_of(tie, "turn"))
             tie.switch("turn", z)
-    return found
+    return kinds
 
 
 def guards_of(ties, z):
     """Return the guards of all ties at a state of rotation, height and place, and their rates."""
-    found = {}
+    guards = {}
     for i, tie in enumerate(ties):
         length, _, rate, _ = tie.length(z)
         for guard in tie.guards(i):
             value = tie.value(guard.kind, length, rate, 0.0)[0]
-            # one that yields as its body stops has not turned yet
-            found["tie", i, guard.kind] = value + (STILL if guard.kind == "turn" else 0.0)
-    return found
+            # a tie that yields as its body stops has not reversed yet
+            guards["tie", i, guard.kind] = value + (STILL if guard.kind == "turn" else 0.0)
+    return guards
 
 
 def forces(ties, z, xp=np):
     """Return the generalised forces on rotation, height and place of all ties."""
-    found = [0.0, 0.0, 0.0]
+    forces = [0.0, 0.0, 0.0]
     for tie in ties:
         length, way, rate, _ = tie.length(z, xp)
         pull = tie.tension(length, rate)
         for i in range(3):
-            found[i] = found[i] - pull * way[i]
-    return found
+            forces[i] = forces[i] - pull * way[i]
+    return forces

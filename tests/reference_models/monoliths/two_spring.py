@@ -1,4 +1,4 @@
-"""A rocking block on two corner springs and dashpots, integrated for its own sake.
+"""A rocking block on two corner springs and dashpots, integrated independently.
 
 Mass is one. Signs: x right, y up, rotation clockwise (the left corner rises). The state is
 (alpha, y, x, alpha', y', x', work of the dashpots, work of the ground).
@@ -6,15 +6,15 @@ Mass is one. Signs: x right, y up, rotation clockwise (the left corner rises). T
 Each corner is TOUCHING (force ``k (delta - y_I) - c y_I'``), RELAXING (free, but its spring
 is still below its free length) or CLEAR (above it). A corner in contact leaves when its force
 falls through zero; a clear one lands, with an impact, when it falls through its free length; a
-relaxing one takes hold again, without an impact, when its force would rise through zero or
-when it stops rising.
+relaxing one re-engages, without an impact, when its force would rise through zero or when it
+stops rising.
 
 Re-pinning changes the corner speeds a little, and with them ``k (delta - y_I) - c y_I'``. Just
-after a separation the expression may thus stand slightly above zero: no taking hold. Just
-after a corner has taken hold its force may stand slightly below zero: it stays, and may leave
-once its force has been positive or its spring has reached its free length. Were it let go at
-once, the two re-pinnings would chase each other for hundreds of rounds at one instant and
-burn the horizontal momentum. ``peak_tension`` tells the largest such pull.
+after a separation the expression may thus be slightly positive: the corner does not re-engage.
+Just after re-engagement the force may be slightly negative: the corner stays, and may leave once
+its force has been positive or its spring has reached its free length. If it left at once, the two
+re-pinnings would alternate hundreds of times at one instant and dissipate the horizontal
+momentum. ``peak_tension`` is the largest such pull.
 """
 
 from __future__ import annotations
@@ -34,17 +34,17 @@ CHATTER = 80
 
 
 class ChatterError(RuntimeError):
-    """Contact changes without end: at zero force the pinned and the free motion disagree.
+    """Endless contact changes: at zero force the pinned and the free motion disagree.
 
-    A block in contact is held at its base however small the contact force is. Far beyond its
-    angle of overturning the pull of that hold may take the force through zero while free
-    flight brings it back at once. There is then no motion that obeys the rules.
+    A block in contact is held at its base however small the contact force is. Far beyond the
+    overturning angle the constraint may take the force through zero while free flight restores it
+    at once. Then no motion obeys the rules.
     """
 
 
 @dataclass
 class Event:
-    """One change of contact, of side or of fate.
+    """One change of contact or of the leading corner, or an overturning.
 
     ``before`` and ``after`` are (alpha, y, x, alpha', y', x').
     """
@@ -64,7 +64,7 @@ class Event:
 
 @dataclass
 class Result:
-    """Samples, events and the balance of energy of one run.
+    """Samples, events and energy balance of one run.
 
     Samples after the end of the run are NaN, the contact there is an empty string. At the
     instant of an event the samples are those after it. ``impact_count`` counts the instants at
@@ -186,7 +186,7 @@ class _Run:
         }
 
     def motion(self, t, z, xp=math):
-        """Accelerations, and for each corner (rise, rate, expression of its force, lever)."""
+        """Accelerations, and for each corner (rise, rate, force expression, lever)."""
         alpha, y, _, alpha_dot, y_dot = z[:5]
         ends = {}
         lift = moment = 0.0 * alpha
@@ -228,7 +228,7 @@ class _Run:
         return [alpha_dot, y_dot, x_dot, alpha_acc, y_acc, x_acc, dissipated, work]
 
     def whole(self, z, xp=math):
-        """Return the state with the horizontal speed of a body that is held."""
+        """Return the state with the horizontal speed of a held body."""
         if not self.ties or self.contact == "flight":
             return z
         return [*z[:5], self.lever(z[0], xp)[0] * z[3], *z[6:]]
@@ -247,7 +247,7 @@ class _Run:
 
     # guards ---------------------------------------------------------------------------------
     def set_guards(self):
-        """Set what can end the present state, unarmed until it has been positive."""
+        """Set the guards of the present state, unarmed until they have been positive."""
         guards = []
         for name in "LR":
             if self.corner[name] == TOUCHING:
@@ -301,7 +301,7 @@ class _Run:
 
     # switches -------------------------------------------------------------------------------
     def repin(self, z, horizontal):
-        """Project the momentum on the constraint of the present contact; give the loss."""
+        """Project the momentum on the constraint of the present contact; return the loss."""
         alpha, alpha_dot = z[0], z[3]
         if self.contact == "flight":
             z[5] = horizontal
@@ -313,7 +313,7 @@ class _Run:
         return 0.5 * (before - (self.inertia + first**2) * new**2)
 
     def strike(self, z, names):
-        """Apply the impulses of a landing; give the loss, the impulses, and whether any acted."""
+        """Apply the impulses of a landing; return the loss, the impulses, and whether any acted."""
         alpha, y = z[0], z[1]
         ends = self.corners(alpha, y)
         falling = [name for name in names if z[4] + ends[name][1] * z[3] < 0.0]
@@ -324,7 +324,7 @@ class _Run:
         before = z[4] ** 2 + swing * z[3] ** 2
         impulse = {"L": 0.0, "R": 0.0}
         if len(falling) == 2:
-            # two impulses at two corners can set both velocities at will
+            # two impulses at two corners determine both velocities
             wanted = np.array([-(1.0 - self.eps) * z[4], -(1.0 - self.eps) * swing * z[3]])
             matrix = np.array([[1.0, 1.0], [ends["L"][1], ends["R"][1]]])
             impulse["L"], impulse["R"] = (float(one) for one in np.linalg.solve(matrix, wanted))
@@ -341,9 +341,9 @@ class _Run:
         return 0.5 * (before - after), (impulse["L"], impulse["R"]), True
 
     def due(self, t, z):
-        """List the changes of contact that the present state asks for at once."""
+        """List the changes of contact that are due in the present state."""
         z = self.whole(z)
-        asked = [("turn", str(i)) for i, tie in enumerate(self.ties) if tie.turned(z)]
+        changes = [("turn", str(i)) for i, tie in enumerate(self.ties) if tie.turned(z)]
         alpha_acc, y_acc, _, ends, *_ = self.motion(t, z)
         for name, (rise, rate, force, arm, bend) in ends.items():
             state = self.corner[name]
@@ -354,15 +354,15 @@ class _Run:
                 if name in self.grace and force < -margin:
                     continue
                 if force < -margin or (force <= margin and force_rate < 0.0):
-                    asked.append(("leave", name))
+                    changes.append(("leave", name))
             elif state == RELAXING:
                 if rate > 0.0 and self.delta - rise <= SIMULTANEOUS * rate:
-                    asked.append(("clear", name))
+                    changes.append(("clear", name))
                 elif rate <= 0.0:
-                    asked.append(("settle", name))
+                    changes.append(("settle", name))
             elif rate < 0.0 and rise - self.delta <= SIMULTANEOUS * -rate:
-                asked.append(("land", name))
-        return asked
+                changes.append(("land", name))
+        return changes
 
 
 def _span(z):
@@ -400,8 +400,8 @@ def simulate(
 
     A sampled acceleration is linear between its samples and zero after the last. A function
     of time is smooth between the given breakpoints. A start with a corner in contact has
-    ``x = h sin(alpha) + e (1 - cos(alpha))``; a start in flight has x as if ``e`` were zero and
-    no horizontal speed.
+    ``x = h sin(alpha) + e (1 - cos(alpha))``; a start in flight has x with ``e = 0`` and no
+    horizontal speed.
     """
     run = _Run(
         half_width,
@@ -469,19 +469,19 @@ def simulate(
         balance = sum(terms) + now[6] + losses["repin"] + losses["impact"] + broken
         worst = max(worst, abs(balance - energy_start - now[7]))
 
-    def switch(t, z, asked):
-        """Carry out what has fired, and what that entails at the same instant."""
+    def switch(t, z, changes):
+        """Carry out the changes that fired, and those that follow at the same instant."""
         nonlocal overturned, ended, tension
         run.grace.clear()
         for _ in range(CASCADE):
-            for kind, name in asked:
+            for kind, name in changes:
                 if kind in ties.KINDS:
                     run.ties[int(name)].switch(kind, run.whole(z))
                     was, span = run.contact, _span(z)
                     events.append(Event(float(t), kind, name, was, was, span, span))
             order = ("topple", "side", "leave", "slip", "clear", "engage", "settle", "land")
             for kind in order:
-                names = "".join(name for what, name in asked if what == kind)
+                names = "".join(name for what, name in changes if what == kind)
                 if not names:
                     continue
                 was, before = run.contact, _span(z)
@@ -514,8 +514,8 @@ def simulate(
                         losses["impact"] += event.impact_loss
                     event.contact_after, event.after = run.contact, _span(z)
                 events.append(event)
-            asked = run.due(t, z)
-            if not asked:
+            changes = run.due(t, z)
+            if not changes:
                 ends = run.motion(t, z)[3]
                 tension = max(tension, *(-ends[name][2] for name in run.grace), 0.0)
                 break
@@ -538,22 +538,22 @@ def simulate(
             next_sample += 1
 
     def record_before(now, state):
-        """Record what lies strictly before an event: the rest is for afterwards."""
+        """Record the samples strictly before an event; the others follow after it."""
         if next_sample < samples.size and samples[next_sample] < now:
             record(np.nextafter(now, -np.inf), state)
 
     now = 0.0
-    begun = False
+    started = False
     begun_in_flight = run.contact == "flight"
     for start, stop, ground_x, ground_y in drive.pieces():
         run.ground_x, run.ground_y = ground_x, ground_y
         now = start
-        if not begun:
-            begun = True
+        if not started:
+            started = True
             audit(z)
             beyond = abs(alpha) >= run.theta
-            asked = [("topple", "+" if alpha > 0.0 else "-")] if beyond else []
-            switch(0.0, z, asked + run.due(0.0, z))
+            changes = [("topple", "+" if alpha > 0.0 else "-")] if beyond else []
+            switch(0.0, z, changes + run.due(0.0, z))
             audit(z)
             record(0.0, lambda _, z=z: z)
         while now < stop and not ended:
@@ -583,7 +583,7 @@ def simulate(
                 )
                 first = min((hit for hit in hits if hit is not None), default=None)
                 reached = solver.t if first is None else first
-                # the largest rotation of what remains of the step
+                # the largest rotation of the rest of the step
                 inside = np.append(times[times < reached], reached)
                 swing = dense(inside)[3]
                 for j in np.nonzero(swing[:-1] * swing[1:] < 0.0)[0]:
@@ -604,15 +604,15 @@ def simulate(
                 record_before(first, dense)
                 now, z = first, dense(first).copy()
                 audit(z)
-                asked = []
+                changes = []
                 for guard, hit, (value, rate) in zip(
                     run.guards, hits, run.guard_values(first, z), strict=True
                 ):
                     own = hit is not None and hit <= first + SIMULTANEOUS
                     near = guard.strict and rate < 0.0 and value <= SIMULTANEOUS * -rate
                     if own or near:
-                        asked.append((guard.kind, guard.where or "-"))
-                switch(first, z, asked)
+                        changes.append((guard.kind, guard.where or "-"))
+                switch(first, z, changes)
                 audit(z)
                 break
             if now >= stop:

@@ -1,7 +1,7 @@
-"""An elastic wall behind a gap, in the place of a tie: what a point of the rear face runs into.
+"""An elastic wall behind a gap, with the interface of a tie; a point of the rear face strikes it.
 
-Per unit mass of the body. It presses along the ground alone, with spring and dashpot, as long as
-the point is beyond the gap.
+Per unit mass of the body. It presses horizontally, by spring and dashpot, while the point is
+beyond the gap.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ class Wall(Tie):
     side: float = -1.0
 
     def begin(self, height: float, z) -> None:
-        """Find whether it is touched at the start."""
+        """Set whether it is touched at the start."""
         self.set, self.loss, self.height = 0.0, 0.0, height
         self.natural, self.most = self.slack, math.inf
         self.state = TAUT if self.length(z)[0] > self.natural else SLACK
 
     def length(self, z, xp=math):
-        """Return how far the point has come to the wall's side, as of a tie."""
+        """Return the displacement of the point towards the wall, in the form of a tie's length."""
         alpha, _, x, alpha_dot, _, x_dot = z[:6]
         sine, cosine = xp.sin(alpha), xp.cos(alpha)
         px, py = self.point
@@ -35,11 +35,11 @@ class Wall(Tie):
         return self.side * (x + across - px), way, rate, -self.side * across * alpha_dot**2
 
     def tension(self, length, rate):
-        """Return the force with which it presses the body away."""
+        """Return the force of the wall on the body."""
         if self.state == SLACK:
             return 0.0 * length
         return self.stiffness * (length - self.natural) + self.damping * rate
 
     def lost_power(self, rate: float) -> float:
-        """Return what the dashpot takes."""
+        """Return the power of the dashpot."""
         return self.damping * rate * rate if self.state == TAUT else 0.0

@@ -1,4 +1,4 @@
-"""A block before a wall on its left, integrated for its own sake, SciPy's DOP853.
+"""A block before a wall on its left, integrated independently by SciPy's DOP853.
 
 Of unit mass; x right, rotation q >= 0 clockwise about the right corner:
 
@@ -20,7 +20,7 @@ LEAST = 1e-10
 
 @dataclass
 class Run:
-    """Rotations at the samples of the ground, times of impacts, and how it ended."""
+    """Rotations at the samples of the ground, times of impacts, and the verdict."""
 
     rotation: np.ndarray
     impacts: list[float] = field(default_factory=list)
@@ -66,7 +66,7 @@ def simulate(theta, radius, inertia, ratio, samples, step, *, gravity, start=(0.
 
 
 def _start(ground, slope, now, end, needed):
-    """When the ground begins to tip the block, if it does in its piece."""
+    """Return the time at which the ground begins to tip the block within its piece, or None."""
     if -ground(now) > needed * (1.0 + 1e-13):
         return now
     if -ground(end) <= needed:
@@ -78,7 +78,7 @@ def _rock(swing, now, end, state, theta, step):
     """Integrate until the end of the piece, an impact or overturning."""
     pull = -swing(now, state[0])
     longest = step
-    if pull > 0.0:  # a bounce must not pass within a step
+    if pull > 0.0:  # steps must be shorter than a bounce
         rise = math.sqrt(state[1] ** 2 + 2.0 * pull * max(state[0], 0.0))
         longest = min(step, 0.3 * (state[1] + rise) / pull)
 
@@ -93,9 +93,9 @@ def _rock(swing, now, end, state, theta, step):
 
     strikes.terminal = falls.terminal = True
     strikes.direction = falls.direction = -1
-    found = solve_ivp(
+    solution = solve_ivp(
         lambda t, z: (z[1], swing(t, z[0])), (now, stop), state, method="DOP853", rtol=1e-12,
         atol=1e-15, events=(strikes, falls), max_step=longest,
     )  # fmt: skip
-    struck, fell = (len(times) > 0 for times in found.t_events)
-    return found.t[-1], found.y[:, -1].copy(), struck, fell
+    struck, fell = (len(times) > 0 for times in solution.t_events)
+    return solution.t[-1], solution.y[:, -1].copy(), struck, fell

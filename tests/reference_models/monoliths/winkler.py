@@ -1,23 +1,23 @@
-"""A rigid body on a Winkler bed, integrated for its own sake.
+"""A rigid body on a Winkler bed, integrated independently.
 
 Signs: x right, y up, rotation clockwise (the left end rises). The state is (alpha, y, x,
 alpha', y', x', work of the dashpots, work of the ground); works and energies are per unit
-mass until the result is written. Nothing is worked out in closed form: the part of the base
-that bears is found from the depth and the pressure at its two ends, both linear along the
-base, and force, moment and power are summed over it by Gauss-Legendre quadrature.
+mass until the result is written. No closed forms are used: the bearing part of the base follows
+from the depth and the pressure at its two ends, both linear along the base, and force, moment and
+power are integrated over it by Gauss-Legendre quadrature.
 
 An end of the base is TOUCHING (it bears), RELAXING (below its unloaded level, but its own
 dashpot would pull: the pressure rule only) or CLEAR (above). Both ends bear: "full"; one:
 "left" or "right"; nothing bears anywhere: "flight". Under the pressure rule a stretch that
-reaches neither end may bear: the body then stays held as by the end that bore last, or by its
-lower end if it comes out of flight.
+reaches neither end may bear: the body then stays held by the end that bore last, or by its lower
+end after a flight.
 
 Re-pinning changes the rates a little, and with them the pressures. An end that has just left
-may thus stand slightly above zero pressure: it takes hold again only after its pressure has
-been negative, or when it stops rising. An end that has just taken hold may stand slightly
-below: it stays, and may leave once its pressure has been positive or it has reached its
-unloaded level. That concerns the point held and nothing else; what bears is always read from
-depth and pressure.
+may thus have a slightly positive pressure: it re-engages only after its pressure has been
+negative, or when it stops rising. An end that has just re-engaged may have a slightly negative
+pressure: it stays, and may leave once its pressure has been positive or it has reached its
+unloaded level. This concerns only the held point; the bearing part always follows from depth and
+pressure.
 """
 
 from __future__ import annotations
@@ -46,17 +46,17 @@ TINY = 1e-300
 
 
 class ChatterError(RuntimeError):
-    """Contact changes without end.
+    """Endless contact changes.
 
-    Held as by full contact an end pulls, held by the other end it presses, so that each
-    re-pinning undoes the one before. There is then no motion that obeys the rules. It takes a
-    rotation of a tenth or so and a bed that gives as much.
+    With the body held as in full contact an end pulls, held by the other end it presses, so that
+    each re-pinning undoes the last. Then no motion obeys the rules. This needs a rotation of about
+    0.1 and a correspondingly soft bed.
     """
 
 
 @dataclass
 class Event:
-    """One change of contact, of side or of fate.
+    """One change of contact or of the leading corner, or an overturning.
 
     ``before`` and ``after`` are (alpha, y, x, alpha', y', x').
     """
@@ -73,7 +73,7 @@ class Event:
 
 @dataclass
 class Result:
-    """Samples, events and the balance of energy of one run.
+    """Samples, events and energy balance of one run.
 
     Samples after the end of the run are NaN, the contact there is an empty string. At the
     instant of an event the samples are those after it. Energies are in joules.
@@ -107,7 +107,7 @@ class Result:
 
 
 class End(NamedTuple):
-    """One end of the base: its depth, its rise's derivatives, and the pressure it would have."""
+    """One end of the base: depth, derivatives of its rise, and pressure if in contact."""
 
     depth: float
     rate: float
@@ -127,7 +127,7 @@ class Bed:
             raise ValueError(msg)
         self.b, self.h = half_width, height
         self.k, self.c, self.delta = stiffness, damping, settlement
-        # without dashpots the two rules are one
+        # without dashpots the two rules coincide
         self.by_pressure = separation == "pressure" and damping > 0.0
         self.finite = finite
         self.end = {"L": TOUCHING, "R": TOUCHING}
@@ -136,7 +136,7 @@ class Bed:
         self.bounds: tuple[str, str] | None = ("end", "end")
 
     def frame(self, alpha, y, xp=math):
-        """Return the base's middle, and what its points' rises and levers are made of."""
+        """Return the middle of the base, and the terms of the rises and levers of its points."""
         if self.finite:
             sine, cosine = xp.sin(alpha), xp.cos(alpha)
             return y + self.h * (1.0 - cosine), sine, cosine, sine
@@ -178,7 +178,7 @@ class Bed:
         return "end" if left else "level", "end" if right else "level"
 
     def sum_up(self, bounds, ends, alpha, y, alpha_dot, y_dot, xp=math):
-        """Integrate pressure, its moment, and the powers of dashpots and of springs let go."""
+        """Integrate pressure, its moment, and the powers of dashpots and of released springs."""
         low, high = self.place(bounds, ends, xp)
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
         up, sine, cosine, _ = self.frame(alpha, y, xp)
@@ -196,7 +196,7 @@ class Bed:
         return lift, moment, viscous, relaxing
 
     def resultants(self, ends, alpha, y, alpha_dot, y_dot, xp=math):
-        """Return lift, moment about the centre of mass, and the power the dashpots burn."""
+        """Return lift, moment about the centre of mass, and power of the dashpots."""
         lift = moment = dissipated = 0.0 * alpha
         motion = (alpha, y, alpha_dot, y_dot, xp)
         below = self.below()
@@ -240,9 +240,9 @@ class Bed:
             rtol=1e-15,
         )
 
-    # what bears, under the pressure rule -----------------------------------------------------
+    # the bearing part under the pressure rule ------------------------------------------------
     def cross(self, ends, accelerations):
-        """Return what tells which of two roots lies further right (see ``read``), and its rate."""
+        """Return the quantity whose sign orders two roots (see ``read``), and its rate."""
         left, right = ends["L"], ends["R"]
         value = left.depth * right.pressure - right.depth * left.pressure
         rate = (
@@ -257,7 +257,7 @@ class Bed:
         return -self.k * end.rate - self.c * acceleration
 
     def read(self, ends, accelerations) -> None:
-        """Find out what bears, and by what it is bounded, from now until a sign changes."""
+        """Find the bearing part and its bounds, valid until a sign changes."""
         if not self.by_pressure:
             self.bounds = self.below()
             return
@@ -305,19 +305,19 @@ class Bed:
 
 
 def _positive(value, rate) -> bool:
-    """Tell the sign a quantity is about to have."""
+    """Return the sign that a quantity is about to have."""
     if abs(value) <= SIMULTANEOUS * abs(rate):
         return bool(rate > 0.0)
     return bool(value > 0.0)
 
 
-# the march ----------------------------------------------------------------------------------
+# time integration ---------------------------------------------------------------------------
 
 
 class March:
-    """Steps, contact changes and samples of a model on a bed; the mechanics is the heir's.
+    """Steps, contact changes and samples of a model on a bed; subclasses supply the mechanics.
 
-    The heir gives ``rhs``, ``guard_values``, ``set_guards``, ``due``, ``switch``, ``energies``,
+    Subclasses define ``rhs``, ``guard_values``, ``set_guards``, ``due``, ``switch``, ``energies``,
     ``tilt``, ``sample``, ``in_flight`` and ``wake``. The last two entries of its state are the
     works of the dashpots and of the ground.
     """
@@ -349,14 +349,14 @@ class March:
         self.worst = max(self.worst, abs(balance - self.energy_start - z[-1]))
 
     def topple(self, t) -> None:
-        """Note that the limit of rotation is reached: first theta, then a right angle."""
+        """Record that the limit of rotation is reached: first theta, then a right angle."""
         if self.overturning_time is None:
             self.overturning_time = float(t)
         self.ended = self.ended or self.stop_at_theta or self.limit > self.theta
         self.limit = 0.5 * math.pi
 
     def march(self, z, drive, samples, *, period, max_step, rtol, atol, method="DOP853"):
-        """Integrate over all pieces of the ground motion; give the end time and state."""
+        """Integrate over all pieces of the ground motion; return the end time and state."""
         samples = np.asarray(samples, dtype=float)
         if np.any(np.diff(samples) < 0.0):
             msg = "sample_times must not decrease"
@@ -369,15 +369,15 @@ class March:
 
         self.energy_start = float(sum(self.energies(z)))
         self.peak = abs(self.tilt(z)[0])
-        now, begun = 0.0, False
+        now, started = 0.0, False
         for start, stop, self.ground_x, self.ground_y in drive.pieces():
             now = start
-            if not begun:
-                begun = True
+            if not started:
+                started = True
                 self.audit(z)
                 sign = "+" if self.tilt(z)[0] > 0.0 else "-"
-                asked = [("topple", sign)] if self.peak >= self.theta else []
-                self.switch(0.0, z, asked + self.due(0.0, z))
+                changes = [("topple", sign)] if self.peak >= self.theta else []
+                self.switch(0.0, z, changes + self.due(0.0, z))
                 self.audit(z)
                 record(0.0, lambda _, z=z: z)
             while now < stop and not self.ended:
@@ -422,15 +422,15 @@ class March:
                         record(np.nextafter(first, -np.inf), dense)
                     now, z = first, dense(first).copy()
                     self.audit(z)
-                    asked = []
+                    changes = []
                     for guard, hit, (value, rate) in zip(
                         self.guards, hits, self.guard_values(first, z), strict=True
                     ):
                         own = hit is not None and hit <= first + SIMULTANEOUS
                         near = guard.strict and rate < 0.0 and value <= SIMULTANEOUS * -rate
                         if own or near:
-                            asked.append((guard.kind, guard.where))
-                    self.switch(first, z, asked)
+                            changes.append((guard.kind, guard.where))
+                    self.switch(first, z, changes)
                     self.audit(z)
                     break
                 if now >= stop:
@@ -442,7 +442,7 @@ class March:
         return now, z
 
     def follow(self, dense, times, start, reached) -> None:
-        """Note the largest rotation, and the time in flight, of what remains of a step."""
+        """Record the largest rotation and the flight time of the rest of a step."""
         inside = np.append(times[times < reached], reached)
         swing = self.tilt(dense(inside))[1]
         turns = np.nonzero(swing[:-1] * swing[1:] < 0.0)[0]
@@ -558,7 +558,7 @@ class _Run(March):
 
     # guards ---------------------------------------------------------------------------------
     def set_guards(self):
-        """Set what can end the present state, unarmed until it has been positive."""
+        """Set the guards of the present state, unarmed until they have been positive."""
         guards = []
         for name in "LR":
             if self.bed.end[name] == TOUCHING:
@@ -579,7 +579,7 @@ class _Run(March):
         self.guards = guards
 
     def bearing(self, end, acceleration):
-        """Return what must be positive at an end that bears, and its rate."""
+        """Return the guard of a bearing end and its rate."""
         if self.bed.by_pressure:
             return end.pressure, self.bed.pressure_rate(end, acceleration)
         return end.depth, -end.rate
@@ -614,13 +614,13 @@ class _Run(March):
 
     # switches -------------------------------------------------------------------------------
     def read(self, t, z):
-        """Find what bears; a second time, for the rates hang on it where a sign is in doubt."""
+        """Find the bearing part, twice, as the rates depend on it where a sign is in doubt."""
         for _ in range(2 if self.bed.by_pressure else 1):
             _, ends, accelerations, _ = self.motion(t, z)
             self.bed.read(ends, accelerations)
 
     def held(self, z) -> str:
-        """Name the contact: from the ends that bear, or by what else bears."""
+        """Name the contact by the bearing ends, or by a bearing stretch between them."""
         left, right = (self.bed.end[name] == TOUCHING for name in "LR")
         if left and right:
             return "full"
@@ -634,7 +634,7 @@ class _Run(March):
         return self.contact if self.kept and below else "flight"
 
     def repin(self, z, horizontal):
-        """Project the momentum on the constraint of the present contact; give the loss."""
+        """Project the momentum on the constraint of the present contact; return the loss."""
         alpha, alpha_dot = z[0], z[3]
         if self.contact == "flight":
             z[5] = horizontal
@@ -646,12 +646,12 @@ class _Run(March):
         return 0.5 * (before - (self.inertia + first**2) * new**2)
 
     def due(self, t, z, before=None, just_left=()):
-        """List the changes of contact that the present state asks for at once.
+        """List the changes of contact that are due in the present state.
 
-        ``before`` holds the pressures ahead of a jump of the rates: an end that the jump takes
-        from pull to pressure bears at once, unless it has only just left.
+        ``before`` holds the pressures before a jump of the rates: an end that the jump takes from
+        pull to pressure bears at once, unless it has just left.
         """
-        asked = []
+        changes = []
         _, ends, accelerations, _ = self.motion(t, z)
         for name, end in ends.items():
             state = self.bed.end[name]
@@ -661,22 +661,22 @@ class _Run(March):
                 if name in self.grace and force < -margin:
                     continue
                 if force < -margin or (force <= margin and force_rate < 0.0):
-                    asked.append(("leave", name))
+                    changes.append(("leave", name))
             elif state == RELAXING:
                 if end.rate > 0.0 and end.depth <= SIMULTANEOUS * end.rate:
-                    asked.append(("clear", name))
+                    changes.append(("clear", name))
                 elif end.rate <= 0.0:
-                    asked.append(("settle", name))
+                    changes.append(("settle", name))
                 elif before and before[name] <= 0.0 < force - margin and name not in just_left:
-                    asked.append(("engage", name))
+                    changes.append(("engage", name))
             elif end.rate < 0.0 and -end.depth <= SIMULTANEOUS * -end.rate:
-                asked.append(("land", name))
-        if not asked and self.held(z) != self.contact:
-            asked.append(("cut", ""))
-        return asked
+                changes.append(("land", name))
+        if not changes and self.held(z) != self.contact:
+            changes.append(("cut", ""))
+        return changes
 
-    def switch(self, t, z, asked):
-        """Carry out what has fired, and what that entails at the same instant."""
+    def switch(self, t, z, changes):
+        """Carry out the changes that fired, and those that follow at the same instant."""
         _, ends, accelerations, _ = self.motion(t, z)
         self.grace = {
             name for name in self.grace if self.bearing(ends[name], accelerations[name])[0] <= 0.0
@@ -686,7 +686,7 @@ class _Run(March):
         for _ in range(CASCADE):
             before = {name: end.pressure for name, end in self.motion(t, z)[1].items()}
             for kind in ORDER:
-                chosen = [name for what, name in asked if what == kind]
+                chosen = [name for what, name in changes if what == kind]
                 if not chosen:
                     continue
                 names = "" if kind == "cut" else "".join(chosen)
@@ -710,8 +710,8 @@ class _Run(March):
                     event.contact_after, event.after = self.contact, _span(z)
                 if kind != "cut" or self.contact != was:
                     self.events.append(event)
-            asked = self.due(t, z, before, just_left)
-            if not asked:
+            changes = self.due(t, z, before, just_left)
+            if not changes:
                 break
         else:
             msg = f"contact does not settle at t = {float(t)!r}"
@@ -720,7 +720,7 @@ class _Run(March):
         self.set_guards()
 
     def change(self, kind, names, z, just_left):
-        """Return the named ends their new state."""
+        """Return the new states of the named ends."""
         for name in names:
             self.grace.discard(name)
             if kind in ("engage", "settle"):
@@ -773,7 +773,7 @@ def simulate(
     ``inertia`` about that centre or as the shape factor. Stiffness and damping are per unit
     length of the base. An initial y of None is that of vertical equilibrium at rest under the
     initial rotation. A start with contact has ``x = h sin(alpha) + e (1 - cos(alpha))``; a
-    start in flight has x as if ``e`` were zero and no horizontal speed. ``watch(run, start, stop,
+    start in flight has x with ``e = 0`` and no horizontal speed. ``watch(run, start, stop,
     dense)`` is called with every step, cut at a change of contact.
     """
     if (shape_factor is None) == (inertia is None):

@@ -1,19 +1,19 @@
-"""A rocking block on two bilinear pads that keep a plastic set, integrated for its own sake.
+"""A rocking block on two bilinear pads with plastic set, integrated independently.
 
 Mass is one. Signs: x right, y up, rotation clockwise (the left corner rises). The state is
 (alpha, y, x, alpha', y', x', z_L, z_R): the sets z are those of the pads.
 
 A pad is compressed by u, from its unloaded level before the run. Its spring pushes with
 ``k (u - z)``, its dashpot beside it with ``c u'``. The spring yields where its force reaches
-``F + H z`` with ``H = r k / (1 - r)``; as the pad goes on to sink the force stays on that line,
+``F + H z`` with ``H = r k / (1 - r)``; as the pad sinks further the force stays on that line,
 ``k (u' - z') = H z'``, so that ``z' = (1 - r) u'`` and the stiffness is r k. Once the pad
 sinks no further it unloads with the stiffness k.
 
 A touching corner leaves where the force of its pad falls through zero. It is then relaxing (its
 pad follows it, and the spring feeds the dashpot), and touches again where that force would be
 positive; above the unloaded level, ``u = z``, it is clear, and lands on that level with an impact.
-A corner whose own re-pinning slowed it down (leaving), or sped it up (engaging), bears no force
-until the sign of its pad's force has come right. Corners that would slide are refused.
+A corner slowed down by its own re-pinning (leaving), or sped up by it (engaging), bears no force
+until the sign of its pad's force is right again. Corners that would slide raise an error.
 """
 
 from __future__ import annotations
@@ -33,12 +33,12 @@ DT = SIMULTANEOUS
 
 
 class BeyondError(RuntimeError):
-    """A motion that is not told here: a corner slides, or contact changes without end."""
+    """A motion outside this model: a corner slides, or contact changes endlessly."""
 
 
 @dataclass
 class Result:
-    """Samples, and what happened."""
+    """Samples and events."""
 
     rotation: np.ndarray
     vertical: np.ndarray
@@ -49,7 +49,7 @@ class Result:
     overturned: bool = False
 
     def count(self, kind: str) -> int:
-        """Return how often something happened."""
+        """Return the number of events of a kind."""
         return sum(what == kind for _, what, _ in self.events)
 
 
@@ -173,14 +173,14 @@ class _Block:
 
     def guard_values(self, t, q, xp=math):
         _, corners = self.motion(t, q, xp)
-        found = []
+        guards = []
         for guard in self.guards:
             if guard.kind == "topple":
                 sign = 1.0 if guard.where == "+" else -1.0
-                found.append((self.theta - sign * q[0], -sign * q[3]))
+                guards.append((self.theta - sign * q[0], -sign * q[3]))
                 continue
             end = corners[guard.where]
-            found.append(
+            guards.append(
                 {
                     "leave": (end.force, end.force_rate),
                     "relax": (end.force, end.force_rate),
@@ -193,15 +193,15 @@ class _Block:
                     "unload": (-end.rate, -end.acceleration),
                 }[guard.kind]
             )
-        return found
+        return guards
 
     def slack(self, end):
-        """Return what the spring's force lacks to the line on which it yields."""
+        """Return the distance of the spring's force from its yield line."""
         return self.strength + self.r * self.k / (1.0 - self.r) * end.set - end.spring
 
     def due(self, t, q):
-        """List the changes that the state asks for at once."""
-        asked = []
+        """List the changes that are due in a state."""
+        changes = []
         _, corners = self.motion(t, q)
         for name, end in corners.items():
             state, falls = self.state[name], end.force + DT * end.force_rate < 0.0
@@ -210,21 +210,21 @@ class _Block:
                 on_line = self.slack(end) <= DT * self.k * abs(end.rate)
                 sinks = end.rate + DT * end.acceleration < 0.0
                 if falls and (near or end.force < 0.0):
-                    asked.append(("leave", name))
+                    changes.append(("leave", name))
                 elif self.yields[name] and end.rate > DT * abs(end.acceleration):
-                    asked.append(("unload", name))
+                    changes.append(("unload", name))
                 elif not self.yields[name] and on_line and sinks:
-                    asked.append(("yield", name))
+                    changes.append(("yield", name))
             elif state in (RELAXING, LEAVING):
                 if end.rate > 0.0 and end.u - end.set <= DT * end.rate:
-                    asked.append(("clear", name))
+                    changes.append(("clear", name))
                 elif state == RELAXING and end.force > DT * abs(end.force_rate):
-                    asked.append(("engage", name))
-        return asked
+                    changes.append(("engage", name))
+        return changes
 
     # jumps ------------------------------------------------------------------------------------
     def repin(self, q, sway):
-        """Stop the slip of the point that is held now by a horizontal impulse at it."""
+        """Stop the slip of the newly held point by a horizontal impulse there."""
         e = self.held_point()
         if e is None:
             q[5] = sway
@@ -234,7 +234,7 @@ class _Block:
         q[5] = x_1 * q[3]
 
     def strike(self, q, name):
-        """Reduce the speed of a landing corner to eps times what it was."""
+        """Multiply the speed of a landing corner by eps."""
         _, arm, _ = self.corner(name, q[0])
         x_1, _ = self.lever(q[0], self.held_point())
         inertia = self.inertia + x_1**2
@@ -291,15 +291,15 @@ class _Block:
         elif kind in ("engage", "settle") and end.force < 0.0 and now != old:
             self.state[name] = ENGAGING
 
-    def switch(self, t, q, asked):
-        """Carry out what has fired, and what that entails at the same instant."""
+    def switch(self, t, q, changes):
+        """Carry out the changes that fired, and those that follow at the same instant."""
         for _ in range(ROUNDS):
-            for kind, name in asked:
+            for kind, name in changes:
                 if kind == "topple":
                     return True
                 self.change(t, q, kind, name)
-            asked = self.due(t, q)[:1]
-            if not asked:
+            changes = self.due(t, q)[:1]
+            if not changes:
                 self.set_guards()
                 return False
         msg = f"contact does not settle at {t}"
@@ -360,8 +360,8 @@ def simulate(
                     continue
                 q = dense(first).copy()
                 guards = zip(run.guards, hits, strict=True)
-                asked = [(one.kind, one.where) for one, hit in guards if hit == first]
-                overturned = run.switch(first, q, asked)
+                changes = [(one.kind, one.where) for one, hit in guards if hit == first]
+                overturned = run.switch(first, q, changes)
                 break
         if overturned:
             break

@@ -1,4 +1,4 @@
-"""Which pattern follows an impact or a change of the forces: all of them are tried."""
+"""Selects the pattern after an impact or a change of the forces by trying all patterns."""
 
 import math
 from itertools import combinations, product
@@ -9,17 +9,17 @@ import numpy as np
 from .pair import ENDS, MEMBERS, Pattern, Phase, Seats, turned
 
 SMALL = 1e-10
-"""What counts as no push and no speed, as a share of the largest there is."""
+"""Forces and speeds below this share of the largest count as zero."""
 
 Touching = dict[str, tuple[str, ...]]
-"""Of the ground and of the joint, the ends that touch."""
+"""The touching ends of the ground and of the joint."""
 
 
 class Outcome(NamedTuple):
-    """A pattern that follows, with the six velocities or accelerations.
+    """The selected pattern, with the six velocities or accelerations.
 
-    ``admissible`` counts the patterns that open what they leave and press where they bear;
-    ``lost`` is the energy lost [J]; ``others`` are the admissible ones that were not taken.
+    ``admissible`` counts the patterns whose released ends open and whose bearing ends press;
+    ``lost`` is the energy lost [J]; ``others`` are the admissible ones not selected.
     """
 
     pattern: Pattern
@@ -29,7 +29,7 @@ class Outcome(NamedTuple):
     others: tuple = ()
 
 
-def named(ends) -> str:
+def name_of(ends) -> str:
     """Return the name of a set of ends."""
     return "both" if len(ends) == 2 else ends[0] if ends else "none"
 
@@ -37,14 +37,14 @@ def named(ends) -> str:
 def patterns(touching: Touching) -> list[Pattern]:
     """Return all patterns in which some of the touching ends bear."""
     subsets = {
-        key: [named(some) for count in (2, 1, 0) for some in combinations(ends, count)]
+        key: [name_of(some) for count in (2, 1, 0) for some in combinations(ends, count)]
         for key, ends in touching.items()
     }
     return [Pattern(*one) for one in product(subsets["ground"], subsets["joint"])]
 
 
 def normal_rows(seats: Seats, place, touching: Touching) -> tuple[list, np.ndarray]:
-    """Return the rows that make speeds of opening, of all touching ends, from six velocities."""
+    """Return the rows that give opening speeds of all touching ends from six velocities."""
     names, rows = [], []
     for end in touching["ground"]:
         _, row = _rows(place, seats.ground[end], None, 0.0)
@@ -59,7 +59,7 @@ def normal_rows(seats: Seats, place, touching: Touching) -> tuple[list, np.ndarr
 
 
 def tangent_rows(seats: Seats, place, touching: Touching) -> np.ndarray:
-    """Return the rows that make speeds of slip, one of each touching interface."""
+    """Return the rows that give slip speeds, one for each touching interface."""
     rows = []
     if touching["ground"]:
         rows.append(_rows(place, seats.ground[touching["ground"][0]], None, 0.0)[0])
@@ -70,26 +70,26 @@ def tangent_rows(seats: Seats, place, touching: Touching) -> np.ndarray:
     return np.array(rows).reshape(len(rows), 6)
 
 
-def _rows(place, one, other, slope):
+def _rows(place, point, other_point, slope):
     """Rows along and normal to a slope; of one point on the ground, or of two bodies' points."""
-    found = []
+    rows = []
     for direction in (turned(slope, 1.0, 0.0), turned(slope, 0.0, 1.0)):
-        x, y = turned(place[2], *one)
+        x, y = turned(place[2], *point)
         row = np.zeros(6)
         row[:3] = direction[0], direction[1], direction[0] * y - direction[1] * x
-        if other is not None:
-            x, y = turned(place[5], *other)
+        if other_point is not None:
+            x, y = turned(place[5], *other_point)
             row = -row
             row[3:] = direction[0], direction[1], direction[0] * y - direction[1] * x
-        found.append(row)
-    return found
+        rows.append(row)
+    return rows
 
 
 def strike(pair, shift, place, speed, touching: Touching, anchor=0.0) -> Outcome:
-    """Return what follows a plastic impact, with contacts that bear held against sliding.
+    """Return the outcome of a plastic impact without sliding.
 
-    The one admissible pattern; of several the one that loses least energy; if there is none,
-    what `complementary` gives.
+    This is the only admissible pattern; of several the one that loses least energy; for none the
+    result of `complementary`.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def strike(pair, shift, place, speed, touching: Touching, anchor=0.0) -> Outcome
     quick = SMALL * math.sqrt(2.0 * before / masses[[0, 3]].max()) + 1e-300
     push = quick * masses[[0, 3]].min()
     quick = max(quick, SMALL * arms * float(np.max(np.abs(speed[[2, 5]]))))
-    found: list[tuple] = []
+    outcomes: list[tuple] = []
     for pattern in patterns(touching):
         phase = Phase(pair, pattern, shift, anchor)
         after = projected(phase, place, speed)
@@ -117,18 +117,18 @@ def strike(pair, shift, place, speed, touching: Touching, anchor=0.0) -> Outcome
         if not _is_admissible(pressures, names, rows @ after, push, quick):
             continue
         lost = before - 0.5 * float(masses @ after**2)
-        if not any(np.max(np.abs(after - one[1])) < 100.0 * quick for one in found):
-            found.append((pattern, after, lost))
-    if not found:
+        if not any(np.max(np.abs(after - outcome[1])) < 100.0 * quick for outcome in outcomes):
+            outcomes.append((pattern, after, lost))
+    if not outcomes:
         pattern, after = complementary(seats, masses, place, speed, touching)
         return Outcome(pattern, after, 0, before - 0.5 * float(masses @ after**2))
-    found.sort(key=lambda one: one[2])
-    pattern, after, lost = found[0]
-    return Outcome(pattern, after, len(found), lost, tuple(found[1:]))
+    outcomes.sort(key=lambda outcome: outcome[2])
+    pattern, after, lost = outcomes[0]
+    return Outcome(pattern, after, len(outcomes), lost, tuple(outcomes[1:]))
 
 
 def projected(phase: Phase, place, speed) -> np.ndarray:
-    """Return the six velocities when contacts of a pattern take hold at once: (B'MB)^-1 B'M v."""
+    """Return the six velocities after all contacts of a pattern close at once: (B'MB)^-1 B'M v."""
     jac, _ = phase.motions(place[2], place[5])
     if not phase.size:
         return np.zeros(6)
@@ -147,7 +147,7 @@ def _is_admissible(pressures, names, openings, push, quick) -> bool:
 
 
 def complementary(seats, masses, place, speed, touching: Touching):
-    """Hold all touching interfaces against slip, and let normal impulses push only.
+    """Hold all touching interfaces against slip, with normal impulses that only push.
 
     A linear complementarity problem, solved by trying all sets of ends that press. An interface
     may be held along itself although no end of it presses.
@@ -178,31 +178,31 @@ def complementary(seats, masses, place, speed, touching: Touching):
         msg = f"the impulses are not complementary, {fault:.1e}"
         raise ArithmeticError(msg)
     ends = {key: tuple(names[i][1] for i in active if names[i][0] == key) for key in touching}
-    return Pattern(named(ends["ground"]), named(ends["joint"])), after
+    return Pattern(name_of(ends["ground"]), name_of(ends["joint"])), after
 
 
-def yield_to(phase: Phase, place, speed, touching, across, up, apart=None) -> Outcome | None:
-    """Return the pattern whose accelerations open what it leaves and press where it bears.
+def choose_pattern(phase: Phase, place, speed, touching, across, up, apart=None) -> Outcome | None:
+    """Return the pattern whose released ends open and whose bearing ends press.
 
     Parameters
     ----------
     phase : Phase
         Before.
     place, speed : numpy.ndarray
-        Of the six coordinates; touching ends do not move upon one another.
+        Of the six coordinates; touching ends have no relative motion.
     touching : dict
         Which ends touch.
     across, up : float
         Ground acceleration [m/s²].
     apart : tuple, optional
-        Interface and end that bears no longer.
+        Interface and end that no longer bears.
 
     Returns
     -------
     Outcome or None
         None if no pattern does that.
     """
-    pair, found = phase.pair, []
+    pair, outcomes = phase.pair, []
     names, rows = normal_rows(phase.seats, place, touching)
     size = pair.gravity + math.hypot(across, up)
     push = 1e-9 * size * phase.masses[[0, 3]].min()
@@ -215,33 +215,33 @@ def yield_to(phase: Phase, place, speed, touching, across, up, apart=None) -> Ou
         pressures = one.pressures(place, one.needed(after, across, up))
         opening = rows @ after + _turning(phase.seats, place, speed, names)
         if _is_admissible(pressures, names, opening, push, 1e-9 * size):
-            found.append((pattern, after))
-    if not found:
+            outcomes.append((pattern, after))
+    if not outcomes:
         return None
     kept = []
-    for one in found:
+    for one in outcomes:
         if not any(np.max(np.abs(one[1] - other[1])) < 1e-7 * size for other in kept):
             kept.append(one)
     return Outcome(*kept[0], len(kept), others=tuple(kept[1:]))
 
 
 def _turning(seats: Seats, place, speed, names) -> np.ndarray:
-    """Return the openings' accelerations by rotation at constant rates."""
-    found = []
+    """Return the opening accelerations from rotation at constant rates."""
+    openings = []
     for key, end in names:
         if key == "ground":
             y = turned(place[2], *seats.ground[end])[1]
-            found.append(-(speed[2] ** 2) * y)
+            openings.append(-(speed[2] ** 2) * y)
             continue
         normal = turned(place[5] if seats.edge[end] else place[2], 0.0, 1.0)
         p, c = turned(place[2], *seats.below[end]), turned(place[5], *seats.above[end])
-        found.append(
+        openings.append(
             sum(
                 n * (speed[2] ** 2 * a - speed[5] ** 2 * b)
                 for n, a, b in zip(normal, p, c, strict=True)
             )
         )
-    return np.array(found)
+    return np.array(openings)
 
 
 def touching_of(pattern: Pattern) -> Touching:

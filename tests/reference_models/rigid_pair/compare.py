@@ -1,4 +1,4 @@
-"""Compare the package's rigid blocks upon one another with the reference model in random scenes.
+"""Compare rockframe's stacks of two rigid blocks with the reference model in random scenes.
 
 python tests/reference_models/rigid_pair/compare.py --scenes 300 --seed 11
 python tests/reference_models/rigid_pair/compare.py --seed 11 --replay 17
@@ -21,21 +21,21 @@ if __package__ in (None, ""):
     sys.path.insert(0, str(HERE.parents[2]))
     sys.path.append(str(ROOT))
 
-from reference_models.rigid_pair import drawing  # noqa: E402
-from reference_models.rigid_pair.drawing import FREE, Scene  # noqa: E402
+from reference_models.rigid_pair import random_scenes  # noqa: E402
 from reference_models.rigid_pair.pair import Body  # noqa: E402
+from reference_models.rigid_pair.random_scenes import FREE, Scene  # noqa: E402
 from reference_models.rigid_pair.simulate import Run, simulate  # noqa: E402
 
 import rockframe as rf  # noqa: E402
 
 AGREES = 1e-6
 STEP = 0.01
-"""Of the rotations that are compared [s]."""
+"""Output step of the compared rotations [s]."""
 
 
 @dataclass(frozen=True)
 class Compared:
-    """Both runs, up to the end of the shorter one or the first motion that is not unique."""
+    """Both runs, up to the end of the shorter one or of unique motion."""
 
     reference: Run
     package: Any  # the dataset
@@ -49,7 +49,7 @@ class Compared:
 
     @property
     def impacts(self) -> tuple[int, int]:
-        """Impacts that lose more than a millionth of the greatest loss, and those found in both."""
+        """Impacts with more than a millionth of the greatest loss, and those in both."""
         ours = [e for e in self.reference.events if e.kind == "impact"]
         ours = [e for e in ours if e.time < self.reference.unique_until]
         strongest = max((e.lost for e in ours), default=0.0)
@@ -81,7 +81,7 @@ def system_of(scene: Scene) -> rf.System:
 def motion_of(motion: dict[str, Any]) -> rf.GroundMotion:
     """Return the package's ground motion."""
     if motion["form"] == "record":
-        step, across, up = drawing.record_of(motion)
+        step, across, up = random_scenes.record_of(motion)
         return rf.GroundMotion.from_arrays((across, "m/s^2"), f"{step!r} s", vertical=(up, "m/s^2"))
     make = getattr(rf.GroundMotion, f"{motion['form']}_pulse")
     made = [
@@ -92,9 +92,9 @@ def motion_of(motion: dict[str, Any]) -> rf.GroundMotion:
     return made[0] if len(made) == 1 else made[0].with_vertical(made[1])
 
 
-def compared(scene: Scene, accuracy: str = "reference") -> Compared:
-    """Run a scene by both."""
-    pieces, period = drawing.pieces_for(scene.motion)
+def compare_scene(scene: Scene, accuracy: str = "reference") -> Compared:
+    """Run a scene by both programs."""
+    pieces, period = random_scenes.pieces_for(scene.motion)
     reference = simulate(scene.pair, pieces, STEP, quickest=period)
     package = system_of(scene).simulate(
         motion_of(scene.motion), free_vibration=f"{FREE!r} s", accuracy=accuracy,
@@ -108,26 +108,28 @@ def compared(scene: Scene, accuracy: str = "reference") -> Compared:
     apart = np.abs(ours[:count] - theirs[:count])[within]
     largest = float(np.max(np.abs(ours[:count][within]), initial=0.0))
     apart = float(np.nanmax(apart, initial=0.0)) if not np.isnan(apart).any() else math.inf
-    # rotations below rounding of the place are no motion
+    # rotations below rounding of positions are no motion
     return Compared(
         reference, package, apart / max(largest, 1e-9), math.isinf(reference.unique_until)
     )
 
 
 def table_of(seed: int, numbers) -> dict:
-    """Compare scenes and count."""
-    found = {}
-    for one in numbers:
+    """Compare scenes and return counts."""
+    comparisons = {}
+    for number in numbers:
         try:
-            found[one] = compared(drawing.draw(np.random.default_rng([seed, one])))
+            comparisons[number] = compare_scene(
+                random_scenes.draw(np.random.default_rng([seed, number]))
+            )
         except Exception as fault:
-            fault.add_note(f"scene {one}")
+            fault.add_note(f"scene {number}")
             raise
-        tell(one, found[one])
-    differences = np.array([one.difference for one in found.values()])
-    runs = [one.reference for one in found.values()]
-    unique = [one for one in found.values() if one.unique]
-    impacts = np.sum([one.impacts for one in found.values()], axis=0)
+        print_difference(number, comparisons[number])
+    differences = np.array([number.difference for number in comparisons.values()])
+    runs = [number.reference for number in comparisons.values()]
+    unique = [number for number in comparisons.values() if number.unique]
+    impacts = np.sum([number.impacts for number in comparisons.values()], axis=0)
     causes = Counter(
         next(e.kind if e.kind == "held" else f"impact, {e.admissible} admissible"
              for e in run.events if e.admissible != 1)
@@ -135,8 +137,8 @@ def table_of(seed: int, numbers) -> dict:
     )  # fmt: skip
     return {
         "seed": seed,
-        "records": drawing.have_records(),
-        "scenes": len(found),
+        "records": random_scenes.records_available(),
+        "scenes": len(comparisons),
         "agree": int(np.sum(differences < AGREES)),
         "median": float(f"{np.median(differences):.1e}"),
         "worst": float(f"{differences.max():.1e}"),
@@ -148,24 +150,28 @@ def table_of(seed: int, numbers) -> dict:
         "impacts found in both": int(impacts[1]),
         "unique to the end": len(unique),
         "no longer unique by": dict(causes),
-        "verdicts agree where unique": sum(one.same_verdict for one in unique),
-        "verdicts agree": sum(one.same_verdict for one in found.values()),
+        "verdicts agree where unique": sum(number.same_verdict for number in unique),
+        "verdicts agree": sum(number.same_verdict for number in comparisons.values()),
         "worst energy balance": float(f"{max(run.imbalance for run in runs):.0e}"),
-        "beyond": [one for one, each in found.items() if each.difference >= AGREES],
+        "beyond": [number for number, each in comparisons.items() if each.difference >= AGREES],
     }
 
 
-def tell(number: int, one: Compared) -> None:
+def print_difference(number: int, comparison: Compared) -> None:
     """Print a line on a scene that differs."""
-    if one.difference >= AGREES or (one.unique and not one.same_verdict):
+    if comparison.difference >= AGREES or (comparison.unique and not comparison.same_verdict):
         print(
-            number, f"{one.difference:.1e}", "unique" if one.unique else one.reference.unique_until,
-            one.reference.overturned, bool(one.package["overturned"]), flush=True,
-        )  # fmt: skip
+            number,
+            f"{comparison.difference:.1e}",
+            "unique" if comparison.unique else comparison.reference.unique_until,
+            comparison.reference.overturned,
+            bool(comparison.package["overturned"]),
+            flush=True,
+        )
 
 
 def main() -> None:
-    """Run the comparison that the command line asks for."""
+    """Run the comparison requested on the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--scenes", type=int, default=300)
     parser.add_argument("--seed", type=int, default=11)
@@ -173,14 +179,14 @@ def main() -> None:
     parser.add_argument(
         "--json", type=Path, default=ROOT / "docs" / "data" / "rigid_pair_oracle.json"
     )
-    given = parser.parse_args()
-    if not drawing.have_records():
+    options = parser.parse_args()
+    if not random_scenes.records_available():
         print("no recorded motions (set ROCKFRAME_RECORDS)")
         return
-    table = table_of(given.seed, given.replay or range(given.scenes))
+    table = table_of(options.seed, options.replay or range(options.scenes))
     print(json.dumps(table, indent=1))
-    if not given.replay:
-        given.json.write_text(json.dumps(table, indent=1) + "\n")
+    if not options.replay:
+        options.json.write_text(json.dumps(table, indent=1) + "\n")
 
 
 if __name__ == "__main__":

@@ -67,36 +67,36 @@ def draw_impact(rng: np.random.Generator, kind: str, tilt: float = 0.3):
         return pair, place, speed, touching
 
 
-def counted(rng: np.random.Generator, kind: str, draws: int) -> dict:
+def count_impacts(rng: np.random.Generator, kind: str, draws: int) -> dict:
     """Count the admissible patterns of impacts of a kind.
 
     Returns
     -------
     dict
-        Of how many admissible patterns how many impacts; of single ones, how many are those of
-        the linear complementarity problem, and of others the share of energy that the rules lose.
+        Numbers of impacts by their number of admissible patterns; how many single patterns solve
+        the linear complementarity problem; and the share of energy lost by the rules otherwise.
     """
     numbers, same = Counter[int](), 0
     for _ in range(draws):
         pair, place, speed, touching = draw_impact(rng, kind)
-        found = strike(pair, pair.offset, place, speed, touching)
-        numbers[found.admissible] += 1
-        if found.admissible == 1:
+        outcome = strike(pair, pair.offset, place, speed, touching)
+        numbers[outcome.admissible] += 1
+        if outcome.admissible == 1:
             seats = Phase(pair, Pattern("both", "both"), pair.offset).seats
             other = complementary(seats, pair.masses, place, speed, touching)[1]
-            same += bool(np.max(np.abs(other - found.motion)) < 1e-8 * np.max(np.abs(speed)))
+            same += bool(np.max(np.abs(other - outcome.motion)) < 1e-8 * np.max(np.abs(speed)))
     return {"admissible": dict(sorted(numbers.items())), "single as complementary": same}
 
 
 def main() -> None:
-    """Print the counts that the command line asks for."""
+    """Print the counts requested on the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--draws", type=int, default=20000)
     parser.add_argument("--seed", type=int, default=5)
-    given = parser.parse_args()
-    rng = np.random.default_rng(given.seed)
+    options = parser.parse_args()
+    rng = np.random.default_rng(options.seed)
     for kind in KINDS:
-        print(kind, counted(rng, kind, given.draws // 4), flush=True)
+        print(kind, count_impacts(rng, kind, options.draws // 4), flush=True)
 
 
 if __name__ == "__main__":

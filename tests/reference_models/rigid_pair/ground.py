@@ -22,15 +22,15 @@ def pieces_of(step: float, across, up=None) -> list[Piece]:
     """Return the pieces of a sampled motion, linear between samples."""
     across = np.asarray(across, dtype=float)
     up = np.zeros_like(across) if up is None else np.asarray(up, dtype=float)
-    found = []
+    pieces = []
     for i in range(across.size - 1):
         begin = i * step
         lines = [
             lambda t, a=float(v[i]), s=float(v[i + 1] - v[i]) / step, t0=begin: a + s * (t - t0)
             for v in (across, up)
         ]
-        found.append(Piece(begin, (i + 1) * step, *lines, linear=True))
-    return found
+        pieces.append(Piece(begin, (i + 1) * step, *lines, linear=True))
+    return pieces
 
 
 def still(start: float, stop: float) -> Piece:

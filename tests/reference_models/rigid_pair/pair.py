@@ -1,4 +1,4 @@
-"""The bodies, what their places are in the coordinates of a pattern, and what presses them."""
+"""The bodies, their kinematics in the coordinates of a pattern, and their contact forces."""
 
 import math
 from dataclasses import dataclass, replace
@@ -26,7 +26,7 @@ class Body(NamedTuple):
     below, above : float
         From the centre of mass down to the base, and up to the top [m].
     beside : float
-        How far the centre of mass is to the right of the middle [m].
+        Distance of the centre of mass to the right of the middle [m].
     """
 
     mass: float
@@ -48,7 +48,7 @@ class Body(NamedTuple):
 
 
 class Pattern(NamedTuple):
-    """Which ends bear: of the lower body on the ground, of the upper one on the lower one."""
+    """The bearing ends of the lower body on the ground and of the upper one on the lower one."""
 
     ground: str
     joint: str
@@ -56,7 +56,7 @@ class Pattern(NamedTuple):
 
 @dataclass(frozen=True)
 class Pair:
-    """Two bodies; the middle of the upper base stands `offset` to the right of the lower one's."""
+    """Two bodies; the upper middle is `offset` to the right of the lower one."""
 
     lower: Body
     upper: Body
@@ -66,8 +66,10 @@ class Pair:
     @property
     def masses(self) -> np.ndarray:
         """Inertia of each of the six coordinates."""
-        one, two = self.lower, self.upper
-        return np.array([one.mass, one.mass, one.inertia, two.mass, two.mass, two.inertia])
+        lower, upper = self.lower, self.upper
+        return np.array(
+            [lower.mass, lower.mass, lower.inertia, upper.mass, upper.mass, upper.inertia]
+        )
 
     @property
     def weights(self) -> np.ndarray:
@@ -78,29 +80,29 @@ class Pair:
     def limits(self) -> tuple[tuple[float, float], tuple[float, float]]:
         """Rotations to the left and right at which the lower and the upper body overturn.
 
-        The lower one with the upper one on it as one upright body; the upper one by itself.
+        The lower one together with the upright upper one as one body; the upper one alone.
         """
-        one, two = self.lower, self.upper
-        total = one.mass + two.mass
-        foot = (one.mass * one.beside + two.mass * (self.offset + two.beside)) / total
-        level = one.mass * one.below + two.mass * (one.below + one.above + two.below)
+        lower, upper = self.lower, self.upper
+        total = lower.mass + upper.mass
+        foot = (lower.mass * lower.beside + upper.mass * (self.offset + upper.beside)) / total
+        level = lower.mass * lower.below + upper.mass * (lower.below + lower.above + upper.below)
         level /= total
         sides = []
         for half, across, up in (
-            (one.half_width, foot, level),
-            (two.half_width, two.beside, two.below),
+            (lower.half_width, foot, level),
+            (upper.half_width, upper.beside, upper.below),
         ):
             sides.append((-math.atan((half + across) / up), math.atan((half - across) / up)))
         return sides[0], sides[1]
 
     @property
     def slowness(self) -> float:
-        """Least time in which a body turns by much: sqrt(size over gravity) [s]."""
+        """Shortest characteristic time of rotation: sqrt(size over gravity) [s]."""
         sizes = (math.hypot(one.half_width, one.below) for one in (self.lower, self.upper))
         return math.sqrt(min(sizes) / self.gravity)
 
     def mirrored(self) -> "Pair":
-        """Return the pair as seen from behind."""
+        """Return the mirror image of the pair."""
         return replace(
             self,
             lower=self.lower._replace(beside=-self.lower.beside),
@@ -120,33 +122,33 @@ def turned(angle: float, across: float, up: float) -> tuple[float, float]:
 
 
 class Seats(NamedTuple):
-    """Where bodies touch: their points as seen from the centres of mass, at each end."""
+    """Contact points at each end, from the centres of mass."""
 
     ground: dict  # of the lower body
     below: dict  # of the lower body, at the joint
     above: dict  # of the upper body, at the joint
-    edge: dict  # whether the upper base bears on an edge of the lower body there
+    edge: dict  # whether the upper base bears on an edge of the lower top
 
 
 def seats_of(pair: Pair, shift: float) -> Seats:
-    """Return the points of contact when the upper body stands `shift` beside the lower one."""
-    one, two = pair.lower, pair.upper
+    """Return the points of contact when the upper body is shifted by `shift` on the lower one."""
+    lower, upper = pair.lower, pair.upper
     ground, below, above, edge = {}, {}, {}, {}
     for end, way in SIGN.items():
-        ground[end] = one.from_centre(way * one.half_width, -one.below)
-        own = shift + way * two.half_width
-        edge[end] = way * own > one.half_width * (1.0 + 1e-12)
-        across = way * one.half_width if edge[end] else own
-        below[end] = one.from_centre(across, one.above)
-        above[end] = two.from_centre(across - shift, -two.below)
+        ground[end] = lower.from_centre(way * lower.half_width, -lower.below)
+        own = shift + way * upper.half_width
+        edge[end] = way * own > lower.half_width * (1.0 + 1e-12)
+        across = way * lower.half_width if edge[end] else own
+        below[end] = lower.from_centre(across, lower.above)
+        above[end] = upper.from_centre(across - shift, -upper.below)
     return Seats(ground, below, above, edge)
 
 
 class Phase:
-    """A pair in one pattern, with the fewest coordinates that tell its place.
+    """A pair in one pattern, with minimal coordinates.
 
-    Of a body that stands on an edge the coordinate is its rotation; of one that stands full there
-    is none; of one in the air there are three.
+    A body on an edge has its rotation as coordinate; one on its whole base has none; one in flight
+    has three.
 
     Parameters
     ----------
@@ -155,7 +157,7 @@ class Phase:
     shift : float
         Of the upper body on the lower one [m].
     anchor : float
-        Where the middle of the lower base stands on the ground, were it upright [m].
+        Position of the middle of the lower base on the ground if it were upright [m].
     """
 
     def __init__(self, pair: Pair, pattern: Pattern, shift: float, anchor: float = 0.0):
@@ -193,7 +195,7 @@ class Phase:
         return np.array([*first, *second])
 
     def motions(self, first: float, second: float, rate: float = 0.0, other: float = 0.0):
-        """Return the velocities per rate of each coordinate, and the accelerations of mere turning.
+        """Return the velocities per rate, and the accelerations at constant rates.
 
         Parameters
         ----------
@@ -225,7 +227,7 @@ class Phase:
         px, py = turned(first, *self.seats.below[end])
         cx, cy = turned(second, *self.seats.above[end])
         arm = (px - cx, py - cy) if joint == "both" else (px, py)
-        if k:  # the upper body rides on the lower one
+        if k:  # the upper body moves with the lower one
             jac[3, :k], jac[4, :k] = jac[0, :k], jac[1, :k]
             jac[3, k - 1] += arm[1]
             jac[4, k - 1] -= arm[0]
@@ -264,15 +266,15 @@ class Phase:
         return second_rates, jac @ second_rates + bend
 
     def needed(self, acceleration, across, up) -> np.ndarray:
-        """Return the resultants of all contact forces on each body that accelerations ask for."""
+        """Return the resultants of contact forces on each body required by accelerations."""
         g = self.pair.gravity + up
         lift = np.array([across, g, 0.0, across, g, 0.0])
         return self.masses * (acceleration + lift)
 
     def pressures(self, place, resultants) -> dict:
-        """Return how strongly each bearing end presses, along the normal.
+        """Return the normal force of each bearing end.
 
-        Of a base that stands full the force is shared by its two ends so that its moment is right.
+        Under a full base the two ends share the force so that its moment is right.
 
         Parameters
         ----------
@@ -284,9 +286,9 @@ class Phase:
         Returns
         -------
         dict
-            By the interface and the end.
+            By interface and end.
         """
-        pair, found = self.pair, {}
+        pair, pressures = self.pair, {}
         x2, y2, moment = (float(one) for one in resultants[3:])
         if self.pattern.joint != "none":
             shares = _shared(
@@ -297,7 +299,7 @@ class Phase:
                 if self.pattern.joint != "both" and not self.seats.edge[end]:
                     normal = turned(place[2], 0.0, 1.0)
                     share = normal[0] * x2 + normal[1] * y2
-                found["joint", end] = share
+                pressures["joint", end] = share
         if self.pattern.ground != "none":
             rx, ry = place[3] - place[0], place[4] - place[1]
             x1, y1 = resultants[0] + x2, resultants[1] + y2
@@ -306,8 +308,8 @@ class Phase:
                 self.pattern.ground, (x1, y1, turn), 0.0, pair.lower.below,
                 {end: point[0] for end, point in self.seats.ground.items()},
             )  # fmt: skip
-            found.update({("ground", end): share for end, share in shares.items()})
-        return found
+            pressures.update({("ground", end): share for end, share in shares.items()})
+        return pressures
 
 
 def _shared(ends, resultant, angle, below, seats) -> dict:
@@ -317,7 +319,7 @@ def _shared(ends, resultant, angle, below, seats) -> dict:
     push = normal[0] * resultant[0] + normal[1] * resultant[1]
     if ends != "both":
         return {ends: push}
-    at = -below * along - resultant[2]  # push times where it acts
+    at = -below * along - resultant[2]  # force times its position
     width = seats["right"] - seats["left"]
     return {
         "left": (seats["right"] * push - at) / width,

@@ -8,29 +8,29 @@ import numpy as np
 from scipy.integrate import DOP853
 from scipy.optimize import brentq
 
-from .choices import Outcome, complementary, projected, strike, touching_of, yield_to
-from .flying import gaps, shift_after
+from .choices import Outcome, choose_pattern, complementary, projected, strike, touching_of
+from .flight import gaps, shift_after
 from .ground import Piece
 from .pair import ENDS, SIGN, Pair, Pattern, Phase, turned
 
 RESTING = 1e-6
-"""A contact that reopens more slowly stays closed if it presses, in sqrt(g / size)."""
+"""A contact that reopens more slowly than this, in sqrt(g / size), stays closed if it presses."""
 LEVEL = 1e-9
-"""A base that lands at less than this angle, and hardly turning, lands with both ends [rad]."""
+"""A base lands with both ends below this angle at a small rate [rad]."""
 LOOKS = 4
-"""How often guards are looked at within a step."""
+"""Number of samples of the guards within a step."""
 MOST_EVENTS = 20000
 
 
 def first_event(guards, solver, dense, armed, slowness, gone=1e-13):
-    """Return time and name of the first guard that fires in a step; or tell to step again.
+    """Return time and name of the first guard that fires in a step, and whether to repeat the step.
 
-    `guards` gives values by names, at a time and in a state; `armed` keeps which were positive,
-    beyond `gone`.
+    `guards` returns values by names, at a time and in a state; `armed` records which have been
+    positive, beyond `gone`.
     """
-    looks = np.linspace(solver.t_old, solver.t, LOOKS + 1)
+    sample_times = np.linspace(solver.t_old, solver.t, LOOKS + 1)
     for i in range(LOOKS + 1):
-        values = guards(looks[i], solver.y if i == LOOKS else dense(looks[i]))
+        values = guards(sample_times[i], solver.y if i == LOOKS else dense(sample_times[i]))
         fired = []
         for name, value in values.items():
             if value > gone:
@@ -44,18 +44,21 @@ def first_event(guards, solver, dense, armed, slowness, gone=1e-13):
         if fired and i == 0:
             return (solver.t_old, fired[0]), False
         if fired:
-            first, began = (looks[i], ""), guards(looks[i - 1], dense(looks[i - 1]))
-            while fired:  # others may fall before the first of these, and rise again
-                found = [
-                    (brentq(lambda t, n=n: guards(t, dense(t))[n], looks[i - 1], first[0],
+            first, values_before = (
+                (sample_times[i], ""),
+                guards(sample_times[i - 1], dense(sample_times[i - 1])),
+            )
+            while fired:  # others may fall and rise again before the first of these
+                crossings = [
+                    (brentq(lambda t, n=n: guards(t, dense(t))[n], sample_times[i - 1], first[0],
                             xtol=1e-15, rtol=1e-15), n)
                     for n in fired
                 ]  # fmt: skip
-                first = min(found)
+                first = min(crossings)
                 values = guards(first[0], dense(first[0]))
                 fired = [
                     name for name, value in values.items()
-                    if value < -1e-12 and began[name] > 0.0 and name != first[1]
+                    if value < -1e-12 and values_before[name] > 0.0 and name != first[1]
                 ]  # fmt: skip
             return first, False
     return None, False
@@ -66,9 +69,9 @@ class Event:
     """A change of the pattern.
 
     ``kind`` is "uplift", "flight", "impact", "rest" or "overturning"; "held" where contacts stay
-    that do not press, as no pattern is admissible, and "pressed" where such ones press again.
-    ``admissible`` is 1 where what follows is unique; ``gap`` is how far the velocities then are
-    from those of the complementary impulses.
+    without pressing, as no pattern is admissible, and "pressed" where they press again.
+    ``admissible`` is 1 where the continuation is unique; ``gap`` is then the distance of the
+    velocities from those of the complementary impulses.
     """
 
     time: float
@@ -84,7 +87,7 @@ class Event:
 
 @dataclass
 class Run:
-    """What a run gives; rotations of the lower body, then of the upper one."""
+    """Results of a run; rotations of the lower body, then of the upper one."""
 
     time: np.ndarray
     place: np.ndarray
@@ -98,11 +101,14 @@ class Run:
     @property
     def unique_until(self) -> float:
         """Time of the first event after which motion is not unique [s]."""
-        return next((one.time for one in self.events if one.admissible != 1), math.inf)
+        return next(
+            (closed_phase.time for closed_phase in self.events if closed_phase.admissible != 1),
+            math.inf,
+        )
 
 
 class _Running:
-    """A run as it goes."""
+    """A run in progress."""
 
     def __init__(self, pair: Pair, output: np.ndarray, accuracy: float, longest: float):
         self.pair, self.accuracy = pair, accuracy
@@ -113,8 +119,8 @@ class _Running:
         self.now, self.step = 0.0, 0.01 * pair.slowness
         self.longest = longest
         self.slow = RESTING / pair.slowness
-        self.floor: dict = {}  # of gaps that begin at zero but for rounding
-        self.pulled: set = set()  # hinges that are held although they do not press
+        self.floor: dict = {}  # initial values of gaps that begin at zero up to rounding
+        self.pulled: set = set()  # whether hinges are held although they do not press
         self.run = Run(output, np.full((output.size, 6), np.nan))
         self.shown = 0
         self.start = pair.energy(self.place, self.speed)
@@ -123,14 +129,14 @@ class _Running:
     # states ---------------------------------------------------------------------------------
 
     def unpack(self, state):
-        """Return places and velocities of both bodies from what is integrated."""
+        """Return positions and velocities of both bodies from the integrated state."""
         n = self.phase.size
         place = self.phase.placed(state[:n])
         jac, _ = self.phase.motions(place[2], place[5])
         return place, jac @ state[n : 2 * n]
 
     def packed(self):
-        """Return what is integrated."""
+        """Return the integrated state."""
         phase = self.phase
         q, rates = phase.coordinates(self.place), phase.coordinates(self.speed)
         return np.concatenate([q, rates, [self.work]])
@@ -154,10 +160,10 @@ class _Running:
     # guards ---------------------------------------------------------------------------------
 
     def guards(self, t, state) -> dict:
-        """Return what must stay positive."""
+        """Return the guards."""
         phase = self.phase
         place, speed = self.unpack(state)
-        found = {}
+        guards = {}
         across, up = self.piece.across(t), self.piece.up(t)
         if phase.pattern != ("none", "none"):
             _, acceleration = phase.accelerate(place[2], place[5], speed[2], speed[5], across, up)
@@ -165,47 +171,49 @@ class _Running:
             needed = phase.needed(acceleration, across, up)
             for name, push in phase.pressures(place, needed).items():
                 if name not in self.pulled:
-                    found["press", *name] = push / scale
+                    guards["press", *name] = push / scale
         if self.pulled:
-            found["let", "go", ""] = (
+            guards["let", "go", ""] = (
                 1.0 if self._may_open(place, speed, across, up) is None else -1.0
             )
         tilt, relative = place[2], place[5] - place[2]
         if phase.pattern.ground in SIGN:
-            found["gap", "ground", phase.pattern.ground] = SIGN[phase.pattern.ground] * tilt
+            guards["gap", "ground", phase.pattern.ground] = SIGN[phase.pattern.ground] * tilt
         elif phase.pattern.ground == "none":
             for end, at in phase.seats.ground.items():
                 height = place[1] + turned(tilt, *at)[1]
-                found["gap", "ground", end] = height / self.pair.lower.half_width
+                guards["gap", "ground", end] = height / self.pair.lower.half_width
         if phase.pattern.joint in SIGN:
-            found["gap", "joint", phase.pattern.joint] = SIGN[phase.pattern.joint] * relative
+            guards["gap", "joint", phase.pattern.joint] = SIGN[phase.pattern.joint] * relative
         elif phase.pattern.joint == "none":
-            found.update(gaps(self.pair, place))
-        for name in found:
+            guards.update(gaps(self.pair, place))
+        for name in guards:
             if name[0] == "gap":
-                found[name] -= self.floor.setdefault(name, max(-1e-9, min(found[name], 0.0)))
+                guards[name] -= self.floor.setdefault(name, max(-1e-9, min(guards[name], 0.0)))
         for name, angle, (left, right) in zip(
             ("lower", "upper"), (tilt, place[5]), self.pair.limits, strict=True
         ):
-            found["overturn", name, "left"] = angle - left
-            found["overturn", name, "right"] = right - angle
-        return found
+            guards["overturn", name, "left"] = angle - left
+            guards["overturn", name, "right"] = right - angle
+        return guards
 
     def _may_open(self, place, speed, across, up):
-        """Return the pattern without the hinges that are pulled, if accelerations allow it."""
+        """Return the outcome without the pulled hinges, or None if no accelerations allow it."""
         touching = touching_of(self.phase.pattern)
-        return yield_to(self.phase, place, speed, touching, across, up)
+        return choose_pattern(self.phase, place, speed, touching, across, up)
 
     # changes --------------------------------------------------------------------------------
 
     def note(self, kind, where, before, outcome: Outcome | None = None, gap=0.0):
-        """Keep an event."""
+        """Store an event."""
         if len(self.run.events) >= MOST_EVENTS:
             msg = f"too many events, at {self.now} s"
             raise RuntimeError(msg)
         admissible = 1 if outcome is None else outcome.admissible
         lost = 0.0 if outcome is None else outcome.lost
-        others = () if outcome is None else tuple(one[0] for one in outcome.others)
+        others = (
+            () if outcome is None else tuple(closed_phase[0] for closed_phase in outcome.others)
+        )
         self.run.events.append(
             Event(self.now, kind, where, before, self.phase.pattern, admissible, lost, gap, others)
         )
@@ -222,27 +230,27 @@ class _Running:
         self.pulled, self.floor = set(), {}
 
     def settle(self, apart=None):
-        """Let contacts open that the forces do not hold, as the accelerations demand."""
+        """Open contacts that the forces do not hold."""
         across, up = self.piece.across(self.now), self.piece.up(self.now)
         phase = self.phase
         touching = touching_of(phase.pattern)
-        found = yield_to(phase, self.place, self.speed, touching, across, up, apart)
-        if found is None:
-            # no pattern does: hold what touches, though it does not press
+        outcome = choose_pattern(phase, self.place, self.speed, touching, across, up, apart)
+        if outcome is None:
+            # no pattern is admissible: hold touching contacts, though they do not press
             if not self.pulled:
                 self.pulled = {(key, end) for key, ends in touching.items() for end in ends}
                 self.note("held", "", phase.pattern, Outcome(phase.pattern, self.speed, 0))
             return
         before = phase.pattern
-        if found.pattern == before and not self.pulled:
+        if outcome.pattern == before and not self.pulled:
             return
-        self.take(found.pattern)
-        kind = "flight" if "none" in found.pattern else "uplift"
-        kind = "pressed" if found.pattern == before else kind
-        self.note(kind, "" if apart is None else apart[0], before, found)
+        self.take(outcome.pattern)
+        kind = "flight" if "none" in outcome.pattern else "uplift"
+        kind = "pressed" if outcome.pattern == before else kind
+        self.note(kind, "" if apart is None else apart[0], before, outcome)
 
     def hit(self, key, end):
-        """Let contacts close by an impact."""
+        """Close contacts by an impact."""
         before = self.phase.pattern
         touching = dict(touching_of(before))
         shift = self.phase.shift
@@ -272,11 +280,11 @@ class _Running:
         self.settle()
 
     def _is_level(self, angle, rate) -> bool:
-        """Tell whether a base lands with both its ends, but for what no impact is worth."""
+        """Tell whether a base lands with both ends, up to a negligible rotation."""
         return abs(angle) < LEVEL and abs(rate) < 1e3 * self.slow
 
     def _flush(self, key):
-        """Return the places with an angle that is zero but for rounding made zero."""
+        """Return the positions with an angle that is zero up to rounding set to zero."""
         place = self.place.copy()
         if key == "ground":
             place[2] = 0.0
@@ -286,7 +294,7 @@ class _Running:
         return phase.placed(phase.coordinates(place))
 
     def _rest(self):
-        """Close contacts that reopen so slowly that impacts would have no end."""
+        """Close contacts that reopen so slowly that impacts would be endless."""
         phase, rates = self.phase, self.speed
         tiny = []
         if phase.pattern.ground in SIGN and abs(rates[2]) < self.slow and self.place[2] == 0.0:
@@ -299,10 +307,12 @@ class _Running:
             if not some:
                 return
             pattern = phase.pattern._replace(**dict.fromkeys(some, "both"))
-            one = Phase(self.pair, pattern, phase.shift, phase.anchor)
-            speed = projected(one, self.place, rates)
-            _, after = one.accelerate(self.place[2], self.place[5], speed[2], speed[5], across, up)
-            pushes = one.pressures(self.place, one.needed(after, across, up))
+            closed_phase = Phase(self.pair, pattern, phase.shift, phase.anchor)
+            speed = projected(closed_phase, self.place, rates)
+            _, after = closed_phase.accelerate(
+                self.place[2], self.place[5], speed[2], speed[5], across, up
+            )
+            pushes = closed_phase.pressures(self.place, closed_phase.needed(after, across, up))
             if min(pushes.values()) >= 0.0:
                 masses = self.pair.masses
                 lost = 0.5 * float(masses @ rates**2 - masses @ speed**2)
@@ -324,7 +334,7 @@ class _Running:
             self.shown += 1
 
     def peak(self, place):
-        """Keep the greatest rotations."""
+        """Update the greatest rotations."""
         self.run.peaks = np.maximum(self.run.peaks, np.abs(place[[2, 5]]))
 
     def audit(self):
@@ -337,25 +347,27 @@ class _Running:
         self.run.imbalance = max(self.run.imbalance, gap)
 
     def wait(self, stop):
-        """Stay at rest up to the time at which the ground lifts something, or to the end."""
+        """Stay at rest until the ground lifts a contact, or to the end."""
         state = self.packed()
 
         def least(t):
             return min(v for k, v in self.guards(t, state).items() if k[0] == "press")
 
-        looks = np.linspace(self.now, stop, 2 if self.piece.linear else 101)
-        values = [least(t) for t in looks]
+        sample_times = np.linspace(self.now, stop, 2 if self.piece.linear else 101)
+        values = [least(t) for t in sample_times]
         end, name = stop, None
-        for i in range(1, looks.size):
+        for i in range(1, sample_times.size):
             if values[i] < 0.0:
-                end = looks[i - 1]
+                end = sample_times[i - 1]
                 if values[i - 1] > 0.0:
-                    end = brentq(least, looks[i - 1], looks[i], xtol=1e-15, rtol=1e-15)
-                guards = self.guards(looks[i], state)
-                # a linear motion may lift two ends within a piece: the first one counts
+                    end = brentq(
+                        least, sample_times[i - 1], sample_times[i], xtol=1e-15, rtol=1e-15
+                    )
+                guards = self.guards(sample_times[i], state)
+                # a linear motion may lift two ends within a piece: the first counts
                 name = min(
                     (k for k in guards if guards[k] < 0.0),
-                    key=lambda k: self._root(k, looks[i - 1], looks[i], state),
+                    key=lambda k: self._root(k, sample_times[i - 1], sample_times[i], state),
                 )
                 break
         self.show(end, lambda t: state)
@@ -363,12 +375,12 @@ class _Running:
         return name
 
     def _root(self, name, low, high, state):
-        """Return the time at which a guard vanishes, in a state that lasts."""
+        """Return the time at which a guard vanishes in a constant state."""
         value = lambda t: self.guards(t, state)[name]  # noqa: E731
         return low if value(low) <= 0.0 else brentq(value, low, high, xtol=1e-15, rtol=1e-15)
 
     def advance(self, stop):
-        """Integrate up to the first event or to `stop`; give the event."""
+        """Integrate up to the first event or to `stop`; return the event."""
         armed: dict = {}
         cut = 1.0
         while self.now < stop:
@@ -388,7 +400,7 @@ class _Running:
                 dense = solver.dense_output()
                 hit, again = first_event(self.guards, solver, dense, armed, self.pair.slowness)
                 if again:
-                    # a guard that began at zero is negative: look more closely
+                    # a guard that began at zero is negative: repeat with shorter steps
                     cut *= 0.125
                     break
                 cut = 1.0
@@ -408,16 +420,16 @@ class _Running:
 
     def _peaks(self, start, end, dense):
         """Find the greatest rotations within a step."""
-        _, one = self.unpack(dense(start))
+        _, closed_phase = self.unpack(dense(start))
         place, two = self.unpack(dense(end))
         self.peak(place)
         for k in (2, 5):
-            if one[k] * two[k] < 0.0:
+            if closed_phase[k] * two[k] < 0.0:
                 top = brentq(lambda t, k=k: self.unpack(dense(t))[1][k], start, end, xtol=1e-15)
                 self.peak(self.unpack(dense(top))[0])
 
     def answer(self, name) -> bool:
-        """Do what an event asks for; tell whether the run goes on."""
+        """Carry out an event; tell whether the run continues."""
         kind, key, end = name
         if kind == "overturn":
             self.run.overturned = True
@@ -447,7 +459,7 @@ def simulate(
     ----------
     pair : Pair
     pieces : sequence of Piece
-        One after the other, from time zero.
+        Consecutive, from time zero.
     output_step : float
         [s]
     start : tuple, optional

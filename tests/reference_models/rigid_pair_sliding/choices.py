@@ -1,4 +1,4 @@
-"""The forces of a pattern, and which pattern follows an event: all of them are tried."""
+"""Forces of a pattern, and selection of the pattern after an event by trying all."""
 
 import math
 from itertools import combinations, product
@@ -10,17 +10,17 @@ from reference_models.rigid_pair.pair import Pair
 from .contacts import INTERFACES, Bearing, Contact, Friction, Pattern, contact
 
 SMALL = 1e-10
-"""What counts as no push and no speed in an impact, as a share of the largest there is."""
+"""Impulses and speeds below this share of the largest count as zero in an impact."""
 SLIGHT = 1e-9
-"""What counts as no push and no acceleration, as a share of gravity's."""
+"""Forces and accelerations below this share of gravity's count as zero."""
 
 Frictions = dict[str, Friction]
 Touching = dict[str, tuple[str, ...]]
-"""Of the ground and of the joint, the ends that touch."""
+"""The touching ends of the ground and of the joint."""
 
 
 class Answer(NamedTuple):
-    """Accelerations, or velocities after an impact, with the forces or impulses that give them."""
+    """Accelerations, or velocities after an impact, with their forces or impulses."""
 
     motion: np.ndarray
     normal: dict[tuple[str, str], float]
@@ -32,9 +32,9 @@ class Answer(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """The pattern that follows, how many different motions are admissible, and the energy lost.
+    """The selected pattern, the number of different admissible motions, and the energy lost.
 
-    ``others`` are the admissible patterns that were not taken.
+    ``others`` are the admissible patterns not selected.
     """
 
     pattern: Pattern
@@ -45,7 +45,7 @@ class Outcome(NamedTuple):
 
 
 class Touch:
-    """All ends that touch, with their rows at one instant."""
+    """All touching ends, with their rows at one instant."""
 
     def __init__(self, pair: Pair, frictions: Frictions, place, speed, touching: Touching):
         self.pair, self.frictions, self.touching = pair, frictions, touching
@@ -58,7 +58,7 @@ class Touch:
         }
 
     def solve(self, pattern: Pattern, motion, turning: bool, hooked=()) -> Answer:
-        """Add forces to a motion so that bearing ends stay, held interfaces too.
+        """Add forces to a motion so that bearing ends and held interfaces stay.
 
         Parameters
         ----------
@@ -66,9 +66,9 @@ class Touch:
         motion : numpy.ndarray
             Accelerations without contacts, or velocities before an impact.
         turning : bool
-            Whether accelerations are meant, which turning adds to.
+            Whether `motion` holds accelerations, which include terms of rotation rates.
         hooked : tuple of str
-            Interfaces that are held along themselves although nothing may press there.
+            Interfaces held tangentially although nothing may press there.
         """
         wanted, pushes, stays, names = [], [], [], []
         for key, bearing in zip(INTERFACES, pattern, strict=True):
@@ -89,14 +89,14 @@ class Touch:
             return Answer(motion, {}, {})
         rows, forces = np.array(wanted), np.array(pushes)
         offset = rows @ motion + (np.array(stays) if turning else 0.0)
-        # rows of bodies that differ in mass, made alike
+        # scale rows of bodies of different mass
         size = 1.0 / np.sqrt((rows * rows) @ self.inverse)
         scaled, spread = rows * size[:, None], (forces * size[:, None]) * self.inverse
-        found = np.linalg.solve(scaled @ spread.T, -offset * size)
-        answer = motion + spread.T @ found
-        found = found * size
+        multipliers = np.linalg.solve(scaled @ spread.T, -offset * size)
+        answer = motion + spread.T @ multipliers
+        multipliers = multipliers * size
         normal, friction = {}, {}
-        for (key, end), force in zip(names, found, strict=True):
+        for (key, end), force in zip(names, multipliers, strict=True):
             if end:
                 normal[key, end] = float(force)
             else:
@@ -108,44 +108,46 @@ class Touch:
         return one
 
     def opening(self, name, motion, turning: bool) -> float:
-        """Return how fast an end leaves its surface."""
+        """Return the speed (or acceleration) of an end away from its surface."""
         one = self.contacts[name]
         return float(np.dot(one.normal, motion)) + (one.turns[1] if turning else 0.0)
 
     def along(self, key: str, end: str, motion, turning: bool) -> float:
-        """Return how fast an end goes along its surface."""
+        """Return the speed (or acceleration) of an end along its surface."""
         one = self.contacts[key, end]
         return float(np.dot(one.along, motion)) + (one.turns[0] if turning else 0.0)
 
     def fall(self, across: float, up: float) -> np.ndarray:
-        """Return the accelerations of bodies that nothing touches."""
+        """Return the accelerations without contact forces."""
         g = self.pair.gravity + up
         return np.array([-across, -g, 0.0, -across, -g, 0.0])
 
 
 def patterns(touching: Touching, senses: dict[str, tuple[int, ...]]) -> list[Pattern]:
-    """Return all patterns of touching ends and of the senses that each interface may slip in."""
-    found = []
+    """Return all patterns of touching ends and senses of slip of each interface."""
+    bearings = []
     for key in INTERFACES:
         ends = touching[key]
         some = [one for count in (2, 1) for one in combinations(ends, count)]
-        found.append([Bearing(one, sense) for one in some for sense in senses[key]] + [Bearing()])
-    return [Pattern(*one) for one in product(*found)]
+        bearings.append(
+            [Bearing(one, sense) for one in some for sense in senses[key]] + [Bearing()]
+        )
+    return [Pattern(*one) for one in product(*bearings)]
 
 
 def strike(pair: Pair, frictions: Frictions, place, speed, touching: Touching) -> Outcome:
-    """Return what follows a plastic impact in which all touching ends take part.
+    """Return the outcome of a plastic impact in which all touching ends take part.
 
-    Ends that bear stop, those that do not part. Each interface is held if |T| <= mu_k N, or slips
-    after the impact against T = mu_k N (Moreau 1988). Of several motions it is the one that loses
-    least energy. Where nothing slips there may be none; then as `hooked_strike`.
+    Bearing ends stop, the others separate. Each interface is held if |T| <= mu_k N, or slips
+    after the impact against T = mu_k N (Moreau 1988). Of several motions the one that loses
+    least energy is selected. Without slip there may be none; then `hooked_strike` applies.
     """
     touch = Touch(pair, frictions, place, speed, touching)
     senses = {key: (0,) if frictions[key].sticks else (0, 1, -1) for key in INTERFACES}
     masses, speed = pair.masses, touch.speed
     before = 0.5 * float(masses @ speed**2)
     push, quick = _sizes(pair, speed, before)
-    found: list[tuple[float, Pattern, Answer]] = []
+    outcomes: list[tuple[float, Pattern, Answer]] = []
     for pattern in patterns(touching, senses):
         try:
             answer = touch.solve(pattern, speed, turning=False)
@@ -155,18 +157,23 @@ def strike(pair: Pair, frictions: Frictions, place, speed, touching: Touching) -
             continue
         if not _fits(touch, pattern, answer, push, quick):
             continue
-        if not any(np.max(np.abs(answer.motion - one[2].motion)) < 100.0 * quick for one in found):
-            found.append((before - 0.5 * float(masses @ answer.motion**2), pattern, answer))
-    if not found:
+        if not any(
+            np.max(np.abs(answer.motion - outcome[2].motion)) < 100.0 * quick
+            for outcome in outcomes
+        ):
+            outcomes.append((before - 0.5 * float(masses @ answer.motion**2), pattern, answer))
+    if not outcomes:
         pattern, answer = hooked_strike(touch)
         return Outcome(pattern, answer, 0, before - 0.5 * float(masses @ answer.motion**2))
-    found.sort(key=lambda one: one[0])
-    lost, pattern, answer = found[0]
-    return Outcome(pattern, answer, len(found), lost, tuple(one[1] for one in found[1:]))
+    outcomes.sort(key=lambda outcome: outcome[0])
+    lost, pattern, answer = outcomes[0]
+    return Outcome(
+        pattern, answer, len(outcomes), lost, tuple(outcome[1] for outcome in outcomes[1:])
+    )
 
 
 def _sizes(pair: Pair, speed, energy: float) -> tuple[float, float]:
-    """Return what counts as no impulse and no velocity."""
+    """Return the impulse and the velocity that count as zero."""
     heavy, light = max(pair.masses[[0, 3]]), min(pair.masses[[0, 3]])
     quick = SMALL * math.sqrt(2.0 * energy / heavy) + 1e-300
     push = quick * light
@@ -175,7 +182,7 @@ def _sizes(pair: Pair, speed, energy: float) -> tuple[float, float]:
 
 
 def _fits(touch: Touch, pattern: Pattern, answer: Answer, push: float, quick: float) -> bool:
-    """Tell whether ends part that do not bear, and friction is as Coulomb has it."""
+    """Tell whether ends that do not bear separate, and friction obeys Coulomb's law."""
     for key, bearing in zip(INTERFACES, pattern, strict=True):
         for end in touch.touching[key]:
             if end not in bearing.ends and touch.opening((key, end), answer.motion, False) < -quick:
@@ -193,7 +200,7 @@ def _fits(touch: Touch, pattern: Pattern, answer: Answer, push: float, quick: fl
 
 
 def hooked_strike(touch: Touch) -> tuple[Pattern, Answer]:
-    """Return the impact in which interfaces that stick do so although nothing presses there."""
+    """Return the impact in which sticking interfaces are held although nothing presses there."""
     hooked = tuple(k for k in INTERFACES if touch.frictions[k].sticks and touch.touching[k])
     senses = {key: (0,) if touch.frictions[key].sticks else (0, 1, -1) for key in INTERFACES}
     best = None
@@ -229,10 +236,10 @@ def hooked_strike(touch: Touch) -> tuple[Pattern, Answer]:
 
 
 class Ended(NamedTuple):
-    """What an event has ended: an end that bore, or an interface that was held."""
+    """What an event has ended: the bearing of an end, or the hold of an interface."""
 
     key: str
-    end: str = ""  # of an end that bears no longer
+    end: str = ""  # of an end that no longer bears
 
 
 def follow(
@@ -243,9 +250,9 @@ def follow(
     up: float,
     ended: Ended | None = None,
 ) -> Outcome | None:
-    """Return the pattern whose accelerations go with its forces.
+    """Return the pattern whose accelerations and forces are consistent.
 
-    Of several the one with fewest ends changed, then the one that holds most.
+    Of several the one with the fewest changed ends, then the one with the most held interfaces.
 
     Parameters
     ----------
@@ -269,10 +276,10 @@ def follow(
         key: (0,) if touch.frictions[key].holds else (moving[key],) if moving[key] else (0, 1, -1)
         for key in INTERFACES
     }
-    # where two interfaces can be held no longer at once, either may slip first, or both
+    # if two interfaces cease to hold at the same time, either may slip first, or both
     loose = _loose(touch, before, fall, push)
     loose = loose if len(loose) == 2 else set()
-    found: list[tuple[tuple[int, int], Pattern, Answer]] = []
+    outcomes: list[tuple[tuple[int, int], Pattern, Answer]] = []
     for pattern in patterns(touch.touching, senses):
         if ended is not None and _again(pattern, ended, loose):
             continue
@@ -287,13 +294,13 @@ def follow(
                 len(set(one.ends) ^ set(two.ends)) for one, two in zip(before, pattern, strict=True)
             )
             starts = sum(one.slip != 0 for one in pattern)
-            found.append(((changed, starts), pattern, answer))
-    if not found:
+            outcomes.append(((changed, starts), pattern, answer))
+    if not outcomes:
         return None
-    found.sort(key=lambda one: one[0])
+    outcomes.sort(key=lambda one: one[0])
     kept: list[tuple[Pattern, Answer]] = []
-    for _, pattern, answer in found:
-        # friction at rest exceeds that of slip: what may stay held is not let go
+    for _, pattern, answer in outcomes:
+        # static friction exceeds kinetic friction: an interface that may stay held stays held
         if any(_freer(pattern, other, loose) for other, _ in kept):
             continue
         if not any(np.max(np.abs(answer.motion - one.motion)) < 1e-7 * size for _, one in kept):
@@ -302,7 +309,7 @@ def follow(
 
 
 def _loose(touch: Touch, before: Pattern, fall, push: float) -> set[str]:
-    """Return the interfaces that friction at rest cannot hold, or only just, as they were."""
+    """Return the held interfaces that static friction cannot hold, or only just."""
     try:
         answer = touch.solve(before, fall, turning=True)
     except np.linalg.LinAlgError:
@@ -316,7 +323,7 @@ def _loose(touch: Touch, before: Pattern, fall, push: float) -> set[str]:
 
 
 def _again(pattern: Pattern, ended: Ended, loose: set[str]) -> bool:
-    """Tell whether a pattern goes on with what has ended."""
+    """Tell whether a pattern continues what has ended."""
     if ended.end:
         return ended.end in pattern[INTERFACES.index(ended.key)].ends
     held = [key for key, one in zip(INTERFACES, pattern, strict=True) if one.ends and not one.slip]
@@ -324,7 +331,7 @@ def _again(pattern: Pattern, ended: Ended, loose: set[str]) -> bool:
 
 
 def _freer(pattern: Pattern, other: Pattern, loose: set[str]) -> bool:
-    """Tell whether a pattern lets slip what another one with the same ends holds."""
+    """Tell whether a pattern slips where another one with the same ends holds."""
     both = list(zip(INTERFACES, pattern, other, strict=True))
     freed = {key for key, one, two in both if one.slip != two.slip}
     return (
@@ -335,7 +342,7 @@ def _freer(pattern: Pattern, other: Pattern, loose: set[str]) -> bool:
 
 
 def _goes(touch: Touch, pattern, answer, moving, push: float, slight: float) -> bool:
-    """Tell whether ends part that do not bear, and interfaces are held or slip as they may."""
+    """Tell whether ends that do not bear separate and interfaces obey friction."""
     for key, bearing in zip(INTERFACES, pattern, strict=True):
         for end in touch.touching[key]:
             if end not in bearing.ends and touch.opening((key, end), answer.motion, True) < -slight:

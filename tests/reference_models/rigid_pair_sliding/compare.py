@@ -1,4 +1,4 @@
-"""Compare the package's two sliding rigid blocks with the reference model in random scenes.
+"""Compare rockframe's two sliding rigid blocks with the reference model in random scenes.
 
 python tests/reference_models/rigid_pair_sliding/compare.py --scenes 100 --seed 7
 python tests/reference_models/rigid_pair_sliding/compare.py --seed 7 --replay 17
@@ -23,21 +23,21 @@ if __package__ in (None, ""):
 from reference_models.monoliths.slipping_block import Bed, Pads  # noqa: E402
 from reference_models.rigid_pair import compare as held  # noqa: E402
 from reference_models.rigid_pair_sliding.contacts import INTERFACES  # noqa: E402
-from reference_models.rigid_pair_sliding.drawing import (  # noqa: E402
+from reference_models.rigid_pair_sliding.events import Event, OffTheTopError, Run  # noqa: E402
+from reference_models.rigid_pair_sliding.random_scenes import (  # noqa: E402
     FREE,
     STEP,
     Scene,
     draw,
-    draw_giving,
+    draw_compliant,
 )
-from reference_models.rigid_pair_sliding.events import Event, OffTheTopError, Run  # noqa: E402
 from reference_models.rigid_pair_sliding.simulate import simulate  # noqa: E402
 
 import rockframe as rf  # noqa: E402
 from rockframe.dynamics.events import EventKind  # noqa: E402
 
 OUTPUT = 0.01
-"""Step of what is compared [s]."""
+"""Output step of the compared histories [s]."""
 KINDS = {
     "uplift": "UPLIFT", "flight": "SEPARATION", "impact": "IMPACT", "rest": "REST", "slip": "SLIP",
     "stick": "STICK", "reversal": "SLIP_REVERSAL", "overturning": "OVERTURNING",
@@ -45,17 +45,17 @@ KINDS = {
 BODIES = {"ground": 2, "joint": 1, "lower": 2, "upper": 1}
 """The package counts bodies from the top."""
 SOON, TOGETHER = 1e-9, 1e-6
-"""How close the events of one instant are, and those of both programs [s]."""
+"""Largest time between events of one instant, and between those of both programs [s]."""
 SLIGHT = 1e-6
 """Impacts that lose less than this share of the greatest loss are not counted."""
 
 
 @dataclass(frozen=True)
 class Compared:
-    """Both runs, up to the end of the shorter one or the first motion that is not unique.
+    """Both runs, up to the end of the shorter one or of unique motion.
 
     ``rotation`` is the largest difference over the largest rotation, ``slip`` that of slips over
-    the largest slip; ``ours`` and ``theirs`` are the instants, with all that happens at each,
+    the largest slip; ``ours`` and ``theirs`` are the instants with their changes,
     ``ours`` without impacts that lose less than a millionth of the greatest loss.
     """
 
@@ -67,32 +67,32 @@ class Compared:
     ours: list
     all_ours: list
     theirs: list
-    off: bool  # the reference ends, as the upper base leaves the top
+    off: bool  # the reference ended because the upper base left the top
 
     @property
     def same_verdict(self) -> bool:
-        """Whether both overturn or neither does, as far as the reference goes."""
+        """Whether both overturn or neither does, or the reference ended early."""
         return self.off or bool(self.package["overturned"]) == self.reference.overturned
 
     @property
     def missing(self) -> list:
-        """What the reference has and the package has not, at the same time."""
-        return [one for one in self.ours if not _at(self.theirs, one)]
+        """Changes of the reference that the package lacks at that time."""
+        return [one for one in self.ours if not _changes_at(self.theirs, one)]
 
     @property
     def added(self) -> list:
-        """What the package has and the reference has not."""
-        return [one for one in self.theirs if not _at(self.all_ours, one)]
+        """Changes of the package that the reference lacks."""
+        return [one for one in self.theirs if not _changes_at(self.all_ours, one)]
 
     @property
     def renamed(self) -> list:
-        """What both have, by names of which none is the same."""
-        both = [(one, _at(self.theirs, one)) for one in self.ours]
+        """Instants of both whose changes have no name in common."""
+        both = [(one, _changes_at(self.theirs, one)) for one in self.ours]
         return [(*one, what) for one, what in both if what and not what & one[1]]
 
 
-def _at(instants: list, wanted) -> set:
-    """Return all that is said to happen at a time."""
+def _changes_at(instants: list, wanted) -> set:
+    """Return all changes at a time."""
     return set().union(*(what for t, what in instants if abs(t - wanted[0]) < TOGETHER))
 
 
@@ -100,9 +100,9 @@ def ground_of(scene: Scene, key: str) -> Any:
     """Return the package's interface."""
     friction = scene.frictions[key]
     if key in scene.bases:
-        given = {"friction": friction.static, "kinetic_friction": friction.kinetic}
-        given |= scene.bases[key]
-        return (rf.WinklerSoil if "stiffness" in given else rf.TwoSpringSupport)(**given)
+        arguments = {"friction": friction.static, "kinetic_friction": friction.kinetic}
+        arguments |= scene.bases[key]
+        return (rf.WinklerSoil if "stiffness" in arguments else rf.TwoSpringSupport)(**arguments)
     if friction.holds:
         return rf.RigidGround()
     return rf.RigidGround(
@@ -121,9 +121,9 @@ def system_of(scene: Scene) -> rf.System:
     return rf.System(stack, ground_of(scene, "ground"), restraint=scene.rule)
 
 
-def giving_of(scene: Scene, system: rf.System) -> dict[str, Any]:
-    """Return what is not rigid in a scene to the reference model, and how quick it is."""
-    pair, found = scene.pair, {}
+def compliant_bases_of(scene: Scene, system: rf.System) -> dict[str, Any]:
+    """Return the reference model's arguments for compliant bases."""
+    pair, options = scene.pair, {}
     for key in scene.bases:
         support = system.setting.bases[BODIES[key] - 1]
         mass = pair.upper.mass + (pair.lower.mass if key == "ground" else 0.0)
@@ -134,9 +134,9 @@ def giving_of(scene: Scene, system: rf.System) -> dict[str, Any]:
         else:
             base, stiffness = Pads(support.stiffness, support.damping, 1.0), 2.0 * support.stiffness
         base.sunk = mass * pair.gravity / stiffness
-        found |= {"giving": {key: base}, "rule": scene.rule}
-        found["quickest"] = 12.0 * math.sqrt(pair.upper.mass / stiffness)
-    return found
+        options |= {"compliant": {key: base}, "rule": scene.rule}
+        options["quickest"] = 12.0 * math.sqrt(pair.upper.mass / stiffness)
+    return options
 
 
 def motion_of(motion: dict[str, Any]) -> rf.GroundMotion:
@@ -148,37 +148,37 @@ def motion_of(motion: dict[str, Any]) -> rf.GroundMotion:
 
 
 def instants(events, until: float) -> list:
-    """Gather events, as time and what, by the instants before a time."""
-    found: list = []
+    """Group events, as pairs of time and change, by instants before a time."""
+    gathered: list = []
     for time, what in events:
         if time > until:
             break
-        if found and time - found[-1][0] < SOON:
-            found[-1][1].add(what)
+        if gathered and time - gathered[-1][0] < SOON:
+            gathered[-1][1].add(what)
         else:
-            found.append((time, {what}))
-    return found
+            gathered.append((time, {what}))
+    return gathered
 
 
 def changes_of(event: Event) -> list:
-    """Return what an event is, as kind and body, with all that changes besides."""
-    found = [(KINDS[event.kind], BODIES[key]) for key in event.where.split("+")]
+    """Return kind and body of an event, with all simultaneous changes."""
+    changes = [(KINDS[event.kind], BODIES[key]) for key in event.where.split("+")]
     if event.kind == "overturning":
         return [("OVERTURNING", body) for body in (1, 2)]  # both may, at once
-    for key, one, two in zip(INTERFACES, event.before, event.after, strict=True):
-        if set(one.ends) - set(two.ends):
-            found.append(("UPLIFT" if two.ends else "SEPARATION", BODIES[key]))
-        if two.ends and one.slip != two.slip:
-            kind = "STICK" if not two.slip else "SLIP_REVERSAL" if one.slip else "SLIP"
-            found.append((kind, BODIES[key]))
-    return found
+    for key, before, after in zip(INTERFACES, event.before, event.after, strict=True):
+        if set(before.ends) - set(after.ends):
+            changes.append(("UPLIFT" if after.ends else "SEPARATION", BODIES[key]))
+        if after.ends and before.slip != after.slip:
+            kind = "STICK" if not after.slip else "SLIP_REVERSAL" if before.slip else "SLIP"
+            changes.append((kind, BODIES[key]))
+    return changes
 
 
-def compared(scene: Scene, accuracy: str = "reference") -> Compared:
-    """Run a scene by both."""
+def compare_scene(scene: Scene, accuracy: str = "reference") -> Compared:
+    """Run a scene by both programs."""
     off, system = False, system_of(scene)
     try:
-        reference = simulate(scene, OUTPUT, **giving_of(scene, system))
+        reference = simulate(scene, OUTPUT, **compliant_bases_of(scene, system))
     except OffTheTopError as fault:
         reference, off = fault.run, True
     package = system.simulate(
@@ -220,33 +220,35 @@ def compared(scene: Scene, accuracy: str = "reference") -> Compared:
     )  # fmt: skip
 
 
-def tell(number: int, one: Compared) -> None:
+def print_scene(number: int, comparison: Compared) -> None:
     """Print a line on a scene."""
-    run = one.reference
+    run = comparison.reference
     print(
-        number, f"rotation {one.rotation:.1e} of {run.peaks.max():.1e}",
-        f"slip {one.slip:.1e} of {run.peak_slips.max():.1e}",
-        f"instants {len(one.ours)}, missing {len(one.missing)}, added {len(one.added)}, "
-        f"renamed {len(one.renamed)}",
+        number,
+        f"rotation {comparison.rotation:.1e} of {run.peaks.max():.1e}",
+        f"slip {comparison.slip:.1e} of {run.peak_slips.max():.1e}",
+        f"instants {len(comparison.ours)}, missing {len(comparison.missing)}, "
+        f"added {len(comparison.added)}, renamed {len(comparison.renamed)}",
         "" if math.isinf(run.unique_until) else f"unique until {run.unique_until:.6f}",
-        "" if one.same_verdict else "OTHER VERDICT", flush=True,
-    )  # fmt: skip
+        "" if comparison.same_verdict else "OTHER VERDICT",
+        flush=True,
+    )
 
 
-def table_of(seed: int, numbers, drawn=draw) -> dict:
-    """Compare scenes and count."""
-    found, refused = {}, {}
+def table_of(seed: int, numbers, draw_scene=draw) -> dict:
+    """Compare scenes and return counts."""
+    comparisons, refused = {}, {}
     for number in numbers:
-        scene = drawn([seed, number])
+        scene = draw_scene([seed, number])
         try:
-            found[number] = compared(scene)
+            comparisons[number] = compare_scene(scene)
         except rf.errors.RockframeError as fault:
             refused[number] = str(fault)
             print(number, f"refused: {fault}", flush=True)
             continue
-        tell(number, found[number])
-    scenes = list(found.values())
-    beyond = [n for n, one in found.items() if max(one.rotation, one.slip) > held.AGREES]
+        print_scene(number, comparisons[number])
+    scenes = list(comparisons.values())
+    beyond = [n for n, one in comparisons.items() if max(one.rotation, one.slip) > held.AGREES]
     return {
         "seed": seed,
         "scenes": len(scenes),
@@ -274,22 +276,22 @@ def table_of(seed: int, numbers, drawn=draw) -> dict:
 
 
 def main() -> None:
-    """Run the comparison that the command line asks for."""
+    """Run the comparison requested on the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--scenes", type=int, default=100)
     parser.add_argument("--seed", type=int, default=7)
     parser.add_argument("--replay", type=int, nargs="+", help="numbers of scenes to repeat")
-    parser.add_argument("--giving", action="store_true", help="one base on pads or on a bed")
-    given = parser.parse_args()
-    drawn = draw_giving if given.giving else draw
-    if given.replay:
-        for number in given.replay:
-            one = compared(drawn([given.seed, number]))
-            tell(number, one)
-            print("    missing", one.missing[:3], "added", one.added[:3])
-            print("    renamed", one.renamed[:3])
+    parser.add_argument("--compliant", action="store_true", help="one base on pads or on a bed")
+    options = parser.parse_args()
+    draw_scene = draw_compliant if options.compliant else draw
+    if options.replay:
+        for number in options.replay:
+            comparison = compare_scene(draw_scene([options.seed, number]))
+            print_scene(number, comparison)
+            print("    missing", comparison.missing[:3], "added", comparison.added[:3])
+            print("    renamed", comparison.renamed[:3])
         return
-    print(json.dumps(table_of(given.seed, range(given.scenes), drawn), indent=1))
+    print(json.dumps(table_of(options.seed, range(options.scenes), draw_scene), indent=1))
 
 
 if __name__ == "__main__":

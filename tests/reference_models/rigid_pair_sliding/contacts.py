@@ -1,4 +1,4 @@
-"""Where bodies touch, how contacts move with the six places, and what friction they have."""
+"""Contacts of the bodies: their kinematics in the six coordinates, and their friction."""
 
 import math
 from typing import NamedTuple
@@ -10,7 +10,7 @@ INTERFACES = ("ground", "joint")
 
 
 class Friction(NamedTuple):
-    """Coefficients at rest and of slip; infinite ones hold. ``stick``: impacts hold whatever."""
+    """Static and kinetic coefficients; infinite ones hold. ``stick``: impacts never slip."""
 
     static: float = math.inf
     kinetic: float = math.inf
@@ -18,7 +18,7 @@ class Friction(NamedTuple):
 
     @property
     def holds(self) -> bool:
-        """Whether there is no slip at all."""
+        """Whether slip is impossible."""
         return math.isinf(self.static)
 
     @property
@@ -28,14 +28,14 @@ class Friction(NamedTuple):
 
 
 class Bearing(NamedTuple):
-    """The ends that bear in an interface, and the sense of its slip: 1 to the right, 0 held."""
+    """The bearing ends of an interface, and the sense of its slip: 1 to the right, 0 held."""
 
     ends: tuple[str, ...] = ()
     slip: int = 0
 
 
 class Pattern(NamedTuple):
-    """What bears and slips: the lower body on the ground, the upper one on the lower one."""
+    """Bearing and slip of the lower body on the ground and of the upper one on the lower one."""
 
     ground: Bearing
     joint: Bearing
@@ -47,8 +47,8 @@ STANDING = Pattern(Bearing(ENDS), Bearing(ENDS))
 class Contact(NamedTuple):
     """An end of a base, at one instant.
 
-    ``along`` and ``normal`` make velocities along and away from the surface out of the six
-    velocities; ``turns`` adds what accelerations of mere turning give to both.
+    ``along`` and ``normal`` map the six velocities to those along and away from the surface;
+    ``turns`` are the accelerations of both at constant rates.
     """
 
     along: list[float]
@@ -57,20 +57,20 @@ class Contact(NamedTuple):
 
 
 def upper_end(pair: Pair, end: str) -> tuple[float, float]:
-    """Return an end of the upper base as seen from the upper centre of mass."""
+    """Return an end of the upper base relative to the upper centre of mass."""
     return pair.upper.from_centre(SIGN[end] * pair.upper.half_width, -pair.upper.below)
 
 
 def lower_end(pair: Pair, end: str) -> tuple[float, float]:
-    """Return an end of the lower base as seen from the lower centre of mass."""
+    """Return an end of the lower base relative to the lower centre of mass."""
     return pair.lower.from_centre(SIGN[end] * pair.lower.half_width, -pair.lower.below)
 
 
-def standing(pair: Pair) -> np.ndarray:
-    """Return the six places of upright bodies."""
-    one, two = pair.lower, pair.upper
-    level = one.below + one.above + two.below
-    return np.array([one.beside, one.below, 0.0, pair.offset + two.beside, level, 0.0])
+def upright_places(pair: Pair) -> np.ndarray:
+    """Return the six coordinates of upright bodies."""
+    lower, upper = pair.lower, pair.upper
+    level = lower.below + lower.above + upper.below
+    return np.array([lower.beside, lower.below, 0.0, pair.offset + upper.beside, level, 0.0])
 
 
 def contact(pair: Pair, place, speed, key: str, end: str) -> Contact:
@@ -85,7 +85,7 @@ def contact(pair: Pair, place, speed, key: str, end: str) -> Contact:
         )  # fmt: skip
     cx, cy = turned(a2, *upper_end(pair, end))
     rx, ry = x2 + cx - x1, y2 + cy - y1
-    # velocity as the lower body sees it; Coriolis' acceleration is normal to it
+    # velocity relative to the lower body; Coriolis' acceleration is normal to it
     qx, qy = u2 + w2 * cy - u1 - w1 * ry, v2 - w2 * cx - v1 + w1 * rx
     bx = -w2 * w2 * cx + w1 * w1 * rx - 2.0 * w1 * qy
     by = -w2 * w2 * cy + w1 * w1 * ry + 2.0 * w1 * qx
@@ -97,7 +97,7 @@ def contact(pair: Pair, place, speed, key: str, end: str) -> Contact:
 
 
 def on_top(pair: Pair, place, end: str) -> tuple[float, float]:
-    """Return where an end of the upper base is, along the lower top from its middle and above."""
+    """Return an end of the upper base: along the lower top from its middle, and above it."""
     x1, y1, a1, x2, y2, a2 = place
     cx, cy = turned(a2, *upper_end(pair, end))
     x, y = turned(-a1, x2 + cx - x1, y2 + cy - y1)
@@ -110,7 +110,7 @@ def height(pair: Pair, place, end: str) -> float:
 
 
 def tidied(pair: Pair, pattern: Pattern, place) -> np.ndarray:
-    """Put bearing ends back on their surfaces, which steps leave by rounding."""
+    """Move bearing ends back on their surfaces, which steps leave by rounding."""
     place = np.array(place, dtype=float)
     ends = pattern.ground.ends
     if len(ends) == 2:
@@ -132,8 +132,8 @@ def tidied(pair: Pair, pattern: Pattern, place) -> np.ndarray:
 
 def middle_slips(pair: Pair, place, speed) -> tuple[float, float]:
     """Return the velocities of the middles of both bases along the surfaces under them."""
-    found = []
+    slips = []
     for key in INTERFACES:
         rows = [contact(pair, place, speed, key, end).along for end in ENDS]
-        found.append(0.5 * sum(float(np.dot(row, speed)) for row in rows))
-    return found[0], found[1]
+        slips.append(0.5 * sum(float(np.dot(row, speed)) for row in rows))
+    return slips[0], slips[1]

@@ -1,4 +1,4 @@
-"""What a run gives, and what its events are called."""
+"""Results of a run, and names of its events."""
 
 import math
 from dataclasses import dataclass, field
@@ -12,7 +12,7 @@ STATE = 17
 
 
 class OffTheTopError(RuntimeError):
-    """An end of the upper base leaves the top of the lower body. ``run`` is what was before."""
+    """An end of the upper base leaves the lower top. ``run`` holds the results before."""
 
     def __init__(self, time: float, run: "Run"):
         super().__init__(f"the upper base leaves the top of the lower body at {time} s")
@@ -24,9 +24,9 @@ class Event:
     """A change of the pattern.
 
     ``kind`` is "uplift", "flight", "impact", "rest", "slip", "stick", "reversal" or "overturning";
-    "held" where contacts stay that do not press, as no pattern is admissible, and "same" where
-    such ones press again, or where a pattern goes on that is not the only one; "chatter" where
-    the run ends as events have no end. ``where`` is the interface that it is about, or the body
+    "held" where contacts stay without pressing, as no pattern is admissible, and "same" where
+    they press again, or where a pattern that is not the only one continues; "chatter" where
+    the run ends because events are endless. ``where`` is the interface concerned, or the body
     that overturns; ``end`` the end that opens or closes.
     """
 
@@ -43,7 +43,7 @@ class Event:
 
 @dataclass
 class Run:
-    """What a run gives; of the lower body or the ground first, then of the upper one or the joint.
+    """Results of a run; of the lower body or the ground first, then of the upper one or the joint.
 
     ``displacement`` is that of the centres of mass across; ``slip`` that of the end that bears
     along the surface, in flight of the middle of the base.
@@ -78,17 +78,17 @@ class Run:
 
 
 def named(before: Pattern, after: Pattern) -> tuple[str, str, str]:
-    """Name a change without an impact: what, in which interface, and of which end."""
+    """Name a change without an impact: kind, interface and end."""
     both = list(zip(INTERFACES, before, after, strict=True))
-    for key, one, two in both:
-        gone = [end for end in one.ends if end not in two.ends]
+    for key, earlier, later in both:
+        gone = [end for end in earlier.ends if end not in later.ends]
         if gone:
-            kind = "uplift" if two.ends else "flight"
+            kind = "uplift" if later.ends else "flight"
             return kind, key, gone[0] if len(gone) == 1 else ""
-    for key, one, two in both:
-        if one.slip and one.slip != two.slip:
-            return ("reversal" if two.slip else "stick"), key, ""
-    for key, one, two in both:
-        if one != two:
+    for key, earlier, later in both:
+        if earlier.slip and earlier.slip != later.slip:
+            return ("reversal" if later.slip else "stick"), key, ""
+    for key, earlier, later in both:
+        if earlier != later:
             return "slip", key, ""
     return "same", "", ""

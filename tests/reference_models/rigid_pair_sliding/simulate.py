@@ -11,15 +11,15 @@ from scipy.integrate import DOP853
 from scipy.optimize import brentq
 
 from .choices import Frictions
+from .compliant_bases import CompliantBases, CompliantPair
 from .contacts import STANDING, middle_slips
-from .drawing import Scene, pieces_for
 from .events import Run
-from .giving import Giving, GivingMoving
-from .moving import GONE, Moving
+from .moving_pair import GONE, MovingPair
+from .random_scenes import Scene, pieces_for
 
 
-class _Running(Moving):
-    """A run as it goes."""
+class _Running(MovingPair):
+    """A run in progress."""
 
     # time ---------------------------------------------------------------------------------------
 
@@ -32,7 +32,7 @@ class _Running(Moving):
             self.shown += 1
 
     def peak(self, state):
-        """Keep the greatest rotations and slips."""
+        """Update the greatest rotations and slips."""
         run = self.run
         run.peaks = np.maximum(run.peaks, np.abs(state[[2, 5]]))
         run.peak_slips = np.maximum(run.peak_slips, np.abs(state[12:14]))
@@ -51,28 +51,34 @@ class _Running(Moving):
         self.run.imbalance = max(self.run.imbalance, gap)
 
     def rests(self) -> bool:
-        """Tell whether nothing can move in the pattern."""
+        """Tell whether the pattern allows no motion."""
         return self.pattern == STANDING
 
     def wait(self, stop):
-        """Stay at rest up to the time at which the ground moves something, or to the end."""
+        """Stay at rest until the ground moves a body, or to the end."""
         state = self.state
 
         def kept(t):
             return {k: v for k, v in self.guards(t, state).items() if k[0] in ("press", "grip")}
 
-        looks = np.linspace(self.now, stop, 2 if self.piece.linear else 101)
-        end, name, low = stop, None, kept(looks[0])
-        for i in range(1, looks.size):
-            high = kept(looks[i])
+        sample_times = np.linspace(self.now, stop, 2 if self.piece.linear else 101)
+        end, name, low = stop, None, kept(sample_times[0])
+        for i in range(1, sample_times.size):
+            high = kept(sample_times[i])
             fired = [k for k, v in high.items() if v < 0.0]
             if fired:
                 times = {
-                    k: looks[i - 1] if low[k] <= 0.0 else brentq(
-                        lambda t, k=k: kept(t)[k], looks[i - 1], looks[i], xtol=1e-15, rtol=1e-15
+                    k: sample_times[i - 1]
+                    if low[k] <= 0.0
+                    else brentq(
+                        lambda t, k=k: kept(t)[k],
+                        sample_times[i - 1],
+                        sample_times[i],
+                        xtol=1e-15,
+                        rtol=1e-15,
                     )
                     for k in fired
-                }  # fmt: skip
+                }
                 name = min(fired, key=lambda k: times[k])
                 end = times[name]
                 break
@@ -82,7 +88,7 @@ class _Running(Moving):
         return name
 
     def advance(self, stop):
-        """Integrate up to the first event or to `stop`; give the event."""
+        """Integrate up to the first event or to `stop`; return the event."""
         armed: dict = {}
         cut = 1.0
         while self.now < stop:
@@ -104,7 +110,7 @@ class _Running(Moving):
                     self.guards, solver, dense, armed, self.pair.slowness, GONE
                 )
                 if again:
-                    # a guard that began at zero is negative: look more closely
+                    # a guard that began at zero is negative: repeat with shorter steps
                     armed = kept
                     cut *= 0.125
                     break
@@ -125,21 +131,21 @@ class _Running(Moving):
 
     def _peaks(self, start, end, dense):
         """Find the greatest rotations and slips within a step."""
-        one, two = dense(start), dense(end)
-        self.peak(two)
-        tops = [k for k in (8, 11) if one[k] * two[k] < 0.0]
-        found = [brentq(lambda t, k=k: dense(t)[k], start, end, xtol=1e-15) for k in tops]
+        first, last = dense(start), dense(end)
+        self.peak(last)
+        tops = [k for k in (8, 11) if first[k] * last[k] < 0.0]
+        extrema = [brentq(lambda t, k=k: dense(t)[k], start, end, xtol=1e-15) for k in tops]
         for i, bearing in enumerate(self.pattern):
             if not bearing.ends:
                 rate = lambda t, i=i: middle_slips(self.pair, dense(t)[:6], dense(t)[6:12])[i]  # noqa: E731
                 if rate(start) * rate(end) < 0.0:
-                    found.append(brentq(rate, start, end, xtol=1e-15))
-        for top in found:
+                    extrema.append(brentq(rate, start, end, xtol=1e-15))
+        for top in extrema:
             self.peak(dense(top))
 
 
-class _GivingRunning(GivingMoving, _Running):
-    """The same where some stand on bases that give way."""
+class _CompliantRunning(CompliantPair, _Running):
+    """A run with compliant bases."""
 
 
 def simulate(scene: Scene, output_step: float = 0.01, **options) -> Run:
@@ -158,10 +164,10 @@ def simulate_pair(
     accuracy: float = 1e-11,
     quickest: float = math.inf,
     start: tuple | None = None,
-    giving: Giving | None = None,
+    compliant: CompliantBases | None = None,
     rule: str = "contact-state",
 ) -> Run:
-    """Simulate two bodies that stand on one another.
+    """Simulate two stacked bodies.
 
     Parameters
     ----------
@@ -178,10 +184,10 @@ def simulate_pair(
         Least period of the ground motion [s].
     start : tuple, optional
         Pattern, six places and six velocities at the start.
-    giving : dict, optional
-        Pads or beds in the place of rigid bases, as forces; `quickest` is theirs too.
+    compliant : dict, optional
+        Pads or beds instead of rigid bases; `quickest` includes their period.
     rule : str
-        Which point of these is held.
+        Restraint rule of these bases.
 
     Returns
     -------
@@ -190,20 +196,20 @@ def simulate_pair(
     Raises
     ------
     ValueError
-        The upper base does not stand within the top of the lower body.
+        The upper base does not lie within the top of the lower body.
     OffTheTopError
-        It leaves it.
+        The upper base leaves the top.
     """
     if abs(pair.offset) + pair.upper.half_width > pair.lower.half_width * (1.0 + 1e-12):
-        msg = "the upper base must stand within the top of the lower body"
+        msg = "the upper base must lie within the top of the lower body"
         raise ValueError(msg)
     stop = pieces[-1].stop
     output = np.arange(math.floor(stop / output_step * (1.0 + 1e-12)) + 1) * output_step
     longest = min(0.04 * pair.slowness, 0.02 * quickest)
-    kind = _GivingRunning if giving else _Running
+    kind = _CompliantRunning if compliant else _Running
     now = kind(pair, frictions, output, accuracy, longest)
-    if giving:
-        now.give(giving, rule)
+    if compliant:
+        now.set_compliant_bases(compliant, rule)
     now.piece = pieces[0]
     if start is not None:
         now.pattern = start[0]
@@ -234,7 +240,7 @@ def _go(now: _Running, pieces: Sequence[Piece]) -> None:
 
 
 def _finish(now: _Running, output) -> None:
-    """Keep what the end of a run gives."""
+    """Store the results of a run at its end."""
     run = now.run
     run.end, run.final = now.now, now.state
     run.energies = {

@@ -1,4 +1,4 @@
-"""Compare the package's chains of bodies with the reference model in random scenes.
+"""Compare rockframe's chains of bodies with the reference model in random scenes.
 
 python tests/reference_models/stacks/compare.py --scenes 300 300 100 60 --seed 77 --bodies 2 3 5 8
 python tests/reference_models/stacks/compare.py --seed 77 --bodies 3 --replay 17
@@ -17,16 +17,16 @@ if __package__ in (None, ""):
     sys.path.insert(0, str(HERE.parents[2]))
     sys.path.append(str(ROOT))
 
-from reference_models.maximal.motions import have_records  # noqa: E402
-from reference_models.stacks.comparing import compared  # noqa: E402
-from reference_models.stacks.drawing import draw, tied  # noqa: E402
-from reference_models.stacks.standing import OVERTURNED  # noqa: E402
+from reference_models.maximal.motions import records_available  # noqa: E402
+from reference_models.stacks.comparison import compare_scene  # noqa: E402
+from reference_models.stacks.contact import OVERTURNED  # noqa: E402
+from reference_models.stacks.random_scenes import draw, with_ties  # noqa: E402
 
 AGREES = 1e-6
 
 
 def main() -> None:
-    """Run the comparison that the command line asks for."""
+    """Run the comparison requested on the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--scenes", type=int, nargs="+", default=[300], help="for each number")
     parser.add_argument("--seed", type=int, default=77)
@@ -34,38 +34,40 @@ def main() -> None:
     parser.add_argument("--ties", action="store_true", help="with ties between random points")
     parser.add_argument("--replay", type=int, nargs="+", help="numbers of scenes to repeat")
     parser.add_argument("--json", type=Path, default=ROOT / "docs" / "data" / "chain_oracle.json")
-    given = parser.parse_args()
-    if not have_records():
-        print("no recorded motions (set ROCKFRAME_RECORDS): sums of sines in their place")
+    options = parser.parse_args()
+    if not records_available():
+        print("no recorded motions (set ROCKFRAME_RECORDS): sums of sines instead")
     tables = []
-    counts = given.scenes * (len(given.bodies) if len(given.scenes) == 1 else 1)
-    for bodies, count in zip(given.bodies, counts, strict=True):
-        tables.append(_table(bodies, given.seed, given.replay or range(count), given.ties))
+    counts = options.scenes * (len(options.bodies) if len(options.scenes) == 1 else 1)
+    for bodies, count in zip(options.bodies, counts, strict=True):
+        tables.append(_table(bodies, options.seed, options.replay or range(count), options.ties))
         print(tables[-1], flush=True)
-    if not given.replay:
-        given.json.write_text(json.dumps(tables, indent=1) + "\n")
+    if not options.replay:
+        options.json.write_text(json.dumps(tables, indent=1) + "\n")
 
 
-def _drawn(bodies: int, seed: int, number: int, ties: bool):
+def _draw_scene(bodies: int, seed: int, number: int, ties: bool):
     rng = np.random.default_rng([seed, bodies, number])
     scene = draw(rng, bodies)
-    return tied(scene, rng) if ties else scene
+    return with_ties(scene, rng) if ties else scene
 
 
 def _table(bodies: int, seed: int, numbers, ties: bool) -> dict:
-    found = [compared(_drawn(bodies, seed, one, ties)) for one in numbers]
-    differences = np.array([one.difference for one in found])
+    comparisons = [
+        compare_scene(_draw_scene(bodies, seed, comparison, ties)) for comparison in numbers
+    ]
+    differences = np.array([comparison.difference for comparison in comparisons])
     return {
         "bodies": bodies,
         "seed": seed,
-        "records": have_records(),
-        "scenes": len(found),
+        "records": records_available(),
+        "scenes": len(comparisons),
         "agree": int(np.sum(differences < AGREES)),
         "median": float(f"{np.median(differences):.1e}"),
         "worst": float(f"{differences.max():.1e}"),
-        "uplifting": sum(len(one.reference.events) > 0 for one in found),
-        "overturning": sum(one.reference.status == OVERTURNED for one in found),
-        "events": sum(len(one.reference.events) for one in found),
+        "uplifting": sum(len(comparison.reference.events) > 0 for comparison in comparisons),
+        "overturning": sum(comparison.reference.status == OVERTURNED for comparison in comparisons),
+        "events": sum(len(comparison.reference.events) for comparison in comparisons),
         "beyond": [int(numbers[i]) for i in np.flatnonzero(differences >= AGREES)],
     }
 

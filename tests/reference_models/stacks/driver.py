@@ -5,12 +5,12 @@ from typing import NamedTuple
 import numpy as np
 from reference_models.maximal.compiling import compiled, within
 from reference_models.maximal.excitation import ground
-from reference_models.maximal.watching import SAMPLES
+from reference_models.maximal.guard_search import SAMPLES
 
+from .contact import COMPLETED, FIRED, OVERTURNED, SUSPECT, TOO_SMALL
+from .guard_search import earliest
 from .guards import due, evaluate, noise_levels
 from .impulses import tidy
-from .searching import earliest
-from .standing import COMPLETED, FIRED, OVERTURNED, SUSPECT, TOO_SMALL
 from .stepping import may_fall, rates, sample_guards, step
 
 # time, next step, number of the last stop, the step that was taken, whether it ends at a stop
@@ -18,7 +18,7 @@ TIME, STEP, STOP, TAKEN, ENDS = range(5)
 
 
 class Course(NamedTuple):
-    """Times at which steps end, and what is noted there."""
+    """Times at which steps end, and the states there."""
 
     clock: np.ndarray  # see above
     stops: np.ndarray  # output times and kinks of the motion
@@ -28,64 +28,64 @@ class Course(NamedTuple):
     longest: float  # step
 
 
-def advance(course, z, motion, stack, standing, room, path):
+def advance(course, z, motion, stack, contact, room, path):
     """Integrate until a switch is due or the run is over.
 
     Returns
     -------
     tuple
-        How it ended, and the guard if a switch is due.
+        Status of the end, and the guard if a switch is due.
     """
     clock = course.clock
     clock[STEP] = min(clock[STEP], 0.05 / stack.pace)
     path.armed[:] = False
-    afresh = True
+    restart = True
     while True:
-        status, slot = go(afresh, course, z, motion, stack, standing, room, path)
+        status, slot = take_steps(restart, course, z, motion, stack, contact, room, path)
         if status != SUSPECT:
             return status, slot
-        afresh = False
+        restart = False
         t, take = clock[TIME], clock[TAKEN]
         piece = course.pieces[int(clock[STOP])]
-        found, where = earliest(t, take, z, piece, motion, stack, standing, room, path)
-        if found == -1:
-            accept(course, z, stack, standing, room, path)
-            afresh = clock[ENDS] > 0.0
-        elif found == -2:
-            # a guard that stood at zero is negative at the first look: look closer
+        slot_found, where = earliest(t, take, z, piece, motion, stack, contact, room, path)
+        if slot_found == -1:
+            accept(course, z, stack, contact, room, path)
+            restart = clock[ENDS] > 0.0
+        elif slot_found == -2:
+            # a guard that was zero is negative at the first sample: take shorter steps
             clock[STEP] = take / SAMPLES
             if take < 1e-9 / stack.pace:
                 return FIRED, int(where)
         else:
-            step(t, where, z, piece, motion, stack, standing, room, path, path.new)
+            step(t, where, z, piece, motion, stack, contact, room, path, path.new)
             z[:] = path.new
             clock[TIME] = t + where
-            if found == path.noise.size - 1:
-                return OVERTURNED, found
-            tidy(z, stack, standing, room)
-            return FIRED, found
+            if slot_found == path.noise.size - 1:
+                return OVERTURNED, slot_found
+            tidy(z, stack, contact, room)
+            return FIRED, slot_found
 
 
 @compiled
-def go(afresh, course, z, motion, stack, standing, room, path):
+def take_steps(restart, course, z, motion, stack, contact, room, path):
     """Take steps until a switch is due or may be due within a step, or the run is over.
 
-    `afresh` tells to look at the guards, and at the derivatives, before the first step.
+    With `restart` guards and derivatives are evaluated before the first step.
     """
     clock, stops, largest = course.clock, course.stops, course.largest
     while int(clock[STOP]) < stops.size - 1:
         i, t = int(clock[STOP]), clock[TIME]
         piece, goal = course.pieces[i], stops[i + 1]
-        if afresh:
+        if restart:
             noise_levels(z, stack, path.noise)
             gx, gy = ground(t, piece, motion.shape, motion.across, motion.upwards)
-            evaluate(z, gx, gy, stack, standing, room, path.guards)
-            slot = due(stack, standing, room, path.guards, path.noise)
+            evaluate(z, gx, gy, stack, contact, room, path.guards)
+            slot = due(stack, contact, room, path.guards, path.noise)
             if slot >= 0:
                 return FIRED, slot
             _arm(path, path.guards)
-            rates(t, z, piece, motion, stack, standing, room, path.first)
-            afresh = False
+            rates(t, z, piece, motion, stack, contact, room, path.first)
+            restart = False
         for j in range(z.size):
             largest[j] = max(largest[j], abs(z[j]))
             path.scale[j] = stack.tolerance * largest[j]
@@ -95,28 +95,28 @@ def go(afresh, course, z, motion, stack, standing, room, path):
         take = rest if ends else min(h, 0.5 * rest)
         if take < 1e-15 * max(1.0, t) and not ends:
             return TOO_SMALL, -1
-        worst = step(t, take, z, piece, motion, stack, standing, room, path, path.new)
+        worst = step(t, take, z, piece, motion, stack, contact, room, path, path.new)
         if not worst <= 1.0:
             clock[STEP] = take * (0.2 if not worst < 1e8 else max(0.2, 0.9 * worst ** (-0.125)))
             continue
-        rates(t + take, path.new, piece, motion, stack, standing, room, path.last)
-        sample_guards(t, take, z, piece, motion, stack, standing, room, path)
+        rates(t + take, path.new, piece, motion, stack, contact, room, path.last)
+        sample_guards(t, take, z, piece, motion, stack, contact, room, path)
         grown = take * (5.0 if worst < 1e-6 else min(5.0, 0.9 * worst ** (-0.125)))
         clock[TAKEN], clock[ENDS] = take, 1.0 if ends else 0.0
         clock[STEP] = max(h, grown) if ends else grown
         if may_fall(path):
             return SUSPECT, -1
-        accept(course, z, stack, standing, room, path)
-        afresh = ends
+        accept(course, z, stack, contact, room, path)
+        restart = ends
     return COMPLETED, -1
 
 
 @compiled
-def accept(course, z, stack, standing, room, path):
-    """Go on from the end of a step."""
+def accept(course, z, stack, contact, room, path):
+    """Continue from the end of a step."""
     clock = course.clock
     z[:] = path.new
-    tidy(z, stack, standing, room)
+    tidy(z, stack, contact, room)
     path.first[:] = path.last
     _arm(path, path.samples[SAMPLES])
     clock[TIME] += clock[TAKEN]
@@ -129,6 +129,6 @@ def accept(course, z, stack, standing, room, path):
 
 @within
 def _arm(path, guards):
-    """Note which guards have been positive."""
+    """Record which guards have been positive."""
     for j in range(guards.size):
         path.armed[j] = path.armed[j] or guards[j] > path.noise[j]

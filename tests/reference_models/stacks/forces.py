@@ -1,4 +1,4 @@
-"""Forces on the bodies and, with the multipliers of what holds them, their accelerations."""
+"""Forces on the bodies, constraint multipliers and accelerations."""
 
 import math
 
@@ -6,8 +6,8 @@ import numpy as np
 from reference_models.maximal.compiling import compiled, within
 from reference_models.maximal.impulses import solve_dense
 
+from .contact import FREE, HELD, SLIDES, SLIDING, TOUCHING
 from .kinematics import end, relative, sway
-from .standing import FREE, HELD, SLIDES, SLIDING, TOUCHING
 
 
 @compiled
@@ -41,13 +41,13 @@ def bed(k, stack, ends, room):
     ua, ub = u0 + first * (u1 - u0), u0 + last * (u1 - u0)
     va, vb = v0 + first * (v1 - v0), v0 + last * (v1 - v0)
     la, lb = l0 + first * (l1 - l0), l0 + last * (l1 - l0)
-    firm, viscous = stack.stiffness[k], stack.damping[k]
-    pa, pb = firm * ua - viscous * va, firm * ub - viscous * vb
+    stiffness, damping = stack.stiffness[k], stack.damping[k]
+    pa, pb = stiffness * ua - damping * va, stiffness * ub - damping * vb
     return (
         0.5 * length * (pa + pb),
         length * mean_product(pa, pb, la, lb),
-        viscous * length * mean_product(va, vb, va, vb),
-        0.5 * firm * length * mean_product(ua, ub, ua, ub),
+        damping * length * mean_product(va, vb, va, vb),
+        0.5 * stiffness * length * mean_product(ua, ub, ua, ub),
     )
 
 
@@ -65,7 +65,7 @@ def base_force(k, stack, ends, room):
             force += push
             moment += push * lever
             power += stack.damping[k] * speed * speed
-        elif pressed > 0.0:  # the spring moves its dashpot alone
+        elif pressed > 0.0:  # the free spring moves its own dashpot
             power += stack.stiffness[k] * pressed * speed
         if pressed > 0.0:
             energy += 0.5 * stack.stiffness[k] * pressed * pressed
@@ -81,9 +81,9 @@ def yielding_rate(k, stack):
 
 
 @within
-def hold_row(k, standing, stack, room, row):
+def hold_row(k, contact, stack, room, row):
     """Fill in the derivatives of the slip of the held point."""
-    _, first, _ = sway(k, standing.point[k], stack, room)
+    _, first, _ = sway(k, contact.point[k], stack, room)
     for j in range(6):
         row[j] = room.rows[k, 0, j] - first * room.rows[k, 2, j]
 
@@ -97,7 +97,7 @@ def end_row(k, lever, room, row):
 
 @within
 def product(one, i, other, j, inverse):
-    """Return the product of the rows of bodies i and j over the masses of what both move."""
+    """Return the product of the rows of bodies i and j, weighted by inverse masses."""
     total = 0.0
     low, high = 3 * max(i, j), 3 * min(i, j) + 6
     for g in range(low, high):
@@ -107,10 +107,10 @@ def product(one, i, other, j, inverse):
 
 @compiled
 def stretched(which, z, stack, arms):
-    """Return way between a tie's points, its rate, and the distance at rest; fill in the arms."""
+    """Return the vector between a tie's points, its rate, and its length at rest; fill `arms`."""
     count, row = stack.inverse.size, stack.ties[which]
     dx, dy, vx, vy = row[6], row[7], 0.0, 0.0
-    given = math.sqrt(dx * dx + dy * dy)
+    rest_length = math.sqrt(dx * dx + dy * dy)
     for side in range(2):
         k, sign = int(row[3 * side]), 1.0 - 2.0 * side
         if k < 0:
@@ -122,23 +122,23 @@ def stretched(which, z, stack, arms):
         dy += sign * (z[3 * k + 1] + arms[side, 1] - y)
         vx += sign * (z[r] + z[r + 2] * arms[side, 1])
         vy += sign * (z[r + 1] - z[r + 2] * arms[side, 0])
-    return dx, dy, vx, vy, given
+    return dx, dy, vx, vy, rest_length
 
 
 @within
 def pull_ties(z, stack, load):
-    """Add what ties do to the bodies, and give the power of their dashpots."""
+    """Add the forces of ties to `load`; return the power of their dashpots."""
     lost = 0.0
     for which in range(stack.ties.shape[0]):
         row, arms = stack.ties[which], np.zeros((2, 2))
-        dx, dy, vx, vy, given = stretched(which, z, stack, arms)
+        dx, dy, vx, vy, rest_length = stretched(which, z, stack, arms)
         length = math.sqrt(dx * dx + dy * dy)
         rate, slack = (dx * vx + dy * vy) / length, row[10]
         force = row[9] * rate
         if slack < 0.0:
-            force += row[8] * (length - given)
-        elif length - given > slack:
-            force += row[8] * (length - given - slack)
+            force += row[8] * (length - rest_length)
+        elif length - rest_length > slack:
+            force += row[8] * (length - rest_length - slack)
         lost += row[9] * rate * rate
         for side in range(2):
             k, sign = int(row[3 * side]), 2.0 * side - 1.0
@@ -151,12 +151,12 @@ def pull_ties(z, stack, load):
 
 
 @compiled
-def accelerate(z, gx, gy, stack, standing, room):
-    """Fill `room.out` with the accelerations, `room.force` and `room.gain` with what holds do.
+def accelerate(z, gx, gy, stack, contact, room):
+    """Fill `room` with the accelerations, the constraint forces and their gains.
 
     Each multiplier is a force at a held point along what carries the body. It keeps the slip's
-    acceleration at zero where the point is held, and the sliding end on the level of what gives
-    way beneath it where that slides.
+    acceleration at zero where the point is held, and a sliding end on the level of its
+    relaxing pad.
     """
     n, load, inverse = stack.mass.size, room.load, stack.inverse
     load[:] = 0.0
@@ -165,7 +165,7 @@ def accelerate(z, gx, gy, stack, standing, room):
         load[3 * k + 1] = -stack.mass[k] * (stack.gravity + gy)
     for k in range(n):
         relative(k, z, stack, room)
-        force, moment, _, _ = base_force(k, stack, standing.ends, room)
+        force, moment, _, _ = base_force(k, stack, contact.ends, room)
         for j in range(6):
             load[3 * k + j] += force * room.rows[k, 1, j] + moment * room.rows[k, 2, j]
     pull_ties(z, stack, load)
@@ -177,24 +177,24 @@ def accelerate(z, gx, gy, stack, standing, room):
         room.keep[k] = 0.0
         room.gain[k] = 0.0
         rel = room.rel[k]
-        if standing.hold[k] == FREE:
+        if contact.hold[k] == FREE:
             continue
-        hold_row(k, standing, stack, room, room.across[k])
-        if standing.hold[k] == HELD:
+        hold_row(k, contact, stack, room, room.across[k])
+        if contact.hold[k] == HELD:
             room.keep[k] = room.across[k]
-            _, _, second = sway(k, standing.point[k], stack, room)
+            _, _, second = sway(k, contact.point[k], stack, room)
             right[k] = second * rel[5] * rel[5] - rel[6]
         else:
             slides = True
-            i = 0 if standing.ends[k, 0] == SLIDES else 1
+            i = 0 if contact.ends[k, 0] == SLIDES else 1
             _, lever, bend, speed = end(k, i, stack, room)
             end_row(k, lever, room, room.keep[k])
             right[k] = -yielding_rate(k, stack) * speed - bend * rel[5] * rel[5] - rel[7]
         for j in range(6):
             right[k] -= room.keep[k, j] * inverse[3 * k + j] * load[3 * k + j]
-    _fill(stack, standing, room)
+    _fill(stack, contact, room)
     if slides:
-        _find_gains(stack, standing, room)
+        _find_gains(stack, contact, room)
     solve_dense(matrix, right, n)
     for k in range(n):
         room.force[k] = right[k]
@@ -205,23 +205,23 @@ def accelerate(z, gx, gy, stack, standing, room):
 
 
 @within
-def _fill(stack, standing, room):
+def _fill(stack, contact, room):
     n = stack.mass.size
     for i in range(n):
         for j in range(n):
             room.matrix[i, j] = 0.0
             if abs(i - j) <= 1:
                 room.matrix[i, j] = product(room.keep[i], i, room.across[j], j, stack.inverse)
-        if standing.hold[i] == FREE:
+        if contact.hold[i] == FREE:
             room.matrix[i, i] = 1.0
 
 
 @within
-def _find_gains(stack, standing, room):
-    """Find what a unit force of a hold does to a sliding end, with all other holds at work."""
+def _find_gains(stack, contact, room):
+    """Find the effect of a unit constraint force on a sliding end under all other constraints."""
     n = stack.mass.size
     for k in range(n):
-        if standing.hold[k] == SLIDING:
+        if contact.hold[k] == SLIDING:
             unit = room.right * 0.0
             unit[k] = 1.0
             solve_dense(room.matrix.copy(), unit, n)
@@ -229,15 +229,15 @@ def _find_gains(stack, standing, room):
 
 
 @within
-def powers(z, gx, gy, stack, standing, room):
-    """Return what is dissipated and what the ground puts in, after `accelerate` for the state."""
+def powers(z, gx, gy, stack, contact, room):
+    """Return dissipated power and power of the ground, after `accelerate` for the state."""
     count = stack.inverse.size
-    given, lost = 0.0, pull_ties(z, stack, room.load * 0.0)
+    supplied, lost = 0.0, pull_ties(z, stack, room.load * 0.0)
     for k in range(stack.mass.size):
-        lost += base_force(k, stack, standing.ends, room)[2]
-        if standing.hold[k] == SLIDING:
-            _, first, _ = sway(k, standing.point[k], stack, room)
+        lost += base_force(k, stack, contact.ends, room)[2]
+        if contact.hold[k] == SLIDING:
+            _, first, _ = sway(k, contact.point[k], stack, room)
             lost -= room.force[k] * (room.rel[k, 3] - first * room.rel[k, 5])
         r = count + 3 * k
-        given -= stack.mass[k] * (gx * z[r] + gy * z[r + 1])
-    return lost, given
+        supplied -= stack.mass[k] * (gx * z[r] + gy * z[r + 1])
+    return lost, supplied

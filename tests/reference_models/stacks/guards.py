@@ -1,15 +1,11 @@
-"""Guards: functions that are positive as long as the bodies stand as they do."""
+"""Guard functions, positive as long as the contact state lasts."""
 
 import math
 
 import numpy as np
 from reference_models.maximal.compiling import compiled, within
 
-from .forces import accelerate, pad_force, stretched
-from .impulses import relate, slip
-from .kinematics import end, size_of, sway
-from .scene import LEADING_CORNER
-from .standing import (
+from .contact import (
     BASE_GUARDS,
     CLEAR,
     END_GUARDS,
@@ -23,21 +19,25 @@ from .standing import (
     SLIDING,
     TOUCHING,
 )
+from .forces import accelerate, pad_force, stretched
+from .impulses import relate, slip
+from .kinematics import end, size_of, sway
+from .scene import LEADING_CORNER
 
 QUIET = 1e-11
-"""Speed of an end, over a typical one, that is rounding."""
+"""Speed of an end, relative to a typical one, that counts as rounding."""
 
 
 @within
-def evaluate(z, gx, gy, stack, standing, room, guards):
+def evaluate(z, gx, gy, stack, contact, room, guards):
     """Fill in the guards."""
     n = stack.mass.size
     guards[:] = 1.0
     slides = False
     for k in range(n):
-        slides = slides or standing.hold[k] == SLIDING
+        slides = slides or contact.hold[k] == SLIDING
     if slides:
-        accelerate(z, gx, gy, stack, standing, room)
+        accelerate(z, gx, gy, stack, contact, room)
     else:
         relate(z, stack, room)
     nearest = 1.0
@@ -46,30 +46,30 @@ def evaluate(z, gx, gy, stack, standing, room, guards):
         nearest = min(nearest, 1.0 - abs(angle) / stack.limits[k, 0 if angle < 0.0 else 1])
         first = BASE_GUARDS * k
         for i in range(2):
-            _of_end(k, i, stack, standing, room, guards, first + END_GUARDS * i)
-        if stack.rule == LEADING_CORNER and standing.hold[k] != FREE:
-            guards[first + LEAD_GUARD] = standing.lead[k] * room.rel[k, 2]
+            _of_end(k, i, stack, contact, room, guards, first + END_GUARDS * i)
+        if stack.rule == LEADING_CORNER and contact.hold[k] != FREE:
+            guards[first + LEAD_GUARD] = contact.lead[k] * room.rel[k, 2]
     for which in range(stack.ties.shape[0]):
         if stack.ties[which, 10] >= 0.0:
-            dx, dy, _, _, given = stretched(which, z, stack, np.zeros((2, 2)))
-            more = math.sqrt(dx * dx + dy * dy) - given - stack.ties[which, 10]
-            guards[BASE_GUARDS * n + which] = standing.taut[which] * more / given
+            dx, dy, _, _, rest_length = stretched(which, z, stack, np.zeros((2, 2)))
+            elongation = math.sqrt(dx * dx + dy * dy) - rest_length - stack.ties[which, 10]
+            guards[BASE_GUARDS * n + which] = contact.taut[which] * elongation / rest_length
     guards[guards.size - 1] = nearest
 
 
 @within
-def _of_end(k, i, stack, standing, room, guards, g):
+def _of_end(k, i, stack, contact, room, guards, g):
     level, _, _, speed = end(k, i, stack, room)
     gap = level / stack.settlement[k] - 1.0
-    state = standing.ends[k, i]
+    state = contact.ends[k, i]
     if state == CLEAR:
         guards[g] = gap
     elif state == SLIDES:
         size = size_of(k, stack)
-        lever = sway(k, standing.point[k], stack, room)[1]
+        lever = sway(k, contact.point[k], stack, room)[1]
         guards[g] = room.gain[k] * room.force[k] / stack.gravity
-        speed = slip(k, stack, standing, room)
-        guards[g + 1] = standing.sense[k] * speed / math.sqrt(stack.gravity * size)
+        speed = slip(k, stack, contact, room)
+        guards[g + 1] = contact.sense[k] * speed / math.sqrt(stack.gravity * size)
         guards[g + 2] = abs(lever) / size - LEAST_LEVER
     elif stack.is_bed[k]:
         guards[g] = -gap
@@ -101,10 +101,10 @@ def noise_levels(z, stack, noise):
 
 
 @within
-def due(stack, standing, room, guards, noise):
+def due(stack, contact, room, guards, noise):
     """Return the guard whose switch is due at this instant, or -1.
 
-    That is one that is negative, or that stands at zero and falls. `room` is that of the present
+    A switch is due if its guard is negative, or zero and falling. `room` belongs to the present
     state.
     """
     n = stack.mass.size
@@ -115,7 +115,7 @@ def due(stack, standing, room, guards, noise):
     for k in range(n):
         pace = math.sqrt(stack.gravity * stack.settlement[k])
         for i in range(2):
-            g, state = BASE_GUARDS * k + END_GUARDS * i, standing.ends[k, i]
+            g, state = BASE_GUARDS * k + END_GUARDS * i, contact.ends[k, i]
             if abs(guards[g]) <= noise[g]:
                 speed = end(k, i, stack, room)[3] / pace
                 if state == CLEAR and speed < -QUIET:

@@ -1,33 +1,33 @@
-"""Impulses: the jumps of velocity where a point is held anew or an end lands on its pad."""
+"""Impulses: jumps of velocity when a point becomes held or an end lands on its pad."""
 
 import numpy as np
 from reference_models.maximal.compiling import compiled
 from reference_models.maximal.impulses import solve_dense
 
+from .contact import HELD
 from .forces import end_row, hold_row, product
 from .kinematics import end, relative, sway
-from .standing import HELD
 
 
 @compiled
 def relate(z, stack, room):
-    """Find places and speeds of all bodies on what carries them."""
+    """Find positions and velocities of all bodies relative to their supports."""
     for k in range(stack.mass.size):
         relative(k, z, stack, room)
 
 
 @compiled
-def slip(k, stack, standing, room):
+def slip(k, stack, contact, room):
     """Return the speed of the held point of a body along its base."""
-    _, first, _ = sway(k, standing.point[k], stack, room)
+    _, first, _ = sway(k, contact.point[k], stack, room)
     return room.rel[k, 3] - first * room.rel[k, 5]
 
 
 @compiled
-def jump(z, stack, standing, room, struck, left, right):
+def jump(z, stack, contact, room, struck, left, right):
     """Change the velocities by impulses of all holds and of the landing ends of one body.
 
-    Every held point is brought to rest on what carries it; a landing end of the body `struck`
+    Every held point is brought to rest on its support; a landing end of the body `struck`
     keeps a share of its speed. Impulses act on all bodies that are joined.
     """
     n, count, inverse = stack.mass.size, stack.inverse.size, stack.inverse
@@ -35,8 +35,8 @@ def jump(z, stack, standing, room, struck, left, right):
     rows, of, wanted = np.zeros((n + 2, 6)), np.zeros(n + 2, dtype=np.int64), room.right
     m = 0
     for k in range(n):
-        if standing.hold[k] == HELD:
-            hold_row(k, standing, stack, room, rows[m])
+        if contact.hold[k] == HELD:
+            hold_row(k, contact, stack, room, rows[m])
             of[m], wanted[m] = k, 0.0
             m += 1
     for i in range(2):
@@ -59,33 +59,33 @@ def jump(z, stack, standing, room, struck, left, right):
 
 
 @compiled
-def project(z, stack, standing, room):
-    """Bring all held points to rest on what carries them."""
-    jump(z, stack, standing, room, 0, False, False)
+def project(z, stack, contact, room):
+    """Bring all held points to rest on their supports."""
+    jump(z, stack, contact, room, 0, False, False)
 
 
 @compiled
-def note_places(z, stack, standing, room):
-    """Note where the held points stand, so that drift can be taken away."""
+def note_places(z, stack, contact, room):
+    """Store the positions of the held points, for the correction of drift."""
     relate(z, stack, room)
     for k in range(stack.mass.size):
-        standing.place[k] = room.rel[k, 0] - sway(k, standing.point[k], stack, room)[0]
+        contact.place[k] = room.rel[k, 0] - sway(k, contact.point[k], stack, room)[0]
 
 
 @compiled
-def tidy(z, stack, standing, room):
-    """Take the drift of held points away, in place and in speed."""
+def tidy(z, stack, contact, room):
+    """Remove the drift of held points from positions and speeds."""
     for k in range(stack.mass.size - 1, -1, -1):
-        if standing.hold[k] == HELD:
+        if contact.hold[k] == HELD:
             relative(k, z, stack, room)
-            place = standing.place[k] + sway(k, standing.point[k], stack, room)[0]
+            place = contact.place[k] + sway(k, contact.point[k], stack, room)[0]
             off = place - room.rel[k, 0]
-            # along what carries the body, with all that it carries
+            # along the support, together with all bodies above
             dx, dy = room.rows[k, 0, 0] * off, room.rows[k, 0, 1] * off
             for j in range(k + 1):
                 z[3 * j] += dx
                 z[3 * j + 1] += dy
-    project(z, stack, standing, room)
+    project(z, stack, contact, room)
 
 
 @compiled

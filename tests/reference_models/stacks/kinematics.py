@@ -1,4 +1,4 @@
-"""Where a body is, seen from what carries it, and where the points of its base are."""
+"""Position of a body relative to its support, and positions of points of its base."""
 
 import math
 
@@ -7,13 +7,13 @@ from reference_models.maximal.compiling import compiled
 
 @compiled
 def relative(k, z, stack, room):
-    """Find place and speed of body k, seen from what carries it.
+    """Find position and velocity of body k relative to its support.
 
     `room.rel[k]` is filled with the coordinates of its centre of mass along the base, along its
-    normal from where it is at rest, and the rotation, their rates, and the parts of the first two
-    accelerations that hold no acceleration; `room.rows[k]` with the derivatives of these
-    coordinates by those of body k, and of what carries it. The first coordinate is measured from
-    the centre of mass of that.
+    normal from the position of rest, and the rotation, their rates, and the velocity-dependent
+    parts of the first two accelerations; `room.rows[k]` with the derivatives of these coordinates
+    by those of body k and of its support. The first coordinate is measured from the centre of mass
+    of the support.
     """
     rel, rows = room.rel[k], room.rows[k]
     i, count = 3 * k, stack.inverse.size
@@ -65,5 +65,5 @@ def sway(k, point, stack, room):
 
 @compiled
 def size_of(k, stack):
-    """Return a length of the size of a body."""
+    """Return a characteristic length of a body."""
     return stack.half_width[k] + stack.height[k]

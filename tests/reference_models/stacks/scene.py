@@ -1,4 +1,4 @@
-"""A stack of bodies in SI units, and the arrays that the equations want."""
+"""A stack of bodies in SI units, and the arrays of the equations."""
 
 import math
 from dataclasses import dataclass, field, replace
@@ -10,7 +10,7 @@ GRAVITY = 9.80665
 # restraint rules
 CONTACT_STATE, LEADING_CORNER, CENTRE = 0, 1, 2
 RULES = ("contact-state", "leading-corner", "centre")
-# numbers of a state behind coordinates and rates: dissipated, and put in by the ground
+# entries of a state after coordinates and rates: dissipated energy, work of the ground
 WORKS = 2
 
 
@@ -19,10 +19,10 @@ class Body:
     """A rigid body.
 
     `height` is that of the centre of mass above the base, `top` that of the deck above the centre
-    of mass. The centre of mass stands `eccentricity` to the right of the middle of the base, which
-    stands `offset` to the right of the middle of the base of the body below. At a rotation of
-    `limit` the run ends; None: where the centre of mass of the body and of all above it, upright,
-    stands above the end of the base.
+    of mass. The centre of mass is `eccentricity` to the right of the middle of the base, which is
+    `offset` to the right of the middle of the base below. The run ends at a rotation of `limit`;
+    None: where the common centre of mass of the body and of all upright bodies on it is above the
+    end of the base.
     """
 
     mass: float
@@ -60,7 +60,7 @@ class Tie:
     """A spring beside a dashpot between points of two bodies, or of one and the ground (None).
 
     Points are from the centres of mass, on the ground from the middle of the lowest base. It pulls
-    from `slack` on; without slack (None) it is a bar, which also pushes.
+    beyond `slack`; without slack (None) it is a bar, which also pushes.
     """
 
     on: int
@@ -74,10 +74,10 @@ class Tie:
 
 @dataclass(frozen=True)
 class Scene:
-    """Bodies from the top down, what each stands on, and how the lowest base is shaken.
+    """Bodies from the top down, their bases, and the motion of the ground.
 
-    The stack starts at rest, if `rotation` is not None with the top body rotated by it relative to
-    the body below, in vertical equilibrium on its base, and with the relative rate `rate`.
+    The stack starts at rest. If `rotation` is not None the top body is rotated by it relative to
+    the body below, in vertical equilibrium on its base, with the relative rate `rate`.
     """
 
     bodies: tuple[Body, ...]
@@ -93,7 +93,7 @@ class Scene:
 class Stack(NamedTuple):
     """The numbers of a scene; body k stands on body k + 1, the last one on the ground.
 
-    The ground is a body itself, without inverse mass, that rests at zero.
+    The ground is a body of zero inverse mass, at rest at zero.
     """
 
     inverse: np.ndarray  # of masses and inertias, for each coordinate
@@ -101,7 +101,7 @@ class Stack(NamedTuple):
     half_width: np.ndarray
     height: np.ndarray
     eccentricity: np.ndarray
-    across: np.ndarray  # from the centre of mass of what carries a body to its own, at rest
+    across: np.ndarray  # from the centre of mass of the support to the body's own, at rest
     apart: np.ndarray
     is_bed: np.ndarray
     stiffness: np.ndarray
@@ -132,7 +132,7 @@ def stack_of(scene: Scene, tolerance: float) -> Stack:
     is_bed = np.array([isinstance(base, Bed) for base in bases])
     stiffness = np.array([base.stiffness for base in bases])
     damping = np.array([base.damping for base in bases])
-    # of a whole base over that of a pad, or of a length
+    # ratio of a whole base to a pad, or to a unit length
     size = np.where(is_bed, 2.0 * wide, 2.0)
     offset = np.array([body.offset for body in bodies])
     return Stack(
@@ -166,7 +166,7 @@ def centre_of(scene: Scene, k: int) -> tuple[float, float]:
 
 
 def apart(scene: Scene, tie: Tie) -> tuple[float, float]:
-    """Return the way from the second point of a tie to the first, upright."""
+    """Return the vector from the second point of a tie to the first, upright."""
     x, y = centre_of(scene, tie.on)
     other = (0.0, 0.0) if tie.to is None else centre_of(scene, tie.to)
     return (
@@ -197,8 +197,8 @@ def _pace_of_ties(scene: Scene, inverse: np.ndarray) -> float:
 def _rebounds(base: Pads | Bed) -> tuple[float, float]:
     if isinstance(base, Bed):
         return 1.0, 1.0
-    given = base.restitution
-    return given if isinstance(given, tuple) else (given, given)
+    restitution = base.restitution
+    return restitution if isinstance(restitution, tuple) else (restitution, restitution)
 
 
 def _limits(bodies: tuple[Body, ...], k: int) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""Run a stack: advance to an event, switch, and go on."""
+"""A run of a stack: advance to an event, switch, continue."""
 
 import math
 from dataclasses import dataclass
@@ -8,12 +8,12 @@ import numpy as np
 from reference_models.maximal.excitation import RECORD, ground
 from reference_models.maximal.simulate import Excitation
 
+from .contact import BASE_GUARDS, CHATTER, FIRED, OVERTURNED, ContactState, Room
 from .driver import STOP, TIME, Course, advance
 from .forces import base_force
 from .guards import noise_levels
 from .impulses import kinetic, relate
 from .scene import Scene, Stack, stack_of
-from .standing import BASE_GUARDS, CHATTER, FIRED, OVERTURNED, Room, Standing
 from .starting import start
 from .stepping import Motion, path_of
 from .switches import Events
@@ -24,7 +24,7 @@ AT_ONCE = 400
 
 
 class Event(NamedTuple):
-    """A switch: which base of the stack, from the top down, and what happened to it."""
+    """A switch at a base; bases are numbered from the top down."""
 
     time: float
     base: int
@@ -69,10 +69,10 @@ class History:
 
     @property
     def imbalance(self) -> float:
-        """What the balance of energy lacks, over the energies that were moved."""
-        lost, given = self.lost + self.dissipated[-1], self.supplied[-1]
-        lack = self.end_energy + lost - self.start_energy - given
-        return lack / max(abs(lost), abs(given), abs(self.start_energy))
+        """Error of the energy balance, over the largest energy exchanged."""
+        lost, supplied = self.lost + self.dissipated[-1], self.supplied[-1]
+        residual = self.end_energy + lost - self.start_energy - supplied
+        return residual / max(abs(lost), abs(supplied), abs(self.start_energy))
 
 
 def simulate(scene: Scene, motion: Excitation, tolerance: float = TOLERANCE) -> History:
@@ -90,17 +90,17 @@ def simulate(scene: Scene, motion: Excitation, tolerance: float = TOLERANCE) -> 
     History
     """
     stack = stack_of(scene, tolerance)
-    z, standing, room = start(scene, stack)
+    z, contact, room = start(scene, stack)
     stops, pieces = _stops(motion, scene.free)
     states = np.zeros((stops.size, z.size))
     states[0] = z
-    begun = energy(z, stack, standing, room)
+    initial_energy = energy(z, stack, contact, room)
     course = Course(
         np.array([0.0, 0.02 / stack.pace, 0.0, 0.0, 0.0]), stops, pieces, states,
         np.maximum(_typical_sizes(stack), np.abs(z)), motion.longest,
     )  # fmt: skip
     shaking = Motion(motion.shape, motion.across, motion.upwards)
-    status, events = _run(course, z, shaking, stack, standing, room)
+    status, events = _run(course, z, shaking, stack, contact, room)
     reached = int(course.clock[STOP]) + 1
     n, count = stack.mass.size, stack.inverse.size
     states = states[:reached]
@@ -113,19 +113,19 @@ def simulate(scene: Scene, motion: Excitation, tolerance: float = TOLERANCE) -> 
         events=events,
         status=status,
         end=float(course.clock[TIME]),
-        start_energy=begun,
-        end_energy=energy(z, stack, standing, room),
+        start_energy=initial_energy,
+        end_energy=energy(z, stack, contact, room),
     )
 
 
-def _run(course, z, motion, stack, standing, room) -> tuple[int, list[Event]]:
+def _run(course, z, motion, stack, contact, room) -> tuple[int, list[Event]]:
     n, clock = stack.mass.size, course.clock
     guards = BASE_GUARDS * n + len(stack.ties) + 1
     path, noise = path_of(z.size, guards), np.zeros(guards)
     events: list[Event] = []
     since, count = -1.0, 0
     while True:
-        status, slot = advance(course, z, motion, stack, standing, room, path)
+        status, slot = advance(course, z, motion, stack, contact, room, path)
         if status != FIRED:
             return status, events
         t = float(clock[TIME])
@@ -133,13 +133,13 @@ def _run(course, z, motion, stack, standing, room) -> tuple[int, list[Event]]:
         since = t
         if count > AT_ONCE or len(events) == MOST_EVENTS:
             return CHATTER, events
-        if slot >= BASE_GUARDS * n:  # there the force of a tie has a kink
-            standing.taut[slot - BASE_GUARDS * n] *= -1.0
+        if slot >= BASE_GUARDS * n:  # the force of a tie has a kink
+            contact.taut[slot - BASE_GUARDS * n] *= -1.0
             continue
         noise_levels(z, stack, noise)
         shaken = ground(t, course.pieces[int(clock[STOP])], *motion)
         before = kinetic(z, stack)
-        kind = Events(z, shaken, stack, standing, room, noise).fire(slot)
+        kind = Events(z, shaken, stack, contact, room, noise).fire(slot)
         events.append(Event(t, slot // BASE_GUARDS, kind, before - kinetic(z, stack)))
 
 
@@ -157,7 +157,7 @@ def _stops(motion: Excitation, free: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _typical_sizes(stack: Stack) -> np.ndarray:
-    """Return the least sizes that the error of each variable is measured against."""
+    """Return the smallest reference sizes for the error of each variable."""
     n = stack.mass.size
     small = 1e-4 * min(0.5, np.abs(stack.limits).min())
     sizes = []
@@ -169,11 +169,11 @@ def _typical_sizes(stack: Stack) -> np.ndarray:
     return np.array(places + rates + [1.0, 1.0])
 
 
-def energy(z: np.ndarray, stack: Stack, standing: Standing, room: Room) -> float:
-    """Return the energy of motion, of gravity and of all springs."""
+def energy(z: np.ndarray, stack: Stack, contact: ContactState, room: Room) -> float:
+    """Return the sum of kinetic energy and of the energies of gravity and springs."""
     relate(z, stack, room)
     total = kinetic(z, stack)
     for k in range(stack.mass.size):
         total += stack.mass[k] * stack.gravity * z[3 * k + 1]
-        total += base_force(k, stack, standing.ends, room)[3]
+        total += base_force(k, stack, contact.ends, room)[3]
     return total

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from reference_models.maximal.compiling import compiled, within
 from reference_models.maximal.excitation import ground
+from reference_models.maximal.guard_search import SAMPLES, dip
 from reference_models.maximal.runge_kutta import ERROR_WEIGHT, MATRIX, NODES, STAGES, WEIGHTS
-from reference_models.maximal.watching import SAMPLES, dip
 
 from .forces import accelerate, powers
 from .guards import evaluate
@@ -37,7 +37,7 @@ class Path(NamedTuple):
 
 
 def path_of(states: int, guards: int) -> Path:
-    """Return room for a step."""
+    """Return work arrays for a step."""
     vectors = [np.zeros(states) for _ in range(5)]
     return Path(
         np.zeros((STAGES, states)), *vectors, np.zeros(guards), np.zeros(guards),
@@ -46,18 +46,18 @@ def path_of(states: int, guards: int) -> Path:
 
 
 @within
-def rates(t, z, piece, motion, stack, standing, room, slope):
+def rates(t, z, piece, motion, stack, contact, room, slope):
     """Fill in the derivative of the state: rates, accelerations and the powers of both works."""
     gx, gy = ground(t, piece, motion.shape, motion.across, motion.upwards)
-    accelerate(z, gx, gy, stack, standing, room)
+    accelerate(z, gx, gy, stack, contact, room)
     count = stack.inverse.size
     for j in range(count):
         slope[j], slope[count + j] = z[count + j], room.out[j]
-    slope[2 * count], slope[2 * count + 1] = powers(z, gx, gy, stack, standing, room)
+    slope[2 * count], slope[2 * count + 1] = powers(z, gx, gy, stack, contact, room)
 
 
 @compiled
-def step(t, h, z, piece, motion, stack, standing, room, path, new):
+def step(t, h, z, piece, motion, stack, contact, room, path, new):
     """Take one step; give the greatest difference of both orders over `path.scale`.
 
     `path.first` is the derivative at the start; `new` is filled with the state at the end.
@@ -70,7 +70,7 @@ def step(t, h, z, piece, motion, stack, standing, room, path, new):
             for k in range(i):
                 total += MATRIX[i, k] * slopes[k, j]
             new[j] = z[j] + h * total
-        rates(t + NODES[i] * h, new, piece, motion, stack, standing, room, slopes[i])
+        rates(t + NODES[i] * h, new, piece, motion, stack, contact, room, slopes[i])
     worst = 0.0
     for j in range(z.size):
         total = 0.0
@@ -84,12 +84,12 @@ def step(t, h, z, piece, motion, stack, standing, room, path, new):
 
 
 @within
-def sample_guards(t, h, z, piece, motion, stack, standing, room, path):
+def sample_guards(t, h, z, piece, motion, stack, contact, room, path):
     """Fill in the guards at equally spaced times of a step.
 
-    Between the ends places are the quintics through places, rates and accelerations of both, rates
-    the cubics through rates and accelerations. That only tells where to look: what is found there
-    is looked at again with steps of their own.
+    In between, positions are quintics through positions, rates and accelerations of both ends,
+    rates are cubics through rates and accelerations. They only locate candidates, which are
+    then evaluated by separate steps.
     """
     new, first, last, inner = path.new, path.first, path.last, path.trial
     count = stack.inverse.size
@@ -108,21 +108,21 @@ def sample_guards(t, h, z, piece, motion, stack, standing, room, path):
         if m == SAMPLES:
             inner[:] = new
         gx, gy = ground(t + u * h, piece, motion.shape, motion.across, motion.upwards)
-        evaluate(inner, gx, gy, stack, standing, room, path.samples[m])
+        evaluate(inner, gx, gy, stack, contact, room, path.samples[m])
 
 
 @compiled
-def value_at(x, slot, t, z, piece, motion, stack, standing, room, path):
+def value_at(x, slot, t, z, piece, motion, stack, contact, room, path):
     """Return a guard after a step of length x."""
-    step(t, x, z, piece, motion, stack, standing, room, path, path.trial)
+    step(t, x, z, piece, motion, stack, contact, room, path, path.trial)
     gx, gy = ground(t + x, piece, motion.shape, motion.across, motion.upwards)
-    evaluate(path.trial, gx, gy, stack, standing, room, path.guards)
+    evaluate(path.trial, gx, gy, stack, contact, room, path.guards)
     return path.guards[slot]
 
 
 @within
 def may_fall(path):
-    """Tell whether samples of a guard are negative, or may be between two of them."""
+    """Tell whether a guard is negative at a sample, or may be negative between two."""
     samples, noise = path.samples, path.noise
     for k in range(noise.size):
         for m in range(SAMPLES + 1):

@@ -1,17 +1,12 @@
-"""What happens when an end of a base leaves, lands, is caught up or slides.
+"""Switches of an end of a base: it separates, lands, re-engages or slides.
 
-:func:`fire` leads from a guard that has fallen through zero to the switch that it stands for.
-These functions run once for each event and are not compiled.
+:func:`fire` maps a guard that has fallen through zero to its switch. These functions run once for
+each event and are not compiled.
 """
 
 import math
 
-from .forces import accelerate, pad_force, yielding_rate
-from .guards import QUIET
-from .impulses import jump, note_places, project, relate, slip
-from .kinematics import end, size_of, sway
-from .scene import CENTRE, LEADING_CORNER
-from .standing import (
+from .contact import (
     BASE_GUARDS,
     CLEAR,
     END_GUARDS,
@@ -26,6 +21,11 @@ from .standing import (
     SLIDING,
     TOUCHING,
 )
+from .forces import accelerate, pad_force, yielding_rate
+from .guards import QUIET
+from .impulses import jump, note_places, project, relate, slip
+from .kinematics import end, size_of, sway
+from .scene import CENTRE, LEADING_CORNER
 
 SAME = 1e-9
 """Share of the settlement within which both ends land, or leave, together."""
@@ -41,18 +41,18 @@ class Events:
     ground : tuple of float
         Acceleration of the ground.
     stack, standing, room
-        What the equations of motion want; `standing` is changed.
+        Arguments of the equations of motion; `contact` is changed.
     noise : ndarray
         Rounding noise of the guards.
     """
 
-    def __init__(self, z, ground, stack, standing, room, noise):
+    def __init__(self, z, ground, stack, contact, room, noise):
         self.z, self.ground, self.stack, self.room = z, ground, stack, room
-        self.ends, self.standing, self.noise = standing.ends, standing, noise
+        self.ends, self.contact, self.noise = contact.ends, contact, noise
         relate(z, stack, room)
 
     def fire(self, slot: int) -> str:
-        """Carry out the switch of a guard, and tell what it was."""
+        """Carry out the switch of a guard and return its name."""
         k, which = divmod(slot, BASE_GUARDS)
         if which == LEAD_GUARD:
             self._change_lead(k)
@@ -86,7 +86,7 @@ class Events:
         self.ends[k, i] = TOUCHING
         return "touching"
 
-    # what is asked of an end
+    # quantities of an end
 
     def _speed(self, k: int, i: int) -> float:
         return end(k, i, self.stack, self.room)[3]
@@ -102,7 +102,7 @@ class Events:
         return self.noise[BASE_GUARDS * k]
 
     def _following(self, k: int, i: int) -> float:
-        """Return the speed of an end that follows its pad without a force."""
+        """Return the speed of an end that follows its unloaded pad."""
         return -yielding_rate(k, self.stack) * self.stack.settlement[k] * self._gap(k, i)
 
     def _bears(self, k: int, i: int) -> bool:
@@ -115,45 +115,45 @@ class Events:
         below = self._gap(k, i) < -self._tiny(k)
         self.ends[k, i] = RELAXING if viscous and below else CLEAR
 
-    # what holds a body
+    # holds of a body
 
     def _rule(self, k: int) -> float:
         """Return the point that the rule holds, from the foot of the centre of mass."""
-        stack, standing = self.stack, self.standing
+        stack, contact = self.stack, self.contact
         b, middle = stack.half_width[k], -stack.eccentricity[k]
         if stack.rule == CENTRE:
             return middle
         if stack.rule == LEADING_CORNER:
             leans = self.room.rel[k, 2] or self.room.rel[k, 5]
             if leans != 0.0:
-                standing.lead[k] = math.copysign(1.0, leans)
-            return middle + b * standing.lead[k]
+                contact.lead[k] = math.copysign(1.0, leans)
+            return middle + b * contact.lead[k]
         left, right = self._bears(k, 0), self._bears(k, 1)
         if left == right:
             return middle
         return middle + b if right else middle - b
 
     def _hold(self, k: int) -> None:
-        """Hold a body by the rule, all of the slip being stopped."""
-        self.standing.hold[k] = HELD
-        self.standing.point[k] = self._rule(k)
-        project(self.z, self.stack, self.standing, self.room)
+        """Hold a body by the restraint rule and stop its slip."""
+        self.contact.hold[k] = HELD
+        self.contact.point[k] = self._rule(k)
+        project(self.z, self.stack, self.contact, self.room)
         self._note()
 
     def _note(self) -> None:
-        note_places(self.z, self.stack, self.standing, self.room)
+        note_places(self.z, self.stack, self.contact, self.room)
 
     def _has_lever(self, k: int) -> bool:
-        lever = sway(k, self.standing.point[k], self.stack, self.room)[1]
+        lever = sway(k, self.contact.point[k], self.stack, self.room)[1]
         return abs(lever) > LEAST_LEVER * size_of(k, self.stack)
 
-    # leaving
+    # separation
 
     def _leaves(self, k: int, i: int) -> str:
         other = 1 - i
         gradual = not self.stack.is_bed[k] and abs(self._push(k, i)) <= self._tiny(k)
         touched = self.ends[k, other] == TOUCHING
-        before = self.z.copy(), self.ends[k].copy(), self.standing.point[k]
+        before = self.z.copy(), self.ends[k].copy(), self.contact.point[k]
         self._apart(k, i)
         if touched and self._leaves_too(k, other):
             self._apart(k, other)
@@ -162,14 +162,14 @@ class Events:
         if self.ends[k, other] == TOUCHING:
             self._leaves_one(k, i, before)
             return "separation"
-        self.standing.hold[k] = FREE
+        self.contact.hold[k] = FREE
         if touched or not gradual or self.ends[k, i] != RELAXING or not self._has_lever(k):
             return "separation"
         if self._push_rises(k, i):
-            # the pad would press it at once in flight
-            self.ends[k, i], self.standing.hold[k] = SLIDES, SLIDING
-            accelerate(self.z, *self.ground, self.stack, self.standing, self.room)
-            self.standing.sense[k] = 1.0 if self.room.force[k] < 0.0 else -1.0
+            # in flight the pad would press it at once
+            self.ends[k, i], self.contact.hold[k] = SLIDES, SLIDING
+            accelerate(self.z, *self.ground, self.stack, self.contact, self.room)
+            self.contact.sense[k] = 1.0 if self.room.force[k] < 0.0 else -1.0
             return "sliding"
         return "separation"
 
@@ -179,14 +179,14 @@ class Events:
         return self._push(k, i) <= self._tiny(k) and self._speed(k, i) >= 0.0
 
     def _leaves_one(self, k: int, i: int, before) -> None:
-        """Hold a body by the end that stays, unless that ends the rise of the one that leaves."""
+        """Hold a body by the remaining end, unless that stops the rise of the separating one."""
         z, ends, point = before
         self._hold(k)
-        if self.standing.point[k] == point:
+        if self.contact.point[k] == point:
             return
         presses = self.ends[k, i] == RELAXING and self._push(k, i) >= -self._tiny(k)
         if self._speed(k, i) <= 0.0:
-            self.z[:], self.standing.point[k] = z, point
+            self.z[:], self.contact.point[k] = z, point
             self._note()
             if presses:
                 self.ends[k] = ends
@@ -197,7 +197,7 @@ class Events:
     def _push_rises(self, k: int, i: int) -> bool:
         """Tell whether the force law of a pad rises in the motion of the present state."""
         stack, room = self.stack, self.room
-        accelerate(self.z, *self.ground, stack, self.standing, room)
+        accelerate(self.z, *self.ground, stack, self.contact, room)
         _, lever, bend, speed = end(k, i, stack, room)
         lift = room.rel[k, 7] + bend * room.rel[k, 5] ** 2
         for j in range(6):
@@ -206,19 +206,19 @@ class Events:
         return stack.stiffness[k] * speed + stack.damping[k] * lift < 0.0
 
     def _clears(self, k: int, i: int) -> str:
-        """Let an end below the level of its pad pass it upwards."""
+        """Let an end rise through the unloaded level of its pad."""
         if self.ends[k, i] == ENGAGING:
             return self._leaves(k, i)
         self.ends[k, i] = CLEAR
         return "clear"
 
-    # coming back
+    # landing and re-engagement
 
     def _lands(self, k: int, i: int) -> str:
         other = 1 - i
         both = self.ends[k, other] == CLEAR and self._speed(k, other) < 0.0
         both = both and abs(self._gap(k, other)) < SAME
-        if self.standing.hold[k] == FREE and not both:
+        if self.contact.hold[k] == FREE and not both:
             if not self._out_of_flight(k, i, 0.0):
                 return "sliding"
         else:
@@ -229,13 +229,13 @@ class Events:
         if self.stack.is_bed[k]:
             return "landing"
         down = [self._speed(k, j) < 0.0 and (j == i or both) for j in range(2)]
-        jump(self.z, self.stack, self.standing, self.room, k, *down)
+        jump(self.z, self.stack, self.contact, self.room, k, *down)
         if self.ends[k, other] == LEAVING:
             self.ends[k, other] = RELAXING
         return "landing"
 
     def _out_of_flight(self, k: int, i: int, limit: float) -> bool:
-        """Hold on one end as far as its speed does not pass `limit`; tell if the body is held."""
+        """Hold the body at one end unless its speed would pass `limit`; tell whether it is held."""
         before, speed = self.z.copy(), self._speed(k, i)
         self.ends[k, i] = TOUCHING
         self._hold(k)
@@ -245,14 +245,14 @@ class Events:
         share = max(0.0, (limit - speed) / (after - speed))
         self.z[:] = before + share * (self.z - before)
         relate(self.z, self.stack, self.room)
-        self.ends[k, i], self.standing.hold[k] = SLIDES, SLIDING
-        positive = slip(k, self.stack, self.standing, self.room) > 0.0
-        self.standing.sense[k] = 1.0 if positive else -1.0
+        self.ends[k, i], self.contact.hold[k] = SLIDES, SLIDING
+        positive = slip(k, self.stack, self.contact, self.room) > 0.0
+        self.contact.sense[k] = 1.0 if positive else -1.0
         return False
 
     def _caught_up(self, k: int, i: int) -> str:
         """Let a relaxing end touch again, without an impact."""
-        if self.standing.hold[k] == FREE:
+        if self.contact.hold[k] == FREE:
             held = self._out_of_flight(k, i, self._following(k, i))
             return "re-engagement" if held else "sliding"
         return self._touches_again(k, i)
@@ -281,11 +281,11 @@ class Events:
 
     def _flies(self, k: int, i: int) -> None:
         self._apart(k, i)
-        self.standing.hold[k] = FREE
+        self.contact.hold[k] = FREE
 
     def _check_sliding(self, k: int) -> None:
-        """Let a sliding end fly if something has given it another speed."""
-        if self.standing.hold[k] != SLIDING:
+        """Let a sliding end fly if an impulse has changed its speed."""
+        if self.contact.hold[k] != SLIDING:
             return
         i = 0 if self.ends[k, 0] == SLIDES else 1
         off = self._speed(k, i) - self._following(k, i)
@@ -293,7 +293,7 @@ class Events:
             self._flies(k, i)
 
     def _change_lead(self, k: int) -> None:
-        lead = self.standing.lead
+        lead = self.contact.lead
         lead[k] = -lead[k]
-        self.standing.point[k] = lead[k] * self.stack.half_width[k] - self.stack.eccentricity[k]
+        self.contact.point[k] = lead[k] * self.stack.half_width[k] - self.stack.eccentricity[k]
         self._note()

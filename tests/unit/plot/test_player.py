@@ -11,7 +11,7 @@ from shutil import which
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-from plainly import plainly
+from plain_python import plain_python
 
 import rockframe as rf
 from rockframe.errors import ComponentError, SchemaError
@@ -36,7 +36,7 @@ SCENES = {
 
 
 def run_of(scene, **options):
-    with plainly() if scene == "stack" else nullcontext():
+    with plain_python() if scene == "stack" else nullcontext():
         return rf.System(*SCENES[scene]).simulate(PULSE, free_vibration="1 s", **options)
 
 

@@ -9,7 +9,7 @@ from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
-from kept_sweep import CASES, as_bytes, child, files, note_cases, the_sweep
+from stored_sweep import CASES, as_bytes, note_cases, run_sweep, start_sweep, stored_files
 
 import rockframe as rf
 from rockframe.errors import StudyError
@@ -26,14 +26,14 @@ KNOWS_PROCESSES = module._start_of_process(os.getpid()) is not None
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
     folder = tmp_path_factory.mktemp("whole") / "study"
-    return folder, the_sweep(folder)
+    return folder, run_sweep(folder)
 
 
 @pytest.fixture
 def another(tmp_path):
     """Start another job on the study, and wait until it has run some chunks."""
     log = tmp_path / "log 0"
-    job = child(tmp_path / "study", f"note_cases({str(log)!r})")
+    job = start_sweep(tmp_path / "study", f"note_cases({str(log)!r})")
     while job.poll() is None and not (log.exists() and len(log.read_text()) > 20):
         time.sleep(0.005)
     return job
@@ -44,7 +44,7 @@ def this(tmp_path, monkeypatch):
     """Run the study in this process too, noting its chunks."""
     monkeypatch.setattr(Study, "job", Study.job)  # to be put back
     note_cases(tmp_path / "log 1")
-    return lambda: the_sweep(tmp_path / "study")
+    return lambda: run_sweep(tmp_path / "study")
 
 
 def run_by(tmp_path):
@@ -54,7 +54,7 @@ def run_by(tmp_path):
 
 
 def is_whole(folder, whole, *, killed=False):
-    assert files(folder) == files(whole[0])
+    assert stored_files(folder) == stored_files(whole[0])
     assert as_bytes(rf.open_study(folder)) == as_bytes(whole[1])
     # a job that is killed while it writes leaves its part of a file, hidden, which nobody reads
     left = {path.name for path in folder.iterdir() if not (killed and path.match(".*.part"))}
@@ -220,7 +220,7 @@ def test_damaged_claims_do_not_change_results(whole, tmp_path, monkeypatch):
     (folder / "claims" / "what is this").write_text("")
     (folder / "claims" / "000011-more").write_text("")
     monkeypatch.setattr(module, "_TIMEOUT", 0.5)
-    the_sweep(folder)
+    run_sweep(folder)
     is_whole(folder, whole)
 
 
@@ -231,10 +231,10 @@ def test_failing_job_releases_its_chunks(tmp_path):
             raise RuntimeError(msg)
 
     with Broken(2) as pool, pytest.raises(RuntimeError, match="no more"):
-        the_sweep(tmp_path / "study", executor=pool)
+        run_sweep(tmp_path / "study", executor=pool)
     assert not [*(tmp_path / "study" / "claims").iterdir()]
     begun = time.monotonic()
-    the_sweep(tmp_path / "study")
+    run_sweep(tmp_path / "study")
     assert time.monotonic() - begun < module._TIMEOUT
 
 
@@ -274,6 +274,6 @@ def test_submitted_chunks_are_limited_to_twice_the_workers(workers):
 
     most = []
     with Counted(workers) as pool:
-        the_sweep(executor=pool)
+        run_sweep(executor=pool)
     assert len(going) == CASES / 3
     assert max(most) <= 2 * workers

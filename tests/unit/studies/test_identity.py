@@ -6,8 +6,8 @@ from dataclasses import dataclass, fields, is_dataclass, replace
 
 import numpy as np
 import pytest
-from kept_sweep import alike
-from own_example import example
+from stored_sweep import assert_identical
+from user_examples import example
 
 import rockframe as rf
 from rockframe.errors import StudyError
@@ -159,7 +159,7 @@ def test_execution_options_do_not_change_the_study(tmp_path):
     plain = rf.sweep(**SWEPT)
     with ThreadPoolExecutor(1) as pool:
         for changes in ({"chunk": 1}, {"executor": pool}, {"progress": False}, {}):
-            alike(rf.sweep(**SWEPT, **changes, store=tmp_path / "study"), plain)
+            assert_identical(rf.sweep(**SWEPT, **changes, store=tmp_path / "study"), plain)
 
 
 @pytest.fixture(scope="module")
@@ -195,7 +195,7 @@ def test_store_never_returns_results_of_other_arguments(analysis, name, begun, t
     except StudyError as problem:
         assert "found another study, which differs in" in str(problem)  # noqa: PT017
     else:
-        alike(kept, getattr(rf, analysis)(**after))
+        assert_identical(kept, getattr(rf, analysis)(**after))
 
 
 # what is told ----------------------------------------------------------------------------------
@@ -215,7 +215,8 @@ def test_description_covers_all_fields_and_refuses_unknown_objects():
         *(replace(one, further=each) for each in (
             0, False, 0.0, "0", (), (0,), {"a": 1, "b": 2}, {"b": 2, "a": 1}, np.zeros(2),
             np.zeros(3), np.zeros((1, 2)), np.zeros(2, dtype=np.float32), np.array(["a", "b"]),
-            np.array(["ab", ""]), WEAK, STRONG, SYSTEM.parts.block, RUN["initial"], one, alike,
+            np.array(["ab", ""]), WEAK, STRONG, SYSTEM.parts.block, RUN["initial"], one,
+            assert_identical,
         )),
     ]  # fmt: skip
     digests = [digest_of(description_of(each)) for each in (one, *others)]

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from kept_sweep import alike
+from stored_sweep import assert_identical
 
 import rockframe as rf
 from rockframe.errors import StudyError
@@ -59,11 +59,11 @@ def test_a_study_is_extended_by_motions_and_values(tmp_path, ran, chunk):
     swept(("10", "weak"), [0.5, 1.0], HEIGHTS[::-1], store=tmp_path / "first")
     ran.clear()
     more = swept(store=tmp_path / "more", known=tmp_path / "first", chunk=chunk)
-    alike(more, whole)
+    assert_identical(more, whole)
     assert len(ran) == len(set(ran)) == 60 - 2 * 2 * 3
     ran.clear()
-    alike(swept(store=tmp_path / "more", known=str(tmp_path / "first")), whole)
-    alike(swept(store=tmp_path / "more"), whole)  # it needs the other no longer
+    assert_identical(swept(store=tmp_path / "more", known=str(tmp_path / "first")), whole)
+    assert_identical(swept(store=tmp_path / "more"), whole)  # it needs the other no longer
     assert not ran
 
 
@@ -73,10 +73,12 @@ def test_studies_are_combined(tmp_path, ran):
     swept(("weak", "9", "10"), store=tmp_path / "others")
     ran.clear()
     parts = [tmp_path / "others", tmp_path / "some"]
-    alike(swept(store=tmp_path / "all", known=parts), whole)
+    assert_identical(swept(store=tmp_path / "all", known=parts), whole)
     assert not ran
     few = swept(("9",), [2.0])  # too few to be run side by side, as those were that are known
-    alike(swept(("9",), [2.0], store=tmp_path / "one", known=parts), few, apart=["driver"])
+    assert_identical(
+        swept(("9",), [2.0], store=tmp_path / "one", known=parts), few, apart=["driver"]
+    )
 
 
 def test_cases_missing_from_the_known_study_are_run(tmp_path, ran):
@@ -88,7 +90,7 @@ def test_cases_missing_from_the_known_study_are_run(tmp_path, ran):
     (tmp_path / "first" / "chunk-000001.arrays").unlink()
     ran.clear()
     more = swept(heights=heights, store=tmp_path / "more", known=tmp_path / "first", **kept)
-    alike(more, whole)
+    assert_identical(more, whole)
     assert len(ran) == 20 + 4
 
 

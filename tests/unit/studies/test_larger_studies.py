@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 import xarray as xr
 from interrupting import Interrupting
-from kept_sweep import as_bytes
+from stored_sweep import as_bytes
 
 import rockframe as rf
 from rockframe.errors import ComponentError, SolverWarning, StudyError

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from plainly import plainly
+from plain_python import plain_python
 
 import rockframe as rf
 from rockframe.dynamics.events import LINK_BREAKS
@@ -77,7 +77,7 @@ def test_broken_restrainer_count_equals_break_events(scene):
     motion = rf.GroundMotion.type_a_pulse("1.2 m/s", "1.6 s") if scene is frame else PULSE
     scales = [0.3, 1.3333]  # PULSE is then one of 4 m/s^2
     asked = {"accuracy": "fast", "overturning": "continue", "free_vibration": "0.1 s"}
-    with plainly():  # nothing else compiles the equations of rigid bodies that are tied
+    with plain_python():  # nothing else compiles the equations of rigid bodies that are tied
         runs = rf.sweep(scene(), motion, scale=scales, **asked)
         alone = [scene().simulate(motion.scaled(scale), **asked) for scale in scales]
     counts = runs.broken_restrainer_count.values.ravel().tolist()
@@ -127,7 +127,7 @@ def test_case_with_other_restrainer_names_warns():
         return rf.System(STATUE, PADS, *(tie(name, -1) for name in names))
 
     asked = {"outputs": ["rotation"], "duration": "0.02 s", "accuracy": "fast"}
-    with plainly(), pytest.warns(ModelWarning, match="its restrainers are east, west, not as"):
+    with plain_python(), pytest.warns(ModelWarning, match="its restrainers are east, west, not as"):
         runs = rf.sweep(scene, PULSE, number=range(40), **asked)
     assert runs.restrainer.values.tolist() == ["west", "east"]
     assert np.flatnonzero(runs.message != "none").tolist() == [5]

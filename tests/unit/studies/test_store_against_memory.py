@@ -11,7 +11,7 @@ import sys
 import numpy as np
 import pandas as pd
 import pytest
-from kept_sweep import alike
+from stored_sweep import assert_identical
 
 import rockframe as rf
 from rockframe.errors import ComponentError, StudyError
@@ -123,17 +123,17 @@ def test_every_analysis_with_a_store_is_tested():
 def test_stored_study_equals_study_in_memory(run, tmp_path):
     plain = run(accuracy="fast", progress=False)
     for _ in range(2):  # run, then read
-        alike(run(accuracy="fast", progress=False, store=tmp_path / "study"), plain)
+        assert_identical(run(accuracy="fast", progress=False, store=tmp_path / "study"), plain)
     chunks = sorted(tmp_path.rglob("chunk-*.arrays"))
     chunks[len(chunks) // 2].unlink()
-    alike(run(accuracy="fast", progress=False, store=tmp_path / "study"), plain)
+    assert_identical(run(accuracy="fast", progress=False, store=tmp_path / "study"), plain)
 
 
 @pytest.mark.parametrize("run", ANALYSES["sweep"])
 def test_reopened_study_and_its_cases_equal_those_in_memory(run, tmp_path, monkeypatch):
     plain = run(accuracy="fast")
     run(accuracy="fast", store=tmp_path / "study")
-    alike(rf.open_study(tmp_path / "study"), plain)
+    assert_identical(rf.open_study(tmp_path / "study"), plain)
     monkeypatch.setattr(of_cases, "_studies", type(of_cases._studies)())
     for place in np.ndindex(*plain.status.shape):
         one = plain.isel(dict(zip(plain.status.dims, place, strict=True)))

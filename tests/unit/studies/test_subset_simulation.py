@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 import xarray as xr
-from kept_sweep import alike
 from scipy import stats
+from stored_sweep import assert_identical
 
 import rockframe as rf
 from rockframe.errors import ComponentError, ModelWarning, SolverWarning, StudyError
@@ -84,7 +84,7 @@ def test_samples_can_be_reproduced_as_runs(found):
 @pytest.mark.long
 def test_same_seed_reproduces_the_result(found):
     asked = {"cases": 300, "motions": MOTIONS, "correlation": {("width", "scale"): 0.3}}
-    alike(simulated(seed=5, chunk=17, **asked), found)
+    assert_identical(simulated(seed=5, chunk=17, **asked), found)
     other = simulated(seed=8, **asked)
     assert other.exceedance_probability.item() != found.exceedance_probability.item()
 
@@ -264,7 +264,7 @@ def test_interrupted_subset_simulation_warns_and_resumes(tmp_path, monkeypatch):
         assert whole.exceedance_probability.item() < bound < 1.0
         with pytest.raises(StudyError, match=r"interrupted at level 1$"):
             simulated(cases=200)
-    alike(simulated(cases=200, store=tmp_path / "study"), whole)
+    assert_identical(simulated(cases=200, store=tmp_path / "study"), whole)
     assert (tmp_path / "study" / "level 02 step 01").is_dir()
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from kept_sweep import BLOCK, CASES, PULSE, SYSTEM, as_bytes, child, files, the_sweep
+from stored_sweep import BLOCK, CASES, PULSE, SYSTEM, as_bytes, run_sweep, start_sweep, stored_files
 
 import rockframe as rf
 from rockframe.errors import StudyError
@@ -26,7 +26,7 @@ MARK = "ROCKFRAME_TEST_MARK"
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
     folder = tmp_path_factory.mktemp("whole") / "study"
-    return folder, the_sweep(folder)
+    return folder, run_sweep(folder)
 
 
 def is_part_of(part, whole):
@@ -44,7 +44,7 @@ def test_killed_sweep_resumes_to_identical_results(whole, tmp_path):
     folder, lost = tmp_path / "study", 0
     rng = random.Random(5)
     for _ in range(2):
-        running = child(folder)
+        running = start_sweep(folder)
         kept = len(list(folder.glob("chunk-*")))
         while running.poll() is None and len(list(folder.glob("chunk-*"))) <= kept:
             time.sleep(0.005)
@@ -53,9 +53,9 @@ def test_killed_sweep_resumes_to_identical_results(whole, tmp_path):
         running.communicate()
         lost += is_part_of(rf.open_study(folder), whole[1]) < CASES
     assert lost > 0
-    runs = the_sweep(folder)
+    runs = run_sweep(folder)
     assert as_bytes(runs) == as_bytes(whole[1])
-    assert files(folder) == files(whole[0])
+    assert stored_files(folder) == stored_files(whole[0])
 
 
 def dying(height):
@@ -117,18 +117,18 @@ def disk(tmp_path):
 def test_full_disk_preserves_written_chunks(disk, whole):
     folder = disk.place / "study"
     with pytest.raises(StudyError, match=r"cannot be written.*No space left"):
-        the_sweep(folder)
+        run_sweep(folder)
     assert 0 < is_part_of(rf.open_study(folder), whole[1]) < CASES
     assert not list(folder.glob(".*"))
     assert disk.mount("10m", Disk.REMOUNT)  # room again: the same call goes on
-    assert as_bytes(the_sweep(folder)) == as_bytes(whole[1])
-    assert files(folder) == files(whole[0])
+    assert as_bytes(run_sweep(folder)) == as_bytes(whole[1])
+    assert stored_files(folder) == stored_files(whole[0])
 
 
 def test_file_size_limit_raises_like_a_full_disk(whole, tmp_path):
     resource = pytest.importorskip("resource", reason="limits as of Unix")
     folder = tmp_path / "study"
-    the_sweep(folder)
+    run_sweep(folder)
     for chunk in folder.glob("chunk-00001*"):
         chunk.unlink()
     there = is_part_of(rf.open_study(folder), whole[1])
@@ -137,26 +137,26 @@ def test_file_size_limit_raises_like_a_full_disk(whole, tmp_path):
     resource.setrlimit(resource.RLIMIT_FSIZE, (200, limits[1]))
     try:
         with pytest.raises(StudyError, match=r"(?s)cannot be kept in.*File too large"):
-            the_sweep(folder)
+            run_sweep(folder)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
     assert is_part_of(rf.open_study(folder), whole[1]) == there
-    assert as_bytes(the_sweep(folder)) == as_bytes(whole[1])
+    assert as_bytes(run_sweep(folder)) == as_bytes(whole[1])
 
 
 def test_a_folder_that_has_become_read_only_can_be_read(disk, whole):
     folder = disk.place / "study"
     assert disk.mount("10m", Disk.REMOUNT)
-    the_sweep(folder)
+    run_sweep(folder)
     flags = Disk.REMOUNT | Disk.READ_ONLY
     assert disk.mount("10m", flags)
-    assert rf.open_study(folder).identical(the_sweep(folder))  # nothing to run, nothing to write
+    assert rf.open_study(folder).identical(run_sweep(folder))  # nothing to run, nothing to write
     assert disk.mount("10m", Disk.REMOUNT)
     (folder / "chunk-000007.arrays").unlink()
     assert disk.mount("10m", flags)
     asked = []
     with pytest.raises(StudyError, match=r"cannot be kept in .*Read-only file system"):
-        the_sweep(folder, executor=asked)  # before anything runs
+        run_sweep(folder, executor=asked)  # before anything runs
     with pytest.raises(StudyError, match=r"cannot be kept in .*Read-only file system"):
         rf.sweep(SYSTEM, PULSE, scale=[1.0], store=disk.place / "another")
     assert is_part_of(rf.open_study(folder), whole[1]) == CASES - 3

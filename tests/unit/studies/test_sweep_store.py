@@ -5,7 +5,7 @@ import time
 
 import numpy as np
 import pytest
-from kept_sweep import BLOCK, PULSE, RECORD, SCALES, as_bytes, files, the_sweep
+from stored_sweep import BLOCK, PULSE, RECORD, SCALES, as_bytes, run_sweep, stored_files
 
 import rockframe as rf
 from rockframe.errors import ModelWarning, SolverWarning, StudyError
@@ -21,28 +21,28 @@ pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning"
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
     folder = tmp_path_factory.mktemp("whole") / "study"
-    return folder, the_sweep(folder)
+    return folder, run_sweep(folder)
 
 
-def test_stored_sweep_equals_sweep_in_memory(whole):
+def test_what_is_kept_is_what_is_given(whole):
     folder, runs = whole
-    plain = the_sweep()
+    plain = run_sweep()
     assert as_bytes(runs) == as_bytes(plain)
     assert {**runs.attrs, "history": ""} == {**plain.attrs, "history": ""}
     assert rf.open_study(folder).identical(runs)
-    before = files(folder)
+    before = stored_files(folder)
     begun = time.process_time()
-    assert the_sweep(folder, chunk=1000).identical(runs)  # it keeps to its chunks
+    assert run_sweep(folder, chunk=1000).identical(runs)  # it keeps to its chunks
     assert time.process_time() - begun < 5.0
-    assert files(folder) == before
+    assert stored_files(folder) == before
     assert not list(folder.glob(".*"))
 
 
 @pytest.mark.wide
-def test_many_chunks_are_split_into_subfolders(tmp_path, monkeypatch):
-    folder, plain = tmp_path / "study", the_sweep()
+def test_many_chunks_stand_in_folders_of_their_own(tmp_path, monkeypatch):
+    folder, plain = tmp_path / "study", run_sweep()
     monkeypatch.setattr(store, "MAX_FILES_PER_FOLDER", 4)
-    assert as_bytes(the_sweep(folder)) == as_bytes(plain)
+    assert as_bytes(run_sweep(folder)) == as_bytes(plain)
     assert not list(folder.glob("chunk-*"))
     folders = sorted(folder.glob("chunks-*"))
     counts = [len(list(one.iterdir())) for one in folders]
@@ -52,12 +52,12 @@ def test_many_chunks_are_split_into_subfolders(tmp_path, monkeypatch):
     left = folders[1] / ".chunk-000005.arrays.1.part"
     left.write_bytes(b"")
     os.utime(left, (0, 0))
-    assert as_bytes(the_sweep(folder)) == as_bytes(plain)
+    assert as_bytes(run_sweep(folder)) == as_bytes(plain)
     assert not left.exists()
     assert as_bytes(rf.open_study(folder)) == as_bytes(plain)
 
 
-def test_store_can_be_read_while_the_sweep_runs(tmp_path):
+def test_it_can_be_read_while_it_runs(tmp_path):
     folder = tmp_path / "study"
     seen = []
 
@@ -71,7 +71,7 @@ def test_store_can_be_read_while_the_sweep_runs(tmp_path):
     assert 0 < max(seen) < 12  # of two threads either may look first
 
 
-def test_case_is_restored_from_the_folder_alone(whole, monkeypatch):
+def test_a_case_comes_from_the_folder_alone(whole, monkeypatch):
     folder, runs = whole
     monkeypatch.setattr(of_cases, "_studies", type(of_cases._studies)())
     for place in (folder, runs):  # a sweep knows the folder in which it was kept
@@ -80,7 +80,7 @@ def test_case_is_restored_from_the_folder_alone(whole, monkeypatch):
         assert found.simulate().peak_rotation.item() == runs.peak_rotation[17, 1, 0].item()
 
 
-def test_motions_with_vertical_component_survive_the_store(tmp_path, monkeypatch):
+def test_motions_with_a_vertical_component_are_kept_however_they_were_made(tmp_path, monkeypatch):
     def make(seed):
         return rf.GroundMotion.stochastic(6.6, "5 km", seed=seed, vertical=0.6)
 
@@ -122,17 +122,17 @@ def copied(whole, tmp_path):
     return folder
 
 
-def test_different_study_is_refused_with_the_difference(copied):
+def test_another_study_is_refused_with_the_difference(copied):
     for changes, words in (
         ({"scale": SCALES[:-1]}, r"differs in grid \(axes \(scale \(values\)\)\)"),
         ({"accuracy": "fast"}, r"arguments \(accuracy \(.*\), accuracy_name\)"),
         ({"outputs": ["rotation", "base_shear"]}, r"differs in histories \(names\)"),
     ):
         with pytest.raises(StudyError, match=f"another study.*{words}.*another folder"):
-            the_sweep(copied, **changes)
+            run_sweep(copied, **changes)
 
 
-def test_different_scene_function_is_refused(tmp_path):
+def test_another_function_is_another_study(tmp_path):
     scenes = [lambda height: rf.System(BLOCK.replace(height=height))]
     scenes.append(lambda height: rf.System(BLOCK.replace(height=height), gravity="9 m/s^2"))
     arguments = {"height": ["3 m"], "store": tmp_path / "study"}
@@ -141,7 +141,7 @@ def test_different_scene_function_is_refused(tmp_path):
         rf.sweep(scenes[1], PULSE, **arguments)
 
 
-def test_other_formats_and_damaged_files_are_refused(copied):
+def test_other_versions_and_damaged_files_are_refused_with_a_reason(copied):
     head, chunk = copied / "study.json", copied / "chunk-000004.arrays"
     keep, plain = head.read_text(), chunk.read_bytes()
     for kept, words in (
@@ -154,7 +154,7 @@ def test_other_formats_and_damaged_files_are_refused(copied):
         ("", "study.json: damaged"),
     ):
         head.write_text(kept)
-        for read in (rf.open_study, the_sweep):
+        for read in (rf.open_study, run_sweep):
             with pytest.raises(StudyError, match=words):
                 read(copied)
     head.write_text(keep)
@@ -170,33 +170,33 @@ def test_other_formats_and_damaged_files_are_refused(copied):
         (other, "found a chunk of another study; expected.*cases 12 to 14"),
     ):
         chunk.write_bytes(content)
-        for read in (rf.open_study, the_sweep):
+        for read in (rf.open_study, run_sweep):
             with pytest.raises(StudyError, match=words):
                 read(copied)
     chunk.unlink()
     assert (rf.open_study(copied).status == RunStatus.NOT_RUN).sum() == 3
-    the_sweep(copied)
+    run_sweep(copied)
     assert chunk.read_bytes() == plain
     (copied / "labels.arrays").unlink()
     with pytest.raises(StudyError, match=r"labels.arrays cannot be read"):
         rf.open_study(copied)
 
 
-def test_damaged_labels_raise_and_are_rebuilt(copied, whole):
+def test_damaged_labels_are_made_again(copied, whole):
     labels = copied / "labels.arrays"
     plain = labels.read_bytes()
     labels.write_bytes(plain[:-1])
     with pytest.raises(StudyError, match=r"labels.arrays: damaged.*remove the file, and the same"):
-        the_sweep(copied)
+        run_sweep(copied)
     labels.unlink()
     with pytest.raises(StudyError, match="another study"):
-        the_sweep(copied, accuracy="fast")
+        run_sweep(copied, accuracy="fast")
     assert not labels.exists()
-    assert as_bytes(the_sweep(copied)) == as_bytes(whole[1])
+    assert as_bytes(run_sweep(copied)) == as_bytes(whole[1])
     assert labels.read_bytes() == plain
 
 
-def test_study_of_another_version_can_be_read_but_not_resumed(copied, whole):
+def test_a_study_of_another_version_is_read_and_not_gone_on_with(copied, whole):
     head, last = copied / "study.json", copied / "chunk-000039.arrays"
     head.write_text(
         head.read_text().replace(
@@ -205,7 +205,7 @@ def test_study_of_another_version_can_be_read_but_not_resumed(copied, whole):
     )
     last.unlink()
     with pytest.raises(StudyError, match=r"of rockframe 0.0.9, whose .* may be others .* not gone"):
-        the_sweep(copied)
+        run_sweep(copied)
     assert not last.exists()
     for lazy in (False, True):
         with pytest.warns(ModelWarning, match=r"was run by rockframe 0\.0\.9"):
@@ -222,14 +222,14 @@ def test_a_folder_without_a_study_is_refused(tmp_path):
     with pytest.raises(StudyError, match=r"found no study; expected a folder with study.json"):
         rf.open_study(tmp_path)
     with pytest.raises(StudyError, match="store must be the path of a folder"):
-        the_sweep(store=3)
+        run_sweep(store=3)
     (tmp_path / "file").write_text("")
     with pytest.raises(StudyError, match="cannot be kept in"):
-        the_sweep(tmp_path / "file")
+        run_sweep(tmp_path / "file")
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid"), reason="permissions as of Unix")
-def test_unwritable_folder_is_refused_at_once(tmp_path):
+def test_where_nothing_can_be_written_it_says_so_at_once(tmp_path):
     folder = tmp_path / "closed"
     folder.mkdir()
     folder.chmod(0o555)
@@ -241,13 +241,13 @@ def test_unwritable_folder_is_refused_at_once(tmp_path):
         if user == 0:
             os.seteuid(65534)  # root may write anywhere
         with pytest.raises(StudyError, match=r"cannot be kept in .*Permission denied"):
-            the_sweep(folder / "study")
+            run_sweep(folder / "study")
     finally:
         if user == 0:
             os.seteuid(user)
 
 
-def test_failed_write_preserves_the_old_file(tmp_path, monkeypatch):
+def test_a_write_that_fails_halfway_leaves_nothing(tmp_path, monkeypatch):
     path = tmp_path / "one.arrays"
     write_arrays(path, {"name": "old"}, {"a": np.arange(3.0)})
     before = path.read_bytes()
@@ -262,7 +262,7 @@ def test_failed_write_preserves_the_old_file(tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_arrays_survive_file_round_trip(tmp_path):
+def test_arrays_come_back_as_they_were(tmp_path):
     path = tmp_path / "one.arrays"
     arrays = {
         "a": np.array([[1.0, np.nan], [-0.0, np.inf]]), "none": np.zeros((0, 3)),
@@ -279,16 +279,16 @@ def test_arrays_survive_file_round_trip(tmp_path):
     assert read_arrays(path)[0] == described
 
 
-def test_stale_partial_files_are_removed(copied):
+def test_half_written_files_of_the_dead_are_swept_away(copied):
     dead, alive = copied / ".chunk-1.9.aa.part", copied / ".chunk-2.9.bb.part"
     dead.write_text("x")
     alive.write_text("x")
     os.utime(dead, (0, 0))
-    the_sweep(copied)
+    run_sweep(copied)
     assert not dead.exists()
     assert alive.exists()
 
 
-def test_warning_is_repeated_on_resume(copied):
+def test_the_warning_is_repeated_when_it_is_resumed(copied):
     with pytest.warns(SolverWarning, match="60 of 120 cases have no result"):
-        the_sweep(copied)
+        run_sweep(copied)

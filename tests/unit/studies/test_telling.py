@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
-from kept_sweep import alike
+from stored_sweep import assert_identical
 
 import rockframe as rf
 from rockframe.errors import ModelWarning
@@ -90,8 +90,8 @@ def test_messages_of_many_cases_are_merged(tmp_path):
         assert len(rows) == len(scales)
         assert rows["message"].tolist() == many.message.values.ravel().tolist()
     assert "message" not in many.mean("scale").variables  # texts are no numbers
-    alike(swept(chunk=5), many)
-    alike(swept(chunk=7, store=tmp_path / "study"), many)
+    assert_identical(swept(chunk=5), many)
+    assert_identical(swept(chunk=7, store=tmp_path / "study"), many)
 
 
 def test_warning_quotes_the_most_frequent_caution():

@@ -1,8 +1,8 @@
-"""Two blocks of which one base is rigid, and one stands on pads or on a bed, with friction or not.
+"""Two blocks, one on a rigid base and one on pads or a bed, with friction or not.
 
-What pads and beds press with is known from where the bodies are, so that friction there is a force
-along the surface at the point that the rule of restraint holds: a bound of the force that holds
-it, or a load. In impacts, of rigid bases, it has no part.
+The forces of pads and beds follow from the positions of the bodies. Friction there is a force along
+the surface at the point held by the restraint rule: a bound of the holding force, or a load.
+Impacts occur at rigid bases only.
 """
 
 import math
@@ -13,26 +13,26 @@ from reference_models.rigid_pair.pair import ENDS
 
 from .choices import Touch
 from .contacts import INTERFACES, Bearing, Contact, Pattern, contact, height, on_top
-from .moving import Moving
+from .moving_pair import MovingPair
 
 HELD = "held"
-"""In place of the ends of an interface that gives way: the point that is held, or slips."""
+"""Name of the held or slipping point of a compliant interface, instead of its ends."""
 SIDES = {"left": "L", "right": "R"}
 
-Giving = dict[str, Pads | Bed]
+CompliantBases = dict[str, Pads | Bed]
 
 
-def mixed(one: Contact, other: Contact, share: float) -> Contact:
+def interpolated(one: Contact, other: Contact, share: float) -> Contact:
     """Return the contact of a point between two ends, which is linear in its place."""
     along, normal, turns = (
-        [(1.0 - share) * a + share * b for a, b in zip(first, second, strict=True)]
-        for first, second in zip(one, other, strict=True)
+        [(1.0 - share) * a + share * b for a, b in zip(left_row, right_row, strict=True)]
+        for left_row, right_row in zip(one, other, strict=True)
     )
     return Contact(along, normal, (turns[0], turns[1]))
 
 
 class View:
-    """A base as pads and beds see it: levels and speeds of its ends; levers are shares of it."""
+    """A base in the form that pads and beds use: levels, speeds and levers of its ends."""
 
     def __init__(self, pair, place, speed, key):
         self.rows = {end: contact(pair, place, speed, key, end) for end in ENDS}
@@ -51,96 +51,98 @@ class View:
         )
 
     def corner_acceleration(self, side, z, accelerations):
-        """Return how fast the speed of an end grows."""
+        """Return the normal acceleration of an end."""
         row = self.rows["left" if side == "L" else "right"]
         return float(np.dot(row.normal, accelerations)) + row.turns[1]
 
 
-class GivingTouch(Touch):
-    """All contacts at one instant, with the loads of bases that give way."""
+class CompliantTouch(Touch):
+    """All contacts at one instant, with the loads of compliant bases."""
 
-    def __init__(self, pair, frictions, place, speed, touching, giving: Giving, rule: str):
-        rigid = {key: () if key in giving else touching[key] for key in INTERFACES}
+    def __init__(
+        self, pair, frictions, place, speed, touching, compliant: CompliantBases, rule: str
+    ):
+        rigid = {key: () if key in compliant else touching[key] for key in INTERFACES}
         super().__init__(pair, frictions, place, speed, rigid)
         self.touching, self.load, self.pressing = touching, np.zeros(6), {}
-        for key, base in giving.items():
+        for key, base in compliant.items():
             view = View(pair, place, speed, key)
             forces = base.forces(view, None)
             self.pressing[key] = max(sum(force for force, _ in forces), 0.0)
             for force, share in forces:
-                row = mixed(view.rows["left"], view.rows["right"], share)
+                row = interpolated(view.rows["left"], view.rows["right"], share)
                 self.load += force * np.array(row.normal)
             left, right = base.held("L"), base.held("R")
             share = 0.5 if rule == "centre" or left == right else float(right)
-            self.contacts[key, HELD] = mixed(view.rows["left"], view.rows["right"], share)
+            self.contacts[key, HELD] = interpolated(view.rows["left"], view.rows["right"], share)
 
     def fall(self, across, up):
-        """Return the accelerations of bodies under what presses them, without constraints."""
+        """Return the accelerations under the loads, without constraints."""
         return super().fall(across, up) + self.inverse * self.load
 
     def solve(self, pattern, motion, turning, hooked=()):
-        """Add what friction does where bodies slip; hold the others there."""
+        """Add friction where bodies slip; hold the others."""
         keys = [key for key in self.pressing if self.touching[key] and turning]
         hooked = list(hooked)
         for key in keys:
             bearing = pattern[INTERFACES.index(key)]
             if not bearing.ends:
-                raise np.linalg.LinAlgError  # what touches is not tried
+                raise np.linalg.LinAlgError  # a touching compliant base always bears
             row = np.array(self.contacts[key, HELD].along)
             if bearing.slip:
                 drag = -bearing.slip * self.frictions[key].kinetic * self.pressing[key]
                 motion = motion + self.inverse * drag * row
             else:
                 hooked.append(key)
-        bare = Pattern(
+        rigid_pattern = Pattern(
             *(Bearing() if key in self.pressing else one
               for key, one in zip(INTERFACES, pattern, strict=True))
         )  # fmt: skip
-        found = super().solve(bare, motion, turning, tuple(hooked))
+        answer = super().solve(rigid_pattern, motion, turning, tuple(hooked))
         for key in keys:
             bearing = pattern[INTERFACES.index(key)]
-            found.normal[key, HELD] = self.pressing[key]
+            answer.normal[key, HELD] = self.pressing[key]
             if bearing.slip:
                 drag = -bearing.slip * self.frictions[key].kinetic * self.pressing[key]
-                found.friction[key] = drag
-        return found
+                answer.friction[key] = drag
+        return answer
 
 
-class GivingMoving(Moving):
-    """Two bodies as they move, of which some stand on bases that give way."""
+class CompliantPair(MovingPair):
+    """Two moving bodies, some on compliant bases."""
 
-    giving: Giving
+    compliant: CompliantBases
     rule: str
 
-    def give(self, giving: Giving, rule: str) -> None:
-        """Stand on bases that give way, under the weights there."""
-        self.giving, self.rule = giving, rule
+    def set_compliant_bases(self, compliant: CompliantBases, rule: str) -> None:
+        """Set the compliant bases, compressed by their weights."""
+        self.compliant, self.rule = compliant, rule
         self.pattern = self.with_points(self.pattern)
 
     def with_points(self, pattern: Pattern, slips=None) -> Pattern:
-        """Return the pattern in which bases that give way bear at the points that are held."""
-        found = []
+        """Return the pattern in which compliant bases bear at their held points."""
+        bearings = []
         for key, bearing in zip(INTERFACES, pattern, strict=True):
-            if key in self.giving:
-                base = self.giving[key]
+            if key in self.compliant:
+                base = self.compliant[key]
                 bears = base.held("L") or base.held("R")
                 slip = (slips or {}).get(key, bearing.slip)
                 bearing = Bearing((HELD,), slip) if bears else Bearing()
-            found.append(bearing)
-        return Pattern(*found)
+            bearings.append(bearing)
+        return Pattern(*bearings)
 
-    def bare(self, pattern: Pattern) -> Pattern:
+    def rigid_pattern(self, pattern: Pattern) -> Pattern:
         """Return the pattern of rigid bases alone."""
         return Pattern(
-            *(Bearing() if key in self.giving else one
+            *(Bearing() if key in self.compliant else one
               for key, one in zip(INTERFACES, pattern, strict=True))
         )  # fmt: skip
 
     def touch(self, place, speed, touching=None):
-        """Return the contacts as they are."""
+        """Return the contacts at a state."""
         touching = touching or self.touching()
-        return GivingTouch(
-            self.pair, self.frictions, place, speed, touching, self.giving, self.rule
+        return CompliantTouch(
+            self.pair, self.frictions, place, speed, touching, self.compliant, self.rule
         )
 
     def power(self, touch, speed) -> float:
@@ -148,39 +150,39 @@ class GivingMoving(Moving):
         return float(touch.load @ speed)
 
     def tidied(self, state):
-        """Return a state without what steps add to it by rounding."""
-        pattern, self.pattern = self.pattern, self.bare(self.pattern)
-        found = super().tidied(state)
+        """Return a state without drift by rounding."""
+        pattern, self.pattern = self.pattern, self.rigid_pattern(self.pattern)
+        corrected = super().tidied(state)
         self.pattern = pattern
-        found[6:12] = self.projected(pattern, found[:6], found[6:12])
-        return found
+        corrected[6:12] = self.projected(pattern, corrected[:6], corrected[6:12])
+        return corrected
 
     def guards(self, t, state):
-        """Return what must stay positive."""
-        found, scale = super().guards(t, state), self.pair.gravity * self.pair.upper.mass
-        for key, base in self.giving.items():
+        """Return the guards."""
+        guards, scale = super().guards(t, state), self.pair.gravity * self.pair.upper.mass
+        for key, base in self.compliant.items():
             view = View(self.pair, state[:6], state[6:12], key)
             for (what, side), value in base.guards(view, None).items():
                 force = what in ("leave", "turn")
-                found["pad", key, (what, side)] = value / (scale if force else base.sunk)
-        return found
+                guards["pad", key, (what, side)] = value / (scale if force else base.sunk)
+        return guards
 
     def take(self, pattern):
-        """Enter a pattern; after an impact what gives way slips as the velocities are."""
-        found = self.with_points(pattern)
-        touch, slips = self.touch(self.place, self.speed, self.touching(found)), {}
-        for key in self.giving:
+        """Enter a pattern; after an impact compliant bases slip as the velocities say."""
+        completed = self.with_points(pattern)
+        touch, slips = self.touch(self.place, self.speed, self.touching(completed)), {}
+        for key in self.compliant:
             i = INTERFACES.index(key)
-            if found[i].ends and not pattern[i].ends:
+            if completed[i].ends and not pattern[i].ends:
                 rate = touch.along(key, HELD, self.speed, False)
                 slow = 1e-13 * (1.0 + float(np.abs(self.speed).max()))
                 slips[key] = int(math.copysign(1, rate)) if abs(rate) > slow else 0
         super().take(self.with_points(pattern, slips))
 
     def hit(self, key, end):
-        """Let an end close by an impact, after which pads may press, or let go, at once."""
+        """Close an end by an impact, after which pads may engage or separate at once."""
         super().hit(key, end)
-        for base in self.giving.values():
+        for base in self.compliant.values():
             for side, now in base.contact.items():
                 if now == "leaving":
                     base.contact[side] = "relaxing"
@@ -192,11 +194,11 @@ class GivingMoving(Moving):
             self.pad(fallen[0][1], *fallen[0][2])
 
     def _rest(self):
-        """Let small bounces end, also such as let a base go and hold it in turn."""
+        """End small bounces, also those that alternately release and hold a base."""
         super()._rest()
         rates = {"ground": self.speed[2], "joint": self.speed[5] - self.speed[2]}
-        (rigid,) = set(INTERFACES) - set(self.giving)
-        (key,) = self.giving
+        (rigid,) = set(INTERFACES) - set(self.compliant)
+        (key,) = self.compliant
         bears = self.pattern[INTERFACES.index(rigid)].ends
         bearing = self.pattern[INTERFACES.index(key)]
         if len(bears) != 1 or abs(rates[rigid]) > self.slow or not bearing.slip:
@@ -211,12 +213,12 @@ class GivingMoving(Moving):
         super()._rest()
 
     def pad(self, key, what, side):
-        """Let an end on a pad or bed leave, land, or change how it presses."""
-        base, before = self.giving[key], self.pattern
+        """Change the contact of an end on a pad or bed."""
+        base, before = self.compliant[key], self.pattern
         event = base.switch(View(self.pair, self.place, self.speed, key), what, side, None)
         if event is None:
             return
-        self.take(self.bare(before))
+        self.take(self.rigid_pattern(before))
         self.note(f"pad {event.lower()}", key, side, before)
         self.settle()
         if self.pattern[INTERFACES.index(key)].ends:
@@ -225,7 +227,7 @@ class GivingMoving(Moving):
             base.wait(view, event, side, None, answer.motion)
 
     def answer(self, name):
-        """Do what an event asks for; tell whether the run goes on."""
+        """Carry out an event; tell whether the run continues."""
         kind, key, end = name
         if kind != "pad":
             return super().answer(name)

@@ -1,4 +1,4 @@
-"""Two bodies in a pattern: their equations, what ends it, and what then becomes of it."""
+"""Two bodies in a pattern: equations, guards and changes of the pattern."""
 
 import numpy as np
 from reference_models.rigid_pair.ground import Piece
@@ -14,34 +14,34 @@ from .contacts import (
     height,
     middle_slips,
     on_top,
-    standing,
     tidied,
+    upright_places,
 )
 from .events import STATE, Event, OffTheTopError, Run, named
 
 GONE = 1e-13
-"""From which value a guard counts; in m/s the speed of what no longer slips."""
+"""Threshold of guards; also the speed below which nothing slips [m/s]."""
 MOST, SPAN = 200, 1e-3
-"""Events within a span, over the slowness of the bodies, after which a run ends by chatter."""
+"""A run ends by chatter after so many events within a span, in units of the bodies' slowness."""
 
 
-class Moving:
-    """Two bodies as they move."""
+class MovingPair:
+    """Two moving bodies."""
 
-    giving: dict = {}  # noqa: RUF012  interfaces that give way: there are none
+    compliant: dict = {}  # noqa: RUF012  interfaces that give way: there are none
 
     def __init__(self, pair, frictions, output, accuracy, longest):
         self.pair, self.frictions, self.accuracy = pair, frictions, accuracy
         self.pattern = STANDING
         self.state = np.zeros(STATE)
-        self.state[:6] = standing(pair)
+        self.state[:6] = upright_places(pair)
         self.now, self.step, self.longest = 0.0, 0.01 * pair.slowness, longest
         self.slow = RESTING / pair.slowness
         self.lost, self.largest = 0.0, 0.0
         self.least = np.full(STATE, 1e-14)  # absolute tolerances
         self.least[14:] *= pair.gravity * pair.weights @ self.state[:6]
-        self.floor: dict = {}  # of gaps that begin at zero but for rounding
-        self.pulled = False  # contacts are held that do not press
+        self.floor: dict = {}  # initial values of gaps that begin at zero up to rounding
+        self.pulled = False  # whether contacts are held although they do not press
         self.run = Run(output, np.full((output.size, 6), np.nan), np.full((output.size, 2), np.nan))
         self.shown = 0
         self.piece: Piece
@@ -64,7 +64,7 @@ class Moving:
         return dict(zip(INTERFACES, (one.ends for one in pattern or self.pattern), strict=True))
 
     def touch(self, place, speed, touching=None) -> Touch:
-        """Return the contacts as they are."""
+        """Return the contacts at a state."""
         touching = touching or self.touching()
         return Touch(self.pair, self.frictions, place, speed, touching)
 
@@ -101,22 +101,22 @@ class Moving:
         return np.concatenate([speed, answer.motion, slips, [work], burnt])
 
     def power(self, touch: Touch, speed) -> float:
-        """Return the power of bases that give way: there are none."""
+        """Return the power of compliant bases, here zero."""
         return 0.0
 
     def tidied(self, state):
-        """Return a state without what steps add to it by rounding."""
+        """Return a state without drift by rounding."""
         state = state.copy()
         state[:6] = tidied(self.pair, self.pattern, state[:6])
         state[6:12] = self.projected(self.pattern, state[:6], state[6:12])
         return state
 
     def projected(self, pattern: Pattern, place, speed):
-        """Stop what a pattern holds, without friction where it slips."""
+        """Project velocities on the constraints of a pattern, without friction where it slips."""
         touch = self.touch(place, speed, self.touching(pattern))
         rows = []
         for key, bearing in zip(INTERFACES, pattern, strict=True):
-            if key not in self.giving:
+            if key not in self.compliant:
                 rows += [touch.contacts[key, end].normal for end in bearing.ends]
             if bearing.ends and bearing.slip == 0:
                 rows.append(touch.contacts[key, bearing.ends[0]].along)
@@ -133,58 +133,58 @@ class Moving:
     # guards -------------------------------------------------------------------------------------
 
     def guards(self, t, state) -> dict:
-        """Return what must stay positive."""
-        pair, found, place = self.pair, {}, state[:6]
+        """Return the guards."""
+        pair, guards, place = self.pair, {}, state[:6]
         touch, answer = self.forces(t, state)
         scale = pair.gravity * pair.upper.mass
         if self.pulled:
-            found["let", "go", ""] = -1.0 if self._followed(t, state) else 1.0
+            guards["let", "go", ""] = -1.0 if self._next_outcome(t, state) else 1.0
         for name, push in answer.normal.items():
-            if not self.pulled and name[0] not in self.giving:
-                found["press", *name] = push / scale
+            if not self.pulled and name[0] not in self.compliant:
+                guards["press", *name] = push / scale
         rates = self.slip_rates(touch, state)
         for key, bearing, rate in zip(INTERFACES, self.pattern, rates, strict=True):
             if bearing.slip:
-                found["slip", key, ""] = bearing.slip * rate
+                guards["slip", key, ""] = bearing.slip * rate
             elif bearing.ends and not self.pulled and not self.frictions[key].holds:
                 most = self.frictions[key].static * answer.pressed(key)
                 for end, way in SIGN.items():
-                    found["grip", key, end] = (most - way * answer.friction[key]) / scale
-        self._add_gaps(found, place)
-        for name, value in found.items():
+                    guards["grip", key, end] = (most - way * answer.friction[key]) / scale
+        self._add_gaps(guards, place)
+        for name, value in guards.items():
             if name[0] == "gap":
-                found[name] -= self.floor.setdefault(name, max(-1e-9, min(value, 0.0)))
+                guards[name] -= self.floor.setdefault(name, max(-1e-9, min(value, 0.0)))
         for name, angle, (left, right) in zip(
             ("lower", "upper"), (place[2], place[5]), pair.limits, strict=True
         ):
-            found["overturn", name, "left"] = angle - left
-            found["overturn", name, "right"] = right - angle
-        return found
+            guards["overturn", name, "left"] = angle - left
+            guards["overturn", name, "right"] = right - angle
+        return guards
 
-    def _add_gaps(self, found, place):
-        """Add how far ends are from their surfaces, and those of the upper base from the edges."""
+    def _add_gaps(self, guards, place):
+        """Add gaps between ends and surfaces, and distances of the upper ends from the edges."""
         angles = {"ground": place[2], "joint": place[5] - place[2]}
         for key, bearing in zip(INTERFACES, self.pattern, strict=True):
-            if len(bearing.ends) == 1 and key not in self.giving:
+            if len(bearing.ends) == 1 and key not in self.compliant:
                 (end,) = bearing.ends
                 other = ENDS[end == "left"]
-                found["gap", key, other] = SIGN[end] * angles[key]
+                guards["gap", key, other] = SIGN[end] * angles[key]
         half = self.pair.lower.half_width
         for end in ENDS:
-            if not self.pattern.ground.ends and "ground" not in self.giving:
-                found["gap", "ground", end] = height(self.pair, place, end) / half
+            if not self.pattern.ground.ends and "ground" not in self.compliant:
+                guards["gap", "ground", end] = height(self.pair, place, end) / half
             if self.pattern.joint.ends and not self.pattern.joint.slip:
                 continue
             along, above = on_top(self.pair, place, end)
-            if not self.pattern.joint.ends and "joint" not in self.giving:
-                found["gap", "joint", end] = above / half
-            if not self.giving:
-                found["off", "joint", end] = 1.0 - abs(along) / half + 1e-9
+            if not self.pattern.joint.ends and "joint" not in self.compliant:
+                guards["gap", "joint", end] = above / half
+            if not self.compliant:
+                guards["off", "joint", end] = 1.0 - abs(along) / half + 1e-9
 
     # changes ------------------------------------------------------------------------------------
 
     def note(self, kind, where, end, before, outcome: Outcome | None = None, admissible=1):
-        """Keep an event."""
+        """Store an event."""
         lost, others = 0.0, ()
         if outcome is not None:
             admissible, lost, others = outcome.admissible, outcome.lost, outcome.others
@@ -197,8 +197,8 @@ class Moving:
         self.pattern, self.floor, self.pulled = pattern, {}, False
         self.state = self.tidied(self.state)
 
-    def _followed(self, t, state, ended: Ended | None = None) -> Outcome | None:
-        """Return the pattern that the forces ask for."""
+    def _next_outcome(self, t, state, ended: Ended | None = None) -> Outcome | None:
+        """Return the pattern consistent with the forces."""
         before, moving = self.pattern, {}
         touch = self.touch(state[:6], state[6:12])
         for key, bearing in zip(INTERFACES, before, strict=True):
@@ -209,38 +209,38 @@ class Moving:
         return follow(touch, before, moving, self.piece.across(t), self.piece.up(t), ended)
 
     def settle(self, ended: Ended | None = None):
-        """Let contacts open, slip and hold as the forces demand."""
-        found = self._followed(self.now, self.state, ended)
-        if found is None:
-            # no pattern does: hold what touches, though it does not press
+        """Open, slip and hold contacts as the forces require."""
+        outcome = self._next_outcome(self.now, self.state, ended)
+        if outcome is None:
+            # no pattern is admissible: hold touching contacts, though they do not press
             if not self.pulled:
                 self.pulled = True
                 key, end = ("", "") if ended is None else ended
                 self.note("held", key, end, self.pattern, admissible=0)
             return
         before, pulled = self.pattern, self.pulled
-        if found.pattern == before and not pulled and found.admissible == 1:
+        if outcome.pattern == before and not pulled and outcome.admissible == 1:
             return
-        self.take(found.pattern)
-        self.note(*named(before, found.pattern), before, found)
+        self.take(outcome.pattern)
+        self.note(*named(before, outcome.pattern), before, outcome)
 
     def stop_slip(self, key):
-        """Bring a slip to its end, and let it stick or turn round."""
+        """End a slip: it sticks or reverses."""
         before = self.pattern
         bearing = before[INTERFACES.index(key)]
         held = before._replace(**{key: bearing._replace(slip=0)})
         self.state[6:12] = self.projected(held, self.place, self.speed)
         self.settle()
         if self.pattern == before:
-            msg = f"a slip neither ends nor turns round, at {self.now} s"
+            msg = f"a slip neither ends nor reverses at {self.now} s"
             raise ArithmeticError(msg)
 
     def hit(self, key, end):
-        """Let an end close by an impact."""
+        """Close an end by an impact."""
         before = self.pattern
         touching = self.touching()
-        # what gives way has no part in an impact
-        touching = {one: () if one in self.giving else touching[one] for one in INTERFACES}
+        # compliant bases take no part in impacts
+        touching = {one: () if one in self.compliant else touching[one] for one in INTERFACES}
         if touching[key]:
             touching[key] = ENDS
         else:
@@ -254,7 +254,7 @@ class Moving:
         high = self.pair.gravity * self.pair.weights @ self.place
         self.state[:6] = tidied(self.pair, closed, self.place)
         if not before[INTERFACES.index(key)].ends and len(touching[key]) == 2:
-            # laid down from hardly any height
+            # lowered from a negligible height
             self.lost += high - self.pair.gravity * self.pair.weights @ self.place
         outcome = strike(self.pair, self.frictions, self.place, self.speed, touching)
         self.lost += outcome.lost
@@ -265,12 +265,12 @@ class Moving:
         self.settle()
 
     def _rest(self):
-        """Close contacts that reopen so slowly that impacts would have no end."""
+        """Close contacts that reopen so slowly that impacts would be endless."""
         tiny = []
         angles = {"ground": self.place[2], "joint": self.place[5] - self.place[2]}
         rates = {"ground": self.speed[2], "joint": self.speed[5] - self.speed[2]}
         for key, bearing in zip(INTERFACES, self.pattern, strict=True):
-            flat = abs(angles[key]) < 1e-15 and key not in self.giving
+            flat = abs(angles[key]) < 1e-15 and key not in self.compliant
             if len(bearing.ends) == 1 and abs(rates[key]) < self.slow and flat:
                 tiny.append(key)
         across, up = self.piece.across(self.now), self.piece.up(self.now)
@@ -280,24 +280,24 @@ class Moving:
                 return
             closed = {key: before[INTERFACES.index(key)]._replace(ends=ENDS) for key in some}
             pattern = before._replace(**closed)
-            # of many small bounces normal impulses and friction add up to these
+            # the sum of normal impulses and friction of many small bounces
             touch = self.touch(self.place, self.speed, self.touching(pattern))
             speed = touch.solve(pattern, self.speed, turning=False).motion
             touch = self.touch(self.place, speed, self.touching(pattern))
             moving = dict(zip(INTERFACES, (one.slip for one in pattern), strict=True))
-            found = follow(touch, pattern, moving, across, up)
-            if found is None or self.touching(found.pattern) != self.touching(pattern):
+            outcome = follow(touch, pattern, moving, across, up)
+            if outcome is None or self.touching(outcome.pattern) != self.touching(pattern):
                 continue
             masses = self.pair.masses
             lost = 0.5 * float(masses @ self.speed**2 - masses @ speed**2)
             self.state[6:12] = speed
             self.lost += lost
             self.take(pattern)
-            self.note("rest", "+".join(some), "", before, found._replace(lost=lost))
+            self.note("rest", "+".join(some), "", before, outcome._replace(lost=lost))
             return
 
     def answer(self, name) -> bool:
-        """Do what an event asks for; tell whether the run goes on."""
+        """Carry out an event; tell whether the run continues."""
         kind, key, end = name
         if kind == "overturn":
             self.run.overturned = True
@@ -318,7 +318,7 @@ class Moving:
         return not self.chatters()
 
     def chatters(self) -> bool:
-        """Tell whether events follow one another without end, in smaller and smaller motions."""
+        """Tell whether events are endless, in ever smaller motions."""
         events = self.run.events
         if len(events) < MOST or self.now - events[-MOST].time > SPAN * self.pair.slowness:
             return False

@@ -1,4 +1,4 @@
-"""A run that goes on where another ended is the one run that both make."""
+"""A run and its continuation equal one uninterrupted run."""
 
 import json
 import math
@@ -29,7 +29,7 @@ STEP = 0.01
 
 
 def record():
-    """Smooth noise, horizontal and vertical, that uplifts and drops every scene."""
+    """Return smooth noise, horizontal and vertical, that uplifts and drops every scene."""
     rng = np.random.default_rng(11)
     across, upwards = (
         np.convolve(rng.normal(size=800), np.hanning(25) / 12.0, "same") for _ in range(2)
@@ -44,8 +44,8 @@ MOTION = record()
 
 
 @cache
-def whole_of(name):
-    """Run a scene without a stop: once, and not before a test asks."""
+def unbroken_run(name):
+    """Run a scene without interruption, once and on demand."""
     return SCENES[name].simulate(MOTION, accuracy="reference")
 
 
@@ -54,23 +54,23 @@ def whole_of(name):
     "at", [0.01, 1.37, *(pytest.param(at, marks=pytest.mark.long) for at in (3.0, 5.55))]
 )
 def test_a_record_split_in_two_gives_the_same_response(name, at):
-    system, whole = SCENES[name], whole_of(name)
-    assert not bool(whole.overturned)
+    system, unbroken = SCENES[name], unbroken_run(name)
+    assert not bool(unbroken.overturned)
     first = system.simulate(MOTION.window(end=f"{at} s"), accuracy="reference")
     second = system.simulate(MOTION.window(f"{at} s"), initial=first, accuracy="reference")
     place = round(at / STEP)
     for variable in ("rotation", "vertical_displacement", "horizontal_displacement"):
-        scale = float(np.abs(whole[variable]).max())
+        scale = float(np.abs(unbroken[variable]).max())
         both = np.concatenate([first[variable].values, second[variable].values[1:]])
-        assert both == pytest.approx(whole[variable].values, abs=2e-7 * scale)
-        # no jump where one ends and the other begins
+        assert both == pytest.approx(unbroken[variable].values, abs=2e-7 * scale)
+        # no jump between the runs
         assert second[variable].values[0] == first[variable].values[-1]
     events = np.concatenate([first.event_time, second.event_time + place * STEP])
-    assert events == pytest.approx(whole.event_time.values, abs=1e-7)
-    states = [name for name in whole if name.endswith(("contact_state_before", "state_after"))]
+    assert events == pytest.approx(unbroken.event_time.values, abs=1e-7)
+    states = [name for name in unbroken if name.endswith(("contact_state_before", "state_after"))]
     assert len(states) in (2, 4)  # of the block, and of a cap
     for name in states:
-        assert [*first[name].values, *second[name].values] == whole[name].values.tolist()
+        assert [*first[name].values, *second[name].values] == unbroken[name].values.tolist()
     assert float(second.energy_residual) <= 1e-8
 
 
@@ -98,7 +98,7 @@ def test_a_continued_run_can_be_certified():
     first = SCENES["pads"].simulate(MOTION.window(end="3 s"))
     run = SCENES["pads"].simulate(MOTION.window("3 s"), initial=first, certify=True)
     assert bool(run.verdict_converged)
-    # where it begins is no start that could be scaled
+    # the start of a continuation cannot be scaled
     free = SCENES["pads"].simulate(initial=first, duration="1 s", certify=True)
     assert math.isnan(free.verdict_margin)
 
@@ -115,12 +115,12 @@ def test_invalid_continuations_are_refused():
     with pytest.raises(AssemblyError, match="holds no end of a run"):
         system.simulate(MOTION, initial=MOTION.to_dataset())
     for name in ("end_state", "system_json"):
-        part = whole_of("pads").copy()
+        part = unbroken_run("pads").copy()
         del part.attrs[name]
         with pytest.raises(AssemblyError, match="holds no end of a run"):
             system.simulate(MOTION, initial=part)
     with pytest.raises(AssemblyError, match="end of a run of another system"):
-        system.simulate(MOTION, initial=whole_of("soil"))
+        system.simulate(MOTION, initial=unbroken_run("soil"))
     fallen = system.simulate(MOTION.scaled(20.0))
     assert bool(fallen.overturned)
     with pytest.raises(AssemblyError, match="end of a run that overturned"):
@@ -130,20 +130,20 @@ def test_invalid_continuations_are_refused():
 
 
 def test_run_that_returned_from_beyond_overturning_angle_continues():
-    """As the one run that both make, asked to go on; one that ends beyond it, or flat, does not."""
+    """With overturning="continue" as one run; runs that overturned or fell flat are refused."""
     system = rf.System(rf.Block(width="1 m", height="5 m", mass="10 t"))
     pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
-    asked = {"overturning": "continue", "outputs": None, "accuracy": "reference"}
-    first = system.simulate(pulse.scaled(3.68), duration="6 s", **asked)
-    whole = system.simulate(pulse.scaled(3.68), duration="9 s", **asked)
+    arguments = {"overturning": "continue", "outputs": None, "accuracy": "reference"}
+    first = system.simulate(pulse.scaled(3.68), duration="6 s", **arguments)
+    unbroken = system.simulate(pulse.scaled(3.68), duration="9 s", **arguments)
     assert bool(first.overturned)  # the angle was passed
-    rest = system.simulate(initial=first, duration="3 s", **asked)
-    ends = [json.loads(run.end_state)["state"] for run in (whole, rest)]
+    rest = system.simulate(initial=first, duration="3 s", **arguments)
+    ends = [json.loads(run.end_state)["state"] for run in (unbroken, rest)]
     np.testing.assert_allclose(*ends, atol=1e-9)
     for scale, duration in ((3.74, "9 s"), (3.74, "3 s"), (3.68, "1.5 s")):
-        run = system.simulate(pulse.scaled(scale), duration=duration, **asked)
+        run = system.simulate(pulse.scaled(scale), duration=duration, **arguments)
         with pytest.raises(AssemblyError, match="end of a run that overturned"):
-            system.simulate(initial=run, duration="3 s", **asked)
+            system.simulate(initial=run, duration="3 s", **arguments)
 
 
 def test_units_do_not_matter():
@@ -155,7 +155,7 @@ def test_units_do_not_matter():
             rf.TwoSpringSupport(frequency_ratio=20, damping_ratio="10 %"),
         )
     run = other.simulate(MOTION, accuracy="reference")
-    assert run.rotation.values == pytest.approx(whole_of("pads").rotation.values, abs=1e-9)
+    assert run.rotation.values == pytest.approx(unbroken_run("pads").rotation.values, abs=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from reference_models.monoliths import rigid_block, two_spring
 
-# tests of a reference model, which changes seldom
+# tests of a reference model that rarely changes
 pytestmark = [pytest.mark.reference_models, pytest.mark.long]
 
 G = 9.80665
 RULES = ("contact-state", "leading-corner", "centre")
 LOOSE = {"rtol": 1e-9, "atol": 1e-11, "steps_per_period": 10.0}
-"""For what hangs on no tolerance, or on far less."""
+"""Options for tests that need no tight tolerance."""
 
 
 def block(radius, slenderness):
@@ -37,14 +37,14 @@ GOLDEN = {**block(5.0, 4.0), "frequency_ratio": 20.0, "damping_ratio": 0.1}
 
 
 def bed(frequency_ratio, radius=5.0, gravity=G):
-    """Spring of one corner, and how far it gives under half the weight."""
+    """Return the spring of one corner, and its compression under half the weight."""
     omega = math.sqrt(0.75 * gravity / radius)
     stiffness = (frequency_ratio * omega) ** 2 / 2.0
     return omega, stiffness, gravity / (2.0 * stiffness)
 
 
 def resting_on_one_corner(alpha, frequency_ratio, radius=5.0, slenderness=4.0):
-    """Displacement at which the right corner alone carries the weight."""
+    """Return the displacement at which the right corner alone carries the weight."""
     _, stiffness, delta = bed(frequency_ratio, radius)
     size = block(radius, slenderness)
     below = delta - G / stiffness
@@ -173,14 +173,14 @@ def test_restarting_at_knots_does_not_change_result():
     step, record = noisy_record(count=61)
     common = {**GOLDEN, "duration": 2.0, "sample_times": np.linspace(0.0, 2.0, 21)}
     grid = step * np.arange(record.size)
-    given = {"time_step": step, "acceleration": record}
+    ground = {"time_step": step, "acceleration": record}
 
     def interpolated(t):
         return float(np.interp(t, grid, record)) if t <= grid[-1] else 0.0
 
     runs = [
-        two_spring.simulate(**common, **given),
-        two_spring.simulate(**common, **given, restart_every_knot=False),
+        two_spring.simulate(**common, **ground),
+        two_spring.simulate(**common, **ground, restart_every_knot=False),
         two_spring.simulate(**common, acceleration=interpolated, breakpoints=grid),
     ]
     assert runs[0].peak_rotation > 0.01
@@ -282,7 +282,7 @@ def test_landing_scales_the_speed_of_the_corner():
         alpha = event.before[0]
         arm = h * math.sin(alpha) + sign * b * math.cos(alpha)
         # re-pinning to full contact first: the momentum about the middle of the base
-        base = sign * b  # the other corner was the one in contact
+        base = sign * b  # only the other corner was in contact
         old = h * math.cos(alpha) + base * math.sin(alpha)
         new = h * math.cos(alpha)
         inertia = 25.0 / 3.0
@@ -308,7 +308,7 @@ def test_re_engagement_does_not_chatter():
 
 @pytest.mark.parametrize("eps", [1.0, None, 0.5])
 def test_hard_springs_converge_to_greatest_restitution_of_rigid_block(eps):
-    """An impulse at the new corner has no moment about it: the rate is halted by eps_max only."""
+    """An impulse at the new corner has no moment about it: only eps_max reduces the rate."""
     start = 0.5 * math.atan(0.25)
     times = np.linspace(0.0, 2.4, 1201)
     rigid = rigid_block.simulate(
@@ -440,7 +440,7 @@ def test_thresholds_of_overturning_without_impact(cycles, ratio, threshold):
     assert above.impact_count == 0
     assert above.peak_rotation == pytest.approx(0.5 * math.pi)
     assert below.impact_count > 0
-    # a whole sine carries the block past theta and back: to reach theta is not to overturn
+    # a whole sine carries the block past theta and back: reaching theta is not overturning
     assert below.overturned == (cycles == 1.0)
 
 

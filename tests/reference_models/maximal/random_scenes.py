@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from .layout import LIMIT, RULES
-from .motions import RECORDS, have_records
+from .motions import RECORDS, records_available
 from .rest import NoRestError, rest_of
 from .scene import GRAVITY, KINDS, Scene, parameters
 from .starting import rest_on_slope
@@ -26,8 +26,8 @@ def draw(kind: str, seed: int, number: int, variant: str = "plain") -> Scene:
         One of `KINDS`.
     seed, number : int
     variant : str
-        One of `VARIANTS`: as it is, with the block's centre of mass moved to the side, or on an
-        inclined base, half of these with the centre of mass to the side too.
+        One of `VARIANTS`: unchanged, with an eccentric centre of mass, or on an inclined base, half
+        of these eccentric too.
 
     Returns
     -------
@@ -36,7 +36,7 @@ def draw(kind: str, seed: int, number: int, variant: str = "plain") -> Scene:
     rng = np.random.default_rng([seed, number, KINDS.index(kind)])
     while True:
         scene = _body(kind, rng)
-        if _stands(scene):
+        if _is_stable(scene):
             break
     starts = rng.random() < 0.2
     scene = replace(
@@ -57,21 +57,23 @@ def draw(kind: str, seed: int, number: int, variant: str = "plain") -> Scene:
         return scene
     others = np.random.default_rng([seed, number, KINDS.index(kind), VARIANTS.index(variant)])
     if variant == "eccentric":
-        return _beside(scene, others)
-    scene = replace(scene, small=False)  # the reference model has the whole kinematics on slopes
-    return _inclined(_beside(scene, others) if others.random() < 0.5 else scene, others)
+        return _with_eccentricity(scene, others)
+    scene = replace(scene, small=False)  # the reference model has exact kinematics on slopes
+    return _with_inclination(
+        _with_eccentricity(scene, others) if others.random() < 0.5 else scene, others
+    )
 
 
-def _inclined(scene: Scene, rng: np.random.Generator) -> Scene:
-    """Incline the base as far as the body rests on it with all of its bases pressed."""
+def _with_inclination(scene: Scene, rng: np.random.Generator) -> Scene:
+    """Incline the base while the body still rests with all of its bases in full contact."""
     side = 1.0 if rng.random() < 0.5 else -1.0
     share = float(rng.uniform(0.02, 0.6))
     told = bool(rng.random() < 0.15)
     level = replace(scene, inclination=0.0)
     while True:
-        given = replace(level, inclination=side * share * min(level.limits()), told=told)
-        if scene.kind == "rigid" or _rests_on_slope(given):
-            return given
+        inclined = replace(level, inclination=side * share * min(level.limits()), told=told)
+        if scene.kind == "rigid" or _rests_on_slope(inclined):
+            return inclined
         share *= 0.7
         if share < LEAST_SHARE:  # an end of the base is raised by the eccentricity alone
             level, share = replace(level, eccentricity=0.0), 100.0 * share
@@ -86,16 +88,16 @@ def _rests_on_slope(scene: Scene) -> bool:
     return abs(rest.lower_angle + rest.angle) < LARGEST_LEAN * p[LIMIT]
 
 
-def _beside(scene: Scene, rng: np.random.Generator) -> Scene:
-    """Move the centre of mass as far as the supports carry it."""
+def _with_eccentricity(scene: Scene, rng: np.random.Generator) -> Scene:
+    """Move the centre of mass sideways while the supports still carry it."""
     side = 1.0 if rng.random() < 0.5 else -1.0
     share = float(rng.uniform(0.02, 0.8 if scene.kind == "rigid" else 0.6))
-    # a scene that starts at rest may start upright just as well
+    # scenes without initial rotation sometimes start upright explicitly
     told = bool(rng.random() < 0.15)
     while True:
-        given = replace(scene, eccentricity=side * share * scene.half_width, told=told)
-        if scene.kind == "rigid" or _leans_little(given):
-            return given
+        eccentric = replace(scene, eccentricity=side * share * scene.half_width, told=told)
+        if scene.kind == "rigid" or _leans_little(eccentric):
+            return eccentric
         share *= 0.7
 
 
@@ -109,7 +111,7 @@ def _leans_little(scene: Scene) -> bool:
 
 
 def draw_log(rng: np.random.Generator, low: float, high: float) -> float:
-    """Draw a number whose logarithm is spread evenly."""
+    """Draw a number with a uniformly distributed logarithm."""
     return float(np.exp(rng.uniform(math.log(low), math.log(high))))
 
 
@@ -147,8 +149,8 @@ def _body(kind: str, rng: np.random.Generator) -> Scene:
     return replace(scene, soil_stiffness=1.5 * firmness * mass * GRAVITY * level / b**3)
 
 
-def _stands(scene: Scene) -> bool:
-    """Tell whether soil and pads in a row hold the block, with something to spare."""
+def _is_stable(scene: Scene) -> bool:
+    """Tell whether soil and pads in series hold the block, with a margin."""
     soft = 0.0
     if scene.kind in ("pads", "cascade", "coupled"):
         b, h = scene.half_width, scene.half_height
@@ -163,7 +165,7 @@ def _stands(scene: Scene) -> bool:
 def draw_motion(
     threshold: float, frequency: float, rng: np.random.Generator, still: bool
 ) -> dict[str, Any]:
-    """Draw a motion for bodies of a rocking frequency that uplift at a threshold."""
+    """Draw a motion from the uplift acceleration and the rocking frequency of the bodies."""
     vertical = float(rng.uniform(0.05, 0.7)) * GRAVITY if rng.random() < 0.5 else 0.0
     sign = 1.0 if rng.random() < 0.5 else -1.0
     kind = rng.random()
@@ -185,7 +187,7 @@ def draw_motion(
             "form": form, "peak": peak, "vertical": vertical, "scale": scale, "cycles": cycles,
         }  # fmt: skip
     size = sign * threshold * draw_log(rng, 1.0, 3.5)
-    if kind < 0.6 and have_records():
+    if kind < 0.6 and records_available():
         return {
             "form": "record", "which": which, "length": length, "lead": lead, "peak": size,
             "vertical": vertical,

@@ -1,10 +1,10 @@
-"""Run a scene by the reference model and by the package's chain of bodies."""
+"""Runs a scene by the reference model and by rockframe's chain of bodies."""
 
 import math
 from dataclasses import dataclass
 
 import numpy as np
-from reference_models.maximal.motions import both
+from reference_models.maximal.motions import build_motions
 
 from rockframe.dynamics.base_numbers import bed_numbers, pads_numbers
 from rockframe.dynamics.body import BY_CONTACT, CENTRE, LEADING_CORNER
@@ -29,11 +29,11 @@ RULES = {"contact-state": BY_CONTACT, "leading-corner": LEADING_CORNER, "centre"
 
 @dataclass(frozen=True)
 class Compared:
-    """Both runs of a scene, up to the end of the shorter one; the package's also to its own end."""
+    """Both runs of a scene, the reference's up to its own end."""
 
     reference: History
     run: Trajectory
-    rotation: np.ndarray  # of all bodies, by the package
+    rotation: np.ndarray  # of all bodies, from the package
 
     @property
     def difference(self) -> float:
@@ -44,17 +44,17 @@ class Compared:
 
 
 def model_of(scene: Scene) -> ContactModel:
-    """Return the package's model of a scene whose bodies stand upright at rest."""
+    """Return the package's model of a scene, upright at rest."""
     links, measure, carried = [], scene.bodies[0].mass, 0.0
     below = [*(one.eccentricity for one in scene.bodies[1:]), 0.0]
-    for given, base, lower in zip(scene.bodies, scene.bases, below, strict=True):
-        carried += given.mass
-        beside = given.offset + given.eccentricity - lower
+    for body_data, base, lower in zip(scene.bodies, scene.bases, below, strict=True):
+        carried += body_data.mass
+        offset = body_data.offset + body_data.eccentricity - lower
         body = rigid_body(
-            left=given.half_width + given.eccentricity,
-            right=given.half_width - given.eccentricity,
-            height=given.height,
-            inertia=given.inertia / measure,
+            left=body_data.half_width + body_data.eccentricity,
+            right=body_data.half_width - body_data.eccentricity,
+            height=body_data.height,
+            inertia=body_data.inertia / measure,
             restraint=RULES[scene.rule],
             small_rotation=False,
             gravity=GRAVITY,
@@ -65,21 +65,21 @@ def model_of(scene: Scene) -> ContactModel:
             "load": carried / measure,
         }
         if isinstance(base, Bed):
-            under = bed_numbers(body, by_pressure=False, **numbers)
+            base_law = bed_numbers(body, by_pressure=False, **numbers)
         else:
-            both_sides = base.restitution
-            eps = both_sides if isinstance(both_sides, tuple) else (both_sides, both_sides)
-            under = pads_numbers(body, restitution=eps, **numbers)
-        links.append(ChainBody(body, under, given.mass / measure, given.top, beside))
+            restitution = base.restitution
+            eps = restitution if isinstance(restitution, tuple) else (restitution, restitution)
+            base_law = pads_numbers(body, restitution=eps, **numbers)
+        links.append(ChainBody(body, base_law, body_data.mass / measure, body_data.top, offset))
     ties = []
     for tie in scene.ties:
-        firm, viscous = tie.stiffness / measure, tie.damping / measure
+        stiffness, viscous = tie.stiffness / measure, tie.damping / measure
         law = LawOfTie(
-            firm, viscous, tie.slack or 0.0, math.inf, 1.0, 1.0 if tie.slack is None else 0.0
+            stiffness, viscous, tie.slack or 0.0, math.inf, 1.0, 1.0 if tie.slack is None else 0.0
         )
         to = GROUND if tie.to is None else tie.to
         to_point = (0.0, 0.0) if tie.to is None else tie.to_point
-        numbers = LinkNumbers(law, firm, viscous, (1e-3,))
+        numbers = LinkNumbers(law, stiffness, viscous, (1e-3,))
         ties.append(ChainLink(tie.on, tie.on_point, to, to_point, apart(scene, tie), numbers))
     return chain_model(links, measure, ties=ties)
 
@@ -102,10 +102,10 @@ def rotations(model: ContactModel, run: Trajectory) -> np.ndarray:
     return np.column_stack([shown[name] for name in names])
 
 
-def compared(scene: Scene, accuracy: str = "reference") -> Compared:
-    """Run a scene by both; its motion is one for `maximal.motions.both`."""
-    given, excitation = both(scene.motion)
+def compare_scene(scene: Scene, accuracy: str = "reference") -> Compared:
+    """Run a scene by both programs; its motion is one for `maximal.motions.build_motions`."""
+    motion, excitation = build_motions(scene.motion)
     reference = simulate(scene, excitation)
     step = float(reference.time[1] - reference.time[0])
-    run = run_chain(scene, None if given is None else given.si, accuracy, step)
+    run = run_chain(scene, None if motion is None else motion.si, accuracy, step)
     return Compared(reference, run, rotations(model_of(scene), run))

@@ -20,14 +20,14 @@ FREE = 2.0
 
 
 class Scene(NamedTuple):
-    """A pair and a motion, as a dictionary whose ``form`` says of what kind it is."""
+    """A pair and a motion, a dictionary with the kind of motion under ``form``."""
 
     pair: Pair
     motion: dict[str, Any]
 
 
-def have_records() -> bool:
-    """Tell whether the recorded motions are there."""
+def records_available() -> bool:
+    """Tell whether the recorded motions are available."""
     return all((_folder() / name).is_file() for name in RECORDS)
 
 
@@ -37,28 +37,28 @@ def _folder() -> Path:
 
 @cache
 def _samples(name: str) -> tuple[float, np.ndarray]:
-    """Read step and values of a file of four lines of heading, in any unit of acceleration."""
+    """Read step and values of a file with four header lines, in any unit of acceleration."""
     lines = (_folder() / name).read_text(encoding="latin-1").splitlines()
     for i, line in enumerate(lines[:6]):
         step = re.search(r"DT\s*=\s*([0-9.]+)", line) or re.search(r"([0-9]*\.[0-9]+)\s+NPTS", line)
         if step or re.fullmatch(r"\s*[0-9]+\s+[0-9.]+\s*(NPTS, DT)?\s*", line):
-            given = float(step.group(1)) if step else float(line.split()[1])
+            time_step = float(step.group(1)) if step else float(line.split()[1])
             values = " ".join(lines[i + 1 :]).split()
-            return given, np.array([float(one) for one in values])
-    msg = f"no step is told in {name}"
+            return time_step, np.array([float(one) for one in values])
+    msg = f"{name} states no time step"
     raise ValueError(msg)
 
 
 def log_between(rng: np.random.Generator, low: float, high: float) -> float:
-    """Draw a number that is as likely within any factor."""
+    """Draw a number with a uniformly distributed logarithm."""
     return math.exp(rng.uniform(math.log(low), math.log(high)))
 
 
 def draw(rng: np.random.Generator) -> Scene:
-    """Draw bodies that stand on one another, and a motion that may lift them.
+    """Draw two stacked bodies and a motion that may uplift them.
 
-    Widths are from 0.5 to 2 m below and a share of that above; slenderness is from 0.8 to 6. Of
-    one in three a body is not uniform, or not symmetric.
+    Widths are 0.5 to 2 m below and a share of that above; slenderness is 0.8 to 6. In one scene
+    of three a body is not uniform or not symmetric.
     """
     while True:
         pair = draw_pair(rng, (0.5, 2.0), (0.8, 6.0), (0.4, 1.0), 0.8)
@@ -77,7 +77,7 @@ def draw_pair(
     shares: tuple[float, float],
     most_aside: float,
 ) -> Pair:
-    """Draw a lower body of some width and an upper one of a share of that, and its offset."""
+    """Draw a lower body of a given width, a narrower upper one, and its offset."""
     bodies, width = [], float(rng.uniform(*widths))
     for _ in range(2):
         height = width * log_between(rng, *slenderness)
@@ -97,13 +97,13 @@ def draw_pair(
 
 
 def _motion(rng: np.random.Generator, pair: Pair) -> dict[str, Any]:
-    """Draw a motion by the acceleration that would tip the bodies, and by how fast they rock."""
+    """Draw a motion scaled by the tipping acceleration and the rocking frequency of the bodies."""
     (_, one), (_, two) = pair.limits
     peak = GRAVITY * math.tan(min(one, two)) * log_between(rng, 0.9, 5.0)
     vertical = 0.5 * peak if rng.random() < 0.3 else 0.0
     vertical = min(vertical, 0.7 * GRAVITY) * float(rng.uniform(0.3, 1.0))
-    drawn = rng.random()
-    form = "sine" if drawn < 0.4 else "cosine" if drawn < 0.7 else "record"
+    choice = rng.random()
+    form = "sine" if choice < 0.4 else "cosine" if choice < 0.7 else "record"
     made: dict[str, Any] = {"form": form, "peak": peak, "vertical": vertical}
     if form == "record":
         return made | {

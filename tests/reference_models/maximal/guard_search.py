@@ -1,4 +1,4 @@
-"""Looking at the guards inside a step, and finding the first that falls through zero."""
+"""Search inside a step for the first guard that falls through zero."""
 
 from .compiling import compiled, within
 from .excitation import ground
@@ -16,9 +16,9 @@ def sample_guards(
 ):
     """Fill in the guards at equally spaced times of a step.
 
-    Between the ends places are the quintics through places, rates and accelerations of both,
-    rates the cubics through rates and accelerations.
-    That only tells where to look: what is found there is looked at again with steps of their own.
+    In between, positions are quintics through positions, rates and accelerations of both ends,
+    rates are cubics through rates and accelerations. They only locate candidates, which are
+    then evaluated by separate steps.
     """
     for m in range(SAMPLES + 1):
         u = m / SAMPLES
@@ -59,8 +59,8 @@ def earliest(
     Returns
     -------
     tuple
-        Guard and time from the start of the step; -1 if there is none; -2 and a guard if that guard
-        started at zero and is negative where it is looked at first.
+        Guard and time from the start of the step; -1 for none; -2 and a guard if that guard starts
+        at zero and is negative at its first sample.
     """
     best, when = -1, 2.0 * h
     for k in range(GUARDS):
@@ -101,7 +101,7 @@ def earliest(
 
 @compiled
 def dip(samples, k, m, start):
-    """Tell between which samples a guard may dip below zero though both are positive."""
+    """Return the samples between which a positive guard may dip below zero."""
     if start == 0 and m == 0:
         g0, g1, g2 = samples[0, k], samples[1, k], samples[2, k]
         slope, bend = 0.5 * (-3.0 * g0 + 4.0 * g1 - g2), g2 - 2.0 * g1 + g0
@@ -131,8 +131,8 @@ def _search(
 ):  # fmt: skip
     """Find the length of the step at whose end a guard falls through zero.
 
-    If `hunt` is given the guard is positive at both ends of the interval: finer and finer rows of
-    points look for a value below `tiny` first. False position and bisection then find the root.
+    With `hunt` the guard is positive at both ends of the interval: ever finer rows of points search
+    for a value below -`tiny` first. False position and bisection then find the root.
 
     Returns
     -------
@@ -166,7 +166,7 @@ def _search(
             x = a + (b - a) * m / POINTS
         elif phase == 1:
             if value <= 0.0:
-                # it fell before that already
+                # it had fallen before
                 if low == 0.0:
                     return 0.0
                 low, high = max(0.0, 2.0 * low - high), low

@@ -1,4 +1,4 @@
-"""A sweep that is kept in a folder, and processes that run it; for what may go wrong with them."""
+"""A sweep stored in a folder, and processes that run it, for tests of interruptions and faults."""
 
 import subprocess
 import sys
@@ -20,15 +20,15 @@ CASES = 120
 CHILD = """
 import sys
 sys.path.insert(0, {tests!r})
-from kept_sweep import note_cases, the_sweep
+from stored_sweep import note_cases, run_sweep
 {first}
-the_sweep(sys.argv[1])
+run_sweep(sys.argv[1])
 print("done")
 """
 TESTS = str(Path(__file__).resolve().parent)
 
 
-def the_sweep(store=None, **changes):
+def run_sweep(store=None, **changes):
     """Run 120 cases, in 40 chunks; half of them cannot be assembled."""
     options = {"chunk": 3, "accuracy": "reference", "outputs": ["rotation"], **changes}
     return rf.sweep(
@@ -37,13 +37,13 @@ def the_sweep(store=None, **changes):
     )  # fmt: skip
 
 
-def files(folder):
-    """Return the bytes of all files but that with the date."""
+def stored_files(folder):
+    """Return the bytes of all stored arrays by file name."""
     return {path.name: path.read_bytes() for path in folder.glob("*.arrays")}
 
 
-def child(folder, first=""):
-    """Start a process that runs the sweep, after some lines of its own."""
+def start_sweep(folder, first=""):
+    """Start a process that runs the sweep after the lines `first`."""
     return subprocess.Popen(
         [sys.executable, "-W", "ignore", "-c", CHILD.format(tests=TESTS, first=first), str(folder)],
         stdout=subprocess.PIPE,
@@ -53,7 +53,7 @@ def child(folder, first=""):
 
 
 def note_cases(log):
-    """Have this process write down the first case of each chunk that it runs."""
+    """Log the first case of each chunk that this process runs."""
     plain = Study.job
 
     def job(self, cases):
@@ -65,13 +65,13 @@ def note_cases(log):
 
 
 def as_bytes(dataset):
-    """Return all numbers of a dataset, to be compared to the last bit."""
+    """Return all values of a dataset, for comparison to the last bit."""
     return {name: one.values.tolist() if one.dtype.kind in "OU" else one.values.tobytes()
             for name, one in dataset.variables.items()}  # fmt: skip
 
 
-def alike(one, other, *, apart=()):
-    """Whether two datasets say the same, but for the time of day and some attributes."""
+def assert_identical(one, other, *, apart=()):
+    """Assert that two datasets are identical except for `history` and the attributes `apart`."""
     assert list(one.dims) == list(other.dims)
     assert as_bytes(one) == as_bytes(other)
     apart = dict.fromkeys(("history", *apart), "")

@@ -10,7 +10,7 @@ import pytest
 from reference_models.monoliths import coupled, two_spring, winkler
 from scipy.linalg import expm
 
-# tests of a reference model, which changes seldom
+# tests of a reference model that rarely changes
 pytestmark = [pytest.mark.reference_models, pytest.mark.long]
 
 G = 9.80665
@@ -39,7 +39,7 @@ def tower(beta=12.0, xi=0.1, settlement=0.03, soil_xi=0.2):
 
 
 def pads(size):
-    """Stiffness and damping of one pad, and how far it gives under half the weight."""
+    """Stiffness and damping of one pad, and its compression under half the weight."""
     omega = math.sqrt(0.75 * G / math.hypot(B, H))
     omega_v = size["frequency_ratio"] * omega
     return M * omega_v**2 / 2.0, size["damping_ratio"] * M * omega_v, G / omega_v**2
@@ -54,7 +54,7 @@ def pulse(factor, sign=1.0):
 
 @functools.cache
 def leap(rule="centre", sign=1.0):
-    """Thrown up, turning: cap and block both leave what they stand on."""
+    """A run thrown upwards with spin: cap and block both leave their bases."""
     start = (None, sign * 0.01, None, sign * -0.02, 2.2, sign * 0.2, 0.4, sign * 0.3)
     return coupled.simulate(
         **tower(beta=8.0, xi=0.05, soil_xi=0.05),
@@ -67,7 +67,7 @@ def leap(rule="centre", sign=1.0):
 
 
 def block_velocity(q, v):
-    """Velocity of the block's centre, from the moving frame of the cap."""
+    """Return the velocity of the block's centre from coordinates in the moving frame of the cap."""
     _, _, phi, reach, r, _ = q
     v_x, v_y, v_phi, v_along, v_r, _ = v
     height = H_C + H + r
@@ -94,7 +94,7 @@ def coordinates(run):
 
 
 def matrices(size):
-    """Mass, damping and stiffness of (Y, phi, r, psi) at rest, by hand."""
+    """Return mass, damping and stiffness matrices of (Y, phi, r, psi) at rest, derived by hand."""
     k, c, _ = pads(size)
     k0, c0 = size["bed_stiffness"], size["bed_damping"]
     high = H + 2.0 * H_C
@@ -227,7 +227,7 @@ def test_momenta_of_flying_system_are_those_of_free_bodies():
     centre_v = momentum / (M + M_C)
 
     def swirl(place, velocity):
-        # clockwise, as the rotations
+        # clockwise, like the rotations
         (x, y), (v_x, v_y) = place - centre, velocity - centre_v
         return y * v_x - x * v_y
 
@@ -258,7 +258,7 @@ def test_momenta_of_flying_system_are_those_of_free_bodies():
 
 @functools.cache
 def rocked():
-    """A rocking run on the rule that never changes the point held, nor so the rates."""
+    """A rocking run under the rule whose held point, and so the rates, never change."""
     return coupled.simulate(
         **{**tower(settlement=0.015, xi=0.2), "restitution": 0.6},
         restraint="centre",
@@ -281,11 +281,11 @@ def test_a_landing_scales_the_speed_of_the_corner():
         speed = before[4] + arm * before[5]
         assert speed < 0.0
         assert after[4] + arm * after[5] == pytest.approx(0.6 * speed, rel=1e-9)
-        # an impulse between block and cap: the sum of the vertical momenta stays
+        # an impulse between block and cap conserves the sum of the vertical momenta
         change = after - before
         upward = M * block_velocity(q, change)[1] + M_C * change[1]
         assert abs(upward) < 1e-12 * M
-        # the block alone, turned about its centre by the impulse and by the point held
+        # moment of the impulse and of the hold about the centre of the block
         push = M * block_velocity(q, change) @ (math.sin(q[2]), math.cos(q[2]))
         drag = M * block_velocity(q, change) @ (math.cos(q[2]), -math.sin(q[2]))
         turn = INERTIA * (change[2] + change[5])
@@ -320,19 +320,19 @@ def test_contact_is_determined_by_state():
 
 def test_heavy_hard_footing_converges_to_block_on_two_springs():
     times = np.linspace(0.0, 1.2, 25)
-    given = {**BLOCK, "frequency_ratio": 12.0, "damping_ratio": 0.1, "duration": 1.2}
-    k, _, delta = pads(given)
+    options = {**BLOCK, "frequency_ratio": 12.0, "damping_ratio": 0.1, "duration": 1.2}
+    k, _, delta = pads(options)
     alpha = 0.12
     r = delta - M * G / k - H * (1.0 - math.cos(alpha)) + B * math.sin(alpha)
     alone = two_spring.simulate(
-        **given, initial=(alpha, r, 0.0, 0.0), sample_times=times, rtol=1e-11
+        **options, initial=(alpha, r, 0.0, 0.0), sample_times=times, rtol=1e-11
     )
     assert alone.impact_count > 0
     misses = []
     for factor in (1e3, 1e4):
         mass = factor * M
         run = coupled.simulate(
-            **given,
+            **options,
             mass=M,
             cap_half_width=2.0,
             cap_half_height=0.4,
@@ -354,7 +354,7 @@ def test_block_and_cap_on_hard_pads_converge_to_one_body():
     high = (M_C * H_C + M * (H + 2.0 * H_C)) / (M + M_C)
     inertia = INERTIA + CAP_INERTIA
     inertia += M * (H + 2.0 * H_C - high) ** 2 + M_C * (high - H_C) ** 2
-    given = {"restraint": "leading-corner", "duration": 0.7, "sample_times": times, **TIGHT}
+    options = {"restraint": "leading-corner", "duration": 0.7, "sample_times": times, **TIGHT}
     misses = []
     for beta in (40.0, 80.0):
         size = tower(beta=beta, xi=0.2, settlement=0.03)
@@ -366,9 +366,11 @@ def test_block_and_cap_on_hard_pads_converge_to_one_body():
             bed_stiffness=size["bed_stiffness"],
             bed_damping=size["bed_damping"],
             initial=(0.0, None, 0.28, 0.0),
-            **given,
+            **options,
         )
-        run = coupled.simulate(**size, initial=(None, 0.0, None, 0.0, 0.0, 0.28, 0.0, 0.0), **given)
+        run = coupled.simulate(
+            **size, initial=(None, 0.0, None, 0.0, 0.0, 0.28, 0.0, 0.0), **options
+        )
         assert "leave" in {event.kind for event in whole.events}
         assert set(run.block_contact) == {"full"}
         misses.append(np.abs(run.rotation - whole.rotation).max())

@@ -1,4 +1,4 @@
-"""Commands as pages show them, carried out in this process."""
+"""Runs console commands of pages in this process."""
 
 import io
 import re
@@ -12,18 +12,18 @@ PROMPT = "$ "
 LEFT_OUT = "..."
 
 
-def type_in(console, capsys, monkeypatch):
-    """Carry out the commands of a console, and compare what they write with what it shows.
+def run_console(console, capsys, monkeypatch):
+    """Run the commands of a console, and compare their output with the output shown.
 
-    A line of three dots stands for any lines; what no line shows is not compared.
+    A line of three dots stands for any lines; a command without output shown is not compared.
     """
     for shown in console.removeprefix(PROMPT).split(f"\n{PROMPT}"):
         command, *expected = shown.strip("\n").splitlines()
         *before, command = re.split(r" \| ", command)
         for earlier in before:
             main(shlex.split(earlier)[1:])
-            handed = capsys.readouterr().out.encode()
-            monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(handed)))
+            piped = capsys.readouterr().out.encode()
+            monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(piped)))
         words = shlex.split(command)
         target = None
         if ">" in words:
@@ -31,15 +31,15 @@ def type_in(console, capsys, monkeypatch):
             target, words = words[place + 1], words[:place]
         assert words.pop(0) == "rockframe"
         main(words)
-        told = capsys.readouterr()
+        written = capsys.readouterr()
         if target is not None:
-            Path(target).write_text(told.out, encoding="utf-8")
+            Path(target).write_text(written.out, encoding="utf-8")
         elif expected:
-            compare(expected, (told.out + told.err).splitlines(), command)
+            compare(expected, (written.out + written.err).splitlines(), command)
 
 
 def compare(expected, found, command):
-    """Compare lines, of which three dots stand for any."""
+    """Compare lines; three dots stand for any lines."""
     found = [line.rstrip() for line in found]
     place = 0
     skipping = False

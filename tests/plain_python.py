@@ -13,11 +13,11 @@ from rockframe.compiled.entries import Entry
 
 
 @contextmanager
-def plainly(*entries: Callable[..., Any]) -> Iterator[None]:
-    """Have nothing compiled, and call no machine code, as long as this lasts.
+def plain_python(*entries: Callable[..., Any]) -> Iterator[None]:
+    """Run in plain Python, without compilation, as long as this context.
 
-    Of the entries given alone: with :func:`rockframe.solve.driver.advance` the run is one in plain
-    Python, and what is observed along it is compiled, which takes a fifth of the time of both.
+    With `entries` only these: with :func:`rockframe.solve.driver.advance` the run is plain Python
+    and its observation is compiled, which takes a fifth of the time of compiling both.
     """
     called = Entry.__call__
 

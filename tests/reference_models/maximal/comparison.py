@@ -1,4 +1,4 @@
-"""Set both programs beside one another, scene by scene."""
+"""Compare both programs scene by scene."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
@@ -7,7 +7,6 @@ import numpy as np
 
 import rockframe as rf
 
-from .drawing import draw
 from .layout import (
     BED_SETTLEMENT,
     CHATTER,
@@ -20,20 +19,21 @@ from .layout import (
     SLIDES,
     TOO_SMALL,
 )
-from .motions import both
+from .motions import build_motions
 from .program import TIGHT, rows_at, run_program, scaled_start
+from .random_scenes import draw
 from .scene import Scene, parameters
 from .simulate import TOLERANCE, History, simulate
 
 
 @dataclass(frozen=True)
 class Level:
-    """An accuracy of rockframe, and what is to be asked of it.
+    """An accuracy of rockframe and the agreement required of it.
 
-    `agrees` is the largest difference over the peak that agrees. `changes` of the motion, as shares
-    of it, show chaos and sensitivity: those of some steps' errors, and of some hundred steps'.
-    None where verdicts and peaks alone are compared. With each of the `tighter` tolerances a
-    difference that errors of steps have grown to becomes at most a third.
+    `agrees` is the largest difference over the peak that counts as agreement. `changes` are
+    relative changes of the motion that reveal chaos and sensitivity: as large as the errors of a
+    few steps and of some hundred steps; None compares verdicts and peaks only. With each of the
+    `tighter` tolerances a difference that comes from errors of steps shrinks to a third or less.
     """
 
     accuracy: rf.Accuracy | str
@@ -53,7 +53,7 @@ LEVELS = {
 
 @dataclass
 class Outcome:
-    """How far the programs are apart in one scene at one accuracy."""
+    """The differences between both programs in one scene at one accuracy."""
 
     kind: str
     seed: int
@@ -71,7 +71,7 @@ class Outcome:
     note: str = ""
     seen: tuple[str, ...] = ()
     told: bool = False
-    """Whether rockframe says that verdict or peak are not sure."""
+    """Whether rockframe reports verdict or peak as unsure."""
 
     def plain(self) -> dict:
         """Return plain values."""
@@ -80,10 +80,10 @@ class Outcome:
 
 def run_reference(scene: Scene, factor: float = 1.0, tolerance: float = TOLERANCE) -> History:
     """Run the scene with the reference model; `factor` multiplies motion and start."""
-    return simulate(scaled_start(scene, factor), both(scene.motion, factor)[1], tolerance)
+    return simulate(scaled_start(scene, factor), build_motions(scene.motion, factor)[1], tolerance)
 
 
-def apart(history: History, run, scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def differences(history: History, run, scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return times and differences of rotation and rise over their greatest values."""
     rows = rows_at(history.time, run)
     # a run that overturned has stopped between two output times
@@ -101,20 +101,20 @@ def apart(history: History, run, scene: Scene) -> tuple[np.ndarray, np.ndarray, 
 
 
 def states_seen(history: History, scene: Scene) -> tuple[str, ...]:
-    """Name the rarer states of contact that a run went through."""
-    found = set()
+    """Return the rarer contact states of a run."""
+    states = set()
     pads = scene.kind in ("pads", "cascade", "coupled")
     for code in history.events[:, 3]:
         soil, ends, block, corners = _digits(code)
         if pads:
-            found |= {_CORNERS[c] for c in corners if c in _CORNERS}
+            states |= {_CORNERS[c] for c in corners if c in _CORNERS}
         if block == FREE and pads:
-            found.add("flight")
+            states.add("flight")
         if soil == FREE and scene.kind in ("bed", "cascade", "coupled"):
-            found.add("soil flight")
+            states.add("soil flight")
         if SLIDES in ends:
-            found.add("soil sliding")
-    return tuple(sorted(found))
+            states.add("soil sliding")
+    return tuple(sorted(states))
 
 
 _CORNERS = {RELAXING: "relaxing", LEAVING: "leaving", ENGAGING: "engaging", SLIDES: "sliding"}
@@ -145,7 +145,7 @@ def compare(
 def _compare(scene: Scene, history: History, which, name: str, agrees: float | None) -> Outcome:
     level = LEVELS[name] if agrees is None else replace(LEVELS[name], agrees=agrees)
     run = run_program(scene, accuracy=level.accuracy)
-    t, off, rise = apart(history, run, scene)
+    t, off, rise = differences(history, run, scene)
     worst, worst_rise = float(np.max(off)), float(np.max(rise))
     peak = float(np.max(np.abs(history.rotation)))
     common = np.isin(history.time, t)
@@ -180,13 +180,13 @@ def _compare(scene: Scene, history: History, which, name: str, agrees: float | N
 
 
 def _judge(scene: Scene, outcome: Outcome, t, total, history, level: Level) -> None:
-    """Tell chaos from disagreement: does a tiny change of the motion do as much?"""
+    """Distinguish chaos from disagreement by the effect of a tiny change of the motion."""
     growth, spread = [], []
     tight = run_program(scene)
     for size in level.changes:
         other, again = run_reference(scene, 1.0 + size), run_program(scene, 1.0 + size)
-        ours = _between(history, other, t)
-        theirs = _between_runs(tight, again, t, outcome.peak)
+        ours = _history_differences(history, other, t)
+        theirs = _run_differences(tight, again, t, outcome.peak)
         grown = np.maximum.accumulate(np.maximum(ours, theirs))
         spread.append(grown)
         growth.append(float(grown[-1] / size))
@@ -206,38 +206,38 @@ def _judge(scene: Scene, outcome: Outcome, t, total, history, level: Level) -> N
 
 
 def _shrinks(scene: Scene, outcome: Outcome, history, level: Level) -> bool:
-    """Tell whether a difference becomes smaller as the tolerance does."""
+    """Tell whether a difference shrinks with the tolerance."""
     last = max(outcome.difference, outcome.rise_difference)
     for accuracy in level.tighter:
-        _, off, rise = apart(history, run_program(scene, accuracy=accuracy), scene)
-        found = max(float(np.max(off)), float(np.max(rise)))
-        if found > last / 3.0:
+        _, off, rise = differences(history, run_program(scene, accuracy=accuracy), scene)
+        difference = max(float(np.max(off)), float(np.max(rise)))
+        if difference > last / 3.0:
             return False
-        last = found
+        last = difference
     return bool(level.tighter)
 
 
-def _between(one: History, other: History, t: np.ndarray) -> np.ndarray:
+def _history_differences(history: History, other: History, t: np.ndarray) -> np.ndarray:
     n = t.size
-    peak = max(np.max(np.abs(one.rotation)), 1e-9)
-    rise = max(np.max(np.abs(one.rise)), 1e-12)
+    peak = max(np.max(np.abs(history.rotation)), 1e-9)
+    rise = max(np.max(np.abs(history.rise)), 1e-12)
     off = np.zeros(n)
     m = min(n, len(other.time))
-    off[:m] = np.abs(other.rotation[:m] - one.rotation[:m]) / peak
-    off[:m] = np.maximum(off[:m], np.abs(other.rise[:m] - one.rise[:m]) / rise)
+    off[:m] = np.abs(other.rotation[:m] - history.rotation[:m]) / peak
+    off[:m] = np.maximum(off[:m], np.abs(other.rise[:m] - history.rise[:m]) / rise)
     off[m:] = 1.0
     return off
 
 
-def _between_runs(one, other, t: np.ndarray, peak: float) -> np.ndarray:
-    first, second = rows_at(t, one), rows_at(t, other)
-    found = (first >= 0) & (second >= 0)
-    off = np.where(found, 0.0, 1.0)
-    first, second = first[found], second[found]
-    rise = max(float(np.max(np.abs(one.vertical_displacement.values))), 1e-12)
-    off[found] = np.maximum(
-        np.abs(other.rotation.values[second] - one.rotation.values[first]) / max(peak, 1e-9),
-        np.abs(other.vertical_displacement.values[second] - one.vertical_displacement.values[first])
+def _run_differences(run, other, t: np.ndarray, peak: float) -> np.ndarray:
+    first, second = rows_at(t, run), rows_at(t, other)
+    common = (first >= 0) & (second >= 0)
+    off = np.where(common, 0.0, 1.0)
+    first, second = first[common], second[common]
+    rise = max(float(np.max(np.abs(run.vertical_displacement.values))), 1e-12)
+    off[common] = np.maximum(
+        np.abs(other.rotation.values[second] - run.rotation.values[first]) / max(peak, 1e-9),
+        np.abs(other.vertical_displacement.values[second] - run.vertical_displacement.values[first])
         / rise,
     )
     return off

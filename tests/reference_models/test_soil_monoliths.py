@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from reference_models.monoliths import two_spring, winkler
 
-# tests of a reference model, which changes seldom
+# tests of a reference model that rarely changes
 pytestmark = [pytest.mark.reference_models, pytest.mark.long]
 
 G = 9.80665
@@ -20,7 +20,7 @@ MASS, WIDTH, HEIGHT = 2.0e4, 1.2, 2.4  # half a width, half a height
 
 
 def body(settlement=0.004, damping_ratio=0.1, half_width=WIDTH, half_height=HEIGHT, mass=MASS):
-    """A solid rectangle on a bed that gives so far, with so much vertical damping."""
+    """Return a solid rectangle on a bed of given settlement and vertical damping."""
     stiffness = mass * G / (2.0 * half_width * settlement)
     damping = damping_ratio * math.sqrt(2.0 * half_width * stiffness * mass) / half_width
     return {
@@ -39,11 +39,11 @@ def noisy_record(seed=3, count=61, step=0.02, peak=6.0):
     return peak * smooth / np.abs(smooth).max()
 
 
-def shaken(seed=3, peak=6.0, upward=0.0, sign=1.0):
-    given = {"time_step": 0.02, "acceleration": sign * noisy_record(seed, peak=peak)}
+def random_ground(seed=3, peak=6.0, upward=0.0, sign=1.0):
+    ground = {"time_step": 0.02, "acceleration": sign * noisy_record(seed, peak=peak)}
     if upward:
-        given["vertical"] = noisy_record(seed + 99, peak=upward)
-    return given
+        ground["vertical"] = noisy_record(seed + 99, peak=upward)
+    return ground
 
 
 def decay(time, start, frequency, ratio):
@@ -147,7 +147,7 @@ def test_moment_and_rotation_of_a_static_push():
         bed.read(ends, {})
         lift, turn, _ = bed.resultants(ends, alpha, y, 0.0, 0.0)
         assert lift == pytest.approx(G, rel=1e-12)
-        # what turns the body back: the bed's moment about the middle of the base
+        # restoring moment: the bed's moment about the middle of the base
         assert (HEIGHT * alpha * lift - turn) / (G * WIDTH) == pytest.approx(moment, abs=1e-6)
         low, high = bed.place(bed.bounds, ends)
         length = 2.0 * WIDTH * min(1.0, math.sqrt(1.0 / ratio))
@@ -185,12 +185,12 @@ def test_slight_motion_has_the_frequencies_of_full_contact(rotation, separation)
     ratio = 2.0 / 3.0 * c0 * WIDTH**3 / (2.0 * inertia * frequency)
     times = np.linspace(0.0, 1.0, 41)
     start = 1e-6
-    given = {"rotation": rotation, "separation": separation, "duration": 1.0}
-    given.update(sample_times=times, atol=1e-15, steps_per_period=16.0)
-    run = winkler.simulate(**size, **given, initial=(start, None, 0.0, 0.0))
+    options = {"rotation": rotation, "separation": separation, "duration": 1.0}
+    options.update(sample_times=times, atol=1e-15, steps_per_period=16.0)
+    run = winkler.simulate(**size, **options, initial=(start, None, 0.0, 0.0))
     exact = decay(times, start, frequency, ratio)
     np.testing.assert_allclose(run.rotation, exact, rtol=0, atol=1e-7 * start)
-    run = winkler.simulate(**size, **given, initial=(0.0, -0.002, 0.0, 0.0))
+    run = winkler.simulate(**size, **options, initial=(0.0, -0.002, 0.0, 0.0))
     exact = decay(times, -0.002, math.sqrt(2.0 * WIDTH * k0 / MASS), 0.05)
     np.testing.assert_allclose(run.vertical, exact, rtol=0, atol=1e-12)
     assert not run.rotation.any()
@@ -198,7 +198,7 @@ def test_slight_motion_has_the_frequencies_of_full_contact(rotation, separation)
 
 
 def test_bed_in_full_contact_matches_springs_at_gauss_points():
-    """Force, moment and power are of second degree along the base: two points do as well."""
+    """Integrands are quadratic along the base, so that two points suffice."""
     size = body(settlement=0.02, damping_ratio=0.2)
     b = WIDTH / math.sqrt(3.0)
     inertia = (WIDTH**2 + HEIGHT**2) / 3.0
@@ -206,16 +206,16 @@ def test_bed_in_full_contact_matches_springs_at_gauss_points():
     mu = radius**2 / inertia
     omega_v = math.sqrt(2.0 * WIDTH * size["bed_stiffness"] / MASS)
     times = np.linspace(0.0, 1.2, 61)
-    given = {**shaken(peak=1.0), "duration": 1.2, "sample_times": times}
+    options = {**random_ground(peak=1.0), "duration": 1.2, "sample_times": times}
     springs = two_spring.simulate(
         half_width=b,
         half_height=HEIGHT,
         shape_factor=mu,
         frequency_ratio=omega_v / math.sqrt(mu / (1.0 + mu) * G / radius),
         damping_ratio=0.2,
-        **given,
+        **options,
     )
-    run = winkler.simulate(**size, **given)
+    run = winkler.simulate(**size, **options)
     assert not run.events
     assert not springs.events
     assert run.peak_rotation > 0.005
@@ -250,7 +250,7 @@ def test_the_balance_of_energy_closes(restraint, separation):
     free = winkler.simulate(
         **body(damping_ratio=0.2), **rules, duration=2.0, initial=(0.15, None, 0.0, 0.0)
     )
-    forced = winkler.simulate(**body(), **rules, **shaken(peak=8.0), duration=2.0)
+    forced = winkler.simulate(**body(), **rules, **random_ground(peak=8.0), duration=2.0)
     for run in (free, forced):
         assert run.energy_residual < 1e-9
         assert {"leave", "land"} <= {event.kind for event in run.events}
@@ -295,7 +295,7 @@ def test_flight_keeps_rate_and_horizontal_speed(separation):
 def test_landing_projects_the_momentum_on_the_point_held():
     run = winkler.simulate(
         **body(damping_ratio=0.05, half_width=2.0, half_height=2.0),
-        **shaken(peak=10.0, upward=20.0),
+        **random_ground(peak=10.0, upward=20.0),
         duration=2.0,
         **TIGHT,
     )
@@ -315,7 +315,7 @@ def test_landing_projects_the_momentum_on_the_point_held():
 
 
 def test_suction_is_cut_and_an_inner_stretch_may_bear():
-    """The right end is deeper but rises, the left end sinks but is clear."""
+    """The right end is deeper but rises; the left end sinks but is clear."""
     alpha, rate, ratio = 0.01, -0.4, 1.0
     size = body(settlement=0.01, damping_ratio=ratio)
     lever = HEIGHT * math.sin(alpha)
@@ -337,7 +337,7 @@ def test_suction_is_cut_and_an_inner_stretch_may_bear():
     assert -b < level < turn < b
     assert runs["displacement"].contact_length[0] == pytest.approx(b - level, rel=1e-12)
     assert runs["pressure"].contact_length[0] == pytest.approx(turn - level, rel=1e-12)
-    # until an end bears again the right one stays held
+    # the right end stays held until an end bears again
     assert runs["pressure"].events[0].kind in ("engage", "settle", "land")
 
 
@@ -348,7 +348,7 @@ def test_mirror_symmetry(restraint, separation):
     runs = [
         winkler.simulate(
             **body(),
-            **shaken(peak=8.0, upward=8.0, sign=sign),
+            **random_ground(peak=8.0, upward=8.0, sign=sign),
             restraint=restraint,
             separation=separation,
             duration=1.0,
@@ -370,7 +370,7 @@ def test_the_restraint_rules_coincide_for_small_rotation():
     runs = [
         winkler.simulate(
             **body(),
-            **shaken(peak=8.0),
+            **random_ground(peak=8.0),
             restraint=rule,
             rotation="small",
             duration=1.5,
@@ -388,7 +388,7 @@ def test_response_depends_only_on_stiffness_over_mass():
     times = np.linspace(0.0, 1.5, 31)
     runs = [
         winkler.simulate(
-            **body(mass=mass), **shaken(peak=8.0), duration=1.5, sample_times=times, **TIGHT
+            **body(mass=mass), **random_ground(peak=8.0), duration=1.5, sample_times=times, **TIGHT
         )
         for mass in (1.0, MASS)
     ]

@@ -1,4 +1,4 @@
-"""The examples of a base and of a scene of one's own, imported from their files."""
+"""Imports the examples of a user's base and scene from their files."""
 
 import importlib.util
 import sys
@@ -16,15 +16,15 @@ from rockframe.system import parts as parts_of
 
 FOLDER = Path(__file__).parents[1] / "examples"
 FILE = FOLDER / "own_base.py"
-NAME = FILE.stem  # as who runs `import own_base` finds it, with the same machine code
+NAME = FILE.stem  # as by `import own_base`, with the same machine code
 SCENE_FILE = FOLDER / "own_scene.py"
 TABLES: tuple[dict[Any, Any], ...] = (SCHEMA, DIAGNOSTICS, assembly._USER_SCENES, parts_of._KINDS)
-"""What registration adds to."""
+"""The tables that registration extends."""
 
 
 @cache
 def _imported(file: Path) -> tuple[ModuleType, list[dict[Any, Any]]]:
-    """Import an example, which registers what it brings; give what this added, too."""
+    """Import an example, which registers its parts; return the module and the added rows."""
     before = [set(table) for table in TABLES]
     spec = importlib.util.spec_from_file_location(file.stem, file)
     module = importlib.util.module_from_spec(spec)
@@ -38,7 +38,7 @@ def _imported(file: Path) -> tuple[ModuleType, list[dict[Any, Any]]]:
 
 @contextmanager
 def example(file: Path = FILE) -> Iterator[ModuleType]:
-    """Return an example's module; the tables have what it registers as long as this lasts."""
+    """Return an example's module; its registrations last as long as this context."""
     module, added = _imported(file)
     for table, rows in zip(TABLES, added, strict=True):
         table.update(rows)
@@ -51,12 +51,12 @@ def example(file: Path = FILE) -> Iterator[ModuleType]:
 
 
 @contextmanager
-def as_before() -> Iterator[None]:
-    """Take back all registrations at the end."""
-    kept = [dict(table) for table in TABLES]
+def restored_registrations() -> Iterator[None]:
+    """Undo all registrations at the end."""
+    saved = [dict(table) for table in TABLES]
     try:
         yield
     finally:
-        for table, was in zip(TABLES, kept, strict=True):
+        for table, rows_before in zip(TABLES, saved, strict=True):
             table.clear()
-            table.update(was)
+            table.update(rows_before)

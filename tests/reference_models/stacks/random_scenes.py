@@ -4,12 +4,12 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from reference_models.maximal.drawing import draw_log, draw_motion
+from reference_models.maximal.random_scenes import draw_log, draw_motion
 
 from .scene import GRAVITY, RULES, Body, Pads, Scene, Tie, centre_of
 
 SOFTEST = 0.6
-"""Greatest share of the weight that would tip the stack over on its pads."""
+"""Largest ratio of the weight to the weight that tips the stack on its pads."""
 
 
 def draw(
@@ -18,10 +18,10 @@ def draw(
     offsets: bool = False,
     slenderness: tuple[float, float] = (2.0, 6.0),
 ) -> Scene:
-    """Draw blocks on pads, one on the other, and a motion.
+    """Draw stacked blocks on pads, and a motion.
 
-    Of three blocks on level ground about half uplift and some overturn. Widths are from 0.5 to
-    2 m, that of a block at most that of the one below.
+    About half of stacks of three blocks uplift and some overturn. Widths are 0.5 to 2 m and do
+    not increase upwards.
 
     Parameters
     ----------
@@ -29,14 +29,14 @@ def draw(
     count : int
         Number of blocks.
     offsets : bool
-        Whether blocks stand beside the middle of those below.
+        Whether blocks are offset from the middle of those below.
     slenderness : tuple of float
-        Range of height over width. Squat blocks fly, and slide as they come down.
+        Range of height over width. Squat blocks fly, and slide as they land.
 
     Returns
     -------
     Scene
-        Its motion is one for `maximal.motions.both`.
+        Its motion is one for `maximal.motions.build_motions`.
     """
     rule = RULES[0] if rng.random() < 0.7 else RULES[1 + int(rng.integers(2))]
     while True:
@@ -60,9 +60,9 @@ def draw(
     )  # fmt: skip
 
 
-def tied(scene: Scene, rng: np.random.Generator) -> Scene:
+def with_ties(scene: Scene, rng: np.random.Generator) -> Scene:
     """Return the scene with one to three ties or bars, between bodies or to the ground."""
-    count, found = len(scene.bodies), []
+    count, ties = len(scene.bodies), []
     for _ in range(int(rng.integers(1, 4))):
         on = int(rng.integers(count))
         others = [None, *(k for k in range(count) if k != on)]
@@ -71,16 +71,19 @@ def tied(scene: Scene, rng: np.random.Generator) -> Scene:
         point = (side * body.half_width, float(rng.uniform(-1.0, 1.0)) * body.height)
         if to is None:
             x, y = centre_of(scene, on)
-            away = (x + point[0] * float(rng.uniform(1.5, 3.0)), y * float(rng.uniform(0.0, 1.0)))
+            to_point = (
+                x + point[0] * float(rng.uniform(1.5, 3.0)),
+                y * float(rng.uniform(0.0, 1.0)),
+            )
         else:
             lower = scene.bodies[to]
-            away = (-side * lower.half_width, float(rng.uniform(-1.0, 1.0)) * lower.height)
+            to_point = (-side * lower.half_width, float(rng.uniform(-1.0, 1.0)) * lower.height)
         weight = GRAVITY * sum(one.mass for one in scene.bodies)
-        firm = weight / body.height * 10.0 ** float(rng.uniform(-0.5, 1.5))
+        stiffness = weight / body.height * 10.0 ** float(rng.uniform(-0.5, 1.5))
         slack = None if rng.random() < 0.3 else 1e-3 * body.half_width * float(rng.uniform(1, 20))
-        damping = 0.02 * math.sqrt(firm * body.mass) if rng.random() < 0.5 else 0.0
-        found.append(Tie(on, point, to, away, firm, damping, slack))
-    return replace(scene, ties=tuple(found))
+        damping = 0.02 * math.sqrt(stiffness * body.mass) if rng.random() < 0.5 else 0.0
+        ties.append(Tie(on, point, to, to_point, stiffness, damping, slack))
+    return replace(scene, ties=tuple(ties))
 
 
 def _blocks(
@@ -94,14 +97,14 @@ def _blocks(
         height = width * float(rng.uniform(*slenderness))
         mass = 2000.0 * width * height
         inertia = mass * (width**2 + height**2) / 12.0
-        beside = 0.05 * width * float(rng.uniform(-1.0, 1.0)) if offsets and bodies else 0.0
+        offset = 0.05 * width * float(rng.uniform(-1.0, 1.0)) if offsets and bodies else 0.0
         half = 0.5 * height
-        bodies.insert(0, Body(mass, inertia, 0.5 * width, half, half, beside))
+        bodies.insert(0, Body(mass, inertia, 0.5 * width, half, half, offset))
     return bodies
 
 
 def _pads(rng: np.random.Generator, bodies: list[Body]) -> list[Pads]:
-    """Draw pads by the frequency of vertical vibration, over that of rocking of the block."""
+    """Draw pads by the ratio of the vertical frequency to the rocking frequency of the block."""
     carried, pads = 0.0, []
     for body in bodies:
         carried += body.mass
@@ -123,7 +126,7 @@ def _above(bodies: list[Body], k: int) -> tuple[float, float]:
 
 
 def softness(bodies: list[Body], bases: list[Pads]) -> float:
-    """Return an upper bound for the weight over that which tips the upright stack, by Dunkerley."""
+    """Return an upper bound of the ratio of the weight to the tipping weight, by Dunkerley."""
     total = 0.0
     for k, (body, pads) in enumerate(zip(bodies, bases, strict=True)):
         mass, level = _above(bodies, k)
@@ -132,9 +135,9 @@ def softness(bodies: list[Body], bases: list[Pads]) -> float:
 
 
 def _threshold(bodies: list[Body]) -> tuple[float, float]:
-    """Return the acceleration that uplifts the weakest base, and the size of what rocks there."""
-    found = []
+    """Return the acceleration that uplifts the weakest base, and the radius of what rocks."""
+    thresholds = []
     for k, body in enumerate(bodies):
         level = _above(bodies, k)[1]
-        found.append((GRAVITY * body.half_width / level, math.hypot(body.half_width, level)))
-    return min(found)
+        thresholds.append((GRAVITY * body.half_width / level, math.hypot(body.half_width, level)))
+    return min(thresholds)

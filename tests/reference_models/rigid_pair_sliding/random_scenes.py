@@ -4,34 +4,34 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from reference_models.rigid_pair import drawing
-from reference_models.rigid_pair.drawing import draw_pair, log_between
+from reference_models.rigid_pair import random_scenes
 from reference_models.rigid_pair.ground import Piece, pieces_of, still
 from reference_models.rigid_pair.pair import GRAVITY, Pair
+from reference_models.rigid_pair.random_scenes import draw_pair, log_between
 
 from .choices import Frictions
 from .contacts import INTERFACES, Friction
 
-FREE = drawing.FREE
+FREE = random_scenes.FREE
 """Still ground after a motion [s]."""
 STEP = 0.1
-"""Between the samples of noise [s]."""
+"""Time step of noise [s]."""
 SAMPLES = 26
 NOISE_ON_SPRINGS = 16
-"""Samples where springs make a run long."""
+"""Number of samples with springs, where runs are slow."""
 
 
 class Scene(NamedTuple):
-    """A pair, the frictions under its bodies, and a motion, whose ``form`` says of what kind."""
+    """A pair, the friction under its bodies, and a motion with its kind under ``form``."""
 
     pair: Pair
     frictions: Frictions
     motion: dict[str, Any]
-    bases: dict[str, dict[str, Any]] = {}  # noqa: RUF012  what is not rigid, as the package has it
+    bases: dict[str, dict[str, Any]] = {}  # noqa: RUF012  compliant bases, by arguments of the package
     rule: str = "contact-state"
 
     def mirrored(self) -> "Scene":
-        """Return the scene as seen from behind."""
+        """Return the mirror image of the scene."""
         motion = dict(self.motion)
         if motion["form"] == "noise":
             motion["across"] = [-one for one in motion["across"]]
@@ -41,10 +41,10 @@ class Scene(NamedTuple):
 
 
 def draw(seed) -> Scene:
-    """Draw bodies, frictions, and a motion that may move them.
+    """Draw bodies, friction and a motion that may move them.
 
     The bodies are those of ``rigid_pair``, the upper one narrower than the lower one by a tenth
-    at least, and some too squat to rock. One in eight interfaces holds, one in six sticks in
+    at least, and some too squat to rock. One interface in eight holds, one in six sticks in
     impacts.
     """
     rng = np.random.default_rng(seed)
@@ -56,7 +56,7 @@ def draw(seed) -> Scene:
     return Scene(pair, frictions, _motion(rng, pair, frictions))
 
 
-def draw_giving(seed) -> Scene:
+def draw_compliant(seed) -> Scene:
     """Draw a scene in which the lower or the upper body stands on pads or on a bed, with friction.
 
     The bodies are symmetric, so that they are upright at rest. Landings on pads are no impacts.
@@ -100,7 +100,7 @@ def _pair(rng: np.random.Generator) -> Pair | None:
 
 
 def _friction(rng: np.random.Generator, slender: float) -> Friction:
-    """Draw a friction, of two in three near what tips the body, so that it slides and rocks."""
+    """Draw a friction, in two cases of three near tipping, so that the body slides and rocks."""
     static = float(rng.uniform(0.15, 0.9))
     if rng.random() < 2.0 / 3.0:
         static = min(max(slender * float(rng.uniform(0.6, 1.6)), 0.15), 0.9)
@@ -110,7 +110,7 @@ def _friction(rng: np.random.Generator, slender: float) -> Friction:
 
 
 def _motion(rng: np.random.Generator, pair: Pair, frictions: Frictions) -> dict[str, Any]:
-    """Draw a motion by the least acceleration that moves something."""
+    """Draw a motion scaled by the least acceleration that moves a body."""
     least = min(math.tan(min(-one, two)) for one, two in pair.limits)
     least = min(least, *(f.static for f in frictions.values())) * GRAVITY
     vertical = float(rng.uniform(0.2, 0.7)) * GRAVITY if rng.random() < 0.3 else 0.0
@@ -133,6 +133,6 @@ def _motion(rng: np.random.Generator, pair: Pair, frictions: Frictions) -> dict[
 def pieces_for(motion: dict[str, Any]) -> tuple[list[Piece], float]:
     """Return the pieces of a motion and of still ground after it, and its least period [s]."""
     if motion["form"] != "noise":
-        return drawing.pieces_for(motion)
+        return random_scenes.pieces_for(motion)
     pieces = pieces_of(STEP, motion["across"], motion["up"])
     return [*pieces, still(pieces[-1].stop, pieces[-1].stop + FREE)], math.inf

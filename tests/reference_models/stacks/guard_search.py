@@ -1,18 +1,18 @@
-"""The first guard that falls through zero in a step, and when."""
+"""Search inside a step for the first guard that falls through zero."""
 
-from reference_models.maximal.watching import LAPS, POINTS, SAMPLES, dip
+from reference_models.maximal.guard_search import LAPS, POINTS, SAMPLES, dip
 
 from .stepping import value_at
 
 
-def earliest(t, h, z, piece, motion, stack, standing, room, path):
+def earliest(t, h, z, piece, motion, stack, contact, room, path):
     """Find the first guard that falls through zero in a step.
 
     Returns
     -------
     tuple
-        Guard and time from the start of the step; -1 if there is none; -2 and a guard if that guard
-        started at zero and is negative where it is looked at first.
+        Guard and time from the start of the step; -1 for none; -2 and a guard if that guard starts
+        at zero and is negative at its first sample.
     """
     samples, noise = path.samples, path.noise
     best, when = -1, 2.0 * h
@@ -34,7 +34,7 @@ def earliest(t, h, z, piece, motion, stack, standing, room, path):
                 low, high = h * (m - 1) / SAMPLES, h * m / SAMPLES
                 if low >= when:
                     break
-                root = _root(low, high, k, t, z, piece, motion, stack, standing, room, path)
+                root = _root(low, high, k, t, z, piece, motion, stack, contact, room, path)
             else:
                 left, right = dip(samples, k, m, start)
                 if right == left:
@@ -42,9 +42,9 @@ def earliest(t, h, z, piece, motion, stack, standing, room, path):
                 low, high = h * left / SAMPLES, h * right / SAMPLES
                 if low >= when:
                     break
-                below = _hunt(low, high, k, t, z, piece, motion, stack, standing, room, path)
+                below = _hunt(low, high, k, t, z, piece, motion, stack, contact, room, path)
                 if below >= 0.0:
-                    root = _root(low, below, k, t, z, piece, motion, stack, standing, room, path)
+                    root = _root(low, below, k, t, z, piece, motion, stack, contact, room, path)
             if root >= 0.0:
                 if root < when:
                     best, when = k, root
@@ -52,14 +52,14 @@ def earliest(t, h, z, piece, motion, stack, standing, room, path):
     return best, when
 
 
-def _hunt(low, high, slot, t, z, piece, motion, stack, standing, room, path):
-    """Find where a guard is negative that is positive at both ends of an interval; else -1."""
+def _hunt(low, high, slot, t, z, piece, motion, stack, contact, room, path):
+    """Find a time at which a guard, positive at both ends of an interval, is negative; else -1."""
     best, place = 1e300, low
     for _ in range(LAPS):
         part = (high - low) / POINTS
         for m in range(1, POINTS):
             x = low + part * m
-            value = value_at(x, slot, t, z, piece, motion, stack, standing, room, path)
+            value = value_at(x, slot, t, z, piece, motion, stack, contact, room, path)
             if value < -path.noise[slot]:
                 return x
             if value < best:
@@ -68,17 +68,17 @@ def _hunt(low, high, slot, t, z, piece, motion, stack, standing, room, path):
     return -1.0
 
 
-def _root(low, high, slot, t, z, piece, motion, stack, standing, room, path):
+def _root(low, high, slot, t, z, piece, motion, stack, contact, room, path):
     """Find the length of the step at whose end a guard has fallen through zero; else -1."""
-    below = value_at(high, slot, t, z, piece, motion, stack, standing, room, path)
+    below = value_at(high, slot, t, z, piece, motion, stack, contact, room, path)
     if below > 0.0:
         return -1.0
-    above = value_at(low, slot, t, z, piece, motion, stack, standing, room, path)
-    while above <= 0.0:  # it fell before that
+    above = value_at(low, slot, t, z, piece, motion, stack, contact, room, path)
+    while above <= 0.0:  # it had fallen before
         if low == 0.0:
             return 0.0
         low, high, below = max(0.0, 2.0 * low - high), low, above
-        above = value_at(low, slot, t, z, piece, motion, stack, standing, room, path)
+        above = value_at(low, slot, t, z, piece, motion, stack, contact, room, path)
     kept = 0
     for lap in range(80):
         x = low + (high - low) * above / (above - below)
@@ -86,10 +86,10 @@ def _root(low, high, slot, t, z, piece, motion, stack, standing, room, path):
             x = 0.5 * (low + high)
         if high - low <= 2e-17 * (t + high) or not low < x < high:
             break
-        value = value_at(x, slot, t, z, piece, motion, stack, standing, room, path)
+        value = value_at(x, slot, t, z, piece, motion, stack, contact, room, path)
         if abs(value) < 1e-15:
             return x
-        # false position; a side that stays twice counts for half
+        # false position with halved weights (Illinois)
         if value > 0.0:
             low, above = x, value
             below = 0.5 * below if kept == 1 else below
