@@ -388,12 +388,13 @@ def prove_block(
     *,
     scale: float = 1.0,
     within: Tolerances = EXACT,
+    callback: Callback | None = None,  # called with each enclosure
 ) -> Proof:
     """Prove the verdict of a block on rigid ground, from a start: rotation and angular velocity."""
 
     def attempt(inputs: Deviations) -> tuple[Proof, list[float]]:
         problem = Problem.of(block, motion, slope, limits, scale, inputs, STILL_STEP)
-        prover = RockingProver(problem, uncertain=() if inputs.exact else inputs.centred())
+        prover = RockingProver(problem, callback, () if inputs.exact else inputs.centred())
         prover.start(*start)
         return prove_verdict(prover, scale, _LAW), prover.states.influences()
 

@@ -103,7 +103,7 @@ def count_outside_fifty_digits(scene, motion, proof):
 
     prove_block(
         assembly.model.system, motion.si, assembly.options.slope,
-        assembly.setting.overturning_angles, (0.0, 0.0), watch=watch,
+        assembly.setting.overturning_angles, (0.0, 0.0), callback=watch,
     )  # fmt: skip
     vertical = None if motion.si.vertical is None else motion.si.vertical.samples
     # up to rest, which the 50-digit run never reaches
