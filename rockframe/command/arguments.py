@@ -26,7 +26,8 @@ class CommandArgument:
 class Command:
     """One command."""
 
-    name: str  # as typed, and of the module that runs it
+    name: str  # as typed
+    module: str  # which runs it, by its function ``execute_`` and the name
     summary: str  # what it does, in one line
     description: str  # what it does, in its help
     examples: str  # lines to copy

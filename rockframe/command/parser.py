@@ -79,6 +79,7 @@ def build_parser() -> argparse.ArgumentParser:
         )
         for argument in command.arguments:
             one.add_argument(*argument.names, **argument.settings)
+        one.set_defaults(module=command.module)
     return parser
 
 

@@ -366,6 +366,15 @@ RUN_KIND: Final = result_kind("the result of a run", axes=False)
 STUDY_KIND: Final = result_kind("the result of a study", axes=True)
 
 
+def motion_summary(motion: GroundMotion) -> str:
+    """Write the number of samples, the time step, the length and the peak of a motion."""
+    peak = motion.peak_acceleration.to("m/s^2").magnitude
+    return (
+        f"{len(motion)} samples at {motion.si.time_step:g} s, {motion.si.duration:g} s long, "
+        f"peak {peak:.4g} m/s^2 ({peak / STANDARD_GRAVITY:.3g} g)"
+    )
+
+
 def part_names(system: System) -> str:
     """Name the parts of a system in one line."""
     return ", ".join(type(part).__name__ for part in system.parts.structural())

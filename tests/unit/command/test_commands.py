@@ -14,7 +14,7 @@ import pytest
 import xarray as xr
 
 import rockframe as rf
-from rockframe.command import parser, study
+from rockframe.command import analyses, parser
 from rockframe.command.commands import COMMANDS
 from rockframe.command.completion import script
 from rockframe.command.files.studies import read_study
@@ -222,7 +222,7 @@ def test_an_interrupted_study_tells_the_command_that_goes_on(typed, folder, monk
     def at_once(*given, **named):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(study, "sweep", at_once)
+    monkeypatch.setattr(analyses, "sweep", at_once)
     code, _, problem = typed(*words)
     assert code == 130
     assert "rockframe study study.toml --csv runs.csv --store " in problem
