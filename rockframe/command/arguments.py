@@ -88,6 +88,9 @@ SCENE_FILE: Final = file_argument(
 RESULT_FILE: Final = file_argument(
     "dataset", metavar="out.nc", help="a result that another command wrote with -o; or -"
 )
+MOTION_FILES: Final = file_argument(
+    "files", nargs="+", metavar="FILE", help="records, archives or folders; or -"
+)
 OVERWRITE_OPTION: Final = argument(
     "--overwrite",
     action="store_true",

@@ -7,6 +7,7 @@ from rockframe.command.arguments import (
     ANALYSIS_ARGUMENTS,
     DURATION_OPTIONS,
     INTENSITY_OPTIONS,
+    MOTION_FILES,
     OUTPUT_OPTION,
     OVERWRITE_OPTION,
     PICTURE_HELP,
@@ -66,9 +67,7 @@ COMMANDS: Final = (
   rockframe motion record.AT2 --picture record.png
   rockframe motion PEERNGARecords.zip --csv measures.csv""",
         (
-            file_argument(
-                "files", nargs="+", metavar="FILE", help="records, archives or folders; or -"
-            ),
+            MOTION_FILES,
             *READING_OPTIONS,
             file_argument(
                 "--picture",
@@ -95,9 +94,7 @@ COMMANDS: Final = (
   rockframe convert PEERNGARecords.zip -o suite.nc             all of them in one file
   rockframe convert - --to csv -o - < record.AT2""",
         (
-            file_argument(
-                "files", nargs="+", metavar="FILE", help="records, archives or folders; or -"
-            ),
+            MOTION_FILES,
             file_argument(
                 "-o",
                 "--output",
