@@ -312,25 +312,12 @@ def cloud(
     limits = limits[np.isfinite(limits)]
     shown = np.concatenate([response[finite_response], limits])
     low, high = (shown.min() / 1.6, shown.max() * 1.6) if len(shown) else (0.1, 1.0)
-    axes.plot(
-        intensity[finite_response], response[finite_response], "o", color=GREY, ms=3.5, label="runs"
-    )
-    axes.plot(
-        intensity[overturned],
-        np.full(overturned.sum(), high),
-        "^",
-        color=COLOURS[1],
-        ms=5,
-        label="overturned",
-    )
-    axes.plot(
-        intensity[at_rest],
-        np.full(at_rest.sum(), low),
-        "v",
-        color=COLOURS[2],
-        ms=5,
-        label="at rest",
-    )
+    for part, heights, marker, colour, size, words in (
+        (finite_response, response, "o", GREY, 3.5, "runs"),
+        (overturned, np.full_like(response, high), "^", COLOURS[1], 5, "overturned"),
+        (at_rest, np.full_like(response, low), "v", COLOURS[2], 5, "at rest"),
+    ):
+        axes.plot(intensity[part], heights[part], marker, color=colour, ms=size, label=words)
     x = np.geomspace(intensity.min(), intensity.max(), 101)
     # the line was fitted in SI units; in any units it passes through the mean of the runs
     logs = np.log(intensity[finite_response])
