@@ -17,7 +17,7 @@ def rigid_block_setting(
 ) -> RigidGroundSetting | RestrainedSetting:
     """Return the setting of a block that rocks on level rigid ground; refuse any other scene.
 
-    With `carries` it may carry loads that are masses, with `slides` it may slide.
+    With `allow_loads` it may carry loads that are masses, with `allow_sliding` it may slide.
     """
     if not isinstance(system, System):
         msg = f"{owner}: system needs a System, got {short_repr(system)}"

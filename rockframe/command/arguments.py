@@ -26,7 +26,8 @@ class CommandArgument:
 class Command:
     """One command."""
 
-    name: str  # as typed, and of the module that runs it
+    name: str  # as typed
+    module: str  # which runs it, by its function ``execute_`` and the name
     summary: str  # what it does, in one line
     description: str  # what it does, in its help
     examples: str  # lines to copy
@@ -86,6 +87,9 @@ SCENE_FILE: Final = file_argument(
 )
 RESULT_FILE: Final = file_argument(
     "dataset", metavar="out.nc", help="a result that another command wrote with -o; or -"
+)
+MOTION_FILES: Final = file_argument(
+    "files", nargs="+", metavar="FILE", help="records, archives or folders; or -"
 )
 OVERWRITE_OPTION: Final = argument(
     "--overwrite",

@@ -7,6 +7,7 @@ from rockframe.command.arguments import (
     ANALYSIS_ARGUMENTS,
     DURATION_OPTIONS,
     INTENSITY_OPTIONS,
+    MOTION_FILES,
     OUTPUT_OPTION,
     OVERWRITE_OPTION,
     PICTURE_HELP,
@@ -27,6 +28,7 @@ from rockframe.command.arguments import (
 COMMANDS: Final = (
     Command(
         "template",
+        "runs",
         "write a scene or a study to begin with",
         "Write a file to begin with. Change its numbers, which have their units, and run it.",
         """\
@@ -47,6 +49,7 @@ COMMANDS: Final = (
     ),
     Command(
         "describe",
+        "runs",
         "describe the model of a scene, with its numbers",
         "Check the file of a scene, and describe its model: the equations, the frequencies and "
         "what the model neglects. Nothing is simulated.",
@@ -55,6 +58,7 @@ COMMANDS: Final = (
     ),
     Command(
         "motion",
+        "motions",
         "list what files of ground motions contain",
         "List the components of files, archives and folders as agencies publish them, with "
         "their intensity measures.",
@@ -63,9 +67,7 @@ COMMANDS: Final = (
   rockframe motion record.AT2 --picture record.png
   rockframe motion PEERNGARecords.zip --csv measures.csv""",
         (
-            file_argument(
-                "files", nargs="+", metavar="FILE", help="records, archives or folders; or -"
-            ),
+            MOTION_FILES,
             *READING_OPTIONS,
             file_argument(
                 "--picture",
@@ -80,6 +82,7 @@ COMMANDS: Final = (
     ),
     Command(
         "convert",
+        "motions",
         "write records in formats of other programs",
         "Read records of any format that rockframe knows, and write them as AT2 (of PEER), as CSV "
         "or as netCDF, which keeps all that is known of them. The components that 'motion' lists "
@@ -91,9 +94,7 @@ COMMANDS: Final = (
   rockframe convert PEERNGARecords.zip -o suite.nc             all of them in one file
   rockframe convert - --to csv -o - < record.AT2""",
         (
-            file_argument(
-                "files", nargs="+", metavar="FILE", help="records, archives or folders; or -"
-            ),
+            MOTION_FILES,
             file_argument(
                 "-o",
                 "--output",
@@ -112,6 +113,7 @@ COMMANDS: Final = (
     ),
     Command(
         "run",
+        "runs",
         "simulate a scene under a motion",
         "Simulate a scene, print the verdict, and write all results to a netCDF file, which "
         "'plot', 'report', xarray, MATLAB and many others read.",
@@ -123,6 +125,7 @@ COMMANDS: Final = (
     ),
     Command(
         "certify",
+        "runs",
         "check how certain the verdict of a run is",
         "Simulate a scene, and then repeat it about a hundred times: with finer accuracy, with "
         "parameters changed a little, and under the scaled motion. Report whether the verdict "
@@ -152,6 +155,7 @@ COMMANDS: Final = (
     ),
     Command(
         "critical",
+        "analyses",
         "find the least scale of a motion that overturns",
         "Scale the motion of a scene, and find the least scale at which the body overturns, its "
         "peak ground acceleration, and all ranges of larger scales at which it stands again.",
@@ -176,6 +180,7 @@ COMMANDS: Final = (
     ),
     Command(
         "study",
+        "analyses",
         "run a scene with many values of its parameters",
         "Run a scene at all combinations of values, or at all rows of a table, under one motion "
         "or many. With a store, a folder, finished cases are kept: the same command continues "
@@ -198,6 +203,7 @@ COMMANDS: Final = (
     ),
     Command(
         "fragility",
+        "analyses",
         "fit the probability of overturning by intensity",
         "Run a scene under many records at many scales, and fit lognormal fragilities: median and "
         "dispersion of the intensity at which it overturns. Or fit them to a finished study, given "
@@ -211,6 +217,7 @@ COMMANDS: Final = (
     ),
     Command(
         "ida",
+        "analyses",
         "scale many records until a scene overturns",
         "Incremental dynamic analysis: run a scene under records at increasing scales, and refine "
         "each scale at which it begins, or ceases, to overturn. Lists the capacity under each "
@@ -228,6 +235,7 @@ COMMANDS: Final = (
     ),
     Command(
         "map",
+        "analyses",
         "find the pulses that overturn a scene",
         "Run a scene under pulses of the given amplitudes and frequencies, and find the boundaries "
         "of overturning: without an impact, after one impact, and the safe range between them.",
@@ -261,6 +269,7 @@ COMMANDS: Final = (
     ),
     Command(
         "plot",
+        "figures",
         "draw a result",
         "Draw the result in a file: a run over time, or the figure of a study or an analysis.",
         """\
@@ -291,6 +300,7 @@ COMMANDS: Final = (
     ),
     Command(
         "animate",
+        "figures",
         "animate a run",
         "Write an animation of a run: a page with a slider (.html, fast, some tens of kB), or a "
         "film (.gif, .mp4, drawn picture by picture). Name a result, or a scene to be run.",
@@ -323,6 +333,7 @@ COMMANDS: Final = (
         ),
     ),
     Command(
+        "report",
         "report",
         "write a page on a run or a study, to keep or to print",
         "Write one HTML file that needs no other: the scene, the motion and its measures, the "
@@ -390,6 +401,7 @@ COMMANDS: Final = (
     ),
     Command(
         "serve",
+        "serve",
         "try a scene on a page with sliders",
         "Serve a page to browsers on this machine: sliders for the body, its base and the "
         "motion, the verdict, an animation of the run, and the scene as a file to download. Ctrl-C "
@@ -410,6 +422,7 @@ COMMANDS: Final = (
         ),
     ),
     Command(
+        "completion",
         "completion",
         "write a script that completes commands in a shell",
         "Write a script with which a shell completes commands, options and names of files.",

@@ -42,7 +42,7 @@ compdef _rockframe rockframe
 """
 
 
-def execute(arguments: argparse.Namespace, answer: Answer) -> int:
+def execute_completion(arguments: argparse.Namespace, answer: Answer) -> int:
     """Write the script for a shell."""
     text = script(arguments.shell)
     answer.add_text(text.removesuffix("\n"), text=text)

@@ -88,8 +88,8 @@ def _run_command(arguments: Namespace, program: str, interrupts: list[int]) -> i
         warnings.showwarning = _warning_printer(program, answer)
         try:
             # each command imports the libraries it needs only when it runs
-            module: Any = import_module(f"rockframe.command.{arguments.command}")
-            code = int(module.execute(arguments, answer))
+            module = import_module(f"rockframe.command.{arguments.module}")
+            code = int(getattr(module, f"execute_{arguments.command}")(arguments, answer))
             if interrupts:  # the results up to the interruption are in the answer
                 code = INTERRUPTED
         except KeyboardInterrupt:

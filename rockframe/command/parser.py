@@ -79,6 +79,7 @@ def build_parser() -> argparse.ArgumentParser:
         )
         for argument in command.arguments:
             one.add_argument(*argument.names, **argument.settings)
+        one.set_defaults(module=command.module)
     return parser
 
 
@@ -119,7 +120,7 @@ def rewrite_for_command_line(words: str, name: str) -> str:
     words = _KEYWORD_EXAMPLE.sub(typed, _FUNCTION_PREFIX.sub("", words))
     if not any(_SCENE_ARGUMENT in argument.names for argument in command.arguments):
         return words
-    from rockframe.command.files.notation import in_toml
+    from rockframe.command.files.tables import in_toml
 
     return in_toml(words)
 

@@ -32,7 +32,7 @@ from rockframe.suites import TargetSpectrum, read_suite
 _CHECK_OPTION: Final = "--check"
 
 
-def execute(arguments: argparse.Namespace, answer: Answer) -> int:
+def execute_report(arguments: argparse.Namespace, answer: Answer) -> int:
     """Write the page."""
     path = arguments.output
     if path is None and arguments.dataset == STREAM:

@@ -13,7 +13,7 @@ from rockframe.serve import Server
 from rockframe.serve.controls import NamedRecord
 
 
-def execute(arguments: argparse.Namespace, answer: Answer) -> int:
+def execute_serve(arguments: argparse.Namespace, answer: Answer) -> int:
     """Serve the page until Ctrl-C."""
     if arguments.record is None:
         refuse_reading_options(arguments, "name one, too")

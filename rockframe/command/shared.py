@@ -4,7 +4,7 @@ import argparse
 import csv
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import suppress
+from contextlib import closing, suppress
 from dataclasses import replace
 from math import floor
 from pathlib import Path
@@ -21,8 +21,8 @@ from rockframe.command.streams import (
     STANDARD_INPUT_NAME,
     STREAM,
     StandardInput,
+    TerminalProgressBar,
     open_input,
-    terminal_progress_bar,
 )
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, FileError, RecordError, SolverError, short_repr
@@ -204,7 +204,7 @@ def run_analysis(
     arguments: argparse.Namespace,
 ) -> xr.Dataset:
     """Analyse what a file describes, with a progress bar."""
-    with terminal_progress_bar(arguments.command, quiet=arguments.quiet) as bar:
+    with closing(TerminalProgressBar(arguments.command, enabled=not arguments.quiet)) as bar:
         dataset = analysis(found.system, motions, **values, progress=bar)
     return with_project(dataset, found.project)
 
@@ -364,6 +364,15 @@ def analysis_kind(words: str, *names: str) -> FileKind:
 
 RUN_KIND: Final = result_kind("the result of a run", axes=False)
 STUDY_KIND: Final = result_kind("the result of a study", axes=True)
+
+
+def motion_summary(motion: GroundMotion) -> str:
+    """Write the number of samples, the time step, the length and the peak of a motion."""
+    peak = motion.peak_acceleration.to("m/s^2").magnitude
+    return (
+        f"{len(motion)} samples at {motion.si.time_step:g} s, {motion.si.duration:g} s long, "
+        f"peak {peak:.4g} m/s^2 ({peak / STANDARD_GRAVITY:.3g} g)"
+    )
 
 
 def part_names(system: System) -> str:

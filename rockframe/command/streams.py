@@ -3,8 +3,6 @@
 import os
 import shutil
 import sys
-from collections.abc import Generator
-from contextlib import contextmanager
 from io import BytesIO
 from time import monotonic
 from typing import IO, Final
@@ -110,13 +108,3 @@ class TerminalProgressBar:
         """Clear the line."""
         if self._last > 0.0:
             print(_CLEAR_LINE, end="", file=sys.stderr, flush=True)
-
-
-@contextmanager
-def terminal_progress_bar(what: str, *, quiet: bool) -> Generator[TerminalProgressBar]:
-    """Show a progress bar during an analysis."""
-    bar = TerminalProgressBar(what, enabled=not quiet)
-    try:
-        yield bar
-    finally:
-        bar.close()

@@ -13,8 +13,8 @@ from rockframe.units import POSITIVE, to_ratio
 _OWNER: Final = "recommend"
 _MIN_PERCENTAGE: Final = 1e-4
 """Smallest error written as a percentage; a percentage with an exponent is easily misread."""
-_DIMENSIONS: Final = ("model", "accuracy")
-_NEEDED: Final = ("run_time", "verdict_agrees", *_DIMENSIONS)
+DIMENSIONS: Final = ("model", "accuracy")
+_NEEDED: Final = ("run_time", "verdict_agrees", *DIMENSIONS)
 _ERRORS: Final = {"peak_error": "the peak rotation", "history_error": "the rotation along time"}
 
 
@@ -103,8 +103,8 @@ def recommend(
         msg = f"{_OWNER}: found a dataset without {missing[0]!r}; expected one of tradeoff()"
         raise SchemaError(msg)
     # a part of a comparison may have lost a dimension, or have them in another order
-    lost = [dim for dim in _DIMENSIONS if dim not in dataset.dims]
-    dataset = dataset.expand_dims(lost).transpose(*_DIMENSIONS, ...)
+    lost = [dim for dim in DIMENSIONS if dim not in dataset.dims]
+    dataset = dataset.expand_dims(lost).transpose(*DIMENSIONS, ...)
     agrees = dataset["verdict_agrees"].to_numpy()
     errors = np.where(agrees, dataset[error], np.inf)
     times = dataset["run_time"].to_numpy()

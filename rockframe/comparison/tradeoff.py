@@ -12,7 +12,7 @@ import xarray as xr
 
 from rockframe.arguments import checked_integer, checked_list
 from rockframe.comparison.models import model_ladder
-from rockframe.comparison.recommend import recommend
+from rockframe.comparison.recommend import DIMENSIONS, recommend
 from rockframe.errors import ComponentError, ModelWarning, SolverWarning, did_you_mean, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import MIN_REPORTED_SLIP, PEAK_SLIPS, verdict_of
@@ -93,8 +93,6 @@ def _relative(difference: float, scale: float) -> float:
 BENCHMARK_TOLERANCE: Final = 1e-12
 BENCHMARK: Final = Accuracy(rtol=BENCHMARK_TOLERANCE)
 """Accuracy of the runs against which errors are measured; their own errors are about `TIGHT`."""
-
-DIMENSIONS: Final = ("model", "accuracy")
 
 Outcome: TypeAlias = dict[str, float | int | bool]
 

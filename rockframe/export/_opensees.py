@@ -202,16 +202,12 @@ def _base_springs(system: System, count: int) -> SpringsOfBase:
             corners, setting.support.stiffness, setting.support.damping, _PADS_NOTE
         )
     ratio, damping_ratio = _RIGID_GROUND_RATIOS
-    radius = math.hypot(*_centre_from_corner(body))
-    inertia = body.inertia + body.mass * sum(one**2 for one in _centre_from_corner(body))
+    radius = math.hypot(body.half_width, body.centre_height)
+    inertia = body.inertia + body.mass * (body.half_width**2 + body.centre_height**2)
     frequency = ratio * math.sqrt(body.mass * setting.gravity * radius / inertia)
     return SpringsOfBase(
         corners, 0.5 * body.mass * frequency**2, damping_ratio * body.mass * frequency, _GROUND_NOTE
     )
-
-
-def _centre_from_corner(body: Any) -> tuple[float, float]:
-    return body.half_width, body.centre_height
 
 
 _SOIL_NOTE: Final = (

@@ -7,9 +7,8 @@ from typing import Any, Final, cast
 
 import numpy as np
 
-from rockframe.identification.measured import History, MeasuredPeaks
+from rockframe.identification.measured import History, MeasuredPeaks, Swings
 from rockframe.identification.prediction import Prediction
-from rockframe.identification.swings import Swings
 from rockframe.identification.unknowns import Circumstance, Unknown, with_starts
 from rockframe.signals.arrays import Array
 

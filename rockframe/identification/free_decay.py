@@ -16,10 +16,10 @@ from rockframe.identification.measured import (
     check_below_overturning,
     read_history,
     read_peaks,
+    swings_of,
 )
 from rockframe.identification.prediction import Prediction, start_values
 from rockframe.identification.report import fit_dataset
-from rockframe.identification.swings import swings_of
 from rockframe.identification.unknowns import Circumstance, TrialSystems
 from rockframe.simulation.system import System, check_system
 from rockframe.solve.accuracy import AccuracyLevel, accuracy_of

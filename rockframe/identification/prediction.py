@@ -1,18 +1,17 @@
 """Rotation of a test as predicted from the unknowns, and start values of the search."""
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockframe.dynamics.protocol import Start
-from rockframe.identification.measured import History, MeasuredPeaks
-from rockframe.identification.swings import Swings, restitution_of
+from rockframe.identification.measured import History, MeasuredPeaks, Swings, restitution_of
 from rockframe.identification.unknowns import Circumstance, TrialSystems, Unknown
 from rockframe.signals.arrays import Array
 from rockframe.simulation.system import System
@@ -149,8 +148,7 @@ class Prediction:
         self.names = names
         self._known = known
         self._accuracy = accuracy
-        self._for_history = lru_cache(maxsize=_CACHE_SIZE)(self._run_history)
-        self._for_peaks = lru_cache(maxsize=_CACHE_SIZE)(self._run_peaks)
+        self._found: Any = lru_cache(maxsize=_CACHE_SIZE)(self._run)
 
     def values(self, found: Array) -> dict[str, float]:
         """Return the values of all parameters and circumstances by name, including known ones."""
@@ -159,15 +157,16 @@ class Prediction:
     def history(self, found: Array, measured: History) -> Array:
         """Return the rotation that the gauge would show at the times of a history [rad]."""
         values = self.values(found)
-        motion = self._for_history(*self._key(values), (1.0 + RELEASE_MARGIN) * measured.span)
+        duration = (1.0 + RELEASE_MARGIN) * measured.span
+        motion = self._found(release_response, *self._key(values), duration)
         since = measured.time - values[Circumstance.RELEASE_TIME]
         return values[Circumstance.GAUGE_OFFSET] + motion.at(since)
 
     def peaks(self, found: Array, measured: MeasuredPeaks) -> tuple[Array, Array]:
         """Return times [s] and rotations [rad] of the peaks that the gauge would show."""
         values = self.values(found)
-        count = measured.rotation.size
-        times, sizes = self._for_peaks(*self._key(values), count, self._run_duration(measured))
+        wanted = measured.rotation.size, self._run_duration(measured)
+        times, sizes = self._found(first_peaks, *self._key(values), *wanted)
         rotation = values[Circumstance.GAUGE_OFFSET] + measured.sides * sizes
         return values[Circumstance.RELEASE_TIME] + times, rotation
 
@@ -175,18 +174,12 @@ class Prediction:
         parameters = tuple(values[name] for name in self.trials.parameters)
         return parameters, values[Circumstance.INITIAL_ROTATION]
 
-    def _system(self, parameters: tuple[float, ...]) -> Assembly:
-        return self.trials.assembly(dict(zip(self.trials.parameters, parameters, strict=True)))
-
-    def _run_history(
-        self, parameters: tuple[float, ...], rotation: float, duration: float
-    ) -> FreeMotion:
-        return release_response(self._system(parameters), rotation, duration, self._accuracy)
-
-    def _run_peaks(
-        self, parameters: tuple[float, ...], rotation: float, count: int, duration: float
-    ) -> tuple[Array, Array]:
-        return first_peaks(self._system(parameters), rotation, count, duration, self._accuracy)
+    def _run(
+        self, compute: Callable[..., Any], parameters: tuple[float, ...], *wanted: float
+    ) -> Any:
+        """Compute a motion or its peaks from the parameters, initial rotation and so on."""
+        values = dict(zip(self.trials.parameters, parameters, strict=True))
+        return compute(self.trials.assembly(values), *wanted, self._accuracy)
 
     def _run_duration(self, measured: MeasuredPeaks) -> float:
         """Return the duration of a run that is likely to contain all peaks [s]."""

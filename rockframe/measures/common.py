@@ -3,7 +3,6 @@
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from enum import StrEnum
 from os import cpu_count
 from typing import Any, Final, Generic, TypeVar, cast
 
@@ -14,17 +13,11 @@ from rockframe.arguments import checked_choice
 from rockframe.compiled import COMPILED
 from rockframe.errors import ComponentError, short_repr
 from rockframe.motion import GroundMotion
+from rockframe.motion.value import GroundComponent
 from rockframe.results.joining import MOTION
 from rockframe.results.schema import SCHEMA, build_dataset, without_fill_values
 from rockframe.signals import Signal
 from rockframe.signals.arrays import Array
-
-
-class GroundComponent(StrEnum):
-    """The component of a motion that a measure is of."""
-
-    HORIZONTAL = "horizontal"
-    VERTICAL = "vertical"
 
 
 def signal_of(motion: object, component: object, *, owner: str) -> Signal:

@@ -14,6 +14,7 @@ from rockframe.measures.response import (
     checked_ratios,
     oscillator_axes,
     shortest_positive_period,
+    signal_spectra,
 )
 from rockframe.motion.pair import HorizontalPair, principal_axis_and_intensities
 from rockframe.motion.processing.samples import warn_of_coarse_samples
@@ -23,10 +24,8 @@ from rockframe.signals import Signal
 from rockframe.signals.arrays import Array
 from rockframe.signals.spectra import (
     check_cost,
-    pseudo_spectra,
     rotated_displacements,
     rotated_peaks,
-    spectral_peaks,
     unit_vectors,
 )
 from rockframe.suggestions import with_hints
@@ -123,7 +122,9 @@ def rotated_spectrum(
     def spectra(one: HorizontalPair) -> dict[str, Array]:
         values = _spectra(one.signals, seconds, ratios, vectors)
         if has_vertical and one.vertical is not None:
-            vertical = _vertical(one.vertical.si.horizontal, seconds, ratios)
+            vertical = signal_spectra(one.vertical.si.horizontal, seconds, ratios)[
+                "pseudo_spectral_acceleration"
+            ]
             horizontal = values["median_rotated_acceleration"]
             with np.errstate(divide="ignore", invalid="ignore"):
                 ratio = vertical / horizontal
@@ -208,11 +209,6 @@ def _spectra(
         ),
         "direction_of_greatest": np.pi * greatest / len(vectors),
     }
-
-
-def _vertical(signal: Signal, seconds: Array, ratios: Array) -> Array:
-    peaks = np.array([spectral_peaks(signal, seconds, ratio) for ratio in ratios.tolist()])
-    return pseudo_spectra(signal, seconds, peaks[:, :, 0])[1]
 
 
 def _axes(pair: HorizontalPair) -> dict[str, float]:

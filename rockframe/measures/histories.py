@@ -6,12 +6,12 @@ import numpy as np
 import xarray as xr
 
 from rockframe.measures.common import (
-    GroundComponent,
     build_over,
     component_attributes,
     signal_of,
 )
 from rockframe.motion import GroundMotion
+from rockframe.motion.value import GroundComponent
 from rockframe.results.schema import build_dataset
 from rockframe.signals.integrals import ground_path, transform_of
 from rockframe.signals.motion import knots_of

@@ -10,8 +10,9 @@ import xarray as xr
 from rockframe.components import Block
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, short_repr
-from rockframe.measures.common import GroundComponent, read_inputs
+from rockframe.measures.common import read_inputs
 from rockframe.motion import GroundMotion
+from rockframe.motion.value import GroundComponent
 from rockframe.results.schema import build_dataset
 from rockframe.signals import Signal
 from rockframe.signals.integrals import (

@@ -117,7 +117,7 @@ def spectra_of(
         inputs = replace(inputs, items=[_refined_record(one, seconds) for one in inputs.items])
     for signal in inputs.items:
         check_cost(signal, seconds, owner=_OWNER)
-    values = inputs.joined(inputs.each(lambda signal: _spectra(signal, seconds, ratios)))
+    values = inputs.joined(inputs.each(lambda signal: signal_spectra(signal, seconds, ratios)))
     dataset = build_over(
         oscillator_axes(ratios, seconds),
         values,
@@ -157,7 +157,8 @@ def _refined_record(signal: Signal, seconds: Array) -> Signal:
     return replace(signal, time_step=step, samples=samples, polynomials=None)
 
 
-def _spectra(signal: Signal, seconds: Array, ratios: Array) -> dict[str, Array]:
+def signal_spectra(signal: Signal, seconds: Array, ratios: Array) -> dict[str, Array]:
+    """Compute the spectra of a signal over damping ratios and periods, by their names."""
     found = np.array([spectral_peaks(signal, seconds, ratio) for ratio in ratios.tolist()])
     pseudo_velocity, pseudo_acceleration = pseudo_spectra(signal, seconds, found[:, :, 0])
     return {

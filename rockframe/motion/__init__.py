@@ -1,8 +1,8 @@
 """Ground motions: records, analytic pulses and their processing."""
 
 from rockframe.motion.ground_motion import GroundMotion
+from rockframe.motion.operations.pulses import VelocityPulse
 from rockframe.motion.pair import HorizontalPair
-from rockframe.motion.velocity_pulse import VelocityPulse
 from rockframe.records import formats, register, unregister
 
 __all__ = [

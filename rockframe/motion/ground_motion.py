@@ -6,7 +6,7 @@ from functools import wraps
 from typing import TYPE_CHECKING
 
 from rockframe.errors import ArgumentError, ComponentError, short_repr
-from rockframe.motion import dataset, description, value
+from rockframe.motion import description
 from rockframe.motion.constructors import records, synthetic, tables
 from rockframe.motion.constructors.analytic import AnalyticMotion
 from rockframe.motion.operations import (
@@ -87,10 +87,10 @@ class GroundMotion(AnalyticMotion):
     from_trace = classmethod(tables.from_trace)
     stochastic = classmethod(synthetic.stochastic)
 
-    to_dataset = dataset.to_dataset
-    from_dataset = classmethod(dataset.from_dataset)
+    to_dataset = description.to_dataset
+    from_dataset = classmethod(description.from_dataset)
     to_at2 = writing.to_at2
-    to_dict = value.to_dict
+    to_dict = description.to_dict
     from_dict = classmethod(description.from_dict)
 
     window = timing.window

@@ -10,23 +10,23 @@ import numpy as np
 
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, RecordError, RecordWarning, short_repr, warn
+from rockframe.motion.constructors.records import motion_of_reading, warn_of_reading
 from rockframe.motion.ground_motion import GroundMotion
 from rockframe.motion.operations.derived import SAME_STEP
 from rockframe.motion.operations.pulses import (
     LONGEST_PERIOD,
     SHORTEST_PERIOD,
+    VelocityPulse,
     ground_velocity,
     search_periods,
 )
 from rockframe.motion.processing.samples import padded
 from rockframe.motion.processing.velocity_pulses import strongest_wavelet
-from rockframe.motion.quantities import as_quantity
-from rockframe.motion.velocity_pulse import VelocityPulse
 from rockframe.records import Reading, RecordLike, read_components, read_source, same_start
 from rockframe.signals import Signal
 from rockframe.signals.integrals import arias_history
 from rockframe.suggestions import SuggestingMeta, suggests_names
-from rockframe.units import ANGLE, Quantity, QuantityLike
+from rockframe.units import ANGLE, Quantity, QuantityLike, quantity
 
 _RIGHT_ANGLE: Final = 90.0
 _TOLERANCE: Final = 1.0  # degree; agencies round azimuths to whole degrees
@@ -149,15 +149,9 @@ class HorizontalPair(metaclass=SuggestingMeta):
             expected = "two horizontal ones and at most one vertical; read them one by one"
             raise RecordError(source.path, found=found, expected=expected)
         for reading in readings:
-            for message in reading.warnings:
-                warn(message, RecordWarning)
+            warn_of_reading(reading)
         motions = [
-            GroundMotion(
-                one.si,
-                name=f"{one.file} {one.metadata.get('component', '')}",
-                metadata=one.metadata,
-                history=one.history,
-            )
+            motion_of_reading(GroundMotion, one, f"{one.file} {one.metadata.get('component', '')}")
             for one in (*horizontal, *vertical)
         ]
         return cls(*motions)
@@ -184,7 +178,7 @@ class HorizontalPair(metaclass=SuggestingMeta):
     @property
     def principal_axis(self) -> Quantity:
         """Direction of the major principal axis, from the first component to the second [rad]."""
-        return as_quantity(principal_axis_and_intensities(self)[0], ANGLE)
+        return quantity(principal_axis_and_intensities(self)[0], ANGLE)
 
     def rotated(
         self, angle: QuantityLike | None = None, *, azimuth: QuantityLike | None = None
@@ -257,7 +251,7 @@ class HorizontalPair(metaclass=SuggestingMeta):
         pulse = self.rotated(f"{direction!r} rad").velocity_pulse(
             shortest_period=shortest_period, longest_period=longest_period
         )
-        return replace(pulse, angle=as_quantity(direction, ANGLE))
+        return replace(pulse, angle=quantity(direction, ANGLE))
 
     def in_axes(self, angle: QuantityLike) -> HorizontalPair:
         """Compute the components along rotated axes.

@@ -1,4 +1,4 @@
-"""Conversion of arrays of quantities to SI units, and back to quantities."""
+"""Conversion of arrays of quantities to SI units."""
 
 from __future__ import annotations
 
@@ -15,7 +15,6 @@ from rockframe.records import acceleration_unit
 from rockframe.units import (
     ACCELERATION,
     TIME,
-    Measure,
     Quantity,
     check_attached_unit,
     foreign_quantity_hint,
@@ -28,13 +27,6 @@ if TYPE_CHECKING:
 ArrayLike: TypeAlias = Quantity | xr.DataArray | tuple[Sequence[float] | npt.NDArray[Any], str]
 
 _EXAMPLE: Final = "(values, 'm/s^2')"
-
-
-def as_quantity(value: float | Array, measure: Measure) -> Quantity:
-    """Make a quantity from a number or array in SI units."""
-    registry: Any = pint.get_application_registry()
-    own = value.copy() if isinstance(value, np.ndarray) else value
-    return registry.Quantity(own, str(measure.unit))
 
 
 def accelerations_to_si(value: object, *, owner: str, name: str) -> Array:

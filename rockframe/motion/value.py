@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from enum import StrEnum
 from types import MappingProxyType
 from typing import Any, Final, TypeVar
 
-from rockframe.arguments import checked_bool, checked_text
+from rockframe.arguments import checked_text
 from rockframe.errors import ComponentError, short_repr
-from rockframe.motion.quantities import as_quantity
-from rockframe.signals import Motion, Signal
+from rockframe.signals import Motion
 from rockframe.signals.integrals import ground_path
 from rockframe.signals.motion import absolute_peak, knots_of
 from rockframe.suggestions import Immutable, suggests_names
-from rockframe.units import ACCELERATION, LENGTH, TIME, VELOCITY, Quantity
+from rockframe.units import ACCELERATION, LENGTH, TIME, VELOCITY, Quantity, quantity
 
 UNNAMED: Final = "unnamed motion"
 
 MotionType = TypeVar("MotionType", bound="MotionValue")
 """The class of a motion, kept by constructors and operations."""
+
+
+class GroundComponent(StrEnum):
+    """The component of a motion to which a function applies."""
+
+    HORIZONTAL = "horizontal"
+    VERTICAL = "vertical"
 
 
 @suggests_names
@@ -94,43 +101,43 @@ class MotionValue(Immutable):
     @property
     def time_step(self) -> Quantity:
         """Time between samples [s]."""
-        return as_quantity(self.si.time_step, TIME)
+        return quantity(self.si.time_step, TIME)
 
     @property
     def duration(self) -> Quantity:
         """Time from the first to the last sample [s]."""
-        return as_quantity(self.si.duration, TIME)
+        return quantity(self.si.duration, TIME)
 
     @property
     def acceleration(self) -> Quantity:
         """Horizontal acceleration of the ground, a copy of the samples [m s^-2]."""
-        return as_quantity(self.si.horizontal.samples, ACCELERATION)
+        return quantity(self.si.horizontal.samples.copy(), ACCELERATION)
 
     @property
     def vertical_acceleration(self) -> Quantity | None:
         """Vertical acceleration of the ground, upwards, or None [m s^-2]."""
         vertical = self.si.vertical
-        return None if vertical is None else as_quantity(vertical.samples, ACCELERATION)
+        return None if vertical is None else quantity(vertical.samples.copy(), ACCELERATION)
 
     @property
     def velocity(self) -> Quantity:
         """Horizontal velocity of the ground at the samples, from rest [m s^-1]."""
-        return as_quantity(knots_of(ground_path(self.si.horizontal)[0]), VELOCITY)
+        return quantity(knots_of(ground_path(self.si.horizontal)[0]), VELOCITY)
 
     @property
     def displacement(self) -> Quantity:
         """Horizontal displacement of the ground at the samples, from rest [m]."""
-        return as_quantity(knots_of(ground_path(self.si.horizontal)[1]), LENGTH)
+        return quantity(knots_of(ground_path(self.si.horizontal)[1]), LENGTH)
 
     @property
     def peak_acceleration(self) -> Quantity:
         """Greatest absolute horizontal acceleration, between samples too [m s^-2]."""
-        return as_quantity(self.si.peak, ACCELERATION)
+        return quantity(self.si.peak, ACCELERATION)
 
     @property
     def peak_velocity(self) -> Quantity:
         """Greatest absolute horizontal velocity from rest, between samples too [m s^-1]."""
-        return as_quantity(absolute_peak(ground_path(self.si.horizontal)[0]), VELOCITY)
+        return quantity(absolute_peak(ground_path(self.si.horizontal)[0]), VELOCITY)
 
     def __len__(self) -> int:
         return int(self.si.horizontal.samples.size)
@@ -192,45 +199,3 @@ class _OneLine(str):
 
     def __new__(cls, text: str) -> _OneLine:
         return text if isinstance(text, cls) else super().__new__(cls, _one_line(text))
-
-
-def to_dict(motion: MotionValue, *, samples: bool = False) -> dict[str, Any]:
-    """Describe the motion: an analytic one completely, a record by its digest.
-
-    Parameters
-    ----------
-    samples : bool
-        Whether the description of a record contains its samples, metadata and history.
-
-    Returns
-    -------
-    dict
-        Values for JSON: constructor and arguments of an analytic motion, with the
-        ``operations`` on it since; ``constructor`` is None for a motion that is known by its
-        samples only.
-
-    Examples
-    --------
-    >>> import rockframe as rf
-    >>> rf.GroundMotion.half_sine_pulse("3 m/s^2", "0.5 s").to_dict()["constructor"]
-    'half_sine_pulse'
-    """
-    kind = {"type": type(motion).__name__}
-    if motion.recipe is not None:
-        return {**kind, **motion.recipe}
-    known = {**kind, "constructor": None, "name": motion.name, "sha256": motion.sha256}
-    if not checked_bool(samples, owner=f"{type(motion).__name__}.to_dict", name="samples"):
-        return known
-    return {
-        **known,
-        "metadata": dict(motion.metadata),
-        "history": list(motion.history),
-        "time_step": motion.si.time_step,
-        "horizontal": _signal_as_dict(motion.si.horizontal),
-        "vertical": None if motion.si.vertical is None else _signal_as_dict(motion.si.vertical),
-    }
-
-
-def _signal_as_dict(signal: Signal) -> dict[str, list[Any]]:
-    arrays = {"samples": signal.samples, "polynomials": signal.polynomials}
-    return {name: array.tolist() for name, array in arrays.items() if array is not None}

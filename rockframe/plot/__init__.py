@@ -3,9 +3,13 @@
 from typing import TYPE_CHECKING
 
 from rockframe.plot._animation import Animation, animation
-from rockframe.plot._clouds import annual_rate, cloud
 from rockframe.plot._diagrams import energies, moment_rotation, phase
-from rockframe.plot._dynamic_analysis import dynamic_analysis, fractile_curves
+from rockframe.plot._dynamic_analysis import (
+    annual_rate,
+    cloud,
+    dynamic_analysis,
+    fractile_curves,
+)
 from rockframe.plot._ensembles import ensemble, fragility, probability, subset_simulation
 from rockframe.plot._motion import motion, velocity_pulse
 from rockframe.plot._overturning import overturning_map, overturning_spectrum, rocking_spectrum
@@ -13,8 +17,7 @@ from rockframe.plot._panels import Panels
 from rockframe.plot._player import Player, player
 from rockframe.plot._response import response
 from rockframe.plot._scene import scene, state
-from rockframe.plot._selection import selection
-from rockframe.plot._spectra import spectra, suite
+from rockframe.plot._spectra import selection, spectra, suite
 from rockframe.plot._studies import critical_scale, free_decay, sweep
 from rockframe.plot._tradeoff import tradeoff
 from rockframe.suggestions import module_getattr

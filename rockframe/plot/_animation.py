@@ -202,30 +202,17 @@ def animation(
 
     Parameters
     ----------
-    window : (str or Quantity or None, str or Quantity or None), optional
-        Start and end of what is shown; the whole run unless given [s].
     speed : float, optional
         Time of the run over that of the animation. Unless given 1, or more if the animation would
         have more than 200 frames [1].
     frames_per_second : float, optional
         Frame rate of the animation [s^-1].
-    magnify : float, optional
-        Factor of displacements in the drawing of the scene [1].
-    rotation : str, optional
-        Unit of the history, as for :func:`rockframe.plot.response`; degrees unless given.
 
     Returns
     -------
     Animation
         Its frames show the nearest samples of the run. The strip at the bottom shows contact
         that changes faster than the frames.
-
-    Raises
-    ------
-    SchemaError
-        Not the result of a single run with histories.
-    UnitsError, ComponentError
-        A window, speed or factor that cannot be read or is out of range.
 
     Examples
     --------

@@ -32,6 +32,8 @@ COLOURS: Final = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
 STYLES: Final[tuple[Any, ...]] = ("-", "--", "-.", (0, (1, 1)))
 """Dashes of lines that are compared, so that they differ without colours too."""
 PALE_BLUE: Final = "#dfe7ef"
+PEAK_CAP: Final = 1.0
+"""Peaks over the overturning angle above this are drawn at this value."""
 _MIN_TICKS: Final = 3
 """Least number of labels of an axis."""
 _EMPTY_LIMITS: Final = (1.0, 10.0)

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from inspect import signature
 from os import PathLike
+from textwrap import fill, indent
 from typing import Any, Final, TypeVar, cast
 
 import numpy as np
@@ -103,9 +104,8 @@ def draws(
 ) -> Callable[[FigureFunction], FigureFunction]:  # fmt: skip
     """Register what a figure is drawn from, for a dataset by a `DatasetKind`.
 
-    Add to the docstring what figures share: `dataset`, `run`, `window`, `units`, `ax`, `title`,
-    what is returned, and errors. The words `ax` and `title` describe the Axes and the default title
-    in the manual.
+    Add to the docstring the arguments that figures share, what is returned, and errors. The words
+    `ax` and `title` describe the Axes and the default title in the manual.
     """
     kind = data if isinstance(data, DatasetKind) else DatasetKind(data, call, known, needed)
     default_title = f"; {title} unless given" if title else ""
@@ -120,16 +120,29 @@ def draws(
             "(str or Quantity or None, str or Quantity or None), optional",
             "Start and end of what is drawn; the whole run unless given [s].",
         ),
+        "magnify": Argument(
+            None, "float, optional", "Factor of displacements in the drawing of the scene [1]."
+        ),
+        "rotation": Argument(
+            None,
+            "str, optional",
+            "Unit of the history, as for :func:`rockframe.plot.response`; degrees unless given.",
+        ),
         "units": Argument(None, "mapping of str to str, optional", _UNITS_DOC),
         "ax": Argument(
             None, f"{ax}, optional", f"Axes to draw in; a new figure unless given.{in_figure}"
         ),
         "title": Argument(None, "str, optional", f"Title of the figure{default_title}."),
     }
-    raises = (
-        f"SchemaError\n    The dataset is not {kind.name}; the message names the function that "
-        "draws\n    what was given."
+    mismatch = (
+        f"The dataset is not {kind.name}; the message names the function that draws what was given."
     )
+    raises = f"SchemaError\n{indent(fill(mismatch, 88), '    ')}"
+    if kind is RUN:
+        raises += (
+            "\nUnitsError, ComponentError\n    An argument that cannot be read or is out of range, "
+            "such as a window without samples."
+        )
 
     def decorate(drawing: FigureFunction) -> FigureFunction:
         name, text = drawing.__name__, drawing.__doc__ or ""
@@ -139,6 +152,7 @@ def draws(
         _REQUIRED_DATA[name] = kind.description
         if known:
             KINDS[name] = kind
+        if known or kind is RUN:
             text = with_raises_section(text, raises)
         drawing.__doc__ = text
         return with_hints()(drawing)

@@ -27,7 +27,7 @@ from rockframe.plot._checks import (
     system_of_run,
 )
 from rockframe.plot._panels import Axes, AxesLike, make_single_panel
-from rockframe.plot._response import relative_rotation, rotation_values
+from rockframe.plot._response import rotation_in
 from rockframe.plot._runs import Run, RunsLike, Window, read_runs, runs_title
 from rockframe.results.schema import ENERGIES, SCHEMA
 from rockframe.simulation.system import System
@@ -68,13 +68,6 @@ def phase(
         A dot marks the start of each run; crosses mark the rotations of unstable equilibrium if
         the runs come near them.
 
-    Raises
-    ------
-    SchemaError
-        Not the result of a single run with histories.
-    UnitsError, ComponentError
-        A unit of another kind, or a window without samples.
-
     Examples
     --------
     >>> import rockframe as rf
@@ -92,12 +85,12 @@ def phase(
     sheet = make_single_panel(ax, "phase", (5.6, 4.4))
     reach, end = 0.0, np.inf
     for run in data:
-        across, up = rotation_values(run, unit), _angular_velocity(run, unit)
+        across = rotation_in(unit, run.dataset["rotation"], run.dataset)
+        up = _angular_velocity(run, unit)
         sheet.axes.plot(across, up, color=run.colour, ls=run.style, lw=0.9, label=run.label)
         sheet.axes.plot(across[:1], up[:1], "o", color=run.colour, markersize=5.0)
         left, right = overturning_angles(run.dataset)
-        ends = np.array([-left, right])
-        ends = relative_rotation(ends, left, right) if unit is None else unit.of(ends)
+        ends = rotation_in(unit, np.array([-left, right]), run.dataset)
         sheet.axes.plot(ends, [0.0, 0.0], "x", color=text_colour(), markersize=6.0)
         reach, end = max(reach, float(np.abs(across).max())), min(end, float(np.abs(ends).min()))
     if 0.0 < reach < _ZOOM_RATIO * end:  # otherwise the data would be almost a vertical line

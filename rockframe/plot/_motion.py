@@ -69,16 +69,14 @@ def labelled_motions(value: object, function: str) -> list[LabelledMotion]:
             f"{name} ({number})" if has_duplicates else name: one
             for number, (name, one) in enumerate(zip(names, value, strict=True), start=1)
         }
-    if by_label and all(isinstance(one, GroundMotion) for one in by_label.values()):
-        return [
-            LabelledMotion(one, label, line_colour(number), line_style(number))
-            for number, (label, one) in enumerate(
-                zip(unique_labels(by_label), by_label.values(), strict=True)
-            )
-        ]
-    if not isinstance(value, GroundMotion):
+    labels: list[Any] = unique_labels(by_label) or [None]
+    motions: list[Any] = [*by_label.values()] or [value]
+    if not all(isinstance(one, GroundMotion) for one in motions):
         raise ComponentError(mismatch_message(function, value))
-    return [LabelledMotion(value, None, line_colour(0), "-")]
+    return [
+        LabelledMotion(one, label, line_colour(number), line_style(number))
+        for number, (label, one) in enumerate(zip(labels, motions, strict=True))
+    ]
 
 
 _QUANTITIES: Final = ("acceleration", "velocity", "displacement")

@@ -8,6 +8,7 @@ from rockframe.plot._axes import (
     BLUE,
     GREEN,
     PALE_BLUE,
+    PEAK_CAP,
     PURPLE,
     SKY,
     VERMILLION,
@@ -30,8 +31,6 @@ _MAX_NAMED: Final = 8
 _IMPACT_COLOURS: Final = (VERMILLION, BLUE, SKY, PURPLE, GREEN)
 MAP_COLOURS: Final = (PALE_BLUE, *_IMPACT_COLOURS)
 """Colours of runs that stand, and of those that overturn after no, one and more impacts."""
-_PEAK_CAP: Final = 1.0
-"""Peaks over the overturning angle above this are drawn at this value."""
 
 
 @draws(
@@ -125,10 +124,10 @@ def rocking_spectrum(
     'H/B = 5'
     """
     data = figure_data(dataset, "rocking_spectrum", units)
-    peaks = data["peak_relative_rotation"].clip(max=_PEAK_CAP)
+    peaks = data["peak_relative_rotation"].clip(max=PEAK_CAP)
     sheet = _draw_by_slenderness(ax, "rocking_spectrum", peaks, ylim=(0.0, 1.06))
     for axes in sheet.panels:
-        axes.axhline(_PEAK_CAP, color="0.5", lw=0.8, ls=":")
+        axes.axhline(PEAK_CAP, color="0.5", lw=0.8, ls=":")
     sheet.axes.set_ylabel(r"peak of $|\alpha|/\theta$ [-]")
     if data.sizes["motion"] <= _MAX_NAMED:
         sheet.add_common_legend()

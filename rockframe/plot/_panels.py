@@ -160,7 +160,9 @@ def make_sheet(
     With `choice`, the function has the argument `panels`, which messages then mention. A new figure
     is one of pyplot, so that a notebook shows it and ``show()`` opens a window.
     """
-    if len(names) > 1 and _is_figure(ax):
+    from matplotlib.figure import FigureBase
+
+    if len(names) > 1 and isinstance(ax, FigureBase):
         own_figure = cast("Figure", ax)
         return Sheet(Panels(np.ravel(make(own_figure))), own_figure)
     if ax is not None:
@@ -209,12 +211,6 @@ def _checked_axes(ax: Any, function: str, names: Sequence[str], *, choice: bool)
             msg += f"; panels={names[0]!r} draws one of them"
         raise ComponentError(msg)
     return cast("list[Axes]", panels)
-
-
-def _is_figure(ax: object) -> bool:
-    from matplotlib.figure import FigureBase
-
-    return isinstance(ax, FigureBase)
 
 
 def _panel_name(axes: "Axes") -> str:

@@ -22,7 +22,7 @@ from rockframe.plot._response import (
     CONTACT_COLOURS,
     SLIP,
     contact_strips,
-    rotation_values,
+    rotation_in,
 )
 from rockframe.plot._runs import Window, read_runs, verdict_of_case
 from rockframe.plot._scene import SceneHistory
@@ -149,25 +149,9 @@ def player(
     is therefore made in a fraction of a second, while an :func:`animation` is drawn frame by
     frame.
 
-    Parameters
-    ----------
-    window : (str or Quantity or None, str or Quantity or None), optional
-        Start and end of what is shown; the whole run unless given [s].
-    magnify : float, optional
-        Factor of displacements in the drawing of the scene [1].
-    rotation : str, optional
-        Unit of the history, as for :func:`rockframe.plot.response`; degrees unless given.
-
     Returns
     -------
     Player
-
-    Raises
-    ------
-    SchemaError
-        Not the result of a single run with histories, or one without its system.
-    UnitsError, ComponentError
-        A window, unit or factor that cannot be read or is out of range.
 
     Examples
     --------
@@ -194,7 +178,8 @@ def player(
     label = _label_with_unit(f"rotation{of_body}", "-" if unit is None else unit.words)
     length = axis_units.axis_unit(LENGTH)
     traces = [
-        _trace_data(rotation_values(shown_run, unit), label, BLUE, store),
+        _trace_data(rotation_in(unit, shown_run.dataset["rotation"], shown_run.dataset),
+                    label, BLUE, store),
         *(_trace_data(length.of(slip), _label_with_unit(name, length.words), ORANGE, store)
           for name, slip in _largest_slips(shown_run.dataset)),
         _trace_data(ground.of(shown_run.dataset["ground_acceleration"]),

@@ -121,9 +121,7 @@ def draw_events(axes: Axes, runs: list[Run], unit: DisplayUnit | None) -> None:
         dataset = run.dataset
         if "event_kind" not in dataset:
             continue
-        rotation = dataset["event_rotation"].to_numpy()
-        angles = overturning_angles(dataset)
-        rotations = relative_rotation(rotation, *angles) if unit is None else unit.of(rotation)
+        rotations = rotation_in(unit, dataset["event_rotation"], dataset)
         times = dataset["event_time"].to_numpy()
         kinds = dataset["event_kind"].to_numpy()
         for value, name in flag_words(dataset["event_kind"].attrs).items():
@@ -206,15 +204,6 @@ def response(
         Their ``figure`` is one of :mod:`matplotlib.pyplot`. Where contact changes faster than the
         figure can show, the strip has the colours of the states averaged over time.
 
-    Raises
-    ------
-    SchemaError
-        Not the result of a single run, or one without histories; the message names the function
-        that draws what was given.
-    UnitsError, ComponentError
-        A unit of another kind, an unknown panel, a window without samples, or Axes that are not
-        as many as the panels.
-
     Examples
     --------
     >>> import rockframe as rf
@@ -272,12 +261,11 @@ def response(
     return sheet.panels
 
 
-def rotation_values(run: Run, unit: DisplayUnit | None, name: str = "rotation") -> Any:
-    """Return a rotation in a unit; without a unit over the overturning angle of its side."""
-    values = run.dataset[name].to_numpy()
+def rotation_in(unit: DisplayUnit | None, rotation: Any, run: xr.Dataset) -> Any:
+    """Return rotations in a unit; without a unit over the overturning angle of their side."""
     if unit is not None:
-        return unit.of(values)
-    return relative_rotation(values, *overturning_angles(run.dataset))
+        return unit.of(rotation)
+    return relative_rotation(rotation, *overturning_angles(run))
 
 
 def relative_rotation(rotation: Any, left: float, right: float) -> Any:
@@ -398,11 +386,12 @@ def _draw_rotation(axes: Axes, runs: list[Run], unit: DisplayUnit | None) -> Non
     for run in runs:
         dataset = run.dataset
         axes.plot(
-            run.time, rotation_values(run, unit), color=run.colour, linestyle=run.style,
-            linewidth=1.1, label=run.label or ("body 1" if "body" in dataset.dims else "block"),
+            run.time, rotation_in(unit, dataset["rotation"], dataset), color=run.colour,
+            linestyle=run.style, linewidth=1.1,
+            label=run.label or ("body 1" if "body" in dataset.dims else "block"),
         )  # fmt: skip
         if _ROTATION_ON_CAP in dataset and not several:
-            cap = rotation_values(run, unit, "cap_rotation")
+            cap = rotation_in(unit, dataset["cap_rotation"], dataset)
             axes.plot(run.time, cap, color=ORANGE, linewidth=0.9, label="cap")
         elif not several and "body" not in dataset.dims:  # of a stack it is that on the base
             _draw_uplift_angles(axes, dataset, unit)
@@ -428,8 +417,7 @@ def _draw_uplift_angles(axes: Axes, dataset: xr.Dataset, unit: DisplayUnit | Non
     uplift, peak = float(dataset["uplift_angle"]), float(np.abs(dataset["rotation"]).max())
     if not (np.isfinite(uplift) and 0.0 < uplift < _MAX_UPLIFT_RATIO * peak):
         return
-    both = np.array([-uplift, uplift])
-    drawn = relative_rotation(both, *overturning_angles(dataset)) if unit is None else unit.of(both)
+    drawn = rotation_in(unit, np.array([-uplift, uplift]), dataset)
     for place, label in zip(drawn, (None, "uplift"), strict=True):
         axes.axhline(place, color=GREEN, linewidth=0.7, linestyle="--", label=label)
 

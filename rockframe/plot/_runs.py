@@ -46,19 +46,12 @@ def read_runs(value: object, function: str, window: Window) -> list[Run]:
     """Read one or several runs, and cut out the window that is drawn."""
     limits = read_window(window, function)
     labelled = _labelled_runs(value)
-    if labelled is None:
-        return [
-            Run(
-                _within_window(checked_run(value, function), limits, function),
-                None,
-                line_colour(0),
-                "-",
-            )
-        ]
-    runs = [checked_run(one, function) for one in labelled.values()]
+    labels: list[Any] = [None] if labelled is None else unique_labels(labelled)
+    values: list[Any] = [value] if labelled is None else [*labelled.values()]
+    runs = [checked_run(one, function) for one in values]
     return [
         Run(_within_window(one, limits, function), label, line_colour(number), line_style(number))
-        for number, (label, one) in enumerate(zip(unique_labels(labelled), runs, strict=True))
+        for number, (label, one) in enumerate(zip(labels, runs, strict=True))
     ]
 
 

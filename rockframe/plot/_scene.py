@@ -143,8 +143,6 @@ def state(
     time : str or Quantity, optional
         The instant; the nearest sample is drawn. By default the instant of the largest rotation
         over the overturning angle [s].
-    magnify : float, optional
-        Factor of displacements [1].
 
     Returns
     -------
@@ -152,13 +150,6 @@ def state(
         As for :func:`scene`, relative to the ground, :eq:`eq-scene-places`; the bodies at rest are
         dashed. Contact has its own colour: points and lines of bases in contact, and compressed
         pads. A broken restrainer is not drawn.
-
-    Raises
-    ------
-    SchemaError
-        Not the result of a single run with histories, or one without its system.
-    UnitsError, ComponentError
-        The time has no unit or lies outside of the run; the factor is not positive.
 
     Examples
     --------

@@ -145,12 +145,12 @@ def sweep(
     if not isinstance(cast("object", runs), xr.Dataset) or not runs.data_vars:
         raise SchemaError(mismatch_message("sweep", runs))
     data = _drop_single_axes(runs, variable)
-    data = display_units(units, owner="rf.plot.sweep").convert_dataset(data)
+    shown_in = display_units(units, owner="rf.plot.sweep")
+    data = shown_in.convert_dataset(data)
     values = _checked_values(data, variable)
     overturned = overturns(data) == 1 if "status" in data else None
-    overturned = (
-        None if overturned is None or set(overturned.dims) != set(values.dims) else overturned
-    )
+    if overturned is not None and set(overturned.dims) != set(values.dims):
+        overturned = None
     dims = sorted((str(dim) for dim in values.dims), key=lambda dim: _is_numeric_axis(data, dim))
     sheet = make_single_panel(ax, "sweep", (6.4, 4.2))
     if len(dims) == 1 or min(values.sizes.values()) <= _MAX_LINES:
@@ -160,7 +160,7 @@ def sweep(
         _draw_lines(sheet.axes, data, values, overturned, along, others)
     else:
         _draw_map(sheet.axes, data, values.transpose(*dims), overturned, dims)
-    sentence = display_units(units, owner="rf.plot.sweep").convert_text(cases_verdict(runs))
+    sentence = shown_in.convert_text(cases_verdict(runs))
     sheet.set_title(sentence or str(data.attrs.get("title", "")), title)
     return sheet.axes
 
@@ -191,13 +191,6 @@ def free_decay(
     -------
     Panels
         Histories and residual; only peaks are drawn if the test has no histories.
-
-    Raises
-    ------
-    SchemaError
-        The dataset is not such a fit.
-    UnitsError
-        A unit of another kind.
 
     Examples
     --------

@@ -25,7 +25,14 @@ from rockframe.records.components import (
 )
 from rockframe.records.files import PathLike, RecordLike, Unread, files_of, read_source
 from rockframe.records.known_formats import formats, register, unregister
-from rockframe.records.netcdf import LONG_NAMES, is_netcdf, stored_motion
+from rockframe.records.netcdf import (
+    LONG_NAMES,
+    is_netcdf,
+    motion_of_arrays,
+    opened_netcdf,
+    stored_arrays,
+    stored_motion,
+)
 from rockframe.records.numbers import epoch_seconds, same_start, time_after, uniform_step
 from rockframe.records.peer import Known, peer_table
 from rockframe.records.read import Reading, read_components, read_record, read_traces, request_of
@@ -69,6 +76,8 @@ __all__ = [
     "files_of",
     "formats",
     "is_netcdf",
+    "motion_of_arrays",
+    "opened_netcdf",
     "orientation_of",
     "peer_table",
     "read_components",
@@ -78,6 +87,7 @@ __all__ = [
     "register",
     "request_of",
     "same_start",
+    "stored_arrays",
     "stored_motion",
     "time_after",
     "uniform_step",

@@ -15,17 +15,13 @@ International 207(2), 2016; U.S. Geological Survey, gmprocess, "Workspace".
 import json
 import math
 import re
-import warnings
 from collections import Counter
-from collections.abc import Generator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from typing import Any, Final, cast
 
 import numpy as np
 
-from rockframe.errors import RecordError
 from rockframe.records.checks import checked_time_step
 from rockframe.records.components import FileComponent, choose_component, orientation_of
 from rockframe.records.instruments import (
@@ -36,6 +32,7 @@ from rockframe.records.instruments import (
     find_response,
     metadata_of_codes,
     record_from_counts,
+    stated_unit,
 )
 from rockframe.records.reader import (
     MAXIMUM_SAMPLES,
@@ -44,6 +41,7 @@ from rockframe.records.reader import (
     Record,
     Request,
     Source,
+    damaged_file_errors,
     source_of,
     wrong_beginning_error,
 )
@@ -60,6 +58,7 @@ _WAVEFORM: Final = re.compile(
 _STATISTICS: Final = "StreamSupplementalStats"
 _LARGEST_TEXT: Final = 4 * 2**20
 _COUNTS: Final = re.compile(r"counts?\b", re.IGNORECASE)
+_KIND: Final = "an HDF5 file"
 _EXPECTED: Final = "an ASDF file with waveforms"
 _EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC).replace(tzinfo=None)
 
@@ -94,27 +93,12 @@ def _read(source: Source, request: Request) -> Record:
         raise source.refuse(found=found, expected=expected)
     import netCDF4
 
-    with _damaged_file_errors(source):
+    with damaged_file_errors(source, _KIND, _EXPECTED):
         # the file stays open, as components are read one by one
         file = netCDF4.Dataset("asdf", memory=source.data)
         file.set_auto_maskandscale(False)
         components = _components(source, request, file)
     return choose_component(source, request, components)
-
-
-@contextmanager
-def _damaged_file_errors(source: Source) -> Generator[None]:
-    """Convert exceptions of the library to the error of a damaged file."""
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            yield
-    except RecordError:
-        raise
-    except Exception as problem:
-        # damaged files raise exceptions that are not documented
-        found = f"an HDF5 file that cannot be read ({type(problem).__name__})"
-        raise source.refuse(found=found, expected=_EXPECTED) from problem
 
 
 def _components(source: Source, request: Request, file: Any) -> list[FileComponent]:
@@ -139,7 +123,7 @@ def _components(source: Source, request: Request, file: Any) -> list[FileCompone
             if request.every and count > 1:  # asked for by its whole name a piece is read
                 found = f"{count} pieces of {one.codes} {one.tag}"
                 raise source.refuse(found=found, expected="a channel without gaps")
-            with _damaged_file_errors(source):
+            with damaged_file_errors(source, _KIND, _EXPECTED):
                 return _samples(source, request, file, one)
 
         return FileComponent(
@@ -207,12 +191,10 @@ def _stated_unit(file: Any, one: _Waveform) -> str | None:
     if text is None:
         return None
     try:
-        stated = json.loads(text.decode("utf-8", "replace"))
+        stated: Any = json.loads(text.decode("utf-8", "replace"))
     except (ValueError, RecursionError):
         return None
-    standard = cast("dict[str, Any]", stated).get("standard") if isinstance(stated, dict) else None
-    unit = cast("dict[str, Any]", standard).get("units") if isinstance(standard, dict) else None
-    return unit if isinstance(unit, str) and unit.strip() else None
+    return stated_unit(stated.get("standard")) if isinstance(stated, dict) else None
 
 
 def _response(

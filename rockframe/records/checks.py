@@ -46,7 +46,7 @@ PEAK_TOLERANCE: Final = 0.015
 LENGTH_TOLERANCE: Final = 0.01
 """Tolerance of stated lengths [1]; two time steps are admitted in any case."""
 
-_NUMBERS_ONLY: Final = re.compile(r"[-+.\dEeDd\s]*\d[-+.\dEeDd\s]*", re.ASCII)
+NUMBERS_ONLY: Final = re.compile(r"[-+.\dEeDd\s]*\d[-+.\dEeDd\s]*", re.ASCII)
 _MAX_TEXT_LENGTH: Final = 30
 _MAX_ROWS: Final = 200
 _MIN_MATCHING_FRACTION: Final = 0.9
@@ -223,7 +223,7 @@ def surplus_rows_warning(
             break
         if not line.strip():
             continue
-        if _NUMBERS_ONLY.fullmatch(line[:_MAX_TEXT_LENGTH]) is not None:
+        if NUMBERS_ONLY.fullmatch(line[:_MAX_TEXT_LENGTH]) is not None:
             first = place if rows == 0 else first
             rows += 1
         elif end is None:

@@ -36,11 +36,15 @@ def read_keys(lines: Iterable[str]) -> Keys:
 def required_count(source: Source, keys: Keys, key: str) -> tuple[int, int]:
     """Return a required number of samples, above zero, and its line."""
     text, line = required_value(source, keys, key)
+    return whole_number(source, text, f"{key} {quoted_first_line(text)}", line), line
+
+
+def whole_number(source: Source, text: str, found: str, line: int) -> int:
+    """Read a whole number above zero; `found` are the words of the error."""
     count = integer_or_none(text)
     if count is None or count < 1:
-        found, expected = f"{key} {quoted_first_line(text)}", "a whole number above zero"
-        raise source.refuse(found=found, expected=expected, line=line)
-    return count, line
+        raise source.refuse(found=found, expected="a whole number above zero", line=line)
+    return count
 
 
 def required_value(source: Source, keys: Keys, key: str) -> tuple[str, int]:

@@ -146,6 +146,12 @@ def check_unit_or_response(source: Source, request: Request) -> None:
         raise source.refuse(found=found, expected="one of them: accelerations, or counts")
 
 
+def stated_unit(standard: Any) -> str | None:
+    """Return the unit in the metadata that gmprocess calls standard, if there is one."""
+    unit: object = standard.get("units") if hasattr(standard, "get") else None
+    return unit if isinstance(unit, str) and unit.strip() else None
+
+
 def check_finite(source: Source, samples: Array) -> None:
     """Refuse samples of a binary file that are not finite."""
     if not np.isfinite(samples).all():

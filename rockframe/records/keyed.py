@@ -12,6 +12,7 @@ from typing import Final
 
 from rockframe.records.checks import (
     LENGTH,
+    NUMBERS_ONLY,
     StatedValue,
     checked_time_step,
     make_record,
@@ -318,7 +319,6 @@ _LENGTH: Final = re.compile(rf"\bDURATION:\s*({NUMBER})\s*SEC", re.IGNORECASE | 
 _COMPONENT: Final = re.compile(r"^\s*COMP\.?\s*(\S{1,12})", re.IGNORECASE)
 _STATION: Final = re.compile(r"^\s*STATION:\s*(\S{1,12})", re.IGNORECASE)
 _TIME: Final = re.compile(r"\b(\d{4}-\d{1,2}-\d{1,2} \d{1,2}:\d{2}:[\d.]{2,8}(?: [A-Z]{2,4})?)")
-_NUMBERS: Final = re.compile(r"[-+.\dEeDd\s]*\d[-+.\dEeDd\s]*", re.ASCII)
 
 
 def _is_csmnc(source: Source) -> bool:
@@ -338,7 +338,7 @@ def _read_csmnc(source: Source, request: Request) -> Record:
     time_step = required_number(points[2], source, line)
     checked_time_step(source, request, time_step, line)
     chosen = choose_unit(source, request, kind[2], kind_line)
-    first = next((k for k in range(line, len(top)) if _NUMBERS.fullmatch(top[k])), len(top))
+    first = next((k for k in range(line, len(top)) if NUMBERS_ONLY.fullmatch(top[k])), len(top))
     metadata = _csmnc_description(top)
     named = first_match(_COMPONENT, top)
     stated: list[StatedValue] = []

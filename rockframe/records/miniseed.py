@@ -17,11 +17,11 @@ import re
 import struct
 import sys
 import warnings
-from collections.abc import Generator, Iterable, Mapping
+from collections.abc import Generator, Iterable
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
-from typing import Any, Final, NamedTuple, cast
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -40,6 +40,7 @@ from rockframe.records.instruments import (
     codes_of,
     metadata_of_codes,
     record_from_counts,
+    stated_unit,
 )
 from rockframe.records.reader import (
     MAXIMUM_SAMPLES,
@@ -48,6 +49,7 @@ from rockframe.records.reader import (
     Record,
     Request,
     Source,
+    damaged_file_errors,
     wrong_beginning_error,
 )
 from rockframe.records.unit_names import choose_unit
@@ -181,23 +183,16 @@ class _Damage(NamedTuple):
 def _channels(source: Source) -> tuple[dict[str, list[Any]], _Damage]:
     obspy = _obspy(source)
     _check_pieces(source)
-    try:
-        with _collect_obspy_warnings() as warned:
-            # the headers first: they may announce more than fits in memory
-            announced = obspy.read(io.BytesIO(source.data), format="MSEED", headonly=True)
-            total = sum(int(trace.stats.npts) for trace in announced)
-            if total > _MAX_TOTAL_SAMPLES or len(announced) > _MAX_TRACES:
-                expected = f"at most {_MAX_TOTAL_SAMPLES} in {_MAX_TRACES} pieces"
-                found = f"{total} samples in {len(announced)} pieces"
-                raise source.refuse(found=found, expected=expected)
-            warned.clear()  # the second reading gives the same warnings
-            stream = obspy.read(io.BytesIO(source.data), format="MSEED")
-    except RecordError:
-        raise
-    except Exception as problem:
-        # ObsPy and the library under it fail on damaged files in many ways
-        found = f"miniSEED that cannot be read ({type(problem).__name__})"
-        raise source.refuse(found=found, expected=_EXPECTED) from problem
+    with damaged_file_errors(source, "miniSEED", _EXPECTED), _collect_obspy_warnings() as warned:
+        # the headers first: they may announce more than fits in memory
+        announced = obspy.read(io.BytesIO(source.data), format="MSEED", headonly=True)
+        total = sum(int(trace.stats.npts) for trace in announced)
+        if total > _MAX_TOTAL_SAMPLES or len(announced) > _MAX_TRACES:
+            expected = f"at most {_MAX_TOTAL_SAMPLES} in {_MAX_TRACES} pieces"
+            found = f"{total} samples in {len(announced)} pieces"
+            raise source.refuse(found=found, expected=expected)
+        warned.clear()  # the second reading gives the same warnings
+        stream = obspy.read(io.BytesIO(source.data), format="MSEED")
     channels = by_channel(stream)
     if not channels:
         raise source.refuse(found="no data records", expected=_EXPECTED)
@@ -295,9 +290,8 @@ def components_of_traces(
         traces_of_channel = channels[name]
         values, time_step, start = joined_traces(source, traces_of_channel)
         check_time_step(source, time_step, None)
-        unit, as_read, messages = choose_unit(
-            source, request, _stated_unit(traces_of_channel[0].stats), None
-        )
+        stated = stated_unit(traces_of_channel[0].stats.get("standard"))
+        unit, as_read, messages = choose_unit(source, request, stated, None)
         metadata = {**metadata_of_codes(name), "record_time": start, "unit_as_read": as_read}
         return Record(time_step, values, unit, metadata, warnings=tuple(messages))
 
@@ -308,13 +302,6 @@ def components_of_traces(
         for name, label in _labels(channels).items()
         for channel in codes_of(name)[3:]
     ]
-
-
-def _stated_unit(stats: Mapping[str, Any]) -> str | None:
-    """Return the unit that gmprocess stores with a trace."""
-    standard = stats.get("standard")
-    unit = cast("Mapping[str, Any]", standard).get("units") if hasattr(standard, "get") else None
-    return unit if isinstance(unit, str) and unit else None
 
 
 MINISEED: Final = Format(

@@ -6,14 +6,14 @@ metadata still have the name and digest of the file from which the motion was fi
 
 import json
 import math
-import warnings
-from collections.abc import Container, Mapping
+from collections.abc import Container, Generator, Mapping
+from contextlib import contextmanager
 from typing import Any, Final, cast
 
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import ComponentError, RecordError, SchemaError
+from rockframe.errors import ComponentError, SchemaError
 from rockframe.records.checks import check_requested_time_step
 from rockframe.records.components import FileComponent, choose_component, orientation_of
 from rockframe.records.reader import (
@@ -22,6 +22,7 @@ from rockframe.records.reader import (
     Request,
     Source,
     StoredMotion,
+    damaged_file_errors,
     wrong_beginning_error,
 )
 from rockframe.records.unit_names import RecordUnit
@@ -80,6 +81,18 @@ def is_netcdf(source: Source) -> bool:
     return source.data.startswith(_MAGIC)
 
 
+@contextmanager
+def opened_netcdf(source: Source, expected: str) -> Generator[Any]:
+    """Open a netCDF file in memory; refuse a damaged one."""
+    import netCDF4
+
+    with (
+        damaged_file_errors(source, "a netCDF file", expected),
+        netCDF4.Dataset("in memory", memory=source.data) as file,
+    ):
+        yield file
+
+
 def _read(source: Source, request: Request) -> StoredMotion:
     if not is_netcdf(source):
         raise wrong_beginning_error(source, _EXPECTED)
@@ -89,31 +102,21 @@ def _read(source: Source, request: Request) -> StoredMotion:
 
 
 def _stored(source: Source) -> StoredMotion:
-    import netCDF4
     from xarray.backends import NetCDF4DataStore
 
     try:
-        with warnings.catch_warnings():
-            # warnings of the libraries about damaged files are of no use
-            warnings.simplefilter("ignore")
-            # checked before xarray loads the axes: a file may declare more than it contains
-            with netCDF4.Dataset("in memory", memory=source.data) as file:
-                check_no_result(file.ncattrs())
-                if _OF_SUITES in file.variables:
-                    raise NoMotionError(_A_SUITE, _ONE_MOTION)
-                _check_declared(source, file.variables)
-                # not decoded: the numbers as they were written
-                dataset = xr.open_dataset(NetCDF4DataStore(file), decode_cf=False)
-                held = [name for name in _VARIABLES if name in file.variables]
-                stored = stored_motion(dataset[held].load())
-    except RecordError:
-        raise
+        # checked before xarray loads the axes: a file may declare more than it contains
+        with opened_netcdf(source, _EXPECTED) as file:
+            check_no_result(file.ncattrs())
+            if _OF_SUITES in file.variables:
+                raise NoMotionError(_A_SUITE, _ONE_MOTION)
+            _check_declared(source, file.variables)
+            # not decoded: the numbers as they were written
+            dataset = xr.open_dataset(NetCDF4DataStore(file), decode_cf=False)
+            held = [name for name in _VARIABLES if name in file.variables]
+            stored = stored_motion(dataset[held].load())
     except NoMotionError as problem:
         raise source.refuse(found=problem.found, expected=problem.expected) from problem
-    except Exception as problem:
-        # damaged files raise exceptions that are not documented
-        found = f"a netCDF file that cannot be read ({type(problem).__name__})"
-        raise source.refuse(found=found, expected=_EXPECTED) from problem
     for key, value in cast("dict[str, Any]", stored.metadata).items():
         finite = not isinstance(value, float) or math.isfinite(value)
         if isinstance(value, bool) or not isinstance(value, str | int | float) or not finite:
@@ -165,7 +168,8 @@ def stored_motion(dataset: xr.Dataset) -> StoredMotion:
             raise NoMotionError(found)
     attributes: dict[str, Any] = {str(key): value for key, value in dataset.attrs.items()}
     try:
-        si = _motion(dataset, _time_step(dataset, attributes))
+        arrays: Any = [_values(dataset, name) for name in LONG_NAMES]
+        si = motion_of_arrays(_time_step(dataset, attributes), *arrays)
     except (ComponentError, TypeError, ValueError) as problem:
         if isinstance(problem, SchemaError):
             raise
@@ -187,14 +191,28 @@ def stored_motion(dataset: xr.Dataset) -> StoredMotion:
     )
 
 
-def _motion(dataset: xr.Dataset, time_step: float) -> Motion:
-    across, upwards = (_values(dataset, name) for name in ("acceleration", "vertical_acceleration"))
-    pieces, vertical_pieces = (
-        _values(dataset, name) for name in ("acceleration_pieces", "vertical_acceleration_pieces")
-    )
-    horizontal = Signal(time_step, cast("Array", across), pieces)
-    if upwards is not None:
-        return Motion(horizontal, Signal(time_step, upwards, vertical_pieces, name=VERTICAL))
+def stored_arrays(si: Motion) -> dict[str, Array | None]:
+    """Return samples and polynomials of both components, by the names of stored variables."""
+    vertical = si.vertical
+    return {
+        "acceleration": si.horizontal.samples,
+        "vertical_acceleration": None if vertical is None else vertical.samples,
+        "acceleration_pieces": si.horizontal.polynomials,
+        "vertical_acceleration_pieces": None if vertical is None else vertical.polynomials,
+    }
+
+
+def motion_of_arrays(
+    time_step: float,
+    samples: Array,
+    vertical: Array | None,
+    pieces: Array | None,
+    vertical_pieces: Array | None,
+) -> Motion:
+    """Build a motion from the arrays of :func:`stored_arrays`."""
+    horizontal = Signal(time_step, samples, pieces)
+    if vertical is not None:
+        return Motion(horizontal, Signal(time_step, vertical, vertical_pieces, name=VERTICAL))
     if vertical_pieces is not None:
         msg = f"{OWNER}: vertical_pieces without vertical samples"
         raise ComponentError(msg)

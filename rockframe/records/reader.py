@@ -1,13 +1,15 @@
 """Interface of readers: a file as bytes and lines, the request of the caller, the record."""
 
 import hashlib
-from collections.abc import Callable, Mapping
+import warnings
+from collections.abc import Callable, Generator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Final, Protocol, TypeAlias
 
-from rockframe.errors import RecordError
+from rockframe.errors import RecordError, SchemaError
 from rockframe.records.unit_names import RecordUnit
 from rockframe.signals import Motion
 from rockframe.signals.arrays import Array
@@ -311,6 +313,21 @@ def source_of(name: str, data: bytes) -> Source:
 def wrong_beginning_error(source: Source, expected: str) -> RecordError:
     """Build the error for a binary file with another beginning."""
     return source.refuse(found=f"a file that begins with {source.data[:8]!r}", expected=expected)
+
+
+@contextmanager
+def damaged_file_errors(source: Source, kind: str, expected: str) -> Generator[None]:
+    """Convert exceptions of a library to the error of a damaged file; ignore its warnings."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            yield
+    except (RecordError, SchemaError):
+        raise
+    except Exception as problem:
+        # damaged files raise exceptions that are not documented
+        found = f"{kind} that cannot be read ({type(problem).__name__})"
+        raise source.refuse(found=found, expected=expected) from problem
 
 
 def base_name(path: str) -> str:

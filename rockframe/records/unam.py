@@ -20,7 +20,6 @@ from typing import Final
 from rockframe.records.checks import (
     LENGTH,
     StatedValue,
-    checked_count,
     checked_time_step,
     make_record,
 )
@@ -38,9 +37,10 @@ from rockframe.records.headers import (
     renamed_keys,
     required_value,
     value_or_empty,
+    whole_number,
     without_empty_values,
 )
-from rockframe.records.numbers import FixedWidth, integer_or_none, required_number, rows_below
+from rockframe.records.numbers import FixedWidth, required_number, rows_below
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 from rockframe.signals.arrays import Array
@@ -107,26 +107,15 @@ def _samples(source: Source, request: Request, header: Keys, place: int, values:
     time_step = required_number(printed, source, line)
     checked_time_step(source, request, time_step, line)
     announced, count_line = _entry(source, header, _COUNTS, place, "number of samples")
-    declared = integer_or_none(announced)
-    if declared is None or declared < 1:
-        found, expected = f"{quoted_first_line(announced)} samples", "a whole number above zero"
-        raise source.refuse(found=found, expected=expected, line=count_line)
-    counts, warnings = checked_count(
-        source,
-        declared=declared,
-        counted=values.size,
-        what=_COUNTS,
-        line=count_line,
-    )
-    described: Metadata = {**_description(header), **counts}
+    found = f"{quoted_first_line(announced)} samples"
+    count = whole_number(source, announced, found, count_line), _COUNTS, count_line
     stated = [
         StatedValue(text, unit, line)
         for key, unit in ((_PEAKS, _PEAK_UNIT), (_LENGTHS, LENGTH))
         for text, line in _list(header, key)[place : place + 1]
     ]
-    return make_record(
-        source, values, time_step, chosen, described, warnings_before=warnings, stated=stated
-    )
+    metadata = _description(header)
+    return make_record(source, values, time_step, chosen, metadata, count=count, stated=stated)
 
 
 def _list(header: Keys, start: str) -> list[tuple[str, int]]:

@@ -36,7 +36,6 @@ RECORD_COLUMNS: Final = (
 """Columns of a suite that the table of records shows if they are known, in this order."""
 Numbers: TypeAlias = NDArray[np.float64]
 _DISTANCE_UNITS: Final = display_units({"length": "km"}, owner="report")
-_SPECTRUM_PERIODS: Final = (np.geomspace(0.05, 5.0, 80), str(Unit.SECOND))
 
 
 @dataclass(frozen=True)
@@ -114,7 +113,7 @@ def spectra_section(
             f"{100.0 * damping:g} % damping."
         )
     figure = plot.suite(
-        motions, _SPECTRUM_PERIODS, damping,
+        motions, damping_ratio=damping,
         target=None if comparison is None else comparison.target,
         compared=None if comparison is None else comparison.period_range,
         average="mean", named=False, units=units.words, title=" ",

@@ -7,12 +7,14 @@ from os import PathLike
 from pathlib import Path
 from typing import Final, cast
 
+import numpy as np
 import xarray as xr
 
 from rockframe.arguments import checked_bool, checked_dataset, checked_text
 from rockframe.errors import (
     ComponentError,
     RecordWarning,
+    RockframeError,
     RockframeWarning,
     SchemaError,
     short_repr,
@@ -21,7 +23,6 @@ from rockframe.errors import (
 from rockframe.motion import GroundMotion
 from rockframe.plot._fonts import warn_of_letters_once
 from rockframe.reports import page, sections, studies
-from rockframe.reports.certifying import with_certificate
 from rockframe.reports.checks import CodeCheck, read_checks
 from rockframe.reports.motions import (
     TargetComparison,
@@ -30,6 +31,9 @@ from rockframe.reports.motions import (
     spectra_section,
 )
 from rockframe.reports.project import Project, project_of_result
+from rockframe.results.outcome import verdict_of
+from rockframe.results.variables.runs import CERTIFICATE
+from rockframe.simulation.provenance import arguments_of_run
 from rockframe.simulation.system import System
 from rockframe.suggestions import with_hints
 from rockframe.suites import TargetSpectrum
@@ -172,7 +176,7 @@ def report(
         heading = value or f"Rocking response, {model} model"
         system = _system_of(dataset, motion)
         _warn_of_unused_target(target, None if system is None else system.motion, "motion")
-        dataset, reason = with_certificate(dataset, system) if certify else (dataset, "")
+        dataset, reason = _with_certificate(dataset, system) if certify else (dataset, "")
         verdict = sections.verdict_section(dataset, reason, chosen)
         body = [page.section("Verdict", [*about.conclusion_banner(), *verdict, *by_codes])]
         body += _run_sections(dataset, system, about, chosen, comparison)
@@ -283,3 +287,41 @@ def _system_of(dataset: xr.Dataset, motion: GroundMotion | None) -> System | Non
         )
         raise SchemaError(msg)
     return studies.with_motion(found, motion)
+
+
+_SAME_OUTCOME: Final = 1e-3
+"""Relative difference up to which runs of other versions and machines are the same."""
+
+
+def _with_certificate(dataset: xr.Dataset, system: System | None) -> tuple[xr.Dataset, str]:
+    """Add the certificate to a result, by running it again with all runs of a certificate."""
+    if "certificate" in dataset.attrs or "proof" in dataset.attrs:
+        return dataset, ""
+    if system is None:
+        return dataset, "the dataset does not describe its system."
+    if system.motion is None and dataset.attrs.get("motion") != "none":
+        return dataset, (
+            "the dataset does not hold the samples of its motion; pass it by motion= or --motion, "
+            "or simulate with certify=True or with 'rockframe certify'."
+        )
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RockframeWarning)  # the dataset has them
+            again = system.simulate(**arguments_of_run(dataset), outputs=None, certify=True)
+    except RockframeError as problem:
+        return dataset, f"{problem}."
+    if verdict_of(again) != verdict_of(dataset) or not _same_outcome(again, dataset):
+        return dataset, "a repeated run differs; another version or machine made the result."
+    found = {
+        name: value for name, value in again.attrs.items() if str(name).startswith("certificate")
+    }
+    names = [row.name for row in CERTIFICATE if row.name in again]
+    return dataset.assign({name: again[name] for name in names}).assign_attrs(found), ""
+
+
+def _same_outcome(one: xr.Dataset, other: xr.Dataset) -> bool:
+    """Whether peaks and times of overturning are equal but for rounding."""
+    return all(
+        np.isclose(one[name], other[name], rtol=_SAME_OUTCOME, atol=0.0, equal_nan=True)
+        for name in ("peak_rotation", "overturning_time")
+    )

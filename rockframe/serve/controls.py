@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -134,7 +134,13 @@ def read_choice(
     values: Mapping[str, str], record: NamedRecord | None
 ) -> tuple[TrialScene, list[str]]:
     """Read the address of the page; a wrong value is reported and replaced by its default."""
-    faults = [*_unknown_keys(values)]
+    known = [*(one.name for one in CONTROLS), "base", "motion"]
+    faults = [
+        f"there is no {short_repr(name)}"
+        + (did_you_mean(name, known) or f"; there are {', '.join(known)}")
+        for name in values
+        if name not in known
+    ]
     numbers = dict[str, float]()
     for control in CONTROLS:
         numbers[control.name] = control.default
@@ -144,23 +150,13 @@ def read_choice(
             except ValueError as problem:
                 faults.append(str(problem))
     words = dict[str, str]()
-    for name, known in (("base", BASES), ("motion", motion_choices(record))):
-        words[name] = values.get(name, next(iter(known)))
-        if words[name] not in known:
-            near = did_you_mean(words[name], known)
-            faults.append(
-                f"{name}: found {short_repr(words[name])}; expected one of {', '.join(known)}{near}"
-            )
-            words[name] = next(iter(known))
+    for name, choices in (("base", BASES), ("motion", motion_choices(record))):
+        words[name] = values.get(name, next(iter(choices)))
+        if words[name] not in choices:
+            expected = f"{', '.join(choices)}{did_you_mean(words[name], choices)}"
+            faults.append(f"{name}: found {short_repr(words[name])}; expected one of {expected}")
+            words[name] = next(iter(choices))
     return TrialScene(numbers, words["base"], words["motion"]), faults
-
-
-def _unknown_keys(values: Mapping[str, str]) -> Iterator[str]:
-    known = [*(one.name for one in CONTROLS), "base", "motion"]
-    for name in values:
-        if name not in known:
-            words = did_you_mean(name, known) or f"; there are {', '.join(known)}"
-            yield f"there is no {short_repr(name)}{words}"
 
 
 def _read_number(control: Control, text: str) -> float:

@@ -5,6 +5,7 @@ import threading
 import traceback
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
+from functools import partial
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
@@ -120,8 +121,8 @@ class _RequestHandler(BaseHTTPRequestHandler):
             self._send(HTTPStatus.OK, f"{_FILES[target.path]}; charset=utf-8", text)
             return
         answers: dict[str, Callable[[Mapping[str, str]], None]] = {
-            "/": self._send_page, "/outcome": self._send_outcome, "/player": self._send_player,
-            "/scene.toml": self._send_scene,
+            "/": self._send_page, "/outcome": partial(self._send_page, whole=False),
+            "/player": self._send_player, "/scene.toml": self._send_scene,
         }  # fmt: skip
         if target.path not in answers:
             words = f"There is no such page; the page is at {self.server.address}\n"
@@ -159,16 +160,12 @@ class _RequestHandler(BaseHTTPRequestHandler):
             traceback.print_exc()
             return choice, None, [f"The run failed: {PLEASE_REPORT}."]
 
-    def _send_page(self, query: Mapping[str, str]) -> None:
+    def _send_page(self, query: Mapping[str, str], *, whole: bool = True) -> None:
+        """Send the page, or only its part with the outcome."""
         choice, outcome, faults = self._evaluate(query)
         part = page.faults_html(faults) if outcome is None else page.outcome_html(outcome, query)
-        self._send(
-            HTTPStatus.OK, _HTML, page.trial_page(choice, motion_choices(self.server.record), part)
-        )
-
-    def _send_outcome(self, query: Mapping[str, str]) -> None:
-        _, outcome, faults = self._evaluate(query)
-        part = page.faults_html(faults) if outcome is None else page.outcome_html(outcome, query)
+        if whole:
+            part = page.trial_page(choice, motion_choices(self.server.record), part)
         self._send(HTTPStatus.OK, _HTML, part)
 
     def _send_player(self, query: Mapping[str, str]) -> None:

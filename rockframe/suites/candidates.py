@@ -6,7 +6,6 @@ from enum import StrEnum
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rockframe.arguments import checked_choice, checked_list
 from rockframe.errors import ComponentError, short_repr
@@ -58,12 +57,6 @@ class Candidates:
     def residuals(self, factors: Array) -> Array:
         """Return the logarithms of scaled spectra over the target, shape (n, k)."""
         return self.log_spectra + np.log(factors)[:, None] - self.log_target
-
-    @property
-    def within_bounds(self) -> NDArray[np.bool_]:
-        """Return whether each factor lies within the bounds, shape (n,)."""
-        low, high = self.bounds
-        return (self.factors >= low) & (self.factors <= high)
 
 
 def candidates_of(

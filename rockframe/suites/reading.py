@@ -6,6 +6,7 @@ from typing import Final
 
 from rockframe.errors import PLEASE_REPORT, ComponentError, RecordError, RecordWarning, warn
 from rockframe.motion import GroundMotion
+from rockframe.motion.constructors.records import motion_of_reading
 from rockframe.records import (
     Known,
     Reading,
@@ -160,13 +161,7 @@ class _SuiteReader:
                 continue
             self.remarks += [one for one in reading.warnings if one not in self.remarks]
             label = self._label(reading, alone=len(readings) == 1)
-            motion = GroundMotion(
-                reading.si,
-                name=label,
-                metadata=reading.metadata,
-                history=reading.history,
-                recipe=reading.recipe,
-            )
+            motion = motion_of_reading(GroundMotion, reading, label)
             component = RecordedComponent(label, motion, reading.vertical, file.path, number)
             sequence_number = sequence_number_of(reading.file)
             if sequence_number is not None:

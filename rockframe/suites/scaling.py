@@ -1,14 +1,22 @@
-"""Scaling motions so that their spectra fit a target."""
+"""Scaling motions so that their spectra fit a target, and matching their spectra to it."""
 
 from collections.abc import Iterable
-from typing import Final
+from dataclasses import replace
+from typing import Any, Final, TypeVar
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from rockframe.errors import ComponentError, SchemaError
+from rockframe.errors import (
+    ComponentError,
+    RecordWarning,
+    SchemaError,
+    collected_warnings,
+    warn,
+)
 from rockframe.motion import GroundMotion
+from rockframe.motion.operations.matching import USUAL_PERIODS, Target
 from rockframe.motion.quantities import ArrayLike
 from rockframe.results.joining import MOTION
 from rockframe.results.schema import SCHEMA, build_dataset, with_variables, without_fill_values
@@ -17,7 +25,9 @@ from rockframe.suggestions import with_hints
 from rockframe.suites.candidates import Candidates, Combination, candidates_of
 from rockframe.suites.labelled_motions import LabelledMotions
 from rockframe.suites.target import TargetSpectrum
-from rockframe.units import QuantityLike, RatioLike, Unit
+from rockframe.units import PERIOD, QuantityLike, RatioLike, Unit, to_si_values
+
+Suite = TypeVar("Suite", bound=LabelledMotions)
 
 DEFAULT_BOUNDS: Final = (0.25, 4.0)
 """Bounds of scale factors that are usually accepted [1]."""
@@ -209,3 +219,57 @@ def _scaled(motion: GroundMotion, factor: float, misfit: float) -> GroundMotion:
     return type(scaled)(
         scaled.si, name=scaled.name, metadata=metadata, history=scaled.history, recipe=scaled.recipe
     )
+
+
+def matched(suite: Suite, target: Target, **arguments: Any) -> Suite:
+    """Match the spectrum of each motion to a target, by wavelets added in time.
+
+    Parameters
+    ----------
+    target : TargetSpectrum
+        The target spectrum.
+    **arguments
+        As for :meth:`GroundMotion.matched`: `periods` [s], `tolerance` [1].
+
+    Returns
+    -------
+    MotionSuite
+        Without vertical components, unless :meth:`with_verticals` has added them to their motions;
+        these are not changed. `table` has ``largest_spectral_misfit``, ``mean_spectral_misfit``,
+        ``spectral_misfit`` and ``scale_factor`` [1] of each motion, and other changes: its peaks
+        and pulse indicator before and after, and the growth of the spectrum beyond the range.
+
+    Raises
+    ------
+    UnitsError, ComponentError
+        As for :meth:`GroundMotion.matched`.
+
+    Warns
+    -----
+    RecordWarning
+        As :meth:`GroundMotion.matched`, once for all motions together.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> record = rf.GroundMotion.example("loma-prieta").window("5 s", "12 s")
+    >>> target = rf.TargetSpectrum.eurocode_8("0.1 g_0", "B")
+    >>> found = rf.MotionSuite({"A": record}).matched(target, periods=("0.2 s", "0.5 s"))
+    >>> found["A"].metadata["largest_spectral_misfit"] <= 0.05
+    True
+    """
+    motions: dict[str, GroundMotion] = {}
+    messages: list[str] = []
+    for label, motion in suite.items():
+        with collected_warnings() as texts:
+            motions[label] = motion.matched(target, **arguments)
+        messages += [f"{label!r}: {text}" for text in texts]
+    owner = f"{type(suite).__name__}.matched"
+    if messages:
+        msg = f"{owner}: of {len(motions)} motions\n" + "\n".join(messages)
+        warn(msg, RecordWarning)
+    compared = None
+    if isinstance(target, TargetSpectrum):
+        ends = to_si_values(arguments.get("periods", USUAL_PERIODS), PERIOD, owner=owner, name="")
+        compared = replace(target, limits=(ends[0], ends[1]))
+    return type(suite)(motions, unread=suite.unread, remarks=suite.remarks, target=compared)

@@ -109,9 +109,9 @@ def selection_for(
         weight = to_ratio(
             spread_weight, owner=owner, name="spread_weight", condition=NOT_NEGATIVE, example="1"
         )
-    allowed = np.flatnonzero(candidates.within_bounds)
+    low, high = candidates.bounds
+    allowed = np.flatnonzero((candidates.factors >= low) & (candidates.factors <= high))
     if allowed.size < size:
-        low, high = candidates.bounds
         total = len(candidates.labels)
         found = f"{allowed.size} of {total} motions have factors from {low:g} to {high:g}"
         advice = "widen bounds, or lower count"

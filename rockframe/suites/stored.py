@@ -6,7 +6,6 @@ of each, as the contiguous ragged array of CF 9.3.3.
 
 import json
 import math
-import warnings
 from collections.abc import Callable, Mapping
 from typing import Any, Final, TypeVar
 
@@ -16,11 +15,17 @@ import xarray as xr
 from rockframe.constants import CONVENTIONS
 from rockframe.errors import ComponentError, RecordError, SchemaError
 from rockframe.motion import GroundMotion
-from rockframe.records import LONG_NAMES, Source, is_netcdf
+from rockframe.records import (
+    LONG_NAMES,
+    Source,
+    is_netcdf,
+    motion_of_arrays,
+    opened_netcdf,
+    stored_arrays,
+)
 from rockframe.results.joining import MOTION
 from rockframe.results.schema import build_dataset
-from rockframe.signals import Motion, Signal
-from rockframe.signals.motion import COEFFICIENTS, VERTICAL
+from rockframe.signals.motion import COEFFICIENTS
 from rockframe.suites.columns import known_columns
 from rockframe.suites.labelled_motions import LabelledMotions
 from rockframe.suites.target import TargetSpectrum
@@ -35,12 +40,19 @@ _TARGET: Final = "target"
 _STORED_BAND: Final = (0.01, 20.0)
 """Range of periods in which a target without bounds of its own is stored [s]."""
 _PERIODS: Final = 501
-_TEXTS: Final = {
-    "motion_sha256": "digest of time step and samples",
-    "metadata": "what is known of the motion, as JSON",
-    "history": "what was done to the motion, a line for each step",
-    "recipe": "constructor and arguments of an analytic motion, as JSON",
-    _NAME: "what titles and messages call the motion",
+_TEXTS: Final[dict[str, tuple[str, Callable[[GroundMotion], str]]]] = {
+    # variable: meaning, value of a motion
+    "motion_sha256": ("digest of time step and samples", lambda one: one.sha256),
+    "metadata": ("what is known of the motion, as JSON", lambda one: json.dumps({**one.metadata})),
+    "history": (
+        "what was done to the motion, a line for each step",
+        lambda one: "\n".join(one.history),
+    ),
+    "recipe": (
+        "constructor and arguments of an analytic motion, as JSON",
+        lambda one: "" if one.recipe is None else json.dumps({**one.recipe}),
+    ),
+    _NAME: ("what titles and messages call the motion", lambda one: one.name),
 }
 _RAGGED_ARRAYS: Final = {
     # variable: dimension, count, words of the count
@@ -72,19 +84,11 @@ def suite_dataset(suite: LabelledMotions) -> xr.Dataset:
         title="Suite of ground motions",
         source="records and models of ground motions",
     )
-    texts = {
-        "motion_sha256": [one.sha256 for one in motions.values()],
-        "metadata": [json.dumps(dict(one.metadata)) for one in motions.values()],
-        "history": ["\n".join(one.history) for one in motions.values()],
-        "recipe": [
-            "" if one.recipe is None else json.dumps(dict(one.recipe)) for one in motions.values()
-        ],
-        _NAME: [one.name for one in motions.values()],
-    }
-    for name, values in texts.items():
-        dataset[name] = (MOTION, np.array(values), {"long_name": _TEXTS[name]})
+    for name, (words, text_of) in _TEXTS.items():
+        texts = np.array([text_of(one) for one in motions.values()])
+        dataset[name] = (MOTION, texts, {"long_name": words})
     for name, (dim, count, words) in _RAGGED_ARRAYS.items():
-        parts = [_sample_arrays(motion.si)[name] for motion in motions.values()]
+        parts = [stored_arrays(motion.si)[name] for motion in motions.values()]
         present = [part for part in parts if part is not None]
         if not present:
             continue
@@ -153,30 +157,19 @@ def is_stored_suite(source: Source) -> bool:
     """Return whether a file is a netCDF file of a suite."""
     if not is_netcdf(source):
         return False
-    import netCDF4
-
     try:
-        with (
-            warnings.catch_warnings(),
-            netCDF4.Dataset("in memory", memory=source.data) as file,
-        ):
-            warnings.simplefilter("ignore")
+        with opened_netcdf(source, _EXPECTED) as file:
             return getattr(file, "kind", None) == _KIND
-    except Exception:  # damaged: the reader of motions reports it
+    except RecordError:  # damaged: the reader of motions reports it
         return False
 
 
 def stored_suite(source: Source, read: Callable[[xr.Dataset], Suite]) -> Suite:
     """Read the netCDF file of a suite."""
-    import netCDF4
     from xarray.backends import NetCDF4DataStore
 
     try:
-        with (
-            warnings.catch_warnings(),
-            netCDF4.Dataset("in memory", memory=source.data) as file,
-        ):
-            warnings.simplefilter("ignore")
+        with opened_netcdf(source, _EXPECTED) as file:
             # a file may declare more than it holds
             total = sum(math.prod(map(int, one.shape)) for one in file.variables.values())
             if total > _MAX_NUMBERS:
@@ -184,24 +177,8 @@ def stored_suite(source: Source, read: Callable[[xr.Dataset], Suite]) -> Suite:
                 raise source.refuse(found=f"{total} numbers declared", expected=expected)
             dataset = xr.open_dataset(NetCDF4DataStore(file), decode_times=False)
             return read(dataset.load())
-    except RecordError:
-        raise
     except SchemaError as problem:
         raise source.refuse(found=str(problem), expected=_EXPECTED) from problem
-    except Exception as problem:
-        # the libraries fail on damaged files in ways that they do not document
-        found = f"a netCDF file that cannot be read ({type(problem).__name__})"
-        raise source.refuse(found=found, expected=_EXPECTED) from problem
-
-
-def _sample_arrays(si: Motion) -> dict[str, np.ndarray | None]:
-    vertical = si.vertical
-    return {
-        "acceleration": si.horizontal.samples,
-        "vertical_acceleration": None if vertical is None else vertical.samples,
-        "acceleration_pieces": si.horizontal.polynomials,
-        "vertical_acceleration_pieces": None if vertical is None else vertical.polynomials,
-    }
 
 
 def _motions(dataset: xr.Dataset) -> dict[str, GroundMotion]:
@@ -214,21 +191,14 @@ def _motions(dataset: xr.Dataset) -> dict[str, GroundMotion]:
     motions: dict[str, GroundMotion] = {}
     for k, label in enumerate(labels):
         step = float(steps[k])
-        samples, vertical_samples, pieces, vertical_pieces = (
-            parts[name][k] for name in _RAGGED_ARRAYS
-        )
+        samples, *others = (parts[name][k] for name in _RAGGED_ARRAYS)
         if samples is None:
             msg = f"{label!r} has no samples"
             raise SchemaError(msg)
-        vertical = (
-            None
-            if vertical_samples is None
-            else Signal(step, vertical_samples, vertical_pieces, name=VERTICAL)
-        )
         history = texts["history"][k]
         recipe = texts["recipe"][k]
         motion = GroundMotion(
-            Motion(Signal(step, samples, pieces), vertical),
+            motion_of_arrays(step, samples, *others),
             name=texts.get(_NAME, labels)[k],  # former files have labels only
             metadata=_mapping(texts["metadata"][k]),
             history=tuple(history.split("\n")) if history else (),

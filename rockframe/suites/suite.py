@@ -15,8 +15,7 @@ from rockframe.measures import (
 from rockframe.motion.quantities import ArrayLike
 from rockframe.suggestions import suggests_names
 from rockframe.suites.labelled_motions import LabelledMotions
-from rockframe.suites.matching import matched
-from rockframe.suites.scaling import compared_target, scaled_motions, scaling_to
+from rockframe.suites.scaling import compared_target, matched, scaled_motions, scaling_to
 from rockframe.suites.selection import selection_for
 from rockframe.suites.stored import stored_motions, suite_dataset
 from rockframe.suites.target import TargetSpectrum

@@ -10,7 +10,6 @@ from rockframe import plot
 PACKAGE = Path(rf.__file__).parent
 SHARED_FUNCTIONS = {
     # the same for each of several
-    "execute",  # commands
     "solve_motion",  # equations of several bodies
     "matched",  # a motion, and a suite
     # public names that users have known from the beginning

@@ -49,7 +49,7 @@ def build_motion(file: TomlFile, where: KeyPath, value: object) -> GroundMotion 
     table = file.table(where, value)
     if table is None:
         return None
-    operations = table.pop(_OPERATIONS, [])
+    operations, motion = table.pop(_OPERATIONS, []), None
     if CONSTRUCTOR in table and _FILE_KEY not in table:
         motion = _construct_motion(file, where, table)
     elif _FILE_KEY not in table:
@@ -57,11 +57,8 @@ def build_motion(file: TomlFile, where: KeyPath, value: object) -> GroundMotion 
             f"{_FILE_KEY!r}, the path of a record, or {CONSTRUCTOR!r}, one of {', '.join(MOTIONS)}"
         )
         file.add_fault(where, f"[{table_title(where)}] lacks {ways}")
-        motion = None
     elif check_table(file, where, {**table}, motion_keys()):
         motion = _read_record(file, where, table)
-    else:
-        motion = None
     return None if motion is None else _apply_operations(file, where, motion, operations)
 
 

@@ -1,4 +1,7 @@
-"""TOML files whose faults are collected with their lines, and calls of functions with a table."""
+"""TOML files whose faults are collected with their lines, and calls of functions with a table.
+
+Hints of messages, which are in the notation of Python, are rewritten in that of a file.
+"""
 
 import re
 import tomllib
@@ -11,9 +14,9 @@ from typing import Any, Final, Self, TypeAlias, TypeVar, cast
 
 import pandas as pd
 
-from rockframe.command.files.notation import in_toml
 from rockframe.command.streams import STANDARD_INPUT_NAME, STREAM, StandardInput
 from rockframe.components.parameters import Declared
+from rockframe.components.registry import registered_classes
 from rockframe.errors import (
     AssemblyError,
     FileError,
@@ -25,6 +28,7 @@ from rockframe.errors import (
     warn,
 )
 from rockframe.results.variables.studies import MOTION
+from rockframe.system.parts import default_class, slot_of_class
 
 KeyPath: TypeAlias = tuple[str | int, ...]
 """Keys from the outermost table inwards; a number counts the tables of an array."""
@@ -329,3 +333,50 @@ def _innermost_key(words: str, where: KeyPath, inner: object) -> KeyPath:
         return where
     first = min(named, key=lambda name: words.index(repr(name)))
     return _innermost_key(words, (*where, first), table[first])
+
+
+_TEXT: Final = r"(?:'[^']*'|\"[^\"]*\")"
+_TUPLE: Final = re.compile(rf"(?<!\w)\((?P<values>{_TEXT}(?:, {_TEXT})+)\)")
+_VALUE: Final = re.compile(rf"\b(?P<name>[a-z]\w*)=(?P<value>{_TEXT}|\[)")
+_CALL: Final = re.compile(r"\b(?:an? )?(?P<kind>[A-Z]\w+)(?:\.(?P<way>\w+))?\((?P<values>[^()]*)\)")
+_GIVEN: Final = re.compile(rf"\b(?P<name>[a-z]\w*) ?= ?(?P<value>{_TEXT}|\[[^\]]*\]|[^,\s]+)")
+_OPERATION: Final = re.compile(r"simulate\(motion\.(?P<name>\w+)\((?P<value>[\d.]+)\)\)")
+_OBJECTS: Final = {"InitialState": "initial", "Accuracy": "accuracy"}
+"""Keys of the run whose values are tables, by the class of the objects."""
+_ONE_FILE_EACH: Final = "no file of a study varies it: write a scene for each of its values"
+_SYSTEM: Final = {"System": "system"}
+
+
+def in_toml(words: str) -> str:
+    """Rewrite arguments, points, parts and operations in a message as a file has them."""
+    from rockframe.studies.sweeps.scenes import FUNCTION_ADVICE  # only where there is a message
+
+    words = words.replace(FUNCTION_ADVICE, _ONE_FILE_EACH)
+    words = _OPERATION.sub(
+        r"operations = [{ \g<name> = { factor = \g<value> } }] in [motion]", words
+    )
+    words = _TUPLE.sub(lambda found: f"[{_quoted(found['values'])}]", words)
+    words = _VALUE.sub(lambda found: f"{found['name']} = {_quoted(found['value'])}", words)
+    return _CALL.sub(_rewritten_call, words)
+
+
+def _quoted(text: str) -> str:
+    return text.replace("'", '"')
+
+
+def _rewritten_call(call: re.Match[str]) -> str:
+    """Rewrite a call of the class of a part, of a system, or of an object of the run."""
+    kind = call["kind"]
+    given = [f"{one['name']} = {one['value']}" for one in _GIVEN.finditer(call["values"])]
+    if kind in _OBJECTS:
+        return f"{_OBJECTS[kind]} = {{ {', '.join(given) or '...'} }}"
+    slot = _SYSTEM.get(kind)
+    if kind in registered_classes():
+        slot = slot_of_class(registered_classes()[kind])
+    if slot is None:
+        return call[0]
+    if call["way"] is not None:
+        given.insert(0, f'constructor = "{call["way"]}"')
+    if kind in registered_classes() and default_class(slot).__name__ != kind:
+        given.insert(0, f'type = "{kind}"')
+    return f"[{slot}] with {', '.join(given)}" if given else f"[{slot}]"

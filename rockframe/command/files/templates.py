@@ -12,6 +12,7 @@ from rockframe.command.files.parts import (
     constructors,
     inner_parts,
     part_slots,
+    toml_value,
 )
 from rockframe.command.files.scenes import MOTIONS, motion_keys, run_keys
 from rockframe.command.files.studies import sweep_keys
@@ -284,7 +285,7 @@ def _function_lines(
             continue
         default = signature(function).parameters[name].default
         bare = default in (Parameter.empty, None, ())
-        value = _SAMPLES[name] if bare else _toml_value(default)
+        value = _SAMPLES[name] if bare else toml_value(default)
         yield from _commented_key(f"# {name} = {value}", meanings.get(name, ""))
 
 
@@ -339,12 +340,6 @@ def _commented_key(head: str, words: str) -> Iterator[str]:
     pieces = [line.replace(_NO_BREAK, " ") for line in lines]
     yield f"{head.ljust(column)}{pieces[0]}".rstrip()
     yield from (f"#{' ' * (column - 1)}{piece}" for piece in pieces[1:])
-
-
-def _toml_value(value: object) -> str:
-    if isinstance(value, bool):
-        return str(value).lower()
-    return f'"{value}"' if isinstance(value, str) else str(value)
 
 
 def _summary(documented: object) -> str:

@@ -21,7 +21,7 @@ from rockframe.errors import (
 )
 from rockframe.motion.quantities import ArrayLike, accelerations_to_si, attached_times
 from rockframe.motion.value import UNNAMED, MotionType
-from rockframe.records import PathLike, RecordLike, read_record, request_of
+from rockframe.records import PathLike, Reading, RecordLike, read_record, request_of
 from rockframe.signals import Motion
 from rockframe.suggestions import with_hints
 from rockframe.units import POSITIVE, TIME_STEP, QuantityLike, to_si
@@ -32,7 +32,8 @@ if TYPE_CHECKING:
     from rockframe.signals.arrays import Array
 
 
-_SAME_STEP: Final = 1e-6
+SAME_STEP: Final = 1e-6
+"""Relative difference up to which the step of times is that of an argument [1]."""
 _UNEVEN: Final = 0.01
 
 
@@ -112,11 +113,21 @@ def read(
         response=response,
     )
     reading = read_record(path, format, requested)
+    warn_of_reading(reading)
+    return motion_of_reading(kind, reading, reading.name or PurePath(reading.file).stem)
+
+
+def warn_of_reading(reading: Reading) -> None:
+    """Issue the warnings of a reading."""
     for message in reading.warnings:
         warn(message, RecordWarning)
+
+
+def motion_of_reading(kind: type[MotionType], reading: Reading, name: str) -> MotionType:
+    """Make a motion of what was read."""
     return kind(
         reading.si,
-        name=reading.name or PurePath(reading.file).stem,
+        name=name,
         metadata=reading.metadata,
         history=reading.history,
         recipe=reading.recipe,
@@ -199,7 +210,7 @@ def _check_times(times: Array, step: float, *, owner: str, label: str) -> None:
     """Refuse times of an array that disagree with the time step given with it."""
     declared = float(times[-1]) / (times.size - 1)
     apart = np.abs(times - declared * np.arange(times.size))
-    if not np.isclose(declared, step, rtol=_SAME_STEP, atol=0.0) and apart.max() <= _UNEVEN * step:
+    if not np.isclose(declared, step, rtol=SAME_STEP, atol=0.0) and apart.max() <= _UNEVEN * step:
         msg = (
             f"{owner}: the time axis of {label} has the step {declared:.9g} s, "
             f"but time_step is {step:.9g} s"

@@ -10,6 +10,7 @@ import numpy as np
 
 from rockframe.arguments import checked_choice
 from rockframe.errors import ComponentError, RecordWarning, did_you_mean, short_repr, warn
+from rockframe.motion.constructors.records import SAME_STEP, motion_of_reading, warn_of_reading
 from rockframe.motion.processing.samples import sample_times
 from rockframe.motion.quantities import (
     ArrayLike,
@@ -38,7 +39,6 @@ if TYPE_CHECKING:
     from rockframe.signals.arrays import Array
 
 
-_SAME_STEP: Final = 1e-6
 _COARSER: Final = 1.5
 
 
@@ -301,7 +301,7 @@ def _step(frame: Any, time: str | None, time_step: QuantityLike | None, owner: s
             "use from_times, which resamples"
         )
         raise ComponentError(msg)
-    if requested is not None and not np.isclose(requested, step, rtol=_SAME_STEP, atol=0.0):
+    if requested is not None and not np.isclose(requested, step, rtol=SAME_STEP, atol=0.0):
         msg = f"{owner}: the times have the step {step:.9g} s, but time_step is {requested:.9g} s"
         raise ComponentError(msg)
     short, long = USUAL_TIME_STEPS
@@ -374,15 +374,9 @@ def from_trace(
     requested = request_of(owner=owner, unit=unit, component=component)
     traces = [trace] if all(hasattr(trace, part) for part in _NEEDED) else _listed(trace, owner)
     reading = read_traces(traces, requested, owner=owner)
-    for message in reading.warnings:
-        warn(message, RecordWarning)
+    warn_of_reading(reading)
     codes = [reading.metadata.get(key, "") for key in ("network", "station", "component")]
-    return kind(
-        reading.si,
-        name=".".join(map(str, codes)) if name is None else name,
-        metadata=reading.metadata,
-        history=reading.history,
-    )
+    return motion_of_reading(kind, reading, ".".join(map(str, codes)) if name is None else name)
 
 
 def _listed(stream: Any, owner: str) -> list[Any]:

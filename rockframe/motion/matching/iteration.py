@@ -9,7 +9,6 @@ import numpy as np
 
 from rockframe.motion.matching.adjustment import OscillatorPeaks, Oscillators, make_adjustment
 from rockframe.motion.processing import velocity_pulses
-from rockframe.motion.velocity_pulse import MIN_INDICATOR
 from rockframe.signals import Signal
 from rockframe.signals.integrals import ground_path
 from rockframe.signals.motion import absolute_peak, knots_of
@@ -115,6 +114,11 @@ class MatchResult(NamedTuple):
     def misfit(self) -> float:
         """The greatest misfit over the target [1]."""
         return float(np.abs(self.ratios - 1.0).max())
+
+    @property
+    def mean_misfit(self) -> float:
+        """The mean misfit over the target [1]."""
+        return float(np.abs(self.ratios - 1.0).mean())
 
 
 def match(signal: Signal, goal: MatchingGoal) -> MatchResult:
@@ -258,7 +262,7 @@ def unusual_changes(found: dict[str, float]) -> list[str]:
             f"spectrum {found[GROWTH]:.3g} times at {found[GROWTH_PERIOD]:.3g} s, beyond the range"
         )
     old, new = (found[f"{INDICATOR}_{when}_matching"] for when in ("before", "after"))
-    if new > MIN_INDICATOR >= old:
+    if new > velocity_pulses.MIN_INDICATOR >= old:
         words.append(f"a velocity pulse where none was (indicator {old:.2g}, now {new:.2g})")
     return words
 
@@ -266,8 +270,4 @@ def unusual_changes(found: dict[str, float]) -> list[str]:
 def _indicator(velocity: Array, time_step: float) -> float:
     shortest, longest = _PULSES
     periods = velocity_pulses.period_range(max(shortest, _MIN_STEPS * time_step), longest)
-    peak = velocity_pulses.strongest_wavelet(velocity[None, :], time_step, periods)
-    wavelets = velocity_pulses.extract_wavelets(velocity, time_step, peak)
-    wavelet = velocity_pulses.sampled_wavelet(peak.period, time_step)
-    pulse_velocity = velocity_pulses.sum_wavelets(wavelets, wavelet, 0, velocity.size)
-    return velocity_pulses.pulse_measures(velocity, pulse_velocity, time_step).indicator
+    return velocity_pulses.extract_pulse(velocity, time_step, periods)[-1].indicator

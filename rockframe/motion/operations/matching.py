@@ -150,7 +150,7 @@ def matched(
         worst = float(goal.checked[np.abs(found.ratios - 1.0).argmax()])
         msg = (
             f"{owner}: {motion.name!r} is {100.0 * found.misfit:.3g} % from {target.name!r} at "
-            f"{worst:.3g} s, and {100.0 * float(np.abs(found.ratios - 1.0).mean()):.2g} % on "
+            f"{worst:.3g} s, and {100.0 * found.mean_misfit:.2g} % on "
             f"average; {100.0 * goal.tolerance:.3g} % was not reached in {found.steps} steps. "
             "Another record, a narrower range of periods or a wider tolerance may help"
         )
@@ -240,7 +240,7 @@ def _attributes_of(motion: Any, target: Target, found: MatchResult) -> dict[str,
         "scale_factor": factor,
         "spectral_misfit": float(np.sqrt((np.log(found.ratios) ** 2).mean())),
         "largest_spectral_misfit": found.misfit,
-        "mean_spectral_misfit": float(np.abs(found.ratios - 1.0).mean()),
+        "mean_spectral_misfit": found.mean_misfit,
         "matching_steps": found.steps,
     }
 
@@ -252,7 +252,7 @@ def _words(target: Target, goal: MatchingGoal, found: MatchResult) -> str:
     )
     close = (
         f"the spectrum is within {100.0 * found.misfit:.3g} % of the target, "
-        f"{100.0 * float(np.abs(found.ratios - 1.0).mean()):.2g} % on the average"
+        f"{100.0 * found.mean_misfit:.2g} % on the average"
     )
     if found.steps == 0 and found.scale_factor == 1.0:
         return f"not changed to match {where}: {close}"

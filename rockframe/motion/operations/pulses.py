@@ -1,8 +1,9 @@
-"""The velocity pulse of a ground motion."""
+"""The strongest velocity pulse of a motion, and whether it makes the motion pulse-like."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, Generic
 
 import numpy as np
 
@@ -14,14 +15,22 @@ from rockframe.motion.operations.derived import (
     shifted_start_times,
 )
 from rockframe.motion.processing import velocity_pulses
-from rockframe.motion.quantities import as_quantity
+from rockframe.motion.processing.velocity_pulses import MIN_INDICATOR, MIN_PEAK_VELOCITY
 from rockframe.motion.value import MotionType
-from rockframe.motion.velocity_pulse import VelocityPulse
 from rockframe.signals import Motion
 from rockframe.signals.integrals import ground_path
 from rockframe.signals.motion import MAXIMUM_SAMPLES, knots_of
-from rockframe.suggestions import with_hints
-from rockframe.units import PERIOD, POSITIVE, TIME, VELOCITY, QuantityLike, to_si
+from rockframe.suggestions import suggests_names, with_hints
+from rockframe.units import (
+    PERIOD,
+    POSITIVE,
+    TIME,
+    VELOCITY,
+    Quantity,
+    QuantityLike,
+    quantity,
+    to_si,
+)
 
 if TYPE_CHECKING:
     from rockframe.signals import Signal
@@ -32,6 +41,93 @@ LONGEST_PERIOD: Final = "15 s"
 """Default range of periods of the search for a pulse (Shahi and Baker 2014)."""
 
 _STEPS_PER_PERIOD: Final = 4.0
+
+
+@suggests_names
+@dataclass(frozen=True)
+class VelocityPulse(Generic[MotionType]):
+    """The strongest pulse in the velocity of a motion.
+
+    :meth:`GroundMotion.velocity_pulse` and :meth:`HorizontalPair.velocity_pulse` find it.
+
+    Parameters
+    ----------
+    period : Quantity
+        Pseudo-period T_p of its wavelets, :eq:`eq-pseudo-period` [s].
+    time : Quantity
+        Time of the middle of the strongest wavelet, from the start of the motion [s].
+    peak_velocity : Quantity
+        Peak velocity of the motion [m s^-1].
+    peak_ratio, energy_ratio : float
+        Peak of the residual velocity, and integral of its square, over those of the motion [1].
+    indicator : float
+        Pulse indicator, from 0 (no pulse) to 1, :eq:`eq-pulse-indicator` [1].
+    pulse_start, motion_start : Quantity
+        Times at which a tenth of the integral of the squared velocity of the pulse is reached,
+        and a fifth of that of the motion [s].
+    extracted, residual : GroundMotion
+        The pulse alone, and the residual motion. Their sum is the motion, with zeros before and
+        after it, so that the pulse begins and ends at rest.
+    lead : Quantity
+        Duration of the zeros before the motion in both of them [s].
+    angle : Quantity or None
+        Direction of the pulse of a pair of components, from the first towards the second [rad].
+
+    Notes
+    -----
+    Its text (``str``) gives the period, the indicator, and the criteria that are not met.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> pulse = rf.GroundMotion.type_a_pulse("0.5 m/s", "2 s").velocity_pulse()
+    >>> print(pulse.period.round(2), pulse.pulse_like)
+    3.91 second True
+    """
+
+    period: Quantity
+    time: Quantity
+    peak_velocity: Quantity
+    peak_ratio: float
+    energy_ratio: float
+    indicator: float
+    pulse_start: Quantity
+    motion_start: Quantity
+    extracted: MotionType
+    residual: MotionType
+    lead: Quantity
+    angle: Quantity | None = None
+
+    @property
+    def unmet(self) -> tuple[str, ...]:
+        """The criteria of a pulse-like motion that are not met, a sentence each."""
+        found: list[str] = []
+        if not self.indicator > MIN_INDICATOR:
+            found.append(f"indicator {self.indicator:.3g} is not above {MIN_INDICATOR:g}")
+        if not self.motion_start > self.pulse_start:
+            found.append(
+                f"the pulse arrives late: a tenth of it at {self.pulse_start.m_as('s'):.4g} s, a "
+                f"fifth of the motion at {self.motion_start.m_as('s'):.4g} s"
+            )
+        peak = float(self.peak_velocity.m_as(str(VELOCITY.unit)))
+        if not peak > MIN_PEAK_VELOCITY:
+            found.append(
+                f"peak velocity {peak:.3g} {VELOCITY.unit} is not above {MIN_PEAK_VELOCITY:g}"
+            )
+        return tuple(found)
+
+    @property
+    def pulse_like(self) -> bool:
+        """Whether the motion is pulse-like: all three criteria of Baker (2007) are met."""
+        return not self.unmet
+
+    def __str__(self) -> str:
+        verdict = "; ".join(self.unmet)
+        return (
+            f"velocity pulse of {self.period.m_as('s'):.4g} s about {self.time.m_as('s'):.4g} s, "
+            f"indicator {self.indicator:.3g}: "
+            + (f"not pulse-like ({verdict})" if verdict else "pulse-like")
+        )
 
 
 @with_hints()
@@ -82,11 +178,7 @@ def velocity_pulse(
     if not np.any(velocity):
         msg = f"{owner}: {motion.name!r} has no velocity, and so no pulse"
         raise ComponentError(msg)
-    peak = velocity_pulses.strongest_wavelet(velocity[None, :], dt, periods)
-    wavelets = velocity_pulses.extract_wavelets(velocity, dt, peak)
-    wavelet = velocity_pulses.sampled_wavelet(peak.period, dt)
-    pulse_velocity = velocity_pulses.sum_wavelets(wavelets, wavelet, 0, velocity.size)
-    measures = velocity_pulses.pulse_measures(velocity, pulse_velocity, dt)
+    peak, wavelet, wavelets, measures = velocity_pulses.extract_pulse(velocity, dt, periods)
     # zeros before and after the motion, so that all wavelets begin and end at rest
     reach = wavelet.size // 2 + 1
     before = max(0, reach - min(middle for middle, _ in wavelets))
@@ -108,14 +200,14 @@ def velocity_pulse(
     residual = Motion.of_samples(dt, rest - pulse, vertical)
     start = shifted_start_times(motion, -before * dt)
     return VelocityPulse(
-        period=as_quantity(peak.period, TIME),
-        time=as_quantity(peak.sample * dt, TIME),
-        peak_velocity=as_quantity(float(np.abs(velocity).max()), VELOCITY),
+        period=quantity(peak.period, TIME),
+        time=quantity(peak.sample * dt, TIME),
+        peak_velocity=quantity(float(np.abs(velocity).max()), VELOCITY),
         peak_ratio=measures.peak_ratio,
         energy_ratio=measures.energy_ratio,
         indicator=measures.indicator,
-        pulse_start=as_quantity(measures.pulse_start, TIME),
-        motion_start=as_quantity(measures.motion_start, TIME),
+        pulse_start=quantity(measures.pulse_start, TIME),
+        motion_start=quantity(measures.motion_start, TIME),
         extracted=derived_motion(
             motion,
             Motion.of_samples(dt, pulse),
@@ -124,7 +216,7 @@ def velocity_pulse(
             metadata={**start, **cleared_vertical_metadata(motion)},
         ),
         residual=derived_motion(motion, residual, *steps, "the pulse taken out", metadata=start),
-        lead=as_quantity(before * dt, TIME),
+        lead=quantity(before * dt, TIME),
     )
 
 

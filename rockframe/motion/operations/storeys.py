@@ -58,43 +58,6 @@ if TYPE_CHECKING:
     """Periods and participations of the modes, a description of the building, its arguments."""
 
 _MAX_STOREYS: Final = 1000
-_BUILDING_ARGUMENTS: Final = (
-    # (required arguments, optional arguments)
-    (("periods",), ("floor_participations",)),
-    (("storeys", "period", "floor"), ("modes",)),
-    (("masses", "stiffnesses", "floor"), ("modes",)),
-)
-
-
-def _read_building(
-    entries: Mapping[str, Any], damping_ratio: object, owner: str
-) -> tuple[FloorModes, str, dict[str, Any]]:
-    """Return the modes of a building, its description in words, and its arguments."""
-    values = {name: value for name, value in entries.items() if value is not None}
-    matches = [
-        set(needed) <= set(values) <= {*needed, *more} for needed, more in _BUILDING_ARGUMENTS
-    ]
-    if True not in matches:
-        found = ", ".join(values) or "none of them"
-        known = "; or ".join(_listed(needed) for needed, _ in _BUILDING_ARGUMENTS)
-        msg = f"{owner}: give {known}; got {found}; write for example periods=['0.5 s']"
-        raise ComponentError(msg)
-    periods, participations, words, arguments = (
-        _read_modes,
-        _read_uniform_building,
-        _read_shear_building,
-    )[matches.index(True)](values, owner)
-    if "modes" in values:
-        highest = periods.size
-        kept = checked_integer(
-            values["modes"], owner=owner, name="modes", lowest=1, highest=highest
-        )
-        periods, participations = periods[:kept], participations[:kept]
-        words += f", of {highest} modes the first {kept}"
-        arguments["modes"] = kept
-    ratios = _damping_ratios(damping_ratio, periods.size, owner)
-    arguments["damping_ratio"] = ratios if len(set(ratios)) > 1 else ratios[0]
-    return FloorModes(periods, np.array(ratios), participations), words, arguments
 
 
 def _listed(names: tuple[str, ...]) -> str:
@@ -192,6 +155,42 @@ def _damping_ratios(value: object, modes: int, owner: str) -> list[float]:
 
 def _quantity_texts(values: Array, measure: Measure) -> list[str]:
     return [f"{value!r} {measure.unit}" for value in values.tolist()]
+
+
+_BUILDINGS: Final = (
+    # (required arguments, optional arguments, reader)
+    (("periods",), ("floor_participations",), _read_modes),
+    (("storeys", "period", "floor"), ("modes",), _read_uniform_building),
+    (("masses", "stiffnesses", "floor"), ("modes",), _read_shear_building),
+)
+
+
+def _read_building(
+    entries: Mapping[str, Any], damping_ratio: object, owner: str
+) -> tuple[FloorModes, str, dict[str, Any]]:
+    """Return the modes of a building, its description in words, and its arguments."""
+    values = {name: value for name, value in entries.items() if value is not None}
+    readers = [
+        read for needed, more, read in _BUILDINGS
+        if set(needed) <= set(values) <= {*needed, *more}
+    ]  # fmt: skip
+    if not readers:
+        found = ", ".join(values) or "none of them"
+        known = "; or ".join(_listed(needed) for needed, _, _ in _BUILDINGS)
+        msg = f"{owner}: give {known}; got {found}; write for example periods=['0.5 s']"
+        raise ComponentError(msg)
+    periods, participations, words, arguments = readers[0](values, owner)
+    if "modes" in values:
+        highest = periods.size
+        kept = checked_integer(
+            values["modes"], owner=owner, name="modes", lowest=1, highest=highest
+        )
+        periods, participations = periods[:kept], participations[:kept]
+        words += f", of {highest} modes the first {kept}"
+        arguments["modes"] = kept
+    ratios = _damping_ratios(damping_ratio, periods.size, owner)
+    arguments["damping_ratio"] = ratios if len(set(ratios)) > 1 else ratios[0]
+    return FloorModes(periods, np.array(ratios), participations), words, arguments
 
 
 _ROUNDING: Final = 1e-9

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from enum import StrEnum
 from hashlib import sha256
 from pathlib import Path
 from typing import Final
@@ -11,7 +10,7 @@ from typing import Final
 from rockframe.arguments import checked_choice
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError
-from rockframe.motion.value import MotionValue
+from rockframe.motion.value import GroundComponent, MotionValue
 from rockframe.suggestions import with_hints
 from rockframe.writing import FileKind, checked_path, write_file
 
@@ -22,18 +21,11 @@ _PER_LINE: Final = 5
 _USUAL_DECIMALS: Final = 4
 
 
-class WrittenComponent(StrEnum):
-    """The component of a motion to write."""
-
-    HORIZONTAL = "horizontal"
-    VERTICAL = "vertical"
-
-
 @with_hints()
 def to_at2(
     motion: MotionValue,
     path: str | os.PathLike[str],
-    component: WrittenComponent | str = WrittenComponent.HORIZONTAL,
+    component: GroundComponent | str = GroundComponent.HORIZONTAL,
     *,
     overwrite: bool = False,
 ) -> None:
@@ -75,10 +67,10 @@ def to_at2(
     3.0 meter / second ** 2
     """
     owner = f"{type(motion).__name__}.to_at2"
-    which = checked_choice(WrittenComponent, component, owner=owner, name="component")
+    which = checked_choice(GroundComponent, component, owner=owner, name="component")
     signal = motion.si.horizontal
     named = str(motion.metadata.get("component", ""))
-    if which is WrittenComponent.VERTICAL:
+    if which is GroundComponent.VERTICAL:
         if motion.si.vertical is None:
             msg = f"{owner}: the motion has no vertical component"
             raise ComponentError(msg)
@@ -88,9 +80,9 @@ def to_at2(
     printed_step = usual if float(usual) == step else repr(step)
     event = str(motion.metadata.get("event", motion.name))
     station = str(motion.metadata.get("station", ""))
-    parts = [
-        " ".join(_as_ascii(part).replace(",", " ").split()) for part in (event, station, named)
-    ]
+    # not every program reads characters outside ASCII
+    ascii_parts = (one.encode("ascii", "replace").decode() for one in (event, station, named))
+    parts = [" ".join(one.replace(",", " ").split()) for one in ascii_parts]
     samples = [f"{value:15.7E}" for value in (signal.samples / STANDARD_GRAVITY).tolist()]
     rows = [samples[k : k + _PER_LINE] for k in range(0, len(samples), _PER_LINE)]
     lines = [
@@ -115,8 +107,3 @@ def _is_source(motion: MotionValue, path: str | os.PathLike[str], content: bytes
         return False
     there = place.read_bytes()
     return there != content and sha256(there).hexdigest() == digest
-
-
-def _as_ascii(text: str) -> str:
-    """Replace characters outside ASCII, which not every program reads."""
-    return text.encode("ascii", "replace").decode("ascii")

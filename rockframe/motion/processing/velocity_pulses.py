@@ -95,6 +95,12 @@ REACH: Final = 0.4
 INDICATOR_COEFFICIENTS: Final = (-23.3, 14.6, 20.5)
 """Constant, and coefficients of the ratios of peak velocities and energies [1] (Baker 2007)."""
 
+MIN_INDICATOR: Final = 0.85
+"""Least pulse indicator of a pulse-like motion [1] (Baker 2007)."""
+
+MIN_PEAK_VELOCITY: Final = 0.3
+"""Least peak velocity of a pulse-like motion [m s^-1] (Baker 2007)."""
+
 PULSE_SHARE: Final = 0.1
 MOTION_SHARE: Final = 0.2
 """Fractions of the cumulative squared velocity that define the starts of pulse and motion (Baker
@@ -156,6 +162,17 @@ def strongest_wavelet(velocities: Array, dt: float, periods: Array) -> WaveletPe
     best = int(np.argmax(np.sum(found**2, axis=1)))
     direction = math.atan2(found[best, 1], found[best, 0]) if len(velocities) == 2 else 0.0
     return WaveletPeak(float(near[best]), sample, direction % math.pi)
+
+
+def extract_pulse(
+    velocity: Array, dt: float, periods: Array
+) -> tuple[WaveletPeak, Array, list[tuple[int, float]], PulseMeasures]:
+    """Find the strongest wavelet, its samples, the wavelets of the pulse, and its measures."""
+    peak = strongest_wavelet(velocity[None, :], dt, periods)
+    wavelet = sampled_wavelet(peak.period, dt)
+    wavelets = extract_wavelets(velocity, dt, peak)
+    pulse = sum_wavelets(wavelets, wavelet, 0, velocity.size)
+    return peak, wavelet, wavelets, pulse_measures(velocity, pulse, dt)
 
 
 def extract_wavelets(velocity: Array, dt: float, peak: WaveletPeak) -> list[tuple[int, float]]:

@@ -14,7 +14,7 @@ import pytest
 import xarray as xr
 
 import rockframe as rf
-from rockframe.command import parser, study
+from rockframe.command import analyses, parser
 from rockframe.command.commands import COMMANDS
 from rockframe.command.completion import script
 from rockframe.command.files.studies import read_study
@@ -233,7 +233,7 @@ def test_interrupted_study_prints_the_command_to_resume(run_command, folder, mon
     def interrupted_at_once(*arguments, **keywords):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(study, "sweep", interrupted_at_once)
+    monkeypatch.setattr(analyses, "sweep", interrupted_at_once)
     code, _, problem = run_command(*words)
     assert code == 130
     assert "rockframe study study.toml --csv runs.csv --store " in problem

@@ -7,13 +7,11 @@ import numpy as np
 import pytest
 
 import rockframe as rf
-from rockframe.command.files.notation import in_toml
-from rockframe.command.files.parts import classes_in, inner_parts, part_slots
+from rockframe.command.files.parts import classes_in, inner_parts, part_slots, toml_tables
 from rockframe.command.files.scenes import read_scene
 from rockframe.command.files.studies import read_study
-from rockframe.command.files.tables import lines_of
+from rockframe.command.files.tables import in_toml, lines_of
 from rockframe.command.files.templates import TEMPLATES, all_keys_template
-from rockframe.command.files.written import toml_tables
 from rockframe.errors import FileError, StudyError
 
 pytestmark = pytest.mark.unit

@@ -9,9 +9,8 @@ import xarray as xr
 
 import rockframe as rf
 from rockframe.errors import ComponentError, ModelWarning, UnitsError
-from rockframe.identification.measured import History
+from rockframe.identification.measured import History, swings_of
 from rockframe.identification.prediction import release_response
-from rockframe.identification.swings import swings_of
 from rockframe.results.schema import SCHEMA
 from rockframe.solve.accuracy import accuracy_of
 

@@ -1,4 +1,4 @@
-"""``rockframe plot``: the figure of a result."""
+"""``rockframe plot`` and ``animate``: the figure of a result, and the animation of a run."""
 
 import argparse
 from io import BytesIO
@@ -9,11 +9,21 @@ import xarray as xr
 
 from rockframe import plot
 from rockframe.command.answer import Answer
-from rockframe.command.run import is_finished
-from rockframe.command.shared import Outputs, check_format, read_result
+from rockframe.command.arguments import RUN_OPTIONS
+from rockframe.command.runs import is_finished
+from rockframe.command.shared import (
+    Outputs,
+    check_format,
+    is_result,
+    read_result,
+    scene_from,
+    simulate_scene,
+    typed_options,
+)
 from rockframe.command.streams import STREAM
 from rockframe.command.typed_calls import values_by_name
 from rockframe.errors import ComponentError, FileError
+from rockframe.plot import Animation, Player, animation, player
 from rockframe.plot._checks import figure_function_name
 from rockframe.reports.page import close_figure, figure_of
 from rockframe.version import __version__
@@ -31,7 +41,7 @@ _METADATA_KEYS: Final = {
 PICTURE_KIND: Final = FileKind.marked("a picture", tuple(_METADATA_KEYS), _SIGNATURE)
 
 
-def execute(arguments: argparse.Namespace, answer: Answer) -> int:
+def execute_plot(arguments: argparse.Namespace, answer: Answer) -> int:
     """Draw the result in a file."""
     check_format(arguments)
     outputs = Outputs(arguments, [arguments.dataset], answer, output=PICTURE_KIND)
@@ -58,30 +68,10 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     return 0
 
 
-def finish_analysis(
-    dataset: xr.Dataset,
-    arguments: argparse.Namespace,
-    answer: Answer,
-    outputs: Outputs,
-    runs: xr.Dataset | None = None,
-) -> int:
-    """Report the numbers of an analysis, write its result and picture, and return the exit code.
-
-    `runs` are those that were analysed, unless `dataset` has their status itself.
-    """
-    answer.add_numbers(dataset)
-    outputs.write_result(dataset)
-    if arguments.picture is not None:
-        save_figure(
-            getattr(plot, figure_function_name(dataset))(dataset), arguments.picture, outputs
-        )
-    return 0 if is_finished(dataset if runs is None else runs) else 1
-
-
 def save_figure(
     drawn: Any, path: str | Path, outputs: Outputs, stream_format: str | None = None
 ) -> None:
-    """Write a figure to a file, or to the standard output in the format `of_stream`."""
+    """Write a figure to a file, or to the standard output in the format `stream_format`."""
     figure = figure_of(drawn)
     ending = f".{stream_format or 'png'}" if str(path) == STREAM else Path(path).suffix.lower()
     buffer = BytesIO()
@@ -95,3 +85,52 @@ def save_figure(
     finally:
         close_figure(figure)
     outputs.write(path, PICTURE_KIND, "Figure", buffer.getvalue())
+
+
+_PAGES: Final = (".html", ".htm")
+_FILMS: Final = (".gif", ".mp4")
+
+
+def execute_animate(arguments: argparse.Namespace, answer: Answer) -> int:
+    """Write a run as a page or a film."""
+    check_format(arguments)
+    path = arguments.output
+    ending = f".{arguments.format or 'html'}" if path == STREAM else Path(path).suffix.lower()
+    if ending not in (*_PAGES, *_FILMS):
+        words = f"that of an animation ends in {' or '.join((_PAGES[0], *_FILMS))}"
+        raise FileError(path, f"the name ends in {ending!r}; {words}")
+    run = _run_of(arguments, answer)
+    outputs = Outputs(arguments, [arguments.dataset], answer)
+    options = typed_options(arguments, "window", "magnify", "title")
+    if ending in _PAGES and arguments.speed is not None:
+        msg = "--speed is for films; a page has a choice of speeds"
+        raise ComponentError(msg)
+    moving: Animation | Player = (
+        player(run, **options)
+        if ending in _PAGES
+        else animation(run, **options, **typed_options(arguments, "speed"))
+    )
+    try:
+        outputs.save_by(
+            path, ending, "Page" if ending in _PAGES else "Film",
+            lambda place: moving.save(place, overwrite=arguments.overwrite),
+        )  # fmt: skip
+    finally:
+        if isinstance(moving, Animation):
+            moving.close()
+    return 0 if is_result(arguments.dataset) or is_finished(run) else 1
+
+
+def _run_of(arguments: argparse.Namespace, answer: Answer) -> xr.Dataset:
+    """Read a run, or simulate a scene."""
+    if is_result(arguments.dataset):
+        typed = [one for one in RUN_OPTIONS if getattr(arguments, one.attribute) is not None]
+        if typed:
+            words = f"this is a result, which has run; {typed[0].names[-1]} goes with a scene"
+            raise FileError(arguments.dataset, words)
+        run = read_result(arguments.dataset)
+    else:
+        arguments.scene = arguments.dataset
+        run = simulate_scene(scene_from(arguments))
+    answer.add_result("Verdict", str(run.attrs.get("verdict", "")))
+    return run

@@ -1,4 +1,4 @@
-"""``rockframe convert``: records in formats of other programs."""
+"""``rockframe motion`` and ``convert``: contents of files of motions, and other formats."""
 
 import argparse
 import re
@@ -6,17 +6,77 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
 
-from rockframe.command.answer import Answer
-from rockframe.command.shared import Outputs, dataset_kind, motions_from, table_kind
+from rockframe.command.answer import Answer, format_table
+from rockframe.command.figures import PICTURE_KIND, save_figure
+from rockframe.command.shared import Outputs, dataset_kind, motion_summary, motions_from, table_kind
 from rockframe.command.streams import STREAM
 from rockframe.errors import FileError, RockframeWarning, warn
+from rockframe.measures import intensity_measures
 from rockframe.motion import GroundMotion
+from rockframe.plot import motion as draw
+from rockframe.plot._fonts import warn_of_letters_once
 from rockframe.results.table import table
 from rockframe.suites import MotionSuite
 from rockframe.units import Unit
 
+_METADATA_LABELS: Final = (
+    # (key of the metadata, label)
+    ("event", "event"),
+    ("station", "station"),
+    ("component", "component"),
+    ("format", "format"),
+    ("unit_as_read", "unit"),
+)
+_MEASURES_KIND: Final = table_kind(
+    "a table of measures", "motion", "peak_ground_acceleration", "arias_intensity"
+)
+_MAX_PRINTED: Final = 10
+"""Largest number of motions that are printed in full; of more only a table is printed."""
+
+
+@warn_of_letters_once
+def execute_motion(arguments: argparse.Namespace, answer: Answer) -> int:
+    """Print the contents of files."""
+    outputs = Outputs(arguments, arguments.files, answer, csv=_MEASURES_KIND)
+    motions = motions_from(arguments)
+    pictures = _picture_paths(arguments.picture, len(motions))
+    for path in pictures:
+        outputs.check(path, PICTURE_KIND)
+    measures = intensity_measures(motions)
+    values = table(measures)
+    if len(motions) <= _MAX_PRINTED:
+        for name, motion in motions.items():
+            answer.add_text("\n".join(_motion_lines(name, motion)))
+            for head, value in values.loc[name].items():
+                answer.add_text(f"  {str(head).replace('_', ' '):<52} {value:.4g}")
+    else:
+        answer.add_text(format_table(values))
+    answer.add_numbers(measures)
+    outputs.write_table(values)
+    for path, motion in zip(pictures, motions.values(), strict=bool(pictures)):
+        save_figure(draw(motion), path, outputs)
+    return 0
+
+
+def _picture_paths(picture: str | None, count: int) -> list[Path]:
+    """Return the names of pictures, numbered if there are several."""
+    if picture is None:
+        return []
+    path = Path(picture)
+    if count == 1 or not path.name:
+        return [path]
+    return [path.with_stem(f"{path.stem}-{number}") for number in range(1, count + 1)]
+
+
+def _motion_lines(name: str, motion: GroundMotion) -> list[str]:
+    lines = [name, f"  {motion_summary(motion)}"]
+    metadata = motion.metadata
+    lines += [f"  {words}: {metadata[key]}" for key, words in _METADATA_LABELS if metadata.get(key)]
+    return lines
+
+
 _ENDINGS: Final = {"at2": ".AT2", "csv": ".csv", "nc": ".nc"}
-_TABLE_KIND: Final = table_kind(
+_MOTION_TABLE_KIND: Final = table_kind(
     "a motion as a table",
     also=(f"time [{Unit.SECOND}]", f"acceleration [{Unit.METRE_PER_SECOND_SQUARED}]"),
 )
@@ -24,12 +84,12 @@ _NETCDF_KIND: Final = dataset_kind(
     "a motion or a set of motions",
     lambda found: "motion_sha256" in {*found.attrs, *found.variables},
 )
-_KINDS: Final = {"csv": _TABLE_KIND, "nc": _NETCDF_KIND}
+_KINDS: Final = {"csv": _MOTION_TABLE_KIND, "nc": _NETCDF_KIND}
 _UNSAFE_CHARACTERS: Final = re.compile(r"[^\w.+-]+")
 _MAX_LISTED: Final = 8
 
 
-def execute(arguments: argparse.Namespace, answer: Answer) -> int:
+def execute_convert(arguments: argparse.Namespace, answer: Answer) -> int:
     """Read records, and write them."""
     outputs = Outputs(arguments, arguments.files, answer)
     target = Path(arguments.output).expanduser()
@@ -121,7 +181,7 @@ def _write(
         outputs.write(path, _NETCDF_KIND, "Motion", motion.to_dataset().to_netcdf)
     elif file_format == "csv":
         values = table(motion.to_dataset(), "histories")
-        outputs.write(path, _TABLE_KIND, "Motion", lambda part: values.to_csv(part))
+        outputs.write(path, _MOTION_TABLE_KIND, "Motion", lambda part: values.to_csv(part))
     else:
         if motion.si.vertical is not None:
             words = "the vertical component is left out; a file ending in .nc or .csv has it"
