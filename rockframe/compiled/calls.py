@@ -53,7 +53,8 @@ class _Compiled(numba.types.Dispatcher):
         """Return the types of a call; a constant argument has the type of its kind of number."""
         function = self.dispatcher.py_func
         if raises_exceptions(function):
-            raise numba.TypingError(f"{function.__qualname__} raises an exception")
+            msg = f"{function.__qualname__} raises an exception"
+            raise numba.TypingError(msg)
         alike = [numba.types.unliteral(each) for each in arguments]
         named = {name: numba.types.unliteral(each) for name, each in keywords.items()}
         return super().get_call_type(context, alike, named)

@@ -10,7 +10,7 @@ import numpy as np
 from rockframe.compiled import Integers
 from rockframe.dynamics.events import IMPACT, REVERSAL, SILENT, SLIP, STICK
 from rockframe.dynamics.protocol import BODY_FORCES
-from rockframe.errors import RockframeError
+from rockframe.errors import words_of
 from rockframe.motion import GroundMotion
 from rockframe.results.along_steps import FRACTIONS, AlongSteps
 from rockframe.results.forces import (
@@ -308,6 +308,5 @@ def compute_or_note(
     except Warning:  # the user has made warnings errors
         raise
     except Exception as problem:
-        kind = "" if isinstance(problem, RockframeError) else f"{type(problem).__name__}: "
-        missing.append(f"{what} could not be computed: {kind}{problem}")
+        missing.append(f"{what} could not be computed: {words_of(problem)}")
         return default

@@ -12,6 +12,7 @@ from rockframe.dynamics.chain.link_rows import ChainLink
 from rockframe.dynamics.links import Bumper, LinkNumbers, SteadyForce, Tie
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import SupportedBody
+from rockframe.system.link_trial import law_faults
 from rockframe.system.parts import link_labels
 
 
@@ -97,7 +98,11 @@ class PlacedLink:
         if isinstance(self.part, Restrainer | Tendon):
             return tie_law(self.part, mass)
         if isinstance(self.part, OwnLink):
-            return self.part.law(mass)
+            found = self.part.law(mass)
+            faults = law_faults(found)
+            if faults:
+                raise AssemblyError([f"{self.name}: {fault}" for fault in faults])
+            return found
         if isinstance(self.part, RearWall):
             given = self.part.si
             stiffness, damping = given.stiffness / mass, (given.damping or 0.0) / mass

@@ -262,7 +262,7 @@ class Refusing(NamedTuple):
     @kernel
     def force_at(self, x: float) -> float:
         if x > 1.0:
-            raise ValueError("out of range")
+            raise ValueError
         return self.slope * x
 
 
@@ -271,7 +271,7 @@ def test_an_exception_of_a_law_ends_the_call(fallbacks):
     functions, numbers = bind((force_of, count_in), pair), numbers_in(pair)
     for _ in range(2):
         call_all(*functions, numbers, np.array([0.5]), np.zeros(3))
-        with pytest.raises(ValueError, match="out of range"):
+        with pytest.raises(ValueError):  # noqa: PT011
             call_all(*functions, numbers, np.array([1.5]), np.zeros(3))
     assert len(fallbacks) == 1
     assert "Refusing.force_at raises an exception" in fallbacks[0]
