@@ -295,10 +295,11 @@ def named_by_own_part(problem: Exception) -> Exception:
     found, trace = None, problem.__traceback__
     while trace is not None:
         frame, trace = trace.tb_frame, trace.tb_next
-        kind = type(frame.f_locals.get("self"))
-        modules = [str(one.__module__).partition(".")[0] for one in kind.__mro__]
+        kind, module = type(frame.f_locals.get("self")), str(frame.f_globals.get("__name__"))
+        modules = {str(one.__module__).partition(".")[0] for one in kind.__mro__}
         # a component or a support derives from one of rockframe, laws and equations from a tuple
-        if modules[0] != _PACKAGE and (_PACKAGE in modules or issubclass(kind, tuple)):
+        own = _PACKAGE in modules or issubclass(kind, tuple)
+        if own and module.partition(".")[0] != _PACKAGE:
             found = f"{kind.__name__}.{frame.f_code.co_name}"
     if found is None or isinstance(problem, RockframeError | Warning):
         return problem

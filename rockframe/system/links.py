@@ -9,10 +9,10 @@ from typing import Final
 
 from rockframe.components import Link, Load, PointLink, RearWall, Restrainer, Tendon
 from rockframe.dynamics.chain.link_rows import ChainLink
+from rockframe.dynamics.law_trial import law_faults
 from rockframe.dynamics.links import Bumper, LinkNumbers, SteadyForce, Tie
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import SupportedBody
-from rockframe.system.link_trial import law_faults
 from rockframe.system.parts import link_labels
 
 

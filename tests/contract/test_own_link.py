@@ -176,7 +176,7 @@ TWO_STATES = {
         ({**TWO_STATES, "states": lambda self: 0}, "states must be a whole number from 1 up"),
         ({"starting": lambda self, stretch, own: 1}, "starting must give one of 1 states, got 1"),
         ({**TWO_STATES, "guard": lambda *_: (math.nan, 0.0)}, "guard must be a finite number"),
-        ({**TWO_STATES, "guard": lambda *_: 1.0}, "guard must return two numbers, got 1.0"),
+        ({**TWO_STATES, "guard": lambda *_: 1.0}, "guard must be a tuple of 2 numbers, got 1.0"),
         ({**TWO_STATES, "switch": lambda *_: 1}, "switch must return a LinkEvent, got 1"),
         (
             {**TWO_STATES, "switch": lambda *_: ext.LinkEvent(2, 0, 0.0)},
