@@ -106,7 +106,7 @@ def support_of(part: Component, load: BaseLoad) -> Support:
     make = None if kind is None else _KINDS[kind].support
     if make is None:  # only bases are in the slots of bases
         raise TypeError
-    found: object = make(part, load)
+    found: Any = make(part, load)
     if not isinstance(found, Support):
         msg = f"{type(part).__name__}.support must return a Support, got {short_repr(found)}"
         raise AssemblyError([msg])
