@@ -13,6 +13,7 @@ from rockframe.dynamics.protocol import BODY_FORCES
 from rockframe.errors import words_of
 from rockframe.motion import GroundMotion
 from rockframe.results.along_steps import FRACTIONS, AlongSteps
+from rockframe.results.diagnostics import read_only
 from rockframe.results.forces import (
     SETTLEMENT_COLUMNS,
     SOIL_FRICTION_COLUMNS,
@@ -248,7 +249,7 @@ def _user_outputs(
             sizes = {TIME[0]: len(values["time"]), EVENT[0]: len(events.time)}
             found |= compute_or_note(
                 lambda own=own, sides=sides, sizes=sizes: checked_results(
-                    own.answers(everything, *sides), sizes
+                    own.answers(*map(read_only, (everything, *sides))), sizes
                 ),
                 {}, f"what {type(own).__name__} tells of the run", missing,
             )  # fmt: skip

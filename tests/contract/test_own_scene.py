@@ -436,6 +436,17 @@ class TestDiagnostics:
         np.testing.assert_allclose(response.pushed, absolute, rtol=1e-12)
         assert float(response.peak_pushed) >= float(np.abs(absolute).max())
 
+    def test_one_cannot_change_the_histories_of_the_run(self):
+        def halved(state):
+            state["rotation"] *= 0.5
+            return state["rotation"]
+
+        rf.register(halved, unit="rad", long_name="half of the rotation")
+        right = rf.System(BLOCK).simulate(PULSE, **RUN)
+        with pytest.warns(SolverWarning, match="'halved' could not be computed: .* read-only"):
+            response = rf.System(BLOCK).simulate(PULSE, **RUN, outputs=["halved"])
+        np.testing.assert_array_equal(response.rotation, right.rotation)
+
     def test_on_a_slope_the_ground_is_that_of_the_histories(self):
         rf.register(
             lambda state: state["ground_acceleration"], name="pushed_by", unit="m/s^2",
