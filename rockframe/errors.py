@@ -294,6 +294,32 @@ if not TYPE_CHECKING:  # or no name would be unknown to type checkers
         raise unknown_attribute(owner, name, __dir__())
 
 
+def named_by_own_part(problem: Exception) -> Exception:
+    """Return an error that names the method of a user's own part, or law, in which it arose.
+
+    The same error if it arose elsewhere, or is one of rockframe.
+    """
+    found, trace = None, problem.__traceback__
+    while trace is not None:
+        frame, trace = trace.tb_frame, trace.tb_next
+        kind, module = type(frame.f_locals.get("self")), str(frame.f_globals.get("__name__"))
+        modules = {str(one.__module__).partition(".")[0] for one in kind.__mro__}
+        # a component or a support derives from one of rockframe, laws and equations from a tuple
+        own = _PACKAGE in modules or issubclass(kind, tuple)
+        if own and module.partition(".")[0] != _PACKAGE:
+            found = f"{kind.__name__}.{frame.f_code.co_name}"
+    if found is None or isinstance(problem, RockframeError | Warning):
+        return problem
+    return ComponentError(f"{found} raised {type(problem).__name__}: {problem}")
+
+
+def words_of(problem: Exception) -> str:
+    """Return the text of an error, with its kind if it is none of rockframe."""
+    named = named_by_own_part(problem)
+    words = str(named) if isinstance(named, RockframeError) else ""
+    return words or f"{type(named).__name__}: {named}"
+
+
 def __dir__() -> list[str]:
     kinds = RockframeError | RockframeWarning
     known = globals().items()

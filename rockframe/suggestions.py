@@ -11,7 +11,13 @@ from inspect import Parameter, signature
 from types import FunctionType
 from typing import TYPE_CHECKING, Any, Final, NoReturn, TypeVar, cast
 
-from rockframe.errors import AccessError, ArgumentError, unexpected_argument, unknown_attribute
+from rockframe.errors import (
+    AccessError,
+    ArgumentError,
+    named_by_own_part,
+    unexpected_argument,
+    unknown_attribute,
+)
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 Class = TypeVar("Class", bound=type)
@@ -45,10 +51,14 @@ def with_hints(**hints: str) -> Callable[[Function], Function]:
                     raise unexpected_argument(words, name, listed)
             try:
                 return function(*values, **named)
-            except TypeError as problem:
-                raise_call_error(
-                    problem, [*listed, "further named arguments"] if any_name else listed
-                )
+            except Exception as problem:
+                if isinstance(problem, TypeError):
+                    raise_call_error(
+                        problem, [*listed, "further named arguments"] if any_name else listed
+                    )
+                by_part = named_by_own_part(problem)
+                if by_part is not problem:
+                    raise by_part.with_traceback(problem.__traceback__) from None
                 raise
 
         call.hints = hints  # type: ignore[attr-defined]

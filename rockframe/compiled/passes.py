@@ -39,6 +39,11 @@ def makes_only_numbers(function: Any) -> bool:
     )
 
 
+def raises_exceptions(function: Any) -> bool:
+    """Whether a function has statements that raise exceptions; machine code would go on."""
+    return any(each.opname == "RAISE_VARARGS" for each in get_instructions(function))
+
+
 class PlainPasses(_compiler.CompilerBase):
     """The passes over a plain function; they give the same result as all passes of numba."""
 

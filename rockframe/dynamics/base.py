@@ -9,12 +9,14 @@ that *is held* presses the base, or is about to; if neither end is held, the bod
 base's own variables obey first-order equations, and follow the coordinates in the state.
 """
 
+import math
 from collections.abc import Callable
 from typing import Any, Final, NamedTuple, TypeAlias
 
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.body import BaseLine
 from rockframe.dynamics.protocol import Guards as Guards
+from rockframe.errors import AssemblyError
 
 Variables: TypeAlias = tuple[float, ...]
 """A base's own variables, as many as it needs; an empty tuple if it has none."""
@@ -207,8 +209,10 @@ def positive_root(function: Callable[[float], float], start: float) -> float:
     """Return the root of an increasing function that is negative at zero, searched from `start`."""
     from scipy.optimize import root_scalar
 
-    while function(start) <= 0.0:
+    while not function(start) > 0.0:
         start *= 2.0
+        if math.isinf(start):
+            raise AssemblyError(["no compression of the base carries the weight on it"])
     found = root_scalar(function, bracket=(0.0, start), xtol=1e-18, rtol=1e-14)
     return float(found.root)
 

@@ -12,6 +12,7 @@ from rockframe.compiled import Vector
 from rockframe.dynamics.base import Base, positive_root
 from rockframe.dynamics.bed import Bed, Rigid
 from rockframe.dynamics.body import BaseLine, Body
+from rockframe.dynamics.law_trial import check_point_law
 from rockframe.dynamics.pads import LEAVE, REENGAGE, ROUNDING, ElasticPads, Pads
 from rockframe.dynamics.point_law import Point, Viscoelastic
 from rockframe.dynamics.protocol import Column
@@ -119,6 +120,7 @@ def pads_over(
     variable_scales : sequence of float, optional
         Typical sizes of the law's variables at one pad.
     """
+    check_point_law(law, elastic.settlement, columns, variable_scales)
     pads: Any = elastic.law
     guards = np.full(int(law.states() > 1), pads.noise)
     return replace(
@@ -160,6 +162,7 @@ def springs_under(
     variable_scales : sequence of float, optional
         Typical sizes of the law's variables at one spring.
     """
+    check_point_law(law, 1.0, columns, variable_scales)
     weight, width = load * body.gravity, body.left + body.right
     count, of_law = len(places), law.variables()
     at_rest = BaseLine(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)

@@ -316,12 +316,12 @@ def next_pivot(
         return PIVOT_LEFT if was.pivot == PIVOT_RIGHT else PIVOT_RIGHT
     body = system.state_of(k, state)
     direction = body.angular_velocity
-    if direction == 0.0 and part.body.left != part.body.right:
-        # its own weight rotates a body whose centre of mass is to the side
+    if direction == 0.0 and part.body.left == part.body.right:
+        direction = system.incipient_rotation(k, mode, state, ground)
+    if direction == 0.0:
+        # its own weight rotates a body whose centre of mass is to the side, and dampers any body
         rises = system.end_accelerations(k, mode, state, ground)
         direction = rises[0] - rises[1]
-    elif direction == 0.0:
-        direction = system.incipient_rotation(k, mode, state, ground)
     return leading_pivot(body.rotation, direction)
 
 

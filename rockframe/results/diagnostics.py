@@ -93,7 +93,7 @@ class Diagnostic:
         SchemaError
             The function does not return one number for each instant.
         """
-        found = np.asarray(self.function(state), dtype=np.float64)
+        found = np.array(self.function(read_only(state)), dtype=np.float64)
         if found.shape != state["time"].shape:
             msg = (
                 f"the diagnostic {self.name!r} gave an array of shape {found.shape}, for "
@@ -101,6 +101,14 @@ class Diagnostic:
             )
             raise SchemaError(msg)
         return found
+
+
+def read_only(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return arrays as the functions of users see them, who cannot change those of the run."""
+    views = {name: np.asarray(each).view() for name, each in values.items()}
+    for view in views.values():
+        view.flags.writeable = False
+    return views
 
 
 DIAGNOSTICS: Final[dict[str, Diagnostic]] = {}

@@ -10,9 +10,10 @@ import numpy as np
 from rockframe.compiled import Integers
 from rockframe.dynamics.events import IMPACT, REVERSAL, SILENT, SLIP, STICK
 from rockframe.dynamics.protocol import BODY_FORCES
-from rockframe.errors import RockframeError
+from rockframe.errors import words_of
 from rockframe.motion import GroundMotion
 from rockframe.results.along_steps import FRACTIONS, AlongSteps
+from rockframe.results.diagnostics import read_only
 from rockframe.results.forces import (
     SETTLEMENT_COLUMNS,
     SOIL_FRICTION_COLUMNS,
@@ -248,7 +249,7 @@ def _user_outputs(
             sizes = {TIME[0]: len(values["time"]), EVENT[0]: len(events.time)}
             found |= compute_or_note(
                 lambda own=own, sides=sides, sizes=sizes: checked_results(
-                    own.answers(everything, *sides), sizes
+                    own.answers(*map(read_only, (everything, *sides))), sizes
                 ),
                 {}, f"what {type(own).__name__} tells of the run", missing,
             )  # fmt: skip
@@ -308,6 +309,5 @@ def compute_or_note(
     except Warning:  # the user has made warnings errors
         raise
     except Exception as problem:
-        kind = "" if isinstance(problem, RockframeError) else f"{type(problem).__name__}: "
-        missing.append(f"{what} could not be computed: {kind}{problem}")
+        missing.append(f"{what} could not be computed: {words_of(problem)}")
         return default

@@ -71,6 +71,8 @@ def energy_caution(
     if negligible and by_tolerance:
         return None
     found = f"the energies are out of balance by {residual:.2g} of the largest"
+    if residual == math.inf:
+        return "the energies of the scene are not all numbers, so that nothing checks its motion"
     if by_tolerance:
         return f"{found}: this is no solution; repeat the run with a tighter tolerance"
     remedy = f"repeat the run with accuracy='{AccuracyLevel.STANDARD}'"

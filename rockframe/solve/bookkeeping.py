@@ -70,6 +70,8 @@ def check_energy_balance(
     clock[at.LARGEST_TERM] = max(clock[at.LARGEST_TERM], terms)
     # all terms are rounded, the energies at rest too
     imbalance = abs(balance) - ROUNDING * clock[at.LARGEST_TERM]
+    if math.isnan(imbalance):  # the energies of a law of a user's own
+        imbalance = math.inf
     clock[at.RESIDUAL] = max(clock[at.RESIDUAL], imbalance)
 
 

@@ -9,6 +9,7 @@ from typing import Final
 
 from rockframe.components import Link, Load, PointLink, RearWall, Restrainer, Tendon
 from rockframe.dynamics.chain.link_rows import ChainLink
+from rockframe.dynamics.law_trial import law_faults
 from rockframe.dynamics.links import Bumper, LinkNumbers, SteadyForce, Tie
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import SupportedBody
@@ -97,7 +98,11 @@ class PlacedLink:
         if isinstance(self.part, Restrainer | Tendon):
             return tie_law(self.part, mass)
         if isinstance(self.part, OwnLink):
-            return self.part.law(mass)
+            found = self.part.law(mass)
+            faults = law_faults(found)
+            if faults:
+                raise AssemblyError([f"{self.name}: {fault}" for fault in faults])
+            return found
         if isinstance(self.part, RearWall):
             given = self.part.si
             stiffness, damping = given.stiffness / mass, (given.damping or 0.0) / mass

@@ -23,7 +23,7 @@ from rockframe.components import (
 )
 from rockframe.components.block_numbers import BlockSI
 from rockframe.components.parameters import Declared
-from rockframe.errors import LabelError, did_you_mean, short_repr
+from rockframe.errors import AssemblyError, LabelError, did_you_mean, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.system.bodies import BaseLoad, Cap, block_cap
 from rockframe.system.own_base import OwnBase
@@ -100,7 +100,11 @@ def support_of(part: Component, load: BaseLoad) -> Support:
     make = None if kind is None else _KINDS[kind].support
     if make is None:  # only bases are in the slots of bases
         raise TypeError
-    return make(part, load)
+    found: Any = make(part, load)
+    if not isinstance(found, Support):
+        msg = f"{type(part).__name__}.support must return a Support, got {short_repr(found)}"
+        raise AssemblyError([msg])
+    return found
 
 
 def _subclass_faults(part: Component, known: type) -> list[str]:

@@ -674,3 +674,57 @@ class TestRegistration:
                 [system.setting.overturning_energy for system in systems],
             ):
                 assert answer == sorted(set(answer))
+
+
+def built_with(yielding, monkeypatch, **methods):
+    """Build the pads of the example with other methods of their law."""
+    for name, method in methods.items():
+        monkeypatch.setattr(yielding.YieldingPad, name, method)
+    return rf.System(BLOCK, yielding.YieldingPads(**GIVEN))
+
+
+NOTHING = {name: lambda *_: 0.0 for name in ("force_rate", "power")}
+
+
+@pytest.mark.parametrize(
+    ("methods", "words"),
+    [
+        ({"energy": lambda self, point, own: math.nan}, "energy must be a finite number, got nan"),
+        ({"force_rate": lambda *_: None}, "force_rate must be a finite number, got None"),
+        ({"spring": lambda self, point: 1.0}, "takes 2 positional arguments but 3 were given"),
+        (
+            {"rates": lambda *_: (0.0, 0.0), **NOTHING},
+            r"rates must be a tuple of 1 numbers, got \(0.0, 0.0\)",
+        ),
+        ({"return_rate": lambda self: -1.0}, "return_rate must be a finite number from 0 up"),
+        ({"states": lambda self: 0}, "states must be a whole number from 1 up, got 0"),
+        ({"guard": lambda *_: 1.0}, "guard must be a tuple of 2 numbers, got 1.0"),
+        ({"seen": lambda *_: ()}, r"seen for 2 columns must be a tuple of 1 numbers, got \(\)"),
+        (
+            {"variables": lambda self: 2, "rates": lambda *_: (0.0, 0.0), **NOTHING},
+            "variable_scales of YieldingPad must be a tuple of 2 numbers",
+        ),
+    ],
+)
+def test_law_is_tried_when_its_scene_is_built(yielding, monkeypatch, methods, words):
+    with pytest.raises(AssemblyError, match=words):
+        built_with(yielding, monkeypatch, **methods)
+
+
+@pytest.mark.parametrize("force", [0.0, -1.0])
+def test_base_without_force_is_refused(yielding, monkeypatch, force):
+    with pytest.raises(AssemblyError, match="no compression of the base carries the weight"):
+        built_with(yielding, monkeypatch, spring=lambda *_: force).describe()
+
+
+def test_support_must_return_a_support():
+    class Empty(ext.OwnBase):
+        slot = "pads"
+
+        def support(self, load):
+            return None
+
+    with restored_registrations():
+        rf.register(Empty)
+        with pytest.raises(AssemblyError, match=r"Empty\.support must return a Support, got None"):
+            rf.System(BLOCK, Empty())

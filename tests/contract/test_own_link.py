@@ -1,6 +1,8 @@
 """A link of a user's own, from the example's file."""
 
 import importlib.util
+import itertools
+import math
 import sys
 from pathlib import Path
 from typing import NamedTuple
@@ -11,6 +13,7 @@ from plain_python import plain_python
 
 import rockframe as rf
 from rockframe import extension as ext
+from rockframe.errors import AssemblyError, ComponentError, SolverWarning
 from rockframe.solve.driver import advance
 
 FILE = Path(__file__).parents[2] / "examples" / "own_link.py"
@@ -19,6 +22,7 @@ BLOCK = rf.Block(width="1 m", height="4 m", mass="4 t")
 PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
 POINTS = {"on": ("-0.5 m", "3 m"), "to": ("-1.5 m", "3 m"), "stiffness": "50 kN/m"}
 PULSE = rf.GroundMotion.sine_pulse(amplitude="-4 m/s^2", frequency="1 Hz")
+NUMBERS = itertools.count()
 
 
 @pytest.fixture(scope="module")
@@ -106,7 +110,7 @@ def test_invalid_link_law_raises_with_all_faults():
         def states(self):
             return 2
 
-    with pytest.raises(TypeError) as told:
+    with pytest.raises(TypeError) as error:
         ext.link_law(Nameless)
     assert str(told.value).split("; ") == [
         "Nameless has no method energy",
@@ -116,3 +120,89 @@ def test_invalid_link_law_raises_with_all_faults():
     ]
     with pytest.raises(TypeError, match="int is no NamedTuple"):
         ext.link_law(int)
+
+
+def spring(energy_beyond=lambda _: 0.0, force_beyond=lambda _: 0.0, **methods):
+    """Return a registered link that is a spring but for some methods, and beyond 1 mm."""
+
+    class Spring(NamedTuple):
+        stiffness: float
+
+        def force(self, state, stretch, own):
+            e = stretch.elongation
+            return self.stiffness * e + (force_beyond(e) if e > 1e-3 else 0.0)
+
+        def energy(self, state, stretch, own):
+            e = stretch.elongation
+            return 0.5 * self.stiffness * e * e + (energy_beyond(e) if e > 1e-3 else 0.0)
+
+    for name, method in methods.items():
+        setattr(Spring, name, method)
+    ext.link_law(Spring)
+
+    def law(self, mass):
+        stiffness = self.si.stiffness / mass
+        return ext.LinkNumbers(Spring(stiffness), stiffness)
+
+    measure = ext.Measure("a stiffness", ext.Unit.NEWTON_PER_METRE, "2 MN/m")
+    name = f"Bar{next(NUMBERS)}"
+    stiffness = ext.Parameter(measure, ext.POSITIVE, doc="Stiffness.")
+    members = {"__module__": __name__, "__qualname__": name, "law": law, "stiffness": stiffness}
+    bar = type(ext.OwnLink)(name, (ext.OwnLink,), members)
+    rf.register(bar)
+    return bar(**POINTS, name="bar")
+
+
+TWO_STATES = {
+    "states": lambda self: 2,
+    "guard": lambda self, which, state, stretch, own: (0.05 - stretch.elongation, -stretch.rate),
+    "switch": lambda self, which, state, stretch, own: ext.LinkEvent(1 - state, 0, 0.0),
+}
+
+
+@pytest.mark.parametrize(
+    ("methods", "words"),
+    [
+        ({"force": lambda self, state, stretch, own: "1"}, "force must be a finite number, got '1"),
+        ({"energy": lambda self, state, stretch, own: math.nan}, "energy must be a finite number"),
+        ({"power": lambda self, state, stretch, own: (1.0,)}, r"power must be .* got \(1.0,\)"),
+        ({"power": lambda self, stretch: 0.0}, "takes 2 positional arguments but 4 were given"),
+        ({"variables": lambda self: -1}, "variables must be a whole number from 0 up, got -1"),
+        ({**TWO_STATES, "states": lambda self: 0}, "states must be a whole number from 1 up"),
+        ({"starting": lambda self, stretch, own: 1}, "starting must give one of 1 states, got 1"),
+        ({**TWO_STATES, "guard": lambda *_: (math.nan, 0.0)}, "guard must be a finite number"),
+        ({**TWO_STATES, "guard": lambda *_: 1.0}, "guard must be a tuple of 2 numbers, got 1.0"),
+        ({**TWO_STATES, "switch": lambda *_: 1}, "switch must return a LinkEvent, got 1"),
+        (
+            {**TWO_STATES, "switch": lambda *_: ext.LinkEvent(2, 0, 0.0)},
+            "switch gives an unknown state or event",
+        ),
+        ({"shown": lambda self, state: 9}, "shown gives unknown states of restrainers, .9."),
+    ],
+)
+def test_law_is_tried_when_its_scene_is_built(methods, words):
+    with pytest.raises(AssemblyError, match=rf"bar: Spring.*{words}"):
+        rf.System(BLOCK, PADS, spring(**methods))
+
+
+def test_error_in_a_run_names_the_failing_method():
+    def fail(_):
+        return math.sqrt(-1.0)
+
+    with plain_python():
+        system = rf.System(BLOCK, PADS, spring(force_beyond=fail))
+        with pytest.raises(ComponentError, match=r"Spring\.force raised ValueError: .*") as error:
+            system.simulate(PULSE)
+        assert error.traceback[-1].name == "fail"  # where a user finds the fault
+        with pytest.warns(SolverWarning, match=r"it is said: Spring\.force raised ValueError: "):
+            rf.sweep(system, PULSE, scale=[0.5, 1.0])
+
+
+def test_nan_energies_give_infinite_residual():
+    system = rf.System(BLOCK, PADS, spring(energy_beyond=lambda _: math.nan))
+    with (
+        plain_python(),
+        pytest.warns(SolverWarning, match="energies of the scene are not all numbers"),
+    ):
+        run = system.simulate(PULSE)
+    assert float(run.energy_residual) == math.inf

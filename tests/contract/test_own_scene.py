@@ -436,6 +436,17 @@ class TestDiagnostics:
         np.testing.assert_allclose(response.pushed, absolute, rtol=1e-12)
         assert float(response.peak_pushed) >= float(np.abs(absolute).max())
 
+    def test_diagnostic_cannot_change_histories(self):
+        def halved(state):
+            state["rotation"] *= 0.5
+            return state["rotation"]
+
+        rf.register(halved, unit="rad", long_name="half of the rotation")
+        unchanged = rf.System(BLOCK).simulate(PULSE, **RUN)
+        with pytest.warns(SolverWarning, match="'halved' could not be computed: .* read-only"):
+            response = rf.System(BLOCK).simulate(PULSE, **RUN, outputs=["halved"])
+        np.testing.assert_array_equal(response.rotation, unchanged.rotation)
+
     def test_diagnostic_on_slope_uses_ground_acceleration_of_histories(self):
         rf.register(
             lambda state: state["ground_acceleration"], name="pushed_by", unit="m/s^2",

@@ -553,3 +553,17 @@ def test_a_body_that_its_tie_lifts_off_its_pads_loads_them_no_more():
     assert held.held_contact_state.item() == ContactState.FLIGHT
     # the couple holds what the tie pulls: mg along the vertical, about the centre of mass
     assert held.restoring_moment.item() > 4e3 * 9.80665 * 0.5
+
+
+@pytest.mark.parametrize("speed", ["0.1 m/s", "-0.1 m/s"])
+def test_damper_tilts_vertically_moving_upright_body(speed):
+    """At no rotation and no rate of it: the leading corner is that of the rotation to come."""
+    damper = TIE.replace(to=("-2.5 m", "0 m"), slack="20 cm", damping="2 kN*s/m")
+    start = rf.InitialState(vertical_velocity=speed)
+    with plain_python():
+        found, other = (
+            rf.System(BLOCK, PADS, damper, restraint=rule).simulate(duration="0.1 s", initial=start)
+            for rule in ("leading-corner", "contact-state")
+        )
+    assert found.attrs["verdict"].startswith("Did not overturn")
+    np.testing.assert_allclose(found.rotation, other.rotation, atol=1e-3 * other.peak_rotation)

@@ -12,7 +12,7 @@ from typing import Any, Final
 import numpy as np
 
 from rockframe.case_arrays import CaseIndices
-from rockframe.errors import PLEASE_REPORT, RockframeError
+from rockframe.errors import PLEASE_REPORT, words_of
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.requests import POINT_TIME
 from rockframe.results.variables.runs import RunStatus
@@ -297,8 +297,7 @@ class _Collector(CollectedResults):
 
     def _add_failure(self, case: int, problem: Exception) -> None:
         """Note why a case has no run."""
-        words = str(problem) if isinstance(problem, RockframeError) else ""
-        self._set_message(case, words or f"{type(problem).__name__}: {problem}")
+        self._set_message(case, words_of(problem))
         self._clear(case)
         self._status[case] = RunStatus.REFUSED
 

@@ -258,6 +258,28 @@ def test_compilation_failure_reports_innermost_reason_and_line(fallbacks):
     fallbacks.clear()
 
 
+class Refusing(NamedTuple):
+    slope: float
+
+    @kernel
+    def force_at(self, x: float) -> float:
+        if x > 1.0:
+            raise ValueError
+        return self.slope * x
+
+
+def test_exception_of_a_law_ends_the_call(fallbacks):
+    pair = Pair(Refusing(2.0), Linear(0.5))
+    functions, numbers = bind((force_of, count_in), pair), numbers_in(pair)
+    for _ in range(2):
+        call_all(*functions, numbers, np.array([0.5]), np.zeros(3))
+        with pytest.raises(ValueError):  # noqa: PT011
+            call_all(*functions, numbers, np.array([1.5]), np.zeros(3))
+    assert len(fallbacks) == 1
+    assert "Refusing.force_at raises an exception" in fallbacks[0]
+    fallbacks.clear()
+
+
 def test_methods_belong_to_their_classes(fallbacks):
     """Fields and methods of other classes with equal names are not used."""
 
