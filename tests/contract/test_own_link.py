@@ -112,7 +112,7 @@ def test_invalid_link_law_raises_with_all_faults():
 
     with pytest.raises(TypeError) as error:
         ext.link_law(Nameless)
-    assert str(told.value).split("; ") == [
+    assert str(error.value).split("; ") == [
         "Nameless has no method energy",
         "Nameless has a field 'guard', which is a method of laws",
         "give it another name",
