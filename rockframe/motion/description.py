@@ -1,11 +1,9 @@
-"""A ground motion as a description and as a dataset, and back; its name and HTML for readers."""
+"""A ground motion as a description and as a dataset, and back."""
 
 from __future__ import annotations
 
 import json
-import math
-import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, Final
 
@@ -13,81 +11,13 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import checked_bool, checked_dataset
-from rockframe.constants import CONVENTIONS, STANDARD_GRAVITY
+from rockframe.constants import CONVENTIONS
 from rockframe.errors import SchemaError, did_you_mean, short_repr
 from rockframe.motion.constructors.analytic import PULSES
 from rockframe.motion.value import UNNAMED, MotionType, MotionValue
-from rockframe.notebook import html_summary, sparkline
 from rockframe.records import LONG_NAMES, motion_of_arrays, stored_arrays, stored_motion
 from rockframe.signals import Signal
 from rockframe.units import Unit
-
-_SCALED_STEP: Final = re.compile(r"scaled by (\S+)(?: to .*)?")
-_PROCESSING_WORDS: Final = {
-    "window from ": "cut",
-    "tapered over ": "tapered",
-    "resampled from ": "resampled",
-    "Butterworth filter ": "filtered",
-    "baseline corrected": "baseline corrected",
-    "rotated by ": "rotated",
-    "absolute acceleration of a floor": "at a floor",
-}
-"""Beginnings of the steps of a history that change a motion, and the words for its name."""
-_FLOOR_STEP: Final = re.compile(r"absolute acceleration of a floor, floor (\d+) ")
-_MATCHED_STEP: Final = re.compile(r"scaled by \S+ and matched to ")
-
-
-def display_name(name: str, history: Iterable[str]) -> str:
-    """Return the name of a motion, preceded by its factor and followed by its processing."""
-    steps = list(history)
-    factors = [_SCALED_STEP.fullmatch(step) for step in steps]
-    factor = math.prod(float(found[1]) for found in factors if found is not None)
-    named = ", ".join([name, *dict.fromkeys(filter(None, map(_processing_word, steps)))])
-    return named if factor == 1.0 else f"{factor:.6g} times {named}"
-
-
-def _processing_word(step: str) -> str:
-    """Return the word for a step of a history that changes a motion; nothing for another."""
-    if _MATCHED_STEP.match(step):
-        return "matched"
-    if floor := _FLOOR_STEP.match(step):
-        return f"at floor {floor[1]}"
-    return next((words for start, words in _PROCESSING_WORDS.items() if step.startswith(start)), "")
-
-
-_SHOWN_METADATA: tuple[str, ...] = ("event", "station", "component")
-"""Metadata that notebooks show, if the file has them."""
-
-
-def motion_html(motion: MotionValue) -> str:
-    """Return name, curve and numbers of a motion as HTML."""
-    si = motion.si
-    samples = np.asarray(si.horizontal.samples)
-    rows: dict[str, Any] = {
-        "peak": peak_text(motion),
-        "duration": f"{(samples.size - 1) * si.time_step:.6g} s",
-        "samples": f"{samples.size}, each {si.time_step:.6g} s",
-    }
-    if si.vertical is not None:
-        vertical_peak = float(np.abs(np.asarray(si.vertical.samples)).max(initial=0.0))
-        rows["vertical peak"] = _acceleration_text(vertical_peak)
-    rows |= {
-        name: str(motion.metadata[name]) for name in _SHOWN_METADATA if name in motion.metadata
-    }
-    drawn = sparkline(samples.tolist())
-    title = f"{type(motion).__name__}: {display_name(motion.name, motion.history)}"
-    return f"<div>{html_summary(title, rows)}{drawn}</div>"
-
-
-def peak_text(motion: MotionValue) -> str:
-    """Return the largest horizontal acceleration of the samples as a text."""
-    samples = np.asarray(motion.si.horizontal.samples)
-    return _acceleration_text(float(np.abs(samples).max(initial=0.0)))
-
-
-def _acceleration_text(peak: float) -> str:
-    return f"{peak:.4g} m/s² ({peak / STANDARD_GRAVITY:.3g} g)"
-
 
 CONSTRUCTORS: Final = (*PULSES, "stochastic")
 """Constructors that a description may name."""

@@ -9,6 +9,7 @@ from typing import Any, Final, TypeVar
 
 from rockframe.arguments import checked_text
 from rockframe.errors import ComponentError, short_repr
+from rockframe.motion.display import display_name, motion_html
 from rockframe.signals import Motion
 from rockframe.signals.integrals import ground_path
 from rockframe.signals.motion import absolute_peak, knots_of
@@ -143,8 +144,6 @@ class MotionValue(Immutable):
         return int(self.si.horizontal.samples.size)
 
     def __repr__(self) -> str:
-        from rockframe.motion.description import display_name
-
         vertical = "" if self.si.vertical is None else ", with vertical"
         return (
             f"<{type(self).__name__} {display_name(self.name, self.history)!r}: "
@@ -154,9 +153,8 @@ class MotionValue(Immutable):
         )
 
     def _repr_html_(self) -> str:
-        from rockframe.motion.description import motion_html
-
-        return motion_html(self)
+        title = f"{type(self).__name__}: {display_name(self.name, self.history)}"
+        return motion_html(title, self.si, self.metadata)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, MotionValue):

@@ -10,7 +10,7 @@ import xarray as xr
 from rockframe.errors import ComponentError
 from rockframe.measures import velocity_and_displacement
 from rockframe.motion import GroundMotion, VelocityPulse
-from rockframe.motion.description import display_name
+from rockframe.motion.display import display_name
 from rockframe.plot._axes import (
     BLUE,
     GREEN,

@@ -44,8 +44,9 @@ from rockframe.records.reader import (
     Record,
     Request,
     Source,
+    choose_unit,
 )
-from rockframe.records.unit_names import acceleration_unit, argument_unit, choose_unit
+from rockframe.records.unit_names import acceleration_unit, argument_unit
 
 __all__ = [
     "DOWNWARDS",

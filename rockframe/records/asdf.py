@@ -41,11 +41,11 @@ from rockframe.records.reader import (
     Record,
     Request,
     Source,
+    choose_unit,
     damaged_file_errors,
     source_of,
     wrong_beginning_error,
 )
-from rockframe.records.unit_names import choose_unit
 from rockframe.signals.arrays import Array
 
 _MAGIC: Final = b"\x89HDF\r\n\x1a\n"

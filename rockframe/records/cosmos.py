@@ -32,8 +32,16 @@ from rockframe.records.components import (
 )
 from rockframe.records.headers import first_match
 from rockframe.records.numbers import Fields, FixedWidth, integer_or_none
-from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
-from rockframe.records.unit_names import acceleration_unit, choose_unit
+from rockframe.records.reader import (
+    Format,
+    Metadata,
+    Record,
+    Request,
+    Source,
+    choose_unit,
+    quoted_first_line,
+)
+from rockframe.records.unit_names import acceleration_unit
 
 MILLISECOND: Final = 1e-3
 

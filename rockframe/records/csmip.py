@@ -53,8 +53,15 @@ from rockframe.records.components import (
 )
 from rockframe.records.headers import first_match, without_empty_values
 from rockframe.records.numbers import FixedWidth, integer_or_none, number_or_none, uniform_step
-from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
-from rockframe.records.unit_names import choose_unit
+from rockframe.records.reader import (
+    Format,
+    Metadata,
+    Record,
+    Request,
+    Source,
+    choose_unit,
+    quoted_first_line,
+)
 from rockframe.signals.arrays import Array
 
 FIRST_LINE: Final = re.compile(

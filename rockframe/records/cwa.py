@@ -36,8 +36,15 @@ from rockframe.records.headers import (
     without_empty_values,
 )
 from rockframe.records.numbers import FixedWidth, number_or_none, required_number, rows_below
-from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
-from rockframe.records.unit_names import choose_unit
+from rockframe.records.reader import (
+    Format,
+    Metadata,
+    Record,
+    Request,
+    Source,
+    choose_unit,
+    quoted_first_line,
+)
 from rockframe.signals.arrays import Array
 
 _KEY: Final = re.compile(r"^#\s*([A-Za-z][A-Za-z ]{2,40}?)\s*(\([^()]{0,20}\))?\s*:\s*(.*?)\s*$")

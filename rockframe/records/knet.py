@@ -33,8 +33,15 @@ from rockframe.records.numbers import (
     last_fields,
     required_number,
 )
-from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
-from rockframe.records.unit_names import choose_unit
+from rockframe.records.reader import (
+    Format,
+    Metadata,
+    Record,
+    Request,
+    Source,
+    choose_unit,
+    quoted_first_line,
+)
 from rockframe.signals.arrays import Array
 
 UNIT: Final = "gal"

@@ -49,10 +49,10 @@ from rockframe.records.reader import (
     Record,
     Request,
     Source,
+    choose_unit,
     damaged_file_errors,
     wrong_beginning_error,
 )
-from rockframe.records.unit_names import choose_unit
 from rockframe.signals.arrays import Array
 
 # sequence number, kind, then the codes of station, location (or --), channel and network

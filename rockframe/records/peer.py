@@ -34,8 +34,16 @@ from rockframe.records.numbers import (
     integer_or_none,
     with_exponent_e,
 )
-from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
-from rockframe.records.unit_names import SLASHED, STATED_UNIT, choose_unit
+from rockframe.records.reader import (
+    Format,
+    Metadata,
+    Record,
+    Request,
+    Source,
+    choose_unit,
+    quoted_first_line,
+)
+from rockframe.records.unit_names import SLASHED, STATED_UNIT
 
 _SUFFIX: Final = ".at2"
 

@@ -1,6 +1,7 @@
 """Interface of readers: a file as bytes and lines, the request of the caller, the record."""
 
 import hashlib
+import math
 import warnings
 from collections.abc import Callable, Generator, Mapping
 from contextlib import contextmanager
@@ -10,7 +11,7 @@ from pathlib import Path
 from typing import Any, Final, Protocol, TypeAlias
 
 from rockframe.errors import RecordError, SchemaError
-from rockframe.records.unit_names import RecordUnit
+from rockframe.records.unit_names import RecordUnit, acceleration_unit, other_quantity
 from rockframe.signals import Motion
 from rockframe.signals.arrays import Array
 
@@ -394,3 +395,61 @@ def _check_text(text: str, start: str, source: Source) -> None:
     found = f"a web page or other markup, {quoted_first_line(shown_start)}"
     expected = f"{_RECORD}; was an error page downloaded?"
     raise source.refuse(found=found, expected=expected, line=line)
+
+
+def choose_unit(
+    source: Source, request: Request, name: str | None, line: int | None
+) -> tuple[RecordUnit, str, list[str]]:
+    """Choose the unit of the samples from the file and the ``unit=`` argument.
+
+    Parameters
+    ----------
+    source : Source
+        File.
+    request : Request
+        Arguments of the caller.
+    name : str or None
+        Unit in the file, if any.
+    line : int or None
+        Its line number, from 1.
+
+    Returns
+    -------
+    tuple of RecordUnit, str, list of str
+        Unit, its name as read, warnings.
+
+    Raises
+    ------
+    RecordError
+        The unit of the file is unknown or not an acceleration, or there is none.
+
+    Examples
+    --------
+    >>> from rockframe.records import Request, Source
+    >>> unit, name, warnings = choose_unit(Source("a.sim", b"SIMPLE", ""), Request(), "gal", None)
+    >>> unit.factor, name, warnings
+    (0.01, 'gal', [])
+    """
+    known = None if name is None else acceleration_unit(name)
+    if name is not None and known is None:
+        other = other_quantity(name)
+        if other is not None:
+            raise source.refuse(found=f"{other} in {name}", expected="an acceleration", line=line)
+    if request.unit is not None and request.unit_name is not None:
+        warnings: list[str] = []
+        if known is not None and not math.isclose(known.factor, request.unit.factor):
+            where = source.path if line is None else f"{source.path}, line {line}"
+            warnings.append(
+                f"{where}: the unit of the file is {name!r}, but "
+                f"unit={request.unit_name!r} was asked for and is used"
+            )
+        return request.unit, request.unit_name, warnings
+    if name is None:
+        raise source.refuse(
+            found="no unit of the samples",
+            expected="a unit in the header, or the argument unit, for example unit='g'",
+        )
+    if known is None:
+        expected = "an acceleration unit such as g, gal, cm/s^2 or m/s^2 (or the argument unit)"
+        raise source.refuse(found=f"the unknown unit {name!r}", expected=expected, line=line)
+    return known, name, []

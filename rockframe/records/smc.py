@@ -36,8 +36,15 @@ from rockframe.records.numbers import (
     integer_or_none,
     with_exponent_e,
 )
-from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
-from rockframe.records.unit_names import choose_unit
+from rockframe.records.reader import (
+    Format,
+    Metadata,
+    Record,
+    Request,
+    Source,
+    choose_unit,
+    quoted_first_line,
+)
 
 UNIT: Final = "cm/sec/sec"
 """Unit of the data, by the specification."""

@@ -23,7 +23,15 @@ from rockframe.records.numbers import (
     too_many_samples_error,
     uniform_step,
 )
-from rockframe.records.reader import MAXIMUM_SAMPLES, Format, Metadata, Record, Request, Source
+from rockframe.records.reader import (
+    MAXIMUM_SAMPLES,
+    Format,
+    Metadata,
+    Record,
+    Request,
+    Source,
+    choose_unit,
+)
 from rockframe.records.text_columns import (
     BY_ROWS,
     COLUMNS,
@@ -50,7 +58,6 @@ from rockframe.records.text_header import (
     time_scale,
     unit_of_header,
 )
-from rockframe.records.unit_names import choose_unit
 from rockframe.signals.arrays import Array
 
 MAX_COLUMNS: Final = 12

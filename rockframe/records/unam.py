@@ -41,8 +41,15 @@ from rockframe.records.headers import (
     without_empty_values,
 )
 from rockframe.records.numbers import FixedWidth, required_number, rows_below
-from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
-from rockframe.records.unit_names import choose_unit
+from rockframe.records.reader import (
+    Format,
+    Metadata,
+    Record,
+    Request,
+    Source,
+    choose_unit,
+    quoted_first_line,
+)
 from rockframe.signals.arrays import Array
 
 _TITLE: Final = re.compile(r"ARCHIVO ESTANDAR DE ACELERACION", re.IGNORECASE)

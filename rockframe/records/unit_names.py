@@ -2,21 +2,16 @@
 
 Record files write ``g`` for the acceleration of gravity and ``gal`` for cm/s^2, which are otherwise
 the gram and the gallon. This table is for units *of records* only; all other arguments of rockframe
-are read by :mod:`rockframe.units`. The choice between the unit of the file and the argument
-``unit`` is made here, too.
+are read by :mod:`rockframe.units`.
 """
 
-import math
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, UnitsError, short_repr
 from rockframe.units import ACCELERATION, Measure, to_si
-
-if TYPE_CHECKING:  # which imports this module
-    from rockframe.records.reader import Request, Source
 
 
 @dataclass(frozen=True)
@@ -102,64 +97,6 @@ def acceleration_unit(name: str) -> RecordUnit | None:
 def other_quantity(name: str) -> str | None:
     """Return the other quantity of a unit name; None if it is unknown."""
     return OTHER_QUANTITIES.get(normalised(name))
-
-
-def choose_unit(
-    source: "Source", request: "Request", name: str | None, line: int | None
-) -> tuple[RecordUnit, str, list[str]]:
-    """Choose the unit of the samples from the file and the ``unit=`` argument.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    request : Request
-        Arguments of the caller.
-    name : str or None
-        Unit in the file, if any.
-    line : int or None
-        Its line number, from 1.
-
-    Returns
-    -------
-    tuple of RecordUnit, str, list of str
-        Unit, its name as read, warnings.
-
-    Raises
-    ------
-    RecordError
-        The unit of the file is unknown or not an acceleration, or there is none.
-
-    Examples
-    --------
-    >>> from rockframe.records import Request, Source
-    >>> unit, name, warnings = choose_unit(Source("a.sim", b"SIMPLE", ""), Request(), "gal", None)
-    >>> unit.factor, name, warnings
-    (0.01, 'gal', [])
-    """
-    known = None if name is None else acceleration_unit(name)
-    if name is not None and known is None:
-        other = other_quantity(name)
-        if other is not None:
-            raise source.refuse(found=f"{other} in {name}", expected="an acceleration", line=line)
-    if request.unit is not None and request.unit_name is not None:
-        warnings: list[str] = []
-        if known is not None and not math.isclose(known.factor, request.unit.factor):
-            where = source.path if line is None else f"{source.path}, line {line}"
-            warnings.append(
-                f"{where}: the unit of the file is {name!r}, but "
-                f"unit={request.unit_name!r} was asked for and is used"
-            )
-        return request.unit, request.unit_name, warnings
-    if name is None:
-        raise source.refuse(
-            found="no unit of the samples",
-            expected="a unit in the header, or the argument unit, for example unit='g'",
-        )
-    if known is None:
-        expected = "an acceleration unit such as g, gal, cm/s^2 or m/s^2 (or the argument unit)"
-        raise source.refuse(found=f"the unknown unit {name!r}", expected=expected, line=line)
-    return known, name, []
 
 
 def argument_unit(unit: object, *, owner: str) -> RecordUnit:

@@ -39,8 +39,15 @@ from rockframe.records.numbers import (
     number_or_none,
     required_number,
 )
-from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
-from rockframe.records.unit_names import choose_unit
+from rockframe.records.reader import (
+    Format,
+    Metadata,
+    Record,
+    Request,
+    Source,
+    choose_unit,
+    quoted_first_line,
+)
 
 _MAX_COMPONENTS: Final = 12
 

@@ -13,7 +13,7 @@ from rockframe.arguments import checked_mapping
 from rockframe.components import Component, InitialState, component_from_dict
 from rockframe.errors import RecordWarning, SchemaError, did_you_mean, short_repr, warn
 from rockframe.motion import GroundMotion
-from rockframe.motion.description import display_name
+from rockframe.motion.display import display_name
 from rockframe.solve.accuracy import Accuracy
 from rockframe.units import TIME, Unit, quantity_text
 

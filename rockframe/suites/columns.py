@@ -2,23 +2,16 @@
 
 import math
 from collections.abc import Callable, Collection, Mapping
-from html import escape
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import Any, Final, cast
 
 import numpy as np
 
 from rockframe.arguments import checked_function
 from rockframe.errors import ComponentError, did_you_mean, short_repr
 from rockframe.motion import GroundMotion
-from rockframe.motion.description import peak_text
-from rockframe.notebook import CELL_STYLE, TABLE_STYLE, html_summary, sparkline
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.motions import RECORDS
 from rockframe.units import Measure, Unit, to_ratio, to_si
-
-if TYPE_CHECKING:
-    from rockframe.suites.labelled_motions import LabelledMotions
-
 
 _COMPUTED: Final = ("time_step", "duration", "sample_count", "peak_ground_acceleration")
 COLUMNS: Final = (*(row.name for row in RECORDS), "peak_ground_acceleration")
@@ -164,26 +157,3 @@ def _comparison_key(value: Any) -> Any:
     if isinstance(value, int | float):
         return float(f"{float(value):.12g}")  # without the rounding of a change of unit
     return value
-
-
-_MAX_ROWS: Final = 8
-"""Most motions that are shown in rows of their own."""
-
-
-def suite_html(suite: "LabelledMotions") -> str:
-    """Return a suite as HTML: its size, and curves of its first motions."""
-    rows = {"motions": str(len(suite))}
-    if suite.verticals:
-        rows["vertical ones beside them"] = str(len(suite.verticals))
-    if suite.unread:
-        rows["files that could not be read"] = str(len(suite.unread))
-    lines = "".join(
-        f'<tr style="background:transparent"><td style="{CELL_STYLE}">{escape(label)}</td>'
-        f'<td style="{CELL_STYLE}">{escape(peak_text(motion))}</td><td style="{CELL_STYLE}">'
-        f"{sparkline(motion.si.horizontal.samples.tolist(), width=160.0, height=24.0)}</td></tr>"
-        for label, motion in list(suite.items())[:_MAX_ROWS]
-    )
-    omitted = len(suite) - _MAX_ROWS
-    more = f"<div>and {omitted} more; <code>suite.table</code> has all</div>" if omitted > 0 else ""
-    table = f'<table style="{TABLE_STYLE}">{lines}</table>{more}'
-    return html_summary(type(suite).__name__, rows, extra=table)

@@ -1,6 +1,7 @@
 """Labelled motions in an order: a mapping, a table of metadata, and selection."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from html import escape
 from types import MappingProxyType
 from typing import Any, Final, Self, cast
 
@@ -23,7 +24,9 @@ from rockframe.errors import (
     warn,
 )
 from rockframe.motion import GroundMotion
+from rockframe.motion.display import peak_text
 from rockframe.motion.pair import HorizontalPair
+from rockframe.notebook import CELL_STYLE, TABLE_STYLE, html_summary, sparkline
 from rockframe.results.joining import MOTION
 from rockframe.results.schema import build_dataset
 from rockframe.results.table import table as table_of
@@ -34,7 +37,6 @@ from rockframe.suites.columns import (
     matching_labels,
     other_columns,
     sorted_labels,
-    suite_html,
 )
 from rockframe.suites.records import pairs_of
 from rockframe.suites.target import TargetSpectrum
@@ -107,7 +109,7 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=SuggestingMeta):
         return [name for name in super().__dir__() if not name.startswith("_")]
 
     def _repr_html_(self) -> str:
-        return suite_html(self)
+        return _suite_html(self)
 
     @property
     def verticals(self) -> Mapping[str, GroundMotion]:
@@ -360,3 +362,26 @@ def _read_motions(value: object, owner: str) -> dict[str, GroundMotion]:
             msg = f"{owner}: {label!r} needs a GroundMotion, got {short_repr(one)}; {_EXAMPLE}"
             raise ComponentError(msg)
     return motions
+
+
+_MAX_ROWS: Final = 8
+"""Most motions that are shown in rows of their own."""
+
+
+def _suite_html(suite: LabelledMotions) -> str:
+    """Return a suite as HTML: its size, and curves of its first motions."""
+    rows = {"motions": str(len(suite))}
+    if suite.verticals:
+        rows["vertical ones beside them"] = str(len(suite.verticals))
+    if suite.unread:
+        rows["files that could not be read"] = str(len(suite.unread))
+    lines = "".join(
+        f'<tr style="background:transparent"><td style="{CELL_STYLE}">{escape(label)}</td>'
+        f'<td style="{CELL_STYLE}">{escape(peak_text(motion.si))}</td><td style="{CELL_STYLE}">'
+        f"{sparkline(motion.si.horizontal.samples.tolist(), width=160.0, height=24.0)}</td></tr>"
+        for label, motion in list(suite.items())[:_MAX_ROWS]
+    )
+    omitted = len(suite) - _MAX_ROWS
+    more = f"<div>and {omitted} more; <code>suite.table</code> has all</div>" if omitted > 0 else ""
+    table = f'<table style="{TABLE_STYLE}">{lines}</table>{more}'
+    return html_summary(type(suite).__name__, rows, extra=table)

@@ -9,7 +9,7 @@ import numpy as np
 from rockframe.arguments import is_iterable, with_string_keys
 from rockframe.errors import ComponentError, StudyError, short_repr
 from rockframe.motion import GroundMotion, HorizontalPair
-from rockframe.motion.description import display_name
+from rockframe.motion.display import display_name
 from rockframe.studies.sweeps.axes import OWNER
 from rockframe.units import ACCELERATION, TIME, VELOCITY, Measure, Unit
 
